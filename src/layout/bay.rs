@@ -1,4 +1,4 @@
-//! What is laid out: a container, obstacles and items.
+//! The input of a layout: a container, obstacles and items.
 
 use super::item::{Item, bounds_of};
 use crate::error::Error;
@@ -7,10 +7,10 @@ use crate::memory;
 use crate::solid::AnySolid;
 use alloc::vec::Vec;
 
-/// A container with obstacles and items, from which [`Layout::new`](super::Layout::new) makes a layout.
+/// A container with obstacles and items, from which [`Layout::new`](super::Layout::new) builds a layout.
 pub struct Bay {
     pub(super) container: AnySolid,
-    /// Each obstacle with a box around it.
+    /// Each obstacle with its bounding box.
     pub(super) obstacles: Vec<(AnySolid, Bounds)>,
     pub(super) items: Vec<Item>,
     pub(super) clearance: f64,
@@ -18,21 +18,21 @@ pub struct Bay {
 }
 
 impl Bay {
-    /// The greatest clearance (model units).
+    /// The greatest allowed clearance (model units).
     pub const FURTHEST: f64 = (1u128 << 64) as f64;
 
-    /// A bay without obstacles and items. Its clearances are 0.
+    /// Builds a bay without obstacles and items. Its clearances are 0.
     ///
     /// # Errors
-    /// [`Error::Argument`] if the container does not tell [bounds](crate::solid::Solid::bounds), or these
-    /// have no extent along an axis.
+    /// [`Error::Argument`] if the container has no [bounds](crate::solid::Solid::bounds), or the bounds have
+    /// no extent along an axis.
     pub fn new(container: AnySolid) -> Result<Bay, Error> {
         bounds_of(&container, "container")?;
         Ok(Bay { container, obstacles: Vec::new(), items: Vec::new(), clearance: 0.0, wall_clearance: 0.0 })
     }
 
-    /// Sets the least distance between two items or an item and an obstacle, and that between an item and
-    /// what lies outside of the container (model units, 0 to 2^64).
+    /// Sets two least distances (model units, 0 to 2^64): `clearance` between two items or an item and an
+    /// obstacle, and `wall_clearance` between an item and the outside of the container.
     ///
     /// # Errors
     /// [`Error::Argument`] if a distance is not in this range.
@@ -45,10 +45,10 @@ impl Bay {
         Ok(Bay { clearance, wall_clearance, ..self })
     }
 
-    /// Adds a solid that stands where it is, and tells its number. Obstacles are counted from 0.
+    /// Adds a fixed solid and returns its number. Obstacles are counted from 0.
     ///
     /// # Errors
-    /// [`Error::Argument`] if the solid does not tell [bounds](crate::solid::Solid::bounds), or these have no
+    /// [`Error::Argument`] if the solid has no [bounds](crate::solid::Solid::bounds), or the bounds have no
     /// extent along an axis; [`Error::OutOfMemory`].
     pub fn add_obstacle(&mut self, solid: AnySolid) -> Result<usize, Error> {
         let bounds = bounds_of(&solid, "obstacle")?;
@@ -56,7 +56,7 @@ impl Bay {
         Ok(self.obstacles.len() - 1)
     }
 
-    /// Adds what is to be placed, and tells its number. Items are counted from 0.
+    /// Adds an item to place and returns its number. Items are counted from 0.
     ///
     /// # Errors
     /// [`Error::OutOfMemory`].

@@ -1,4 +1,4 @@
-//! Whether something that is placed may stand where it does.
+//! The check whether a placed copy fits.
 
 use super::proof::{Known, Piece, boxes_apart};
 use super::relative::Relative;
@@ -10,63 +10,63 @@ use crate::memory;
 use crate::query::GapVerdict;
 use alloc::vec::Vec;
 
-/// What something that is placed may be too near to.
+/// The other side of a conflict or a gap of a placed copy.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash)]
 pub enum Beside {
-    /// What lies outside of the container.
+    /// The outside of the container.
     Wall,
     /// An obstacle, by its number.
     Obstacle(usize),
-    /// Something else that is placed, by its number.
+    /// Another placed copy, by its number.
     Placed(usize),
 }
 
-/// What is known of something placed and something else.
+/// The verdict on the gap between a placed copy and one neighbour.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Neighbour {
-    /// The other one.
+    /// The neighbour.
     pub other: Beside,
-    /// Whether the two are proven to be as far apart as they should be, or not to be.
+    /// Whether the two are proven to keep the required distance, or proven not to keep it.
     pub verdict: GapVerdict,
-    /// What is known of the distance (model units): 0 if they touch or overlap.
+    /// The bounds of the distance (model units): 0 if they touch or overlap.
     pub gap: Interval,
 }
 
-/// How something stands.
+/// The result of a check: whether a placed copy fits, and its conflicts.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Standing {
-    /// `Yes`: it is proven to lie in the container, to overlap with nothing, and to be as far from everything
-    /// as it should be. `No`: one of these is proven to be wrong.
+    /// `Yes`: the copy is proven to lie in the container, to overlap with nothing, and to keep the required
+    /// distance from everything. `No`: one of these conditions is proven to be violated.
     pub verdict: GapVerdict,
-    /// What is in the way, or may be: those of which `Yes` is not proven. These are the first 256 of them:
-    /// the wall, obstacles, and what is placed, each in the order of their numbers.
+    /// The proven and possible conflicts: the wall, obstacles and placed copies for which `Yes` is not
+    /// proven, each kind in the order of its numbers. Only the first 256 are listed.
     pub conflicts: Vec<Neighbour>,
-    /// How many there are of which `Yes` is not proven, all counted.
+    /// The number of all neighbours for which `Yes` is not proven.
     pub conflict_count: usize,
-    /// What is next to it, but for the wall; nothing if there is nothing else. The gap holds the least of all
-    /// distances.
+    /// The nearest neighbour other than the wall; `None` if there is no other neighbour. The gap contains the
+    /// least of all distances.
     pub nearest: Option<Neighbour>,
-    /// Cells that were split.
+    /// Number of cell splits.
     pub splits: u64,
 }
 
-/// Most conflicts that are told of one.
+/// The maximal number of conflicts reported for a copy.
 const CONFLICTS: usize = 256;
 
-/// How well the distance of what is nearest is to be known, as a part of the longest side of the container.
+/// The precision of the distance to the nearest neighbour, as a part of the container's longest side.
 const NEAREST: f64 = 1e-6;
 
 impl Layout {
-    /// Says how something that is placed stands. Only what is near is looked at: what boxes tell apart costs
-    /// nothing.
+    /// Returns whether a placed copy fits, with its conflicts and its nearest neighbour. The check processes
+    /// only near neighbours: neighbours that boxes separate cost nothing.
     ///
-    /// A pair of closed meshes takes some ten microseconds. Others take splits, of which `control.max_splits`
-    /// limits the number a pair (4 096 if there is none); if it is spent, the answer is `Undecided`. One
-    /// thread.
+    /// A pair of closed meshes takes about ten microseconds. Other solids take splits. `control.max_splits`
+    /// limits the splits for each pair (4 096 if it is `None`); if they are spent, the answer is `Undecided`.
+    /// It uses one thread.
     ///
     /// # Errors
-    /// [`Error::Argument`] if there is nothing of this number; what the solids refuse;
-    /// [`Error::OutOfMemory`], and [`Error::Cancelled`].
+    /// [`Error::Argument`] if there is no copy with this number; the solids' own errors;
+    /// [`Error::OutOfMemory`] and [`Error::Cancelled`].
     pub fn check(&self, number: usize, control: &Control<'_>) -> Result<Standing, Error> {
         let Some(own) = self.placed.get(number) else { return Err(NOT_PLACED) };
         let mut standing = self.stands(own.item, &own.placement, Some(number), control)?;
@@ -74,7 +74,7 @@ impl Layout {
         Ok(standing)
     }
 
-    /// Says of everything that is placed how it stands, in its order, without what is nearest.
+    /// Checks all placed copies, in their order, without their nearest neighbours.
     ///
     /// # Errors
     /// As [`check`](Self::check).
@@ -89,7 +89,7 @@ impl Layout {
         })
     }
 
-    /// Whether an item may stand in a place, beside everything that is placed but `except`.
+    /// Checks whether an item fits in a place, beside all placed copies but `except`.
     pub(super) fn stands(
         &self,
         item: usize,
@@ -130,12 +130,12 @@ impl Layout {
         Ok(standing)
     }
 
-    /// Whether boxes that are no nearer than that tell their solids apart.
+    /// True if boxes at this distance separate their solids.
     fn is_far(&self, apart: f64) -> bool {
         apart >= self.clearance
     }
 
-    /// What is next to something placed.
+    /// Returns the nearest neighbour of a placed copy.
     fn nearest(
         &self,
         number: usize,
@@ -162,7 +162,7 @@ impl Layout {
             if nearest.is_some_and(|near| near.gap.upper <= apart) {
                 break;
             }
-            // (Of two that are about as far away, either is the nearest.)
+            // (If two are about as far away, either is the nearest.)
             let below = nearest.map_or(f64::INFINITY, |near| near.gap.upper - tolerance);
             let ask =
                 |fixed: &Piece, seen: &Relative| fixed.distance(piece, seen, (tolerance, below), control);
@@ -189,7 +189,7 @@ impl Layout {
                 nearest = Some(Neighbour { other, verdict, gap });
             }
         }
-        // (Of two whose distances are not known well enough, either may be the nearest.)
+        // (If two distances are not known well enough, either neighbour may be the nearest.)
         Ok(nearest.map(|near| Neighbour { gap: Interval::between(least, near.gap.upper), ..near }))
     }
 }

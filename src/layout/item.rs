@@ -1,11 +1,11 @@
-//! What is laid out.
+//! The items of a layout.
 
 use super::orientation::{Orientations, is_motion};
 use crate::error::Error;
 use crate::lattice::{Affine, Bounds};
 use crate::solid::{AnySolid, Solid, Transform};
 
-/// A solid that is to be laid out, once or several times.
+/// A solid to place, once or several times.
 #[derive(Clone)]
 pub struct Item {
     pub(super) solid: AnySolid,
@@ -16,27 +16,28 @@ pub struct Item {
 }
 
 impl Item {
-    /// One copy of a solid of density 1, which may be turned by the 24 turns that take axes to axes.
+    /// Builds an item: one copy of a solid of density 1, which may be turned by the 24 rotations that map
+    /// axes to axes.
     ///
     /// # Errors
-    /// [`Error::Argument`] if the solid does not tell [bounds](Solid::bounds), or these have no extent along
-    /// an axis.
+    /// [`Error::Argument`] if the solid has no [bounds](Solid::bounds), or the bounds have no extent along an
+    /// axis.
     pub fn new(solid: AnySolid) -> Result<Item, Error> {
         let bounds = bounds_of(&solid, "item")?;
         Ok(Item { solid, bounds, count: 1, orientations: Orientations::Turns, density: 1.0 })
     }
 
-    /// So many copies.
+    /// Sets the number of copies.
     #[must_use]
     pub fn with_count(self, count: u32) -> Item {
         Item { count, ..self }
     }
 
-    /// How it may be turned.
+    /// Sets the allowed orientations.
     ///
     /// # Errors
-    /// [`Error::Argument`] if a map of a list is no turn: it mirrors, or stretches by more than 10^-9; or if
-    /// there are no turns, or more than [`Orientations::MOST`].
+    /// [`Error::Argument`] if a map of a list is not a rotation (it mirrors, or stretches by more than
+    /// 10^-9), or if there is no orientation, or more than [`Orientations::MOST`].
     pub fn with_orientations(self, orientations: Orientations) -> Result<Item, Error> {
         let count = match &orientations {
             Orientations::AsGiven | Orientations::Turns => 1,
@@ -57,10 +58,10 @@ impl Item {
         Ok(Item { orientations, ..self })
     }
 
-    /// Mass per volume, for the centre of gravity and the inertia of the whole.
+    /// Sets the mass per volume, for the centre of gravity and the inertia of the whole layout.
     ///
     /// # Errors
-    /// [`Error::Argument`] if it is not a positive number.
+    /// [`Error::Argument`] if the density is not a positive number.
     pub fn with_density(self, density: f64) -> Result<Item, Error> {
         if !(density > 0.0 && density < f64::INFINITY) {
             return Err(Error::Argument { name: "density", problem: "must be a positive number" });
@@ -68,7 +69,7 @@ impl Item {
         Ok(Item { density, ..self })
     }
 
-    /// The same without what would have to be allocated.
+    /// Copies the item without the parts that need an allocation.
     pub(super) fn shallow(&self) -> Item {
         Item { solid: self.solid.clone(), orientations: Orientations::AsGiven, ..*self }
     }
@@ -78,25 +79,25 @@ impl Item {
         &self.solid
     }
 
-    /// How many copies there are.
+    /// The number of copies.
     pub fn count(&self) -> u32 {
         self.count
     }
 }
 
-/// The refusal of a map that is no motion.
+/// The error for a map that is not a motion.
 pub(super) const NO_MOTION: Error = Error::Argument {
     name: "placement",
     problem: "must turn and move, and neither mirror nor stretch by more than a billionth",
 };
 
-/// A box around a solid.
+/// Returns the bounding box of a solid.
 pub(super) fn bounds_of(solid: &AnySolid, name: &'static str) -> Result<Bounds, Error> {
     let of_home = || solid.home().as_ref().map(Bounds::of);
     let Some(bounds) = solid.bounds().or_else(of_home) else {
         return Err(Error::Argument {
             name,
-            problem: "must have bounds: a solid that goes on without end cannot be laid out",
+            problem: "must have bounds: an unbounded solid cannot be laid out",
         });
     };
     if (0..3).any(|k| bounds.max[k] <= bounds.min[k]) {
@@ -105,7 +106,7 @@ pub(super) fn bounds_of(solid: &AnySolid, name: &'static str) -> Result<Bounds, 
     Ok(bounds)
 }
 
-/// A solid that can be asked on any frame, which a stored octree cannot: it is known on its own.
+/// Returns a solid that can be queried on any frame. A stored octree can only be queried on its own frame.
 pub(super) fn on_any_frame(solid: &AnySolid) -> AnySolid {
     match solid.home() {
         Some(_) => AnySolid::new(Transform::of(solid.clone(), &Affine::IDENTITY)),

@@ -1,4 +1,4 @@
-//! What a layout weighs, and how much of the container it fills.
+//! The weight of a layout, and the filled part of the container.
 
 use super::Layout;
 use super::orientation::stretch;
@@ -12,15 +12,15 @@ use crate::memory;
 use crate::query::{MassProperties, measure};
 use crate::solid::{AnySolid, Csg, MeshSolid, Solid};
 
-/// What is known of everything that is placed, together. All intervals contain the truth.
+/// Measures of all placed copies together. All intervals contain the true values.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct LayoutMeasures {
-    /// The volume of everything that is placed (cubic model units).
+    /// The volume of all placed copies (cubic model units).
     pub volume: Interval,
-    /// The part of the container's volume that this is.
+    /// This volume divided by the container's volume.
     pub filled_part: Interval,
-    /// How far the highest point is above the lower end of the container's bounds, along z (model units); 0
-    /// if nothing is placed.
+    /// The height of the highest point above the lower end of the container's bounds, along z (model units);
+    /// 0 if nothing is placed.
     pub height: Interval,
     /// The mass, by the densities of the items.
     pub mass: Interval,
@@ -34,7 +34,7 @@ pub struct LayoutMeasures {
 
 const ZERO: Interval = Interval::exactly(0.0);
 
-/// A body in its place: its volume, its centroid, and ∫ (x − c)(x − c)ᵀ about that.
+/// A placed body: its volume, its centroid, and ∫ (x − c)(x − c)ᵀ about the centroid c.
 struct Body {
     density: Interval,
     volume: Interval,
@@ -43,8 +43,8 @@ struct Body {
 }
 
 impl Layout {
-    /// Measures each item and the container once, to a relative tolerance of their volumes, as [`measure`]
-    /// does it, and adds up what is placed. Overlaps, where there are any, count twice.
+    /// Returns the measures of all placed copies. Each item and the container are measured once by
+    /// [`measure`], to a relative tolerance of their volumes. The volume of an overlap counts twice.
     ///
     /// # Errors
     /// As [`measure`].
@@ -73,7 +73,7 @@ impl Layout {
         }
         let sum =
             |part: &dyn Fn(&Body) -> Interval| bodies.iter().fold(ZERO, |sum, body| sum.plus(part(body)));
-        // (What may be empty has a volume all the same, which is not known to be none.)
+        // (A possibly empty item has a volume all the same: it is not known to be zero.)
         let mut volume = ZERO;
         for placed in &self.placed {
             let Some(known) = &items[placed.item] else { continue };
@@ -105,9 +105,9 @@ impl Layout {
         Ok(measures)
     }
 
-    /// How far the highest point is above the lower end of the container.
+    /// Returns the height of the highest point above the lower end of the container.
     fn height(&self, control: &Control<'_>) -> Result<Interval, Error> {
-        /// How well it is to be known, as a part of the height of the container.
+        /// The precision, as a part of the container's height.
         const PART: f64 = 1e-6;
         let container = self.container.bounds();
         let tolerance = PART * (container.max[2] - container.min[2]);
@@ -120,7 +120,7 @@ impl Layout {
             if let Some(found) = top
                 && most <= found.lower + tolerance
             {
-                // (Those that follow reach no higher than this one.)
+                // (The remaining copies reach no higher than this one.)
                 top = Some(Interval::between(found.lower, found.upper.max(most)));
                 break;
             }
@@ -134,7 +134,8 @@ impl Layout {
         Ok(top.map_or(ZERO, |top| top.minus(floor)))
     }
 
-    /// Where the highest point of something placed is, as what lies on the box around it tells.
+    /// Returns the coordinate of a placed copy's highest point, from its distance to a lid on its bounding
+    /// box.
     fn top(&self, number: usize, tolerance: f64, control: &Control<'_>) -> Result<Interval, Error> {
         const NOISE: f64 = 1.0 / (1u128 << 100) as f64 / (1u128 << 100) as f64;
         let (placed, around) = (&self.placed[number], &self.boxes[number]);
@@ -142,7 +143,7 @@ impl Layout {
         let thick = around.max[2] - around.min[2];
         let mut lid = around.grown(thick);
         lid.min[2] = around.max[2];
-        // (Smaller numbers are no coordinates. The lid is wide enough without them, and no lower.)
+        // (Smaller numbers are not valid coordinates. The lid is wide enough without them, and no lower.)
         let is_noise = |c: f64| c.abs() < NOISE;
         lid.min = axes(|k| match lid.min[k] {
             c if is_noise(c) => {
@@ -180,9 +181,9 @@ fn measured(
     measure(solid, &frame, tolerance, control)
 }
 
-/// What the volume is multiplied by.
+/// Returns the factor by which the placement multiplies the volume.
 fn determinant(placement: &Affine) -> Interval {
-    // The determinant of MᵀM, whose eigenvalues are that near to 1, is its square.
+    // Its square is the determinant of MᵀM, whose eigenvalues are that near to 1.
     match stretch(placement) {
         0.0 => Interval::exactly(1.0),
         by => Interval::between(1.0 - 2.0 * by, 1.0 + 2.0 * by),
@@ -190,14 +191,14 @@ fn determinant(placement: &Affine) -> Interval {
 }
 
 impl Body {
-    /// `None` if the solid may be empty.
+    /// Returns the placed body; `None` if the solid may be empty.
     fn of(known: &MassProperties, placement: &Affine, density: f64) -> Option<Body> {
         let own = known.centroid?;
         let rows = placement.rows().map(|row| row.map(Interval::exactly));
         let half = Interval::exactly(0.5);
         let tensor = &known.inertia_about_centroid;
         let trace = tensor[0][0].plus(tensor[1][1]).plus(tensor[2][2]).times(half);
-        // ∫ x xᵀ is half the trace less the tensor.
+        // ∫ x xᵀ is half the trace minus the tensor.
         let second = |i: usize, j: usize| match i == j {
             true => {
                 let (a, b) = (tensor[(i + 1) % 3][(i + 1) % 3], tensor[(i + 2) % 3][(i + 2) % 3]);

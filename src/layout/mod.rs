@@ -1,18 +1,20 @@
 //! Placing solids in a container, with proof.
 //!
-//! A [`Layout`] holds a container, obstacles, items, and which of these stand where. [`Layout::check`] says
-//! of one that is placed whether it fits, and [`Layout::search`] places what is not placed yet. All that
-//! either claims is proven by the solids themselves: cells are split where it takes that, and nowhere else
-//! (Dai, Zha & Ni 1994).
+//! A [`Layout`] holds a container, obstacles, items, and the placed copies of items. [`Layout::check`]
+//! reports whether a placed copy fits. [`Layout::search`] places copies that are not placed yet. The solids
+//! themselves prove all results of both: cells are split where a proof needs it, and nowhere else (Dai, Zha &
+//! Ni 1994).
 //!
-//! | question | file |
+//! | topic | file |
 //! |---|---|
-//! | what is laid out? | `bay`, `item` |
-//! | which turns are there? | `orientation` |
-//! | are two placed solids apart, is one within the container? | `proof`, by what lies around that: `wall`; where one is as the other sees it: `relative` |
-//! | who is in the way, and how near is the next one? | `check` |
-//! | where does what is not placed go? | `search/` |
-//! | what does it weigh, and how much of the container does it fill? | `measures` |
+//! | the container, obstacles and items | `bay`, `item` |
+//! | the allowed orientations | `orientation` |
+//! | proofs that two solids are apart, or that one lies within the container | `proof` |
+//! | the space around the container | `wall` |
+//! | relative placements | `relative` |
+//! | conflicts and the nearest neighbour | `check` |
+//! | the search for places | `search/` |
+//! | weight, and the filled part of the container | `measures` |
 
 mod bay;
 mod check;
@@ -41,18 +43,18 @@ use item::NO_MOTION;
 use orientation::is_motion;
 use proof::{Container, Near, Piece};
 
-/// A copy of an item in its place.
+/// A placed copy of an item.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Placed {
-    /// Which item, by its place among those of the bay.
+    /// The index of the item in the bay.
     pub item: usize,
-    /// Where it stands.
+    /// The placement.
     pub placement: Affine,
 }
 
-/// A container with obstacles, items, and the places of those that are placed.
+/// A container with obstacles, items, and the placed copies of items.
 ///
-/// Solids are prepared once. Items with the same number share what is prepared.
+/// Solids are prepared once. Copies of the same item share the prepared data.
 ///
 /// ```
 /// use leafless::{Affine, AnySolid, Control, Csg};
@@ -78,18 +80,18 @@ pub struct Layout {
     pieces: Vec<Piece>,
     clearance: f64,
     placed: Vec<Placed>,
-    /// Boxes around what is placed.
+    /// The bounding boxes of the placed copies.
     boxes: Vec<Bounds>,
 }
 
 impl Layout {
-    /// A layout in which nothing is placed. It takes what the solids take to be put on frames, once each.
+    /// Builds a layout without placed copies. The cost is that of putting each solid on frames once.
     ///
     /// # Errors
-    /// What the solids refuse; [`Error::OutOfMemory`], and [`Error::Cancelled`].
+    /// The solids' own errors; [`Error::OutOfMemory`] and [`Error::Cancelled`].
     pub fn new(bay: &Bay, control: &Control<'_>) -> Result<Layout, Error> {
         let longest = bay.items.iter().map(|item| proof::diagonal(&item.bounds)).fold(0.0, f64::max);
-        // What is further away than that is told apart by boxes.
+        // Boxes separate solids that are further away than this.
         let reach = 1.25 * longest + 2.0 * bay.clearance.max(bay.wall_clearance);
         let obstacles = bay.obstacles.iter().map(|(solid, _)| solid);
         let solids = [&bay.container].into_iter().chain(obstacles);
@@ -109,26 +111,26 @@ impl Layout {
         Ok(Layout { container, obstacles, items, pieces, clearance, placed: Vec::new(), boxes: Vec::new() })
     }
 
-    /// A box around the container.
+    /// A bounding box of the container.
     pub fn bounds(&self) -> &Bounds {
         self.container.bounds()
     }
 
-    /// What may be placed.
+    /// The items.
     pub fn items(&self) -> &[Item] {
         &self.items
     }
 
-    /// What is placed, in the order in which it was.
+    /// The placed copies, in the order of their placement.
     pub fn placed(&self) -> &[Placed] {
         &self.placed
     }
 
-    /// Places a copy of an item, wherever that is, and tells its number. Nothing is checked. The counts of
-    /// items are not looked at.
+    /// Places a copy of an item and returns the copy's number. The method does not check the place, and
+    /// ignores the counts of items.
     ///
     /// # Errors
-    /// [`Error::Argument`] if there is no such item, or the placement mirrors, or stretches by more than
+    /// [`Error::Argument`] if there is no such item, or if the placement mirrors or stretches by more than
     /// 10^-9; [`Error::OutOfMemory`].
     pub fn place(&mut self, item: usize, placement: &Affine) -> Result<usize, Error> {
         if item >= self.items.len() {
@@ -143,10 +145,11 @@ impl Layout {
         Ok(self.placed.len() - 1)
     }
 
-    /// Moves what is placed to another place. Nothing is checked.
+    /// Moves a placed copy to another place. The method does not check the place.
     ///
     /// # Errors
-    /// As [`place`](Self::place), for the number of what is placed.
+    /// [`Error::Argument`] if there is no copy with this number; the other errors as for
+    /// [`place`](Self::place).
     pub fn move_to(&mut self, number: usize, placement: &Affine) -> Result<(), Error> {
         let Some(own) = self.placed.get(number) else { return Err(NOT_PLACED) };
         self.boxes[number] = self.around(own.item, placement)?;
@@ -154,10 +157,10 @@ impl Layout {
         Ok(())
     }
 
-    /// Takes what is placed away. Those that were placed later get numbers that are less by one.
+    /// Removes a placed copy. The numbers of all copies that were placed later decrease by one.
     ///
     /// # Errors
-    /// [`Error::Argument`] if there is nothing of this number.
+    /// [`Error::Argument`] if there is no copy with this number.
     pub fn remove(&mut self, number: usize) -> Result<Placed, Error> {
         if number >= self.placed.len() {
             return Err(NOT_PLACED);
@@ -166,7 +169,7 @@ impl Layout {
         Ok(self.placed.remove(number))
     }
 
-    /// A box around an item in a place.
+    /// Returns a bounding box of an item under a placement.
     fn around(&self, item: usize, placement: &Affine) -> Result<Bounds, Error> {
         if !is_motion(placement) {
             return Err(NO_MOTION);
@@ -175,6 +178,6 @@ impl Layout {
     }
 }
 
-/// The refusal of a number that nothing placed has.
+/// The error for a number that no placed copy has.
 const NOT_PLACED: Error =
     Error::Argument { name: "number", problem: "must be the number of something that is placed" };

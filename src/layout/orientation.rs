@@ -1,4 +1,4 @@
-//! How items may be turned.
+//! The orientations of items.
 
 use super::random::Random;
 use crate::error::Error;
@@ -7,26 +7,27 @@ use crate::lattice::{Affine, axes};
 use crate::memory;
 use alloc::vec::Vec;
 
-/// The ways in which an item may be turned.
+/// The allowed orientations of an item.
 #[derive(Debug, Clone, PartialEq)]
 pub enum Orientations {
-    /// Only as it is.
+    /// Only the given orientation.
     AsGiven,
-    /// The 24 turns that take axes to axes. They are exact.
+    /// The 24 rotations that map axes to axes. They are exact.
     Turns,
-    /// As it is, and that many turns by chance, at least 1 and at most [`MOST`](Orientations::MOST), evenly
-    /// spread over all turns; they depend on the seed of the search.
+    /// The given orientation, and this number of random rotations, at least 1 and at most
+    /// [`MOST`](Orientations::MOST). The random rotations are uniformly distributed over all rotations and
+    /// depend on the seed of the search.
     Free(u32),
-    /// Any of these. Only the linear part of a map counts, which must be a turn: see
+    /// The rotations of a list. Only the linear part of a map counts, which must be a rotation: see
     /// [`Item::with_orientations`](super::Item).
     List(Vec<Affine>),
 }
 
-/// By how much a matrix may stretch lengths and still count as a turn, as a part of them.
+/// The greatest relative change of lengths by a matrix that still counts as a rotation.
 pub(super) const STRETCH: f64 = 1e-9;
 
 impl Orientations {
-    /// The greatest number of turns of one item: a search keeps the cells of the item in each of them.
+    /// The greatest number of orientations of one item: a search keeps the cells of the item in each of them.
     pub const MOST: u32 = 1 << 12;
 
     pub(super) fn try_clone(&self) -> Result<Orientations, Error> {
@@ -38,7 +39,7 @@ impl Orientations {
         })
     }
 
-    /// The maps, all of which leave the origin where it is.
+    /// Returns the maps, all of which fix the origin.
     pub(super) fn maps(&self, seed: u64) -> Result<Vec<Affine>, Error> {
         let mut maps = Vec::new();
         match self {
@@ -66,9 +67,9 @@ impl Orientations {
     }
 }
 
-/// By how much a map stretches or shrinks lengths at the most, as a part of them.
+/// Returns an upper bound of the relative change of lengths by a map.
 pub(super) fn stretch(map: &Affine) -> f64 {
-    // The eigenvalues of MᵀM are at most so far from 1, and their roots are no further.
+    // The eigenvalues of MᵀM are at most this far from 1, and their roots are no further.
     let entry = |i: usize, j: usize| {
         let parts = map.rows().map(|row| row[i] * row[j]);
         let size = parts.iter().map(|part| part.abs()).sum::<f64>();
@@ -80,12 +81,12 @@ pub(super) fn stretch(map: &Affine) -> f64 {
     (0..3).fold(0.0, |most: f64, i| most.max((0..3).map(|j| entry(i, j)).sum()))
 }
 
-/// Whether a map turns and moves, and does neither stretch nor mirror.
+/// True if a map rotates and moves, but neither stretches nor mirrors.
 pub(super) fn is_motion(map: &Affine) -> bool {
     map.orientation() == 1 && stretch(map) <= STRETCH
 }
 
-/// The 24 turns that take axes to axes, the one that turns nothing first.
+/// The 24 rotations that map axes to axes; the identity comes first.
 pub(super) fn turns() -> impl Iterator<Item = Affine> {
     const ORDERS: [[usize; 3]; 6] = [[0, 1, 2], [1, 2, 0], [2, 0, 1], [1, 0, 2], [0, 2, 1], [2, 1, 0]];
     let all = ORDERS.into_iter().enumerate().flat_map(|(k, order)| {
@@ -100,7 +101,7 @@ pub(super) fn turns() -> impl Iterator<Item = Affine> {
     all.filter_map(|rows| Affine::new(rows).ok())
 }
 
-/// A turn by chance: a point of the sphere of quaternions, taken from the cube around it.
+/// A random rotation: a point of the sphere of quaternions, taken from the cube around it.
 fn any(random: &mut Random) -> Result<Affine, Error> {
     let (q, square) = loop {
         let q: [f64; 4] = core::array::from_fn(|_| 2.0 * random.part() - 1.0);

@@ -1,4 +1,4 @@
-//! Whether two placed solids are apart, and whether one lies within the container.
+//! Proofs that two placed solids are apart, and that a solid lies within the container.
 
 use super::relative::Relative;
 use super::wall::{wall, wall_of_box};
@@ -9,23 +9,24 @@ use crate::lattice::{Affine, Bounds, Frame, Interval, MAX_DEPTH, axes};
 use crate::query::{Asked, GapVerdict, Overlap, Ready, interference};
 use crate::solid::{AnySolid, Csg, MeshSolid, Solid};
 
-/// Splits that the question about one pair may take.
+/// The maximal number of splits for one pair.
 pub(super) const PAIR_SPLITS: u64 = 1 << 12;
 
-/// The same of meshes that triangles do not tell apart: they touch, or nearly so, and cells seldom tell more.
+/// The maximal number of splits for meshes that triangles do not separate: they touch, or nearly so, and
+/// cells seldom help.
 const TOUCH_SPLITS: u64 = 1 << 9;
 
-/// How far, and how closely, solids are looked at.
+/// The range and the resolution of comparisons.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Near {
-    /// What is further away is told apart by boxes (model units).
+    /// The distance beyond which boxes separate solids (model units).
     pub(super) reach: f64,
-    /// Smaller cells tell nothing more (model units).
+    /// The size below which smaller cells give no more information (model units).
     pub(super) finest: f64,
 }
 
 impl Near {
-    /// Stored octrees among the solids know nothing of what is smaller than their cells.
+    /// Builds the limits. Stored octrees among the solids have no information below the size of their cells.
     pub(super) fn new<'s>(reach: f64, solids: impl Iterator<Item = &'s AnySolid>) -> Near {
         let cells = solids.filter_map(|solid| solid.home()).map(|home| 0.5 * home.cell_size());
         Near { reach, finest: cells.fold(f64::INFINITY, f64::min) }
@@ -40,20 +41,20 @@ impl Near {
     }
 }
 
-/// A solid that is compared with others.
+/// A solid prepared for comparisons.
 pub(super) struct Piece(Ready);
 
-/// What is known of two solids.
+/// The result of comparing two solids.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Known {
     pub(super) verdict: GapVerdict,
-    /// What is known of their distance.
+    /// The bounds of their distance.
     pub(super) gap: Interval,
     pub(super) splits: u64,
 }
 
 impl Piece {
-    /// What is no further away than that can be compared with it.
+    /// Prepares a solid for comparison with solids within the reach of `near`.
     pub(super) fn new(
         solid: &AnySolid,
         bounds: &Bounds,
@@ -68,15 +69,15 @@ impl Piece {
         self.0.solid()
     }
 
-    /// A box that holds it.
+    /// The bounding box.
     pub(super) fn bounds(&self) -> &Bounds {
         self.0.bounds()
     }
 
-    /// Whether another one, as this one sees it, is no nearer than `least`; with `least` = 0, whether the two
-    /// do not overlap.
+    /// Returns whether another solid, in this one's coordinates, is no nearer than `least`; with `least` = 0,
+    /// whether the two do not overlap.
     ///
-    /// `places` are those of both in the model.
+    /// `places` are the placements of both in the model.
     pub(super) fn is_apart(
         &self,
         other: &Piece,
@@ -90,7 +91,7 @@ impl Piece {
         let found = self.0.compared(&other.0, &seen.placement, asked, control)?;
         let gap = seen.distance(found.distance);
         let splits = found.splits.iter().sum();
-        // (What is needed is no less than `least` with all that rounding may do.)
+        // (The needed distance is at least `least`, including all rounding errors.)
         if found.distance.lower >= seen.needed(least) {
             return Ok(Known { verdict: GapVerdict::Yes, gap, splits });
         }
@@ -98,7 +99,7 @@ impl Piece {
             let verdict = if gap.upper < least { GapVerdict::No } else { GapVerdict::Undecided };
             return Ok(Known { verdict, gap, splits });
         }
-        // Solids that may touch: exact numbers tell, where there are some.
+        // The solids may touch: exact numbers decide, where available.
         let are_meshes = is_mesh(self.solid()) && is_mesh(other.solid());
         let most = control.max_splits.map(|most| if are_meshes { most.min(TOUCH_SPLITS) } else { most });
         let control = &Control { max_splits: most, ..*control };
@@ -118,7 +119,7 @@ impl Piece {
         })
     }
 
-    /// How far another one is, unless that is `below` at least.
+    /// Returns the distance of another solid, unless it is at least `below`.
     pub(super) fn distance(
         &self,
         other: &Piece,
@@ -138,17 +139,18 @@ fn is_mesh(solid: &AnySolid) -> bool {
     solid.get::<MeshSolid>().is_some()
 }
 
-/// What holds everything.
+/// The container.
 pub(super) struct Container {
-    /// What lies around it, as far as anything placed may reach.
+    /// The space around the container, as far as any placed copy may reach.
     wall: Piece,
     wall_solid: AnySolid,
-    /// The same as a mesh, for meshes: where it is proven to be a box, and is no mesh.
+    /// The same as a mesh, for comparison with meshes, if the container is proven to be a box and is not a
+    /// mesh.
     wall_mesh: Option<Piece>,
     solid: AnySolid,
     bounds: Bounds,
     outer: Bounds,
-    /// Whether it is proven to be the whole box that holds it.
+    /// Whether the container is proven to fill its whole bounding box.
     is_box: bool,
     clearance: f64,
     near: Near,
@@ -196,7 +198,7 @@ impl Container {
         self.clearance
     }
 
-    /// Whether a box lies within, as far as that is known.
+    /// Returns whether a box is proven to lie within the container.
     fn holds(&self, block: &Bounds, control: &Control<'_>) -> Result<bool, Error> {
         const SPLITS: u64 = 64;
         let control = Control { max_splits: Some(SPLITS), ..*control };
@@ -210,7 +212,8 @@ impl Container {
         &self.solid
     }
 
-    /// Whether something placed lies within, and as far from the wall as it should; `around` holds it there.
+    /// Returns whether a placed copy lies within the container and keeps the distance from the wall; `around`
+    /// is the copy's bounding box.
     pub(super) fn takes(
         &self,
         piece: &Piece,
@@ -228,7 +231,8 @@ impl Container {
         let is_within =
             (0..3).all(|k| self.outer.min[k] <= around.min[k] && around.max[k] <= self.outer.max[k]);
         if !is_within {
-            // Nobody has looked so far from the container. What does not even meet it is outside.
+            // The wall does not extend so far from the container. A copy that does not even meet the
+            // container's box is outside.
             let away = self.bounds.common(around).is_none();
             return known(
                 if away { GapVerdict::No } else { GapVerdict::Undecided },
@@ -241,14 +245,14 @@ impl Container {
     }
 }
 
-/// The length of a box from corner to corner, rounded upward.
+/// The length of a box's diagonal, rounded up.
 pub(super) fn diagonal(bounds: &Bounds) -> f64 {
     let sides: [f64; 3] = axes(|k| bounds.max[k] - bounds.min[k]);
     sqrt(sides.iter().map(|side| side * side).sum::<f64>()) * (1.0 + 1e-12)
 }
 
-/// A box that holds all that is no further than a margin from one, along each axis: rounded outward, and not
-/// where nothing is rounded.
+/// Returns a box that contains all points no further than a margin from a box, along each axis. It is rounded
+/// outward, but only where rounding occurs.
 pub(super) fn wider(bounds: &Bounds, margin: f64) -> Bounds {
     let rounded = |(sum, rest): (f64, f64), sense: f64| match rest * sense {
         off if off > 0.0 && sense > 0.0 => sum.next_up(),
@@ -261,7 +265,7 @@ pub(super) fn wider(bounds: &Bounds, margin: f64) -> Bounds {
     }
 }
 
-/// No more than the distance of two boxes; less than 0 if their insides meet.
+/// Returns a lower bound of the distance of two boxes; a negative number if their interiors meet.
 pub(super) fn boxes_apart(a: &Bounds, b: &Bounds) -> f64 {
     let gap = |high: f64, low: f64| {
         let (gap, rest) = two_diff(high, low);

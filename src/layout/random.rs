@@ -1,6 +1,6 @@
-//! Numbers by chance, the same on every machine.
+//! Pseudo-random numbers, the same on every machine.
 
-/// A stream of numbers that its seed decides (SplitMix64: Steele, Lea & Flood 2014).
+/// A stream of numbers determined by its seed (SplitMix64: Steele, Lea & Flood 2014).
 #[derive(Debug, Clone)]
 pub(super) struct Random(u64);
 
@@ -17,12 +17,12 @@ impl Random {
         z ^ z >> 31
     }
 
-    /// From 0 to 1, without 1.
+    /// A number from 0 to 1, without 1.
     pub(super) fn part(&mut self) -> f64 {
         (self.next() >> 11) as f64 / (1u64 << 53) as f64
     }
 
-    /// Less than `end`, which is not 0.
+    /// A number less than `end`, which is not 0.
     #[cfg(test)]
     pub(super) fn below(&mut self, end: usize) -> usize {
         (self.next() % end as u64) as usize

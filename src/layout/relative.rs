@@ -1,22 +1,22 @@
-//! Where one placed solid is as another one sees it.
+//! The placement of one placed solid in the coordinates of another one.
 
 use super::orientation::stretch;
 use crate::error::Error;
 use crate::lattice::exact::sqrt;
 use crate::lattice::{Affine, Bounds, Composed, Interval};
 
-/// The place of a solid B in the coordinates of a placed solid A, rounded, with what rounding may do to
-/// distances.
+/// The placement of a solid B in the coordinates of a placed solid A, rounded, with the possible effect of
+/// rounding on distances.
 pub(super) struct Relative {
     pub(super) placement: Affine,
-    /// No point of B is further from where it should be (model units).
+    /// The maximal displacement of B's points by rounding (model units).
     off: f64,
-    /// By how much the placement of A changes lengths at the most, as a part of them.
+    /// The maximal relative change of lengths by the placement of A.
     stretch: f64,
 }
 
 impl Relative {
-    /// `bounds` hold B.
+    /// Computes the relative placement. `bounds` is B's bounding box.
     pub(super) fn new(a: &Affine, b: &Affine, bounds: &Bounds) -> Result<Relative, Error> {
         let placement = after(&a.inverse()?, b)?;
         let there = Composed::from(a).after(&placement);
@@ -34,20 +34,20 @@ impl Relative {
         Ok(Relative { placement, off, stretch: stretch(a) })
     }
 
-    /// As if A stood where it is defined.
+    /// The placement of B for an A that is not moved.
     pub(super) fn of(b: &Affine) -> Relative {
         Relative { placement: *b, off: 0.0, stretch: 0.0 }
     }
 
-    /// What the distance must be at least in the coordinates of A, so that it is `least` in those of the
-    /// model; not 0.
+    /// Returns the distance in the coordinates of A that ensures a distance of `least` in those of the model;
+    /// not 0.
     pub(super) fn needed(&self, least: f64) -> f64 {
         let needed = (least + self.off) / (1.0 - self.stretch);
         let needed = if self.off == 0.0 && self.stretch == 0.0 { needed } else { needed * (1.0 + 1e-12) };
         needed.max(LEAST)
     }
 
-    /// The distance in the coordinates of the model.
+    /// Converts a distance to the coordinates of the model.
     pub(super) fn distance(&self, own: Interval) -> Interval {
         if self.off == 0.0 && self.stretch == 0.0 {
             return own;
@@ -59,13 +59,13 @@ impl Relative {
     }
 }
 
-/// The least distance that is asked for.
+/// The least distance in a query.
 const LEAST: f64 = 1.0 / (1u128 << 100) as f64;
 
-/// `inner` first, then `outer`, rounded.
+/// Composes two maps, `inner` first, then `outer`, rounded.
 pub(super) fn after(outer: &Affine, inner: &Affine) -> Result<Affine, Error> {
     let rows = *Composed::from(outer).after(inner).rows();
-    // (What nearly vanishes by rounding is nothing.)
+    // (A number that nearly vanishes by rounding counts as zero.)
     let is_noise = |c: f64| c.abs() < 1.0 / (1u64 << 60) as f64;
     Affine::new(rows.map(|row| row.map(|c| if is_noise(c) { 0.0 } else { c })))
 }

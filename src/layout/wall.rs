@@ -1,4 +1,4 @@
-//! What lies around a container, as a solid.
+//! The space around a container, as a solid.
 
 use super::item::on_any_frame;
 use crate::control::Control;
@@ -9,8 +9,8 @@ use crate::mesh::{FillRule, MeshMoments, TriangleMesh};
 use crate::solid::{AnySolid, Csg, MeshSolid};
 use alloc::vec::Vec;
 
-/// A block without a container that lies within it. Where the container is a good mesh, the block is one,
-/// too, so that triangles tell how far other meshes are from it.
+/// Returns a block minus the container, which lies within the block. If the container is a good mesh, the
+/// result is a mesh, too, so that triangles determine the distance of other meshes.
 pub(super) fn wall(container: &AnySolid, outer: &Bounds, control: &Control<'_>) -> Result<AnySolid, Error> {
     if let Some(mesh) = container.get::<MeshSolid>().map(|solid| solid.mesh())
         && is_good(mesh, control)?
@@ -21,22 +21,22 @@ pub(super) fn wall(container: &AnySolid, outer: &Bounds, control: &Control<'_>) 
     Ok(AnySolid::new(wall))
 }
 
-/// A block without a smaller one in it, as a mesh.
+/// Returns a block minus a smaller one, as a mesh.
 pub(super) fn wall_of_box(bounds: &Bounds, outer: &Bounds) -> Result<AnySolid, Error> {
     let (vertices, triangles) = block(bounds, 0, 0)?;
     let mesh = turned_out(&TriangleMesh::new(vertices, triangles)?, outer)?;
     Ok(AnySolid::new(MeshSolid::new(mesh, FillRule::Positive)?))
 }
 
-/// Whether the winding number around each point is known to be what the solid says by any rule but the even
-/// one: no triangles intersect, and no body is inside out.
+/// True if the winding number of each point is known to agree with the solid by every rule except the
+/// even-odd rule: no triangles intersect, and no body is inside out.
 fn is_good(mesh: &TriangleMesh, control: &Control<'_>) -> Result<bool, Error> {
     let own = Control { progress: None, ..*control };
     let is_known = matches!(mesh.moments(FillRule::NonZero, &own)?, MeshMoments::Known(_));
     Ok(is_known && mesh.report()?.inside_out_bodies == 0)
 }
 
-/// The triangles of a block, and those of a mesh the other way round.
+/// Returns the triangles of a block, and the inverted triangles of a mesh.
 fn turned_out(mesh: &TriangleMesh, outer: &Bounds) -> Result<TriangleMesh, Error> {
     let (mut vertices, mut triangles) = block(outer, mesh.vertices().len(), mesh.triangles().len())?;
     vertices.extend(mesh.vertices());
@@ -53,9 +53,10 @@ pub(super) fn block_mesh(bounds: &Bounds) -> Result<AnySolid, Error> {
 /// Corners, and triangles between them.
 type Parts = (Vec<[f64; 3]>, Vec<[u32; 3]>);
 
-/// The corners of a block and its triangles, with room for so many more of both.
+/// Returns the corners of a block and its triangles. Both lists have room for the given number of further
+/// elements.
 fn block(bounds: &Bounds, more_vertices: usize, more_triangles: usize) -> Result<Parts, Error> {
-    /// The faces of a block between its corners, of which bit k tells the upper one along axis k.
+    /// The faces of a block by their corners. Bit k of a corner selects the upper side along axis k.
     const FACES: [[u32; 4]; 6] =
         [[0, 4, 6, 2], [1, 3, 7, 5], [0, 1, 5, 4], [2, 6, 7, 3], [0, 2, 3, 1], [4, 5, 7, 6]];
     let mut vertices = memory::with_capacity(8 + more_vertices)?;
@@ -87,7 +88,7 @@ mod tests {
             panic!("the wall is a good mesh");
         };
         assert!(moments.volume.contains(27.0 - 1.0 / 6.0), "{moments:?}");
-        // One that is inside out is not.
+        // A mesh that is inside out is not good.
         let turned = mesh.triangles()[12..].iter().map(|own| own.map(|vertex| vertex - 8)).collect();
         let turned = TriangleMesh::new(mesh.vertices()[8..].to_vec(), turned).unwrap();
         let container = AnySolid::new(MeshSolid::new(turned, FillRule::NonZero).unwrap());

@@ -10,27 +10,27 @@ use crate::octree::view::OctreeRef;
 use crate::octree::{Octree, Planes, Tag};
 use crate::parallel::each;
 
-/// Layers of cells along z that are read at a time.
+/// The number of layers along z that are read together.
 const DEEP: u32 = 64;
 
 impl OctreeRef<'_> {
-    /// The cells of a level in a box as bits: `inner` tells which are FULL, and `outer` which are not EMPTY.
-    /// Those that only `outer` has are PARTIAL, or are cut further.
+    /// Writes the cells of one level in a box as bits: `inner` marks the FULL cells, `outer` marks the cells
+    /// that are not EMPTY. A cell with a bit only in `outer` is PARTIAL or divided further.
     ///
-    /// `min` is the first cell of the box, `max` the first beyond it on each axis, both in cells of `level`
-    /// (0 is the universe, the frame's depth the finest). The bit of the cell min + (x, y, z) is bit x mod 64
-    /// of word x / 64 + w·(y + ny·z) with w = ⌈nx / 64⌉ and nx, ny, nz = max − min. x is fastest, each row
-    /// begins with a word of its own, and bits beyond a row are 0: what
-    /// [`Samples::Bits`](crate::solid::Samples::Bits) reads. All words are overwritten.
+    /// `min` is the first cell of the box, `max` the first cell beyond it on each axis, both in cells of
+    /// `level` (0 is the universe, the frame's depth the finest). The bit of the cell min + (x, y, z) is bit
+    /// x mod 64 of word x / 64 + w·(y + ny·z) with w = ⌈nx / 64⌉ and nx, ny, nz = max − min. x is fastest,
+    /// each row begins with a word of its own, and bits beyond a row are 0.
+    /// [`Samples::Bits`](crate::solid::Samples::Bits) reads the same layout. All words are overwritten.
     ///
-    /// Whole rows of words are written for large cells, four bits at a time where the tree is fine: O(words +
-    /// elements in the box). The result does not depend on the number of threads. Where the links of an
-    /// unverified tree are damaged, cells read as PARTIAL.
+    /// For large cells whole rows of words are written, for fine cells four bits at a time. Complexity:
+    /// O(words + elements in the box). The result does not depend on the number of threads. If the links of
+    /// an unverified tree are damaged, the affected cells read as PARTIAL.
     ///
     /// # Errors
     /// [`Error::Argument`] if `level` is greater than the frame's depth, min > max on an axis, `max` lies
-    /// outside of the universe, or a slice has not w·ny·nz words; [`Error::OutOfMemory`], and
-    /// [`Error::Cancelled`]: the slices then hold anything.
+    /// outside of the universe, or a slice has not w·ny·nz words. [`Error::OutOfMemory`] and
+    /// [`Error::Cancelled`]: the contents of the slices are then unspecified.
     ///
     /// ```
     /// use leafless::{Control, Csg, Frame, Rule, Volume, build, solid::{Band, Samples, VoxelGrid}};
@@ -95,10 +95,11 @@ impl OctreeRef<'_> {
         Ok(())
     }
 
-    /// Words in the bitmap of a box, whose parameters are those of [`bitmap`](Self::bitmap).
+    /// Returns the number of words in the bitmap of a box. The parameters are those of
+    /// [`bitmap`](Self::bitmap).
     ///
     /// # Errors
-    /// [`Error::Argument`] for a level below the frame's depth, and for a box that does not lie in the
+    /// [`Error::Argument`] if `level` is greater than the frame's depth, or the box does not lie in the
     /// universe.
     pub fn bitmap_words(&self, level: u8, min: [u32; 3], max: [u32; 3]) -> Result<u64, Error> {
         let refuse = |name, problem| Err(Error::Argument { name, problem });
@@ -114,7 +115,7 @@ impl OctreeRef<'_> {
 }
 
 impl Octree {
-    /// As [`OctreeRef::bitmap`].
+    /// Writes the cells of a box as bits. See [`OctreeRef::bitmap`] for the full contract.
     ///
     /// # Errors
     /// As [`OctreeRef::bitmap`].
@@ -131,18 +132,18 @@ impl Octree {
     }
 }
 
-/// The bits of the cells from `low` to before `high`.
+/// The bits of the cells from `low` up to, but not including, `high`.
 struct Bits<'b> {
     low: [u32; 3],
     high: [u32; 3],
-    /// Words a row.
+    /// Number of words in a row.
     words: usize,
     inner: &'b mut [u64],
     outer: Option<&'b mut [u64]>,
 }
 
 impl Bits<'_> {
-    /// What of the cells from `at` to before `at + edge` lies in the box along an axis.
+    /// The part of the cells from `at` to before `at + edge` that lies in the box along an axis.
     fn range(&self, axis: usize, at: u32, edge: u32) -> core::ops::Range<u32> {
         let (low, high) = (at.max(self.low[axis]), (at + edge).min(self.high[axis]));
         low - self.low[axis]..high.max(low) - self.low[axis]
@@ -188,7 +189,7 @@ impl Bits<'_> {
         if x.is_empty() {
             return;
         }
-        // How many of a row's four cells lie before the box, and which lie in it.
+        // The number of a row's four cells that lie before the box, and the mask of those in it.
         let before = x.start + self.low[0] - at[0];
         let real = (1u64 << (x.end - x.start)) - 1;
         let (first, shift) = (x.start as usize / 64, x.start % 64);
@@ -204,7 +205,7 @@ impl Bits<'_> {
                     if let Some(word) = words.get_mut(row) {
                         *word |= nibble << shift;
                     }
-                    // Where the box does not begin with a multiple of four.
+                    // Needed where the box does not begin at a multiple of four.
                     if shift > 60
                         && nibble >> (64 - shift) != 0
                         && let Some(word) = words.get_mut(row + 1)
@@ -220,7 +221,8 @@ impl Bits<'_> {
         }
     }
 
-    /// Which of the 64 cells of this edge from `at` on lie in the box in part.
+    /// Returns a mask of the 64 cells of this edge, beginning at `at`, that the box overlaps at least in
+    /// part.
     fn touched(&self, at: [u32; 3], edge: u32) -> u64 {
         let mut cells = !0;
         for axis in 0..3 {
@@ -261,15 +263,15 @@ impl Fill<'_, '_, '_> {
         }
     }
 
-    /// Takes in what of element `index` of level `e` lies in the box; `at` is its first cell. The recursion
-    /// is as deep as the tree has element levels, ten at the most.
+    /// Adds the part of element `index` of level `e` that lies in the box; `at` is the element's first cell.
+    /// The recursion is as deep as the tree has element levels, ten at the most.
     fn element(&mut self, e: usize, index: usize, at: [u32; 3]) -> Result<(), Error> {
         self.job.check()?;
         let planes = self.tree.entry(index).unwrap_or(Planes::uniform(Tag::Partial));
         let real = if e == 0 { self.tree.root_cells() } else { !0 };
         let level = self.tree.cell_level(e);
         if level > self.level {
-            // The cells that are asked for are octants.
+            // Octants have the requested level.
             for k in (0..8).filter(|k| real >> (8 * k) & 1 != 0) {
                 let octant = [at[0] + (k & 1), at[1] + (k >> 1 & 1), at[2] + (k >> 2 & 1)];
                 match planes.octant(k) {
@@ -293,7 +295,7 @@ impl Fill<'_, '_, '_> {
             match planes.tag(c) {
                 Tag::Branch => match self.windows.child(self.tree, index, planes.branch(), c, e + 1) {
                     Ok(child) => self.element(e + 1, child, corner)?,
-                    // Damage.
+                    // The tree is damaged.
                     Err(_) => self.bits.fill(corner, edge, false),
                 },
                 tag => self.bits.fill(corner, edge, tag == Tag::Full),

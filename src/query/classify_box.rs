@@ -1,4 +1,4 @@
-//! How does a box lie to the solid?
+//! The position of a box relative to a solid: inside, outside or across its boundary.
 
 use crate::control::{Control, Job};
 use crate::error::Error;
@@ -12,7 +12,7 @@ use crate::solid::{AskDirect, AskWhole, BoxContent, Classifier, Direct, OCTANTS,
 use crate::walk::Proven;
 use crate::walk::{Step, descend};
 
-/// The answer to a box query. Each is proven, but for the last.
+/// The answer to a box query. Each variant but the last is proven.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
 #[repr(u8)]
 pub enum Region {
@@ -22,20 +22,20 @@ pub enum Region {
     Inside = 1,
     /// Part of the box lies inside, part outside.
     Crossing = 2,
-    /// None of these could be proven at the tree's depth.
+    /// None of the other answers could be proven at the tree's depth.
     Undecided = 3,
 }
 
-/// How the box `[min, max]` (model units, min ≤ max) lies to a solid, as far as cells of `frame` tell; what
-/// of the box lies outside of the universe is undecided. Ends as soon as the answer is known, or once
-/// `control.max_splits` cells are split. One thread.
+/// Returns the position of the box `[min, max]` (model units, min ≤ max) relative to a solid, as far as the
+/// cells of `frame` determine it. Any part of the box outside of the universe is undecided. The search ends
+/// as soon as the answer is known, or once `control.max_splits` cells are split. It uses one thread.
 ///
-/// A mesh tells of most boxes in the universe from a tree over its triangles, without cells
+/// A mesh answers most boxes in the universe from a tree over its triangles, without cells
 /// ([`MeshSolid`](crate::MeshSolid)).
 ///
 /// # Errors
-/// [`Error::Argument`] if min > max on an axis, or a coordinate is not a number; what the solid refuses;
-/// [`Error::OutOfMemory`], and [`Error::Cancelled`].
+/// [`Error::Argument`] if min > max on an axis, or a coordinate is not a number; the solid's own errors;
+/// [`Error::OutOfMemory`] and [`Error::Cancelled`].
 ///
 /// ```
 /// use leafless::{Control, Csg, Frame, query::{Region, classify_box}};
@@ -89,7 +89,7 @@ pub fn classify_box<S: Solid>(
     Ok(survey.region())
 }
 
-/// A box in finest cells, and what has been met in it so far.
+/// A box in finest cells, and the kinds of cells met in it so far.
 struct Survey {
     window: Window,
     empty: bool,
@@ -98,13 +98,14 @@ struct Survey {
 }
 
 impl Survey {
-    /// `None` if all of the box lies outside of the universe; what of it does is undecided.
+    /// Starts a survey; `None` if all of the box lies outside of the universe. A part of the box outside is
+    /// undecided.
     fn new(frame: &Frame, min: [f64; 3], max: [f64; 3]) -> Result<Option<Survey>, Error> {
         let found = Window::new(frame, min, max)?;
         Ok(found.map(|(window, partial)| Survey { window, empty: false, full: false, partial }))
     }
 
-    /// Takes in those of 64 cells that `mask` names.
+    /// Takes in the cells that `mask` selects from 64 cells.
     #[inline]
     fn note(&mut self, planes: Planes, mask: u64) {
         self.empty |= planes.empty() & mask != 0;
@@ -123,10 +124,10 @@ impl Survey {
 }
 
 impl OctreeRef<'_> {
-    /// How the box `[min, max]` (model units, min ≤ max) lies to the solid; what of it lies outside of the
-    /// universe is undecided. Ends as soon as the answer is known; whatever the bytes, no element is read
-    /// twice. Cuts decide in place, each by at most 64 boxes: a box that touches a surface, or comes very
-    /// near to one, may be undecided.
+    /// Returns the position of the box `[min, max]` (model units, min ≤ max) relative to the solid. Any part
+    /// of the box outside of the universe is undecided. The search ends as soon as the answer is known. No
+    /// element is read twice, whatever the bytes. Cuts decide in place, each by at most 64 boxes: a box that
+    /// touches a surface, or comes very near to a surface, may be undecided.
     ///
     /// # Errors
     /// [`Error::Argument`] if min > max on an axis, or a coordinate is not a number.
@@ -151,16 +152,17 @@ struct Search<'t, 'a> {
     windows: Windows,
     /// The box, in model units.
     asked: [[f64; 3]; 2],
-    /// Records that may still be looked at: of a damaged tree several cells may lead to one.
+    /// The number of records that may still be visited: in a damaged tree several cells may lead to one
+    /// record.
     records: usize,
 }
 
-/// Most pieces that a box is cut into in a cell with a table.
+/// The maximal number of pieces that a box is divided into in a cell with a table.
 const MOST_PIECES: usize = 64;
 
 impl Search<'_, '_> {
-    /// Looks at the part of element `index` of level `e` that lies in the box; `origin` is its lowest finest
-    /// cell. The recursion is as deep as the tree has element levels, ten at the most.
+    /// Visits the part of element `index` of level `e` that lies in the box; `origin` is the element's lowest
+    /// finest cell. The recursion is as deep as the tree has element levels, ten at the most.
     fn element(&mut self, e: usize, index: usize, origin: [u32; 3]) {
         let levels = self.tree.levels();
         let Some(planes) = self.tree.entry(index) else {
@@ -195,7 +197,7 @@ impl Search<'_, '_> {
 }
 
 impl Search<'_, '_> {
-    /// Looks at those cells of an element that `mask` names and that are not cut.
+    /// Visits the PARTIAL cells of an element that `mask` selects.
     fn cuts_of(
         &mut self,
         cuts: &CutsRef<'_>,
@@ -225,7 +227,7 @@ impl Search<'_, '_> {
         }
     }
 
-    /// Looks at a PARTIAL cell. The recursion is as deep as the frame.
+    /// Visits a PARTIAL cell. The recursion is as deep as the frame.
     fn cut(&mut self, cuts: &CutsRef<'_>, record: usize, cell: Cell) {
         let depth = self.tree.frame.depth();
         self.records = self.records.saturating_sub(1);
@@ -244,8 +246,8 @@ impl Search<'_, '_> {
         }
     }
 
-    /// Looks at what of the box lies in a cell with a table: in pieces, which are halved where they are not
-    /// decided.
+    /// Visits the part of the box that lies in a cell with a table. The part is divided into pieces;
+    /// undecided pieces are halved.
     fn table(&mut self, cuts: &CutsRef<'_>, ids: &CellIds, table: u8, cell: Cell) {
         let mut figures = [None; 3];
         for (figure, &id) in figures.iter_mut().zip(ids.iter()) {
@@ -258,7 +260,7 @@ impl Search<'_, '_> {
             let [first, last] = [lower[axis], upper[axis]].map(|i| frame.plane(axis, i));
             low[axis] = first.lower.max(self.asked[0][axis]);
             high[axis] = last.upper.min(self.asked[1][axis]).max(low[axis]);
-            // A piece that is thicker than this is met by the part of the box that lies in the cell.
+            // The part of the box in the cell certainly meets a piece thicker than this.
             slack[axis] = 64.0 * f64::EPSILON * (low[axis].abs() + high[axis].abs());
         }
         let mut waiting = [([0.0; 3], [0.0; 3], 0); MOST_PIECES];
@@ -296,7 +298,8 @@ impl Search<'_, '_> {
 }
 
 impl Octree {
-    /// As [`OctreeRef::classify_box`].
+    /// Returns the position of a box relative to the solid. See [`OctreeRef::classify_box`] for the full
+    /// contract.
     ///
     /// # Errors
     /// As [`OctreeRef::classify_box`].

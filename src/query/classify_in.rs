@@ -1,4 +1,4 @@
-//! How does a region of any shape lie to the solid?
+//! The position of a region of any shape relative to a solid.
 
 use super::Region;
 use crate::control::{Control, Job};
@@ -9,18 +9,19 @@ use crate::solid::{Classifier, Solid, Verdict, Worker};
 use crate::walk::Proven;
 use crate::walk::split_one;
 
-/// How a region lies to a solid, as far as cells of `frame` tell: a ball ([`Csg::ball`](crate::Csg::ball)),
-/// or any other solid. [`Region::Inside`] means that all of the region lies in the solid; [`Region::Outside`]
-/// that the interiors are disjoint, as they also are if the region is proven to be empty;
-/// [`Region::Crossing`] that some of the region does and some does not. Where region and solid go on outside
-/// of the universe, their exteriors are compared.
+/// Returns the position of a region relative to a solid, as far as the cells of `frame` determine it. The
+/// region is a ball ([`Csg::ball`](crate::Csg::ball)) or any other solid. [`Region::Inside`] means that all
+/// of the region lies in the solid. [`Region::Outside`] means that the interiors are disjoint; this includes
+/// a region that is proven to be empty. [`Region::Crossing`] means that a part of the region lies in the
+/// solid and another part does not. Where region and solid continue outside of the universe, their exteriors
+/// are compared.
 ///
-/// Ends as soon as the answer is known, or once `control.max_splits` cells of both are split. Cells where the
-/// region is not are never split; so the time is about that of building what both have in common near the
-/// region's boundary and the solid's. One thread.
+/// The search ends as soon as the answer is known, or once `control.max_splits` cells of both are split.
+/// Cells outside of the region are never split. The time is therefore about the time to build the cells that
+/// lie near both the region's boundary and the solid's. It uses one thread.
 ///
 /// # Errors
-/// What solid and region refuse; [`Error::OutOfMemory`], and [`Error::Cancelled`].
+/// The own errors of the solid and of the region; [`Error::OutOfMemory`] and [`Error::Cancelled`].
 ///
 /// ```
 /// use leafless::{Control, Csg, Frame, query::{Region, classify_in}};
@@ -56,7 +57,7 @@ pub fn classify_in<S: Solid, R: Solid>(
     Ok(survey.known.answer())
 }
 
-/// What of the region has been met, in the solid and outside.
+/// The parts of the region met so far, in the solid and outside.
 #[derive(Default)]
 struct Known {
     inside: Met,
@@ -81,7 +82,7 @@ impl Known {
         }
     }
 
-    /// Whether a cell with this much in it has nothing new to tell.
+    /// True if a cell with this verdict of the solid cannot add to the answer.
     fn has(&self, solid: Tag) -> bool {
         self.is_crossing()
             || solid == Tag::Full && self.inside.surely
@@ -120,7 +121,7 @@ impl<S: Worker, R: Worker> Survey<'_, S, R> {
         }
         let can_split = cell.level < self.depth
             && match (&solid, &region) {
-                // Where one of them cannot be split, splitting the other one may still tell something.
+                // Where one of the two cannot be split, splitting the other may still decide.
                 (Verdict::Partial(_), _) => true,
                 (_, Verdict::Partial(_)) => tag != Tag::Partial,
                 _ => false,
@@ -144,7 +145,8 @@ impl<S: Worker, R: Worker> Survey<'_, S, R> {
         Ok(())
     }
 
-    /// What is known of a cell's children: what is known of the cell, if it cannot be split.
+    /// Returns the verdicts of a cell's children: the cell's own verdict for each, if the cell cannot be
+    /// split.
     fn children<P>(
         &mut self,
         verdict: &Verdict<P>,

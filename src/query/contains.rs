@@ -1,4 +1,4 @@
-//! Points of any solid, without an octree.
+//! Point membership for any solid, without an octree.
 
 use super::Membership;
 use crate::control::{Control, Job};
@@ -9,16 +9,18 @@ use crate::solid::{AskWhole, Batch, Classifier, Direct, Solid};
 use crate::walk::Trail;
 use alloc::vec::Vec;
 
-/// Whether a solid contains points (model units), `answers[i]` for `points[i]`: a point in a cell of `frame`
-/// that is undecided at the frame's depth, outside of the universe, or not a number is
-/// [`Membership::Undecided`]. A point on the boundary may be answered either way.
+/// Writes to `answers[i]` whether the solid contains `points[i]` (model units). The answer is
+/// [`Membership::Undecided`] for a point in a cell of `frame` that is undecided at the frame's depth, for a
+/// point outside of the universe, and for a point that is not a number. A point on the boundary may get
+/// either answer.
 ///
-/// What a solid knows of points itself comes first (a host program's function). Of the others each is sought
-/// among the cells down to its own, in an order in which neighbours follow one another, so that they share
-/// the way. O(depth) splits a point at the most; the same answers for any number of threads.
+/// A solid that can answer points itself (a host program's function) is asked first. The remaining points are
+/// located among the cells, down to each point's finest cell, in an order in which neighbours follow one
+/// another and share most of the path. A point takes at most O(depth) splits. The answers do not depend on
+/// the number of threads.
 ///
 /// # Errors
-/// [`Error::Argument`] if the slices differ in length; what the solid refuses; [`Error::OutOfMemory`], and
+/// [`Error::Argument`] if the slices differ in length; the solid's own errors; [`Error::OutOfMemory`] and
 /// [`Error::Cancelled`].
 ///
 /// ```
@@ -68,19 +70,19 @@ pub fn contains<S: Solid>(
     Ok(())
 }
 
-/// A point: its finest cell's place in Morton order, that cell, and the point's own place.
+/// A point to locate: the Morton number of its finest cell, that cell, and the point's index.
 type Wanted = (u64, [u32; 3], usize);
 
-/// Points that one worker takes on.
+/// Number of points in one worker's task.
 const CHUNK: usize = 1 << 12;
 
-/// Morton order.
+/// The Morton number of a cell.
 fn order([x, y, z]: [u32; 3]) -> u64 {
     let spread = |v: u32| (0..21).fold(0, |spread: u64, bit| spread | ((v >> bit & 1) as u64) << (3 * bit));
     spread(x) | spread(y) << 1 | spread(z) << 2
 }
 
-/// Where points lie, which are given in Morton order of their finest cells.
+/// Locates points that are sorted by the Morton number of their finest cells.
 fn locate<C: Classifier>(
     classifier: &C,
     wanted: &[Wanted],

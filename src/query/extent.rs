@@ -1,4 +1,4 @@
-//! Where a solid begins and ends along each axis.
+//! The bounding box of a solid.
 
 use super::StopReason;
 use crate::control::{Control, Job, WHOLE};
@@ -13,57 +13,59 @@ use crate::walk::Queue;
 use crate::walk::Subject;
 use core::cmp::Reverse;
 
-/// What is proven of the bounding box of a solid's part inside of the universe.
+/// The proven bounds of the bounding box of a solid's part inside of the universe.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Extent {
-    /// The lower and the upper corner, in model units: intervals that contain the truth. `None` if the solid
-    /// is proven empty.
+    /// The lower and the upper corner, in model units: intervals that contain the true corners. `None` if the
+    /// solid is proven empty.
     pub corners: Option<[[Interval; 3]; 2]>,
-    /// Whether the solid is proven not to be empty. If neither is proven, the corners are those of what the
-    /// solid may be, and it may be empty.
+    /// Whether the solid is proven not to be empty. If the solid is proven neither empty nor occupied, it may
+    /// be empty, and the corners bound the region that it may occupy.
     pub occupied: bool,
-    /// What of the solid is proven: what is not counts as undecided.
+    /// Which verdicts of the solid are proven. Unproven verdicts count as undecided.
     pub proof: Proof,
-    /// Whether the solid may go on outside of the universe, or does.
+    /// Whether the solid continues, or may continue, outside of the universe.
     pub clipped: bool,
-    /// Why it ended. [`Tolerance`](StopReason::Tolerance) means that no interval is wider than was asked for,
-    /// or than 2^-44 of the universe's edge, except for the rounding of the corners to doubles.
+    /// Why the search ended. [`Tolerance`](StopReason::Tolerance) means that no interval is wider than the
+    /// requested tolerance or 2^-44 of the universe's edge, except for the rounding of the corners to
+    /// doubles.
     pub stop_reason: StopReason,
-    /// How many times a cell was split.
+    /// Number of cell splits.
     pub splits: u64,
 }
 
-/// Splits after which [`bounding_box`] ends if `control.max_splits` sets no other limit: some seconds, and
-/// some hundred megabytes at the most.
+/// The maximal number of splits of [`bounding_box`] if `control.max_splits` sets no other limit: some
+/// seconds, and some hundred megabytes at the most.
 pub const BOUNDING_BOX_SPLITS: u64 = 1 << 20;
 
-/// The bounding box of `solid` in the universe of `frame`: six intervals, one for each side. The result does
-/// not depend on the number of threads, since there is only one.
+/// Returns the bounding box of `solid` in the universe of `frame`: six intervals, one for each side. The
+/// result does not depend on the number of threads, since there is only one.
 ///
-/// The search splits only cells that may reach beyond what is proven solid, those first that reach farthest.
-/// It ends, and the result's `stop_reason` says why:
+/// The search splits only cells that may reach beyond the proven part of the solid, the farthest-reaching
+/// cells first. It ends, and the result's `stop_reason` says why:
 /// - `Tolerance`: no interval is wider than `tolerance` (model units), or than 2^-44 of the universe's edge.
 /// - `Exhausted`: the outermost undecided cells cannot be split, and either the interval is no wider than one
 ///   of the frame's finest cells, or nothing else is left to split.
 /// - `Budget`: `control.max_splits` cells were split, or [`BOUNDING_BOX_SPLITS`] if that is `None`. Each side
-///   gets its share of what the sides before it have left. Or what is remembered of a side comes near to
-///   `control.max_bytes`.
+///   gets its share of the splits that the sides before it have left. The search ends for the same reason
+///   when the stored parts of a side come near to `control.max_bytes`.
 ///
-/// Where the solid knows the slabs of a cell ([`Enclosure`](crate::solid::Enclosure)), a linear program
-/// bounds how far it reaches there. A corner of three plane faces is exact to rounding as soon as a cell
-/// holds no more than these, wherever the faces lie: a tilted plate takes 28 splits. At a curved side each
-/// level makes the interval four times as narrow. A level takes some ten splits a side, and twice as many as
-/// the level before where the side is touched along a line or a circle, as an upright cylinder's is. The tip
-/// of a cone, and a corner of more than three faces, are known to some finest cells.
+/// Where the solid provides slabs of a cell ([`Enclosure`](crate::solid::Enclosure)), a linear program bounds
+/// the solid's reach there. A corner of three plane faces is exact to rounding as soon as a cell holds no
+/// more than these, wherever the faces lie: a tilted plate takes 28 splits. At a curved side each level makes
+/// the interval four times as narrow. A level takes about ten splits a side. Where the solid touches the side
+/// along a line or a circle, as an upright cylinder does, each level takes twice as many splits as the level
+/// before. The tip of a cone, and a corner of more than three faces, are located to within a few finest
+/// cells.
 ///
-/// Without slabs, and with n the edge of the universe over the tolerance, a curved side takes some n splits.
-/// A flat one takes n², unless it lies on a plane of the lattice, because each cell in front of it must be
-/// proven empty.
+/// Without slabs, a curved side takes about n splits, where n is the edge of the universe divided by the
+/// tolerance. A flat side takes n², unless it lies on a plane of the lattice, because each cell in front of
+/// it must be proven empty.
 ///
-/// Time is linear in the splits but for a logarithm, and so is memory.
+/// Time and memory are linear in the splits but for a logarithm.
 ///
 /// # Errors
-/// [`Error::Argument`] if `tolerance` is negative or not a number; what the solid refuses, as
+/// [`Error::Argument`] if `tolerance` is negative or not a number; the solid's own errors, as
 /// [`build`](crate::build); [`Error::Cancelled`]; [`Error::OutOfMemory`].
 ///
 /// ```
@@ -104,7 +106,7 @@ pub fn bounding_box<S: Solid>(
         search.subject.worker.release(mark);
         job.advance(WHOLE / 6 + if side == 0 { WHOLE % 6 } else { 0 });
     }
-    // The difference is large if nothing is proven solid.
+    // The width is large if nothing is proven solid.
     let wide = !search.is_empty() && (0..6).any(|side| search.width(side) > goal);
     Ok(Extent {
         corners: search.corners(),
@@ -120,36 +122,38 @@ pub fn bounding_box<S: Solid>(
     })
 }
 
-/// The edge of the universe is 2^`UNITS` units: finer than doubles tell, and all lattice planes are integers.
+/// The edge of the universe is 2^`UNITS` units: finer than doubles resolve, and all lattice planes are
+/// integers.
 const UNITS: u32 = 60;
 const EDGE: u64 = 1 << UNITS;
 
-/// Rounding alone may keep an interval so wide.
+/// Rounding alone may leave an interval this wide.
 const ROUNDING: u64 = EDGE >> 44;
 
-/// Farther than any plane. (Differences saturate: a host that contradicts itself may put a solid before its
-/// bounds.)
+/// A distance farther than any plane. (Differences saturate: the proven inside of a self-contradictory host
+/// may lie in front of the solid's bound.)
 const NOWHERE: u64 = u64::MAX;
 
-/// Where the solid may begin in a cell, the cell's height above the deepest level, the order of meeting.
+/// The first possible position of the solid in a cell, the cell's height above the deepest level, the cell's
+/// serial number.
 type Key = Reverse<(u64, u8, u64)>;
 
-/// Sides are numbered: 0 to 2 the lower ones along x, y and z, 3 to 5 the upper ones. What lies at a side is
-/// told by its distance from the universe's face there, in units.
+/// A search for the six sides. Sides 0 to 2 are the lower ones along x, y and z, 3 to 5 the upper ones. A
+/// position at a side is the distance from the universe's face there, in units.
 struct Search<'a, C: Classifier> {
     subject: Subject<'a, C>,
     frame: &'a Frame,
     job: &'a Job<'a>,
-    /// How many units an interval may be wide.
+    /// Target width of an interval, in units.
     goal: u64,
-    /// Where the solid begins as far as is proven: the first FULL cell, or the first point that an enclosure
-    /// has inside.
+    /// The proven start of the solid: the first FULL cell, or the first point that an enclosure proves
+    /// inside.
     inner: [u64; 6],
-    /// Where the solid may begin.
+    /// The lower bound of the solid's start.
     outer: [u64; 6],
-    /// Where it may begin, seen from the present side, in undecided cells that cannot be split.
+    /// The lower bound of the start within undecided cells that cannot be split, seen from the present side.
     stuck: u64,
-    /// Those that can be split.
+    /// Cells that can be split.
     open: Queue<Key, (Cell, Part<C>)>,
 }
 
@@ -165,15 +169,15 @@ fn half(cell: Cell) -> u64 {
     EDGE >> (cell.level + 1)
 }
 
-/// Where a cell begins, seen from a side.
+/// The position where a cell begins, seen from a side.
 fn start(side: usize, cell: Cell) -> u64 {
     let (at, edge) = (u64::from(cell.at[side % 3]), EDGE >> cell.level);
     if side < 3 { at * edge } else { EDGE - (at + 1) * edge }
 }
 
 impl<C: Classifier> Search<'_, C> {
-    /// Whether the solid is proven empty: no part of the universe may hold some of it, or along some axis it
-    /// would end before it begins.
+    /// True if the solid is proven empty: no part of the universe may hold a part of it, or along some axis
+    /// it would end before it begins.
     fn is_empty(&self) -> bool {
         let ends_first = |axis: usize| {
             let [near, far] = [self.outer[axis], self.outer[axis + 3]];
@@ -182,13 +186,13 @@ impl<C: Classifier> Search<'_, C> {
         self.outer.contains(&NOWHERE) || (0..3).any(ends_first)
     }
 
-    /// How much is open at a side.
+    /// The width of a side's interval.
     fn width(&self, side: usize) -> u64 {
         self.inner[side].saturating_sub(self.outer[side])
     }
 
-    /// Splits the cells in which the solid may begin first, and of those the smallest. `false` if the share
-    /// has ended it.
+    /// Splits cells in order of the solid's first possible position, the smallest first among equals. Returns
+    /// `false` if the share of splits ended the search.
     fn side(&mut self, side: usize, share: u64) -> Result<bool, Error> {
         self.job.check()?;
         let last = self.subject.splits + share;
@@ -199,7 +203,7 @@ impl<C: Classifier> Search<'_, C> {
         loop {
             let begin = self.open.peek().map_or(NOWHERE, |entry| entry.key.0.0);
             self.outer[side] = self.inner[side].min(self.stuck).min(begin);
-            // Where a cell that cannot be split begins first, others could but raise the inner bound.
+            // If a cell that cannot be split begins first, other cells could only raise the inner bound.
             let goal = if self.stuck <= begin { self.goal.max(finest) } else { self.goal };
             if self.width(side) <= goal {
                 return Ok(true);
@@ -215,7 +219,7 @@ impl<C: Classifier> Search<'_, C> {
         }
     }
 
-    /// Takes in what is known of a cell whose parent's part of the solid does not begin before `parent`.
+    /// Takes in the verdict of a cell. In the cell's parent, the solid does not begin before `parent`.
     fn note(&mut self, side: usize, cell: Cell, parent: u64, verdict: Verdict<Part<C>>) -> Result<(), Error> {
         let mut begin = parent.max(start(side, cell));
         match verdict {
@@ -253,12 +257,12 @@ impl<C: Classifier> Search<'_, C> {
         Ok(())
     }
 
-    /// Takes in a point of the solid, in half edges from a cell's centre.
+    /// Takes in a point of the solid, given in half edges from a cell's centre.
     fn note_point(&mut self, cell: Cell, point: [f64; 3]) {
         for side in 0..6 {
             let axis = side % 3;
             let reach = if side < 3 { -point[axis] } else { point[axis] };
-            // One more where the distance is not a whole number of units.
+            // Add one unit where the distance is not a whole number of units.
             let half = half(cell) as f64;
             let uneven = u64::from(libm::ceil(reach * half) != reach * half);
             self.inner[side] = self.inner[side].min(distance(side, cell, reach) + uneven);
@@ -271,10 +275,10 @@ impl<C: Classifier> Search<'_, C> {
         }
         let mut corners = [[Interval::exactly(0.0); 3]; 2];
         for axis in 0..3 {
-            // With nothing proven solid, each side may be wherever the solid may be.
+            // With nothing proven solid, a side may lie anywhere in the region that the solid may occupy.
             let reach = |side: usize, other: usize| match self.inner[side] {
                 NOWHERE => EDGE.saturating_sub(self.outer[other]),
-                // Only a host that contradicts itself has something solid before it may begin.
+                // Only a self-contradictory host has a proven part in front of the outer bound.
                 inner => inner.max(self.outer[side]),
             };
             let (near, far) = (axis, axis + 3);
@@ -288,24 +292,24 @@ impl<C: Classifier> Search<'_, C> {
         Some(corners)
     }
 
-    /// The coordinate that lies so many units above the universe's lower face.
+    /// The coordinate that lies `units` above the universe's lower face.
     fn coordinate(&self, axis: usize, units: u64) -> Interval {
         let shift = UNITS - u32::from(self.frame.depth());
         if units.trailing_zeros() >= shift {
             return self.frame.plane(axis, (units >> shift) as u32);
         }
-        // The quotient is exact, being by a power of two.
+        // The quotient is exact, because the divisor is a power of two.
         let unit = Interval::exactly(self.frame.edge() / EDGE as f64);
         let origin = Interval::exactly(self.frame.origin()[axis]);
         origin.plus(Interval::of_integer(units.into()).times(unit))
     }
 }
 
-/// How far from the universe's face at a side the points of a cell lie, rounded down, that reach so far (−1
-/// to 1) from its centre.
+/// Returns the distance, rounded down, from the universe's face at a side to the points of a cell that reach
+/// `reach` (−1 to 1, in half edges) from the cell's centre towards that side.
 fn distance(side: usize, cell: Cell, reach: f64) -> u64 {
     let half = half(cell);
-    // The product is exact, being with a power of two, and at most half an edge of the universe.
+    // The product is exact, because one factor is a power of two, and at most half an edge of the universe.
     let beyond = libm::ceil(reach.clamp(-1.0, 1.0) * half as f64) as i64;
     (start(side, cell) + half).saturating_add_signed(-beyond)
 }

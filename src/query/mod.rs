@@ -1,47 +1,48 @@
-//! Questions: such as a stored octree answers in place, and such as any solids answer.
+//! Queries about solids: queries that a stored octree answers in place, and queries that any solid answers.
 //!
-//! | question | of stored octrees | of any solids |
+//! | query | for stored octrees | for any solid |
 //! |---|---|---|
-//! | does it contain a point? | `point` | `contains` |
-//! | how does a box, a region lie to it? | `classify_box` | `classify_box`, `classify_in` |
-//! | where does a ray meet it? | `ray` | `ray` |
-//! | which cells of a column are solid, how high is it? | `columns` | `columns` |
-//! | how much of it lies in a region? | `content` | `content` |
-//! | what are its volume, area, centroid, inertia? | | `measure` |
-//! | where does it begin and end? | | `extent` |
-//! | how large is its section with a plane? | | `section` |
-//! | how far is a point? | `distance` | `distance` |
-//! | how far is another solid, is that enough, do both overlap? | | `clearance`, `gap_at_least`, `interference` |
-//! | how far are two boundaries from each other? | | `deviation` |
-//! | which cells of a box are solid, as bits? | `bitmap` | |
+//! | does the solid contain a point? | `point` | `contains` |
+//! | is a box or a region inside, outside or across the boundary? | `classify_box` | `classify_box`, `classify_in` |
+//! | where does a ray meet the solid? | `ray` | `ray` |
+//! | which cells of a column are solid, and how high is the column? | `columns` | `columns` |
+//! | how much of the solid lies in a region? | `content` | `content` |
+//! | volume, area, centroid, inertia | | `measure` |
+//! | bounding box | | `extent` |
+//! | area of the section with a plane | | `section` |
+//! | distance from a point | `distance` | `distance` |
+//! | distance to another solid, minimum gap, overlap | | `clearance`, `gap_at_least`, `interference` |
+//! | distance between two boundaries | | `deviation` |
+//! | solid cells of a box, as bits | `bitmap` | |
 //!
-//! # A new question about any solids
+//! # Adding a query about any solid
 //!
-//! It is one file, or one folder, here. No question uses another one; `StopReason` and `Tolerance`, which
-//! several have, stand in `measure`. `classify_box` is the shortest to read, `extent` shows a search with a
-//! queue, `section` has all of it.
+//! A query is one file or one folder here. No query uses another one. `StopReason` and `Tolerance`, which
+//! several queries share, stand in `measure`. `classify_box` is the shortest to read, `extent` shows a search
+//! with a queue, `section` uses every technique.
 //!
 //! 1. **Solid.** A public function takes any [`Solid`](crate::Solid), a [`Frame`](crate::Frame) and a
 //!    [`Control`](crate::Control), and puts the solid on the frame once, by `Solid::on`. A method of
-//!    `OctreeRef` beside it may answer the same of a stored octree in place.
-//! 2. **Proof.** `walk::Proven` wraps the classifier: FULL and EMPTY that are not proven become PARTIAL, so
-//!    that the answer claims no more than the solid does.
-//! 3. **Budget.** What splits on demand heeds `control.max_splits`, or a default that is a public constant,
-//!    and tells in its answer whether it was spent. What keeps parts of cells heeds `control.max_bytes` by
-//!    `Subject::takes`; the documentation of that field lists the questions that do.
+//!    `OctreeRef` beside it may answer the same query for a stored octree in place.
+//! 2. **Proof.** `walk::Proven` wraps the classifier: FULL and EMPTY verdicts that are not proven become
+//!    PARTIAL, so that the answer claims no more than the solid does.
+//! 3. **Budget.** A query that splits on demand obeys `control.max_splits`, or a default that is a public
+//!    constant, and reports in its answer whether the budget was spent. A query that keeps parts of cells
+//!    obeys `control.max_bytes` by `Subject::takes`; the documentation of that field lists these queries.
 //! 4. **Walk.** `walk::split_one` splits a cell, `walk::descend` goes depth first, `walk::Queue` best first,
-//!    `walk::Subject` counts splits and keeps parts. A search that runs long gives back the memory of parts
-//!    that it does not need any more (`Subject::is_wasteful`, `keep` with `Queue::change`). Slabs
-//!    (`Question::Enclosure`) make an answer better by an order. What planes cut off a cell is computed in
-//!    `cut`. The slabs of a host may hold NaN, infinities and contradictions: such a cell counts as unknown.
-//! 5. **Job.** `Job` checks for a cancel now and then and reports progress, of which all shares make up
-//!    `WHOLE`; `parallel::each` shares out what is independent, in an order that does not depend on the
-//!    number of threads.
-//! 6. **Doors.** The name below (at the root of the library too, if everyone uses it), and in the table above
-//!    and that of `lib.rs`; a module in `tests/queries` with a dense oracle and a ball's formula, and its row
-//!    in `tests/README.md`; a line in the operations of `tests/memory/failures.rs`; a function in `capi/src`
-//!    (the recipe stands in its `lib.rs`); the fuzz target `measures`; CHANGELOG.md; and a row in
-//!    `tests/octrees/proof_table.rs` if a solid comes out.
+//!    `walk::Subject` counts splits and keeps parts. A long search frees the memory of parts that it no
+//!    longer needs (`Subject::is_wasteful`, `keep` with `Queue::change`). Slabs (`Question::Enclosure`) make
+//!    an answer better by an order. The module `cut` computes the part of a cell that planes cut off. The
+//!    slabs of a host may hold NaN, infinities and contradictions: such a cell counts as unknown.
+//! 5. **Job.** `Job` regularly checks for a cancel and reports progress; all shares of the progress add up to
+//!    `WHOLE`. `parallel::each` shares out independent work in an order that does not depend on the number of
+//!    threads.
+//! 6. **Doors.** Export the name below (and at the root of the library, if every user needs it). Add a row to
+//!    the table above and to the table of `lib.rs`; a module in `tests/queries` with a dense oracle and a
+//!    ball's formula, and its row in `tests/README.md`; a line in the operations of
+//!    `tests/memory/failures.rs`; a function in `capi/src` (the recipe stands in its `lib.rs`); a call in the
+//!    fuzz target `measures`; an entry in CHANGELOG.md; and a row in `tests/octrees/proof_table.rs` if the
+//!    result is a solid.
 
 mod bitmap;
 mod classify_box;

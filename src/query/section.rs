@@ -1,4 +1,4 @@
-//! How much of a plane lies in a solid.
+//! The area of a solid's section with a plane.
 
 use super::{StopReason, Tolerance};
 use crate::control::{Control, Job, WHOLE};
@@ -22,12 +22,12 @@ pub struct SectionPlane {
 }
 
 impl SectionPlane {
-    /// The plane through a point (model units) and perpendicular to `normal`, which may have any length and
-    /// either direction.
+    /// Builds the plane through a point (model units) and perpendicular to `normal`. The normal may have any
+    /// length and either direction.
     ///
     /// # Errors
-    /// [`Error::Argument`] if `normal` is zero, or if a number is not zero and not of a magnitude between
-    /// 2^-256 and 2^256.
+    /// [`Error::Argument`] if `normal` is zero, or if the magnitude of a nonzero number is not between 2^-256
+    /// and 2^256.
     pub fn new(point: [f64; 3], normal: [f64; 3]) -> Result<SectionPlane, Error> {
         valid::numbers("point", &point)?;
         valid::numbers("normal", &normal)?;
@@ -43,7 +43,7 @@ impl SectionPlane {
         (0..3).fold(0, |most, axis| if size[axis] > size[most] { axis } else { most })
     }
 
-    /// By how much an area in the plane is larger than it is seen along that axis.
+    /// The ratio of an area in the plane to its projection along that axis.
     fn steepness(&self) -> Interval {
         let nearest = Interval::exactly(self.normal[self.axis()].abs());
         let squares = self.normal.map(|c| Interval::exactly(c).over(nearest).square());
@@ -54,54 +54,54 @@ impl SectionPlane {
 /// The area of a solid's section with a plane.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct SectionArea {
-    /// In square model units. It contains the truth.
+    /// The area in square model units. The interval contains the true area.
     pub area: Interval,
-    /// What of the solid is proven: what is not counts as undecided.
+    /// Which verdicts of the solid are proven. Unproven verdicts count as undecided.
     pub proof: Proof,
-    /// Whether the solid may go on outside of the universe, or does: then the area is that of the section
-    /// inside.
+    /// Whether the solid continues, or may continue, outside of the universe. The area is then that of the
+    /// section inside.
     pub clipped: bool,
-    /// Why it ended.
+    /// Why the search ended.
     pub stop_reason: StopReason,
-    /// How many times a cell was split.
+    /// Number of cell splits.
     pub splits: u64,
 }
 
-/// Splits after which [`section_area`] ends if `control.max_splits` sets no other limit: some seconds, and
-/// some hundred megabytes at the most.
+/// The maximal number of splits of [`section_area`] if `control.max_splits` sets no other limit: some
+/// seconds, and some hundred megabytes at the most.
 pub const SECTION_SPLITS: u64 = 1 << 20;
 
-/// The area of the section of `solid` with a plane, in the universe of `frame`. The result does not depend on
-/// the number of threads, since there is only one.
+/// Returns the area of the section of `solid` with a plane, in the universe of `frame`. The result does not
+/// depend on the number of threads, since there is only one.
 ///
-/// The search splits only cells that the plane runs through, those first of which most is in doubt. It ends,
-/// and the result's `stop_reason` says why:
-/// - `Tolerance`: the interval is no wider than `tolerance` says (a number is relative to the middle of the
+/// The search splits only cells that the plane runs through, the cells with the widest interval first. It
+/// ends, and the result's `stop_reason` says why:
+/// - `Tolerance`: the interval is no wider than `tolerance` (a plain number is relative to the middle of the
 ///   interval).
-/// - `Exhausted`: no cell is left whose split would help. What is in doubt has the size of the frame's finest
-///   cells, or the solid knows no more about it, or nothing but rounding is in doubt, about 2^-40 of the
-///   area.
-/// - `Budget`: `control.max_splits` cells were split, or [`SECTION_SPLITS`] if that is `None`. Or what is
-///   remembered of the solid comes near to `control.max_bytes`.
+/// - `Exhausted`: no cell is left whose split would help. The undecided cells have the size of the frame's
+///   finest cells, or the solid provides nothing more about them, or only rounding is in doubt, about 2^-40
+///   of the area.
+/// - `Budget`: `control.max_splits` cells were split, or [`SECTION_SPLITS`] if that is `None`. The search
+///   ends for the same reason when the stored parts of the solid come near to `control.max_bytes`.
 ///
-/// Where the solid knows the slabs of a cell ([`Enclosure`](crate::solid::Enclosure)), only what lies between
-/// them is in doubt. With N splits the width then goes down with 1/N² on curved surfaces, and plane faces are
-/// known to rounding as soon as no cell holds more than three of them. Without slabs the width goes down with
-/// 1/N. Time is linear in the splits but for a logarithm, and so is memory.
+/// Where the solid provides slabs of a cell ([`Enclosure`](crate::solid::Enclosure)), only the region between
+/// the slabs is in doubt. With N splits the width then decreases with 1/N² on curved surfaces. Plane faces
+/// are known to rounding as soon as no cell holds more than three of them. Without slabs the width decreases
+/// with 1/N. Time and memory are linear in the splits but for a logarithm.
 ///
 /// # Faces in the plane
-/// If faces of the solid lie in the plane, the sections on both sides of it differ. What counts is the limit
+/// If faces of the solid lie in the plane, the sections on both sides of it differ. The result is the limit
 /// of the areas from one side:
-/// - A plane perpendicular to an axis is taken as the limit from above, as a point between two cells lies in
-///   the upper one; in the universe's upper face it is the limit from below. If the plane is one of the
-///   lattice's, the cells above it are those that count. A box with faces in planes of the lattice so has an
-///   exact area, also where it is cut in a face.
-/// - For any other plane the interval contains the limits from both sides. A face in it stays in doubt, and
-///   so does a face in a plane perpendicular to an axis that is none of the lattice's. All its cells are
-///   split as deep as the frame or the budget allows.
+/// - For a plane perpendicular to an axis it is the limit from above, just as a point between two cells lies
+///   in the upper cell. In the universe's upper face it is the limit from below. If the plane belongs to the
+///   lattice, the cells above it count. A box with faces in planes of the lattice therefore has an exact
+///   area, also where it is cut in a face.
+/// - For any other plane the interval contains the limits from both sides. A face in such a plane stays in
+///   doubt. So does a face in a plane that is perpendicular to an axis but not in the lattice. All cells of
+///   such a face are split as deep as the frame or the budget allows.
 ///
 /// # Errors
-/// [`Error::Argument`] if a number of `tolerance` is negative or none; what the solid refuses, as
+/// [`Error::Argument`] if a number of `tolerance` is negative or NaN; the solid's own errors, as
 /// [`build`](crate::build); [`Error::Cancelled`]; [`Error::OutOfMemory`].
 ///
 /// ```
@@ -152,35 +152,36 @@ pub fn section_area<S: Solid>(
     })
 }
 
-/// Bits that lie behind the point in the square of a finest cell's half edge, and in that of the universe's.
+/// Fraction bits of the square of a finest cell's half edge, and of the square of the universe's half edge.
 const SHARE_BITS: u32 = 44;
 const BITS: u32 = SHARE_BITS + 2 * MAX_DEPTH as u32;
 
-/// Bits of the largest step of a plane, and of a start that no steps in the universe lead back from.
+/// Bits of a plane's largest step, and of a start so large that no steps in the universe lead back to zero.
 const STEP_BITS: i64 = 80;
 const FAR_BITS: i64 = STEP_BITS + MAX_DEPTH as i64 + 6;
 
-/// More than the error of a plane's function anywhere in the universe: each step is off by less than 3, the
-/// start by less than 64, and no coordinate is larger than 2^21.
+/// A bound above the error of a plane's function anywhere in the universe: each step is off by less than 3,
+/// the start by less than 64, and no coordinate is larger than 2^21.
 const SLACK: i128 = 1 << 25;
 
 /// A plane on the lattice. Coordinates t count halves of the finest cells of the deepest frame, from the
 /// lower corner of the universe: points of the plane have start + steps · t = 0.
 struct Placed {
-    /// The axis that the normal is nearest to comes last.
+    /// The axes; the axis that the normal is nearest to comes last.
     order: [usize; 3],
-    /// What of the normal lies along the other two axes, as shares of what lies along the last.
+    /// The normal's components along the first two axes, divided by its component along the last.
     slopes: [f64; 2],
     start: i128,
     steps: [i128; 3],
-    /// The finest cell along its axis that a plane perpendicular to an axis runs through.
+    /// The layer of finest cells, along the plane's axis, that a plane perpendicular to that axis runs
+    /// through.
     layer: Option<u32>,
     depth: u8,
 }
 
 impl Placed {
-    /// `None` if the plane is so far from the universe, or perpendicular to an axis and beside it. (Others
-    /// meet no cell.)
+    /// Returns `None` if the plane is far from the universe, or perpendicular to an axis and outside of the
+    /// universe. (Other planes outside of the universe simply meet no cell.)
     fn new(plane: &SectionPlane, frame: &Frame) -> Option<Placed> {
         let SectionPlane { point, normal } = *plane;
         let last = plane.axis();
@@ -202,7 +203,7 @@ impl Placed {
         Some(Placed { order, slopes, start: rounded(&start), steps, layer, depth: frame.depth() })
     }
 
-    /// The plane in a cell, as the cell measures; `None` if it does not run through it.
+    /// Returns the plane in the cell's own coordinates; `None` if the plane does not run through the cell.
     fn within(&self, cell: Cell) -> Option<Section> {
         let half = 1i128 << (MAX_DEPTH - cell.level);
         let last = self.order[2];
@@ -214,40 +215,39 @@ impl Placed {
             Some(layer) => cell.at[last] == layer >> (self.depth - cell.level),
             None => value.abs() <= self.steps.iter().map(|step| step.abs()).sum::<i128>() * half + SLACK,
         };
-        // Both numbers are rounded, and what comes of SLACK is 2^-55 at the most.
+        // Both numbers are rounded. The contribution of SLACK is 2^-55 at the most.
         let offset = value as f64 / (self.steps[last] * half) as f64;
         meets.then(|| Section::new(self.order, self.slopes, offset))
     }
 }
 
-/// A number below 2^107, off by less than 16, or by less than 3 if it is below 2^82.
+/// Rounds a number below 2^107: off by less than 16, or by less than 3 if the number is below 2^82.
 fn rounded(number: &Dyadic) -> i128 {
     let high = number.rounded();
     let low = (number - &Dyadic::new(high)).rounded();
     high as i128 + low as i128
 }
 
-/// How much is in doubt, and the order of meeting.
+/// The amount in doubt, and the serial number.
 type Key = (i128, Reverse<u64>);
 
-/// A cell that can be split, and what its part of the sums is.
+/// A cell that can be split, and its part of the sums.
 type Open<P> = (Cell, Verdict<P>, [i128; 2]);
 
 struct Search<'a, C: Classifier> {
     subject: Subject<'a, C>,
     job: &'a Job<'a>,
-    /// How much of the work is reported as done.
+    /// The progress reported so far.
     told: usize,
-    /// A unit of the sums in square model units.
+    /// One unit of the sums, in square model units.
     unit: Interval,
-    /// The sums of lower and upper bounds, as the plane is seen along an axis. In whole numbers they are the
-    /// same in any order.
+    /// The sums of lower and upper bounds of the projected area. As integers they are the same in any order.
     sums: [i128; 2],
     open: Queue<Key, Open<Part<C>>>,
 }
 
 impl<C: Classifier> Search<'_, C> {
-    /// Splits cells, those first of which most is in doubt.
+    /// Splits cells, the cells with the widest interval first.
     fn run(&mut self, plane: &Placed, tolerance: Tolerance, budget: u64) -> Result<StopReason, Error> {
         let root = self.subject.worker.root()?;
         self.note(plane, Cell::ROOT, root)?;
@@ -273,7 +273,7 @@ impl<C: Classifier> Search<'_, C> {
         }
     }
 
-    /// Takes in what is known of a cell.
+    /// Takes in the verdict of a cell.
     fn note(&mut self, plane: &Placed, cell: Cell, verdict: Verdict<Part<C>>) -> Result<(), Error> {
         if matches!(verdict, Verdict::Empty) {
             return Ok(());
@@ -290,7 +290,7 @@ impl<C: Classifier> Search<'_, C> {
         };
         const SHARE: f64 = (1u64 << SHARE_BITS) as f64;
         let shift = 2 * u32::from(MAX_DEPTH - cell.level);
-        // The casts are of whole numbers below 2^47.
+        // The casts are of integers below 2^47.
         let known =
             [libm::floor(area.lower * SHARE), libm::ceil(area.upper * SHARE)].map(|x| (x as i128) << shift);
         self.sums = [0, 1].map(|side| self.sums[side] + known[side]);
@@ -301,13 +301,13 @@ impl<C: Classifier> Search<'_, C> {
         Ok(())
     }
 
-    /// What is known of the area.
+    /// The present bounds of the area.
     fn area(&self) -> Interval {
         let [lower, upper] = self.sums.map(|sum| Interval::of_integer(sum).times(self.unit));
         Interval::between(lower.lower, upper.upper)
     }
 
-    /// Heeds a cancel, and tells how much of the budget is spent.
+    /// Checks for a cancel and reports the spent share of the budget.
     fn report(&mut self, budget: u64) -> Result<(), Error> {
         let done = (self.subject.splits as f64 / budget as f64 * WHOLE as f64) as usize;
         if done >= self.told + WHOLE / 256 {
@@ -317,8 +317,8 @@ impl<C: Classifier> Search<'_, C> {
         self.job.check()
     }
 
-    /// Gives back memory that only parts hold which are not in use. `false` if those in use take too much of
-    /// what is allowed.
+    /// Frees the memory of parts that are not in use. Returns `false` if the parts in use take too much of
+    /// the allowed bytes.
     fn tidy(&mut self) -> Result<bool, Error> {
         let subject = &mut self.subject;
         let is_full = subject.takes(4);
@@ -327,7 +327,7 @@ impl<C: Classifier> Search<'_, C> {
         }
         self.open.change(|cells| {
             subject.keep(cells.iter_mut().map(|entry| &mut entry.item.1))?;
-            // Half of it must be free, or the next step would end here again.
+            // Half of the allowance must be free, or the next step would end here again.
             Ok(!(is_full && subject.takes(8)))
         })
     }

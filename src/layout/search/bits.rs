@@ -5,17 +5,17 @@ use crate::lattice::axes;
 use crate::memory;
 use alloc::vec::Vec;
 
-/// Which cells of a box count.
+/// A set of cells in a box.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub(super) struct Bits {
-    /// Cells along the axes.
+    /// Number of cells along the axes.
     pub(super) size: [usize; 3],
-    /// Words in a row.
+    /// Number of words in a row.
     pub(super) words: usize,
     pub(super) bits: Vec<u64>,
 }
 
-/// Cells in a row that all count.
+/// Successive cells of the set in a row.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
 pub(super) struct Run {
     pub(super) z: u32,
@@ -25,7 +25,7 @@ pub(super) struct Run {
 }
 
 impl Bits {
-    /// What so many cells take in memory.
+    /// The memory of a box of cells, in bytes.
     pub(super) fn bytes(size: [usize; 3]) -> u64 {
         let rows = (size[1] as u64).saturating_mul(size[2] as u64);
         rows.saturating_mul(8 * size[0].div_ceil(64) as u64)
@@ -50,7 +50,7 @@ impl Bits {
         self.bits[row + x / 64] |= 1 << (x % 64);
     }
 
-    /// Those from `from` up to `to` in a row.
+    /// Adds the cells of a row from `from` up to, but not including, `to`.
     pub(super) fn set_row(&mut self, from: usize, to: usize, y: usize, z: usize) {
         if from >= to {
             return;
@@ -67,7 +67,7 @@ impl Bits {
         self.bits.iter().map(|word| u64::from(word.count_ones())).sum()
     }
 
-    /// All cells, by rows.
+    /// Returns all cells of the set, by rows.
     pub(super) fn runs(&self) -> Result<Vec<Run>, Error> {
         let mut runs = Vec::new();
         for z in 0..self.size[2] {
@@ -81,7 +81,7 @@ impl Bits {
         Ok(runs)
     }
 
-    /// The runs of one row: where each begins, and its length.
+    /// Passes the runs of one row to `take`: the start of each run, and its length.
     pub(super) fn runs_of(
         &self,
         y: usize,
@@ -98,9 +98,8 @@ impl Bits {
         Ok(())
     }
 
-    /// Cells turned: cell `p` of the result is the one at `order` and `flip` of this, axis by axis: the
-    /// coordinate along axis i is the one along axis `order[i]` of this, counted from the other end if
-    /// `flip[i]`.
+    /// Returns the turned cells. The coordinate along axis i of the result is the coordinate along axis
+    /// `order[i]` of this set, counted from the other end if `flip[i]`.
     pub(super) fn turned(&self, order: [usize; 3], flip: [bool; 3]) -> Result<Bits, Error> {
         let mut turned = Bits::new(order.map(|axis| self.size[axis]))?;
         for z in 0..self.size[2] {
@@ -120,8 +119,8 @@ impl Bits {
         Ok(turned)
     }
 
-    /// Cells `factor` times as large that hold some of these, which begin `beyond` the lower corner of the
-    /// first.
+    /// Returns the cells `factor` times as large that contain cells of this set. The first large cell begins
+    /// `beyond` small cells below the lower corner.
     pub(super) fn coarser(&self, factor: usize, beyond: [usize; 3]) -> Result<Bits, Error> {
         let mut coarse = Bits::new(axes(|k| (self.size[k] + beyond[k]).div_ceil(factor)))?;
         for z in 0..self.size[2] {
@@ -137,12 +136,12 @@ impl Bits {
         Ok(coarse)
     }
 
-    /// All cells that are nearer than `distance` cells to one of these, in a box that is larger by `pad` at
-    /// every end, which is to be no less than the distance.
+    /// Returns all cells nearer than `distance` cells to a cell of this set, in a box that is larger by `pad`
+    /// at every end. `pad` must be at least the distance.
     pub(super) fn grown(&self, distance: f64, pad: usize) -> Result<Bits, Error> {
         let mut grown = Bits::new(self.size.map(|size| size + 2 * pad))?;
         let reach = pad as isize;
-        // How far a row reaches along x that is so far away in the other two directions.
+        // The square of the gap, in cells, between rows that are `steps` apart in one direction.
         let between = |steps: isize| {
             let cells = steps.unsigned_abs().saturating_sub(1) as f64;
             cells * cells
@@ -172,9 +171,10 @@ impl Bits {
         Ok(grown)
     }
 
-    /// All cells that are nearer than any `distance`, in cells, to one of these, and some that are a little
-    /// further away: with larger cells, of how many of these each is along an axis, and how many of these lie
-    /// below the first of these.
+    /// Returns all cells nearer than `distance` (any number, in cells) to a cell of this set, and some that
+    /// are slightly further away. The cells of the result may be larger. The result also contains their edge
+    /// in present cells, and the number of present cells, along each axis, by which the result begins below
+    /// the present set.
     pub(super) fn grown_far(&self, distance: f64) -> Result<(Bits, usize, usize), Error> {
         let scale = scale_for(distance);
         let reach = distance / scale as f64;
@@ -183,13 +183,13 @@ impl Bits {
     }
 }
 
-/// How many cells at the most a distance is long by which cells are grown. With longer ones larger cells are
-/// grown: what that adds is no more than a sixth of the distance, and the work does not rise with the square
-/// of it.
+/// The greatest distance, in cells, by which cells are grown. For longer distances larger cells are grown.
+/// This adds no more than a sixth of the distance, and avoids work that rises with the square of the
+/// distance.
 pub(super) const REACH: f64 = 12.0;
 
-/// How many cells along each axis are taken together, so that a distance of `reach` cells is no longer than
-/// [`REACH`] of these.
+/// Returns the number of cells along each axis to join, so that a distance of `reach` cells is no longer than
+/// [`REACH`] of the joined cells.
 pub(super) fn scale_for(reach: f64) -> usize {
     let mut scale = 1;
     while reach > REACH * scale as f64 {
@@ -198,7 +198,7 @@ pub(super) fn scale_for(reach: f64) -> usize {
     scale
 }
 
-/// The next bit from `at` on that is set, or that is not.
+/// Returns the next bit from `at` on that is set, or that is clear.
 fn next(row: &[u64], at: usize, clear: bool) -> Option<usize> {
     let mut word = at / 64;
     let mut mask = u64::MAX << (at % 64);

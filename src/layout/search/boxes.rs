@@ -1,7 +1,7 @@
-//! Places for boxes, among boxes.
+//! Places for boxes in the free space between boxes.
 //!
-//! The free space of a box with boxes in it is the union of the largest free boxes. Whatever is placed goes
-//! to the lower corner of one of these, and divides those that it meets (Lai & Chan 1997).
+//! The free space of a box with boxes in it is the union of the largest free boxes. A new box goes to the
+//! lower corner of a free box, and divides the free boxes that it meets (Lai & Chan 1997).
 
 use crate::error::Error;
 use crate::lattice::{Bounds, axes};
@@ -25,7 +25,7 @@ impl Free {
         &self.boxes
     }
 
-    /// Takes a box away.
+    /// Removes a box from the free space.
     pub(super) fn take(&mut self, taken: &Bounds) -> Result<(), Error> {
         let meets = |own: &Bounds| (0..3).all(|k| own.min[k] < taken.max[k] && taken.min[k] < own.max[k]);
         let mut pieces: Vec<Bounds> = Vec::new();
@@ -63,7 +63,7 @@ impl Free {
         Ok(())
     }
 
-    /// Forgets boxes into which nothing with these least edges goes.
+    /// Removes free boxes with an edge shorter than `least`, which hold no item.
     pub(super) fn forget_below(&mut self, least: f64) {
         self.boxes.retain(|own| (0..3).all(|k| own.max[k] - own.min[k] >= least));
     }
@@ -74,7 +74,7 @@ mod tests {
     use super::super::super::random::Random;
     use super::*;
 
-    /// A point is in a free box just if it is in no box that was taken; and no free box holds another one.
+    /// A point is in a free box if and only if it is in no taken box, and no free box contains another one.
     #[test]
     fn what_is_free_is_what_is_not_taken() {
         let mut random = Random::new(5);

@@ -1,4 +1,4 @@
-//! What a search may still spend.
+//! The budget of a search.
 
 use super::super::Standing;
 use super::super::proof::PAIR_SPLITS;
@@ -6,7 +6,7 @@ use crate::control::Control;
 use crate::error::Error;
 use crate::query::GapVerdict;
 
-/// What may still be spent.
+/// The spent and the allowed numbers of tests and splits.
 pub(super) struct Budget<'b> {
     pub(super) control: Control<'b>,
     pub(super) tests: u64,
@@ -20,7 +20,7 @@ impl Budget<'_> {
         self.tests >= self.max_tests || self.splits >= self.max_splits
     }
 
-    /// Has a place looked at.
+    /// Runs the test of a place.
     pub(super) fn tested(
         &mut self,
         test: impl FnOnce(&Control<'_>) -> Result<Standing, Error>,

@@ -11,7 +11,7 @@ use crate::lattice::{Affine, axes};
 use crate::memory;
 use alloc::vec::Vec;
 
-/// Cells of the lattice that a cell of the search has along each axis.
+/// Number of lattice cells along each axis of a cell of the search.
 pub(super) const FINER: usize = 4;
 
 /// An item in one orientation.
@@ -19,24 +19,26 @@ pub(super) struct Form {
     pub(super) map: Affine,
     pub(super) shape: Shape,
     pub(super) halo: Halo,
-    /// What it takes from others: all cells that are too near to it, how many of the search each of them is
-    /// large, and how many of the search lie below its own along each axis.
+    /// The cells taken from other items: all cells that are too near to this one; their edge, in cells of the
+    /// search; and the number of the search's cells, along each axis, by which they begin below the item's
+    /// own cells.
     pub(super) taken: Bits,
     pub(super) scale: usize,
     pub(super) below: usize,
-    /// The lower corner of its cells when it is turned, and the centre of these from there (model units).
+    /// The lower corner of the turned item's cells, and the cells' centre relative to it (model units).
     pub(super) origin: [f64; 3],
     pub(super) centre: [f64; 3],
 }
 
-/// The forms of an item, of which no two have the same cells.
+/// The forms of an item, no two of which have the same cells.
 pub(super) struct Forms {
     pub(super) all: Vec<Form>,
     pub(super) figure: Figure,
 }
 
 impl Forms {
-    /// By cells of an edge; others are to be `clearance` away. Without maps there are none.
+    /// Builds the forms with cells of the edge `cell`; other items must be `clearance` away. Without maps
+    /// there are no forms.
     pub(super) fn of(
         item: &Item,
         maps: &[Affine],
@@ -92,7 +94,7 @@ impl Forms {
 }
 
 impl Forms {
-    /// What they take in memory.
+    /// The memory of the forms, in bytes.
     pub(super) fn bytes(&self) -> u64 {
         self.all.iter().map(Form::bytes).sum()
     }
@@ -105,7 +107,7 @@ impl Form {
     }
 }
 
-/// Cells of a solid under one of the 24 turns: those of the solid, turned.
+/// Returns the cells of a solid under one of the 24 rotations, by turning the cells of the solid.
 fn turned(given: &Voxels, map: &Affine, cell: f64) -> Result<Voxels, Error> {
     let rows = map.rows();
     let order: [usize; 3] = axes(|i| (0..3).find(|&j| rows[i][j] != 0.0).unwrap_or(i));
@@ -118,11 +120,11 @@ fn turned(given: &Voxels, map: &Affine, cell: f64) -> Result<Voxels, Error> {
     Ok(Voxels { bits: given.bits.turned(order, flip)?, origin })
 }
 
-/// Cells of a solid under any other turn.
+/// Returns the cells of a solid under any other rotation.
 fn of_turned(item: &Item, map: &Affine, cell: f64, control: &Control<'_>) -> Result<Voxels, Error> {
     let solid = item.solid.placed(map)?;
     let around = item.bounds.placed(map);
-    // (What is turned often tells better where it ends.)
+    // (A turned solid often provides tighter bounds.)
     let own = crate::solid::Solid::bounds(&solid);
     let bounds = match (around, own) {
         (Some(around), Some(own)) => own.common(&around).unwrap_or(around),

@@ -1,4 +1,4 @@
-//! Cells that are taken before anything is placed.
+//! The cells that are taken before anything is placed.
 
 use super::super::Layout;
 use super::super::proof::diagonal;
@@ -15,21 +15,22 @@ use crate::memory;
 use crate::solid::{AnySolid, Solid};
 use alloc::vec::Vec;
 
-/// Cells along the mean side of the smallest item, if nobody asks for a number, and along the container.
+/// The default number of cells along the mean side of the smallest item, and the limits of the number along
+/// the container.
 const ACROSS: f64 = 32.0;
 const CELLS: [f64; 2] = [32.0, 256.0];
 
-/// The cells by which is searched.
+/// The cells of the search.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Lattice {
-    /// The lower corner of the first cell, and the edge of all (model units).
+    /// The lower corner of the first cell, and the edge of all cells (model units).
     pub(super) origin: [f64; 3],
     pub(super) cell: f64,
     pub(super) size: [usize; 3],
 }
 
 impl Lattice {
-    /// `left` says how many copies of each item are to be placed.
+    /// Chooses the lattice. `left` is the number of copies of each item to place.
     pub(super) fn of(layout: &Layout, options: &SearchOptions, left: &[u32]) -> Lattice {
         let container = &layout.container;
         let margin = if container.is_box() { container.clearance() } else { 0.0 };
@@ -47,17 +48,17 @@ impl Lattice {
             cells => f64::from(cells),
         };
         let cell = longest / libm::ceil(cells);
-        // (What rounding makes too large is found out by the proof.)
+        // (The proof rejects places that rounding makes too large.)
         let size = length.map(|length| (length / cell * (1.0 + 1e-12)) as usize);
         Lattice { origin, cell, size }
     }
 
-    /// The clearance between items, or what does the same in this container.
+    /// Returns the clearance between items, or an equivalent smaller one for this container.
     fn clearance(&self, layout: &Layout) -> f64 {
         layout.clearance.min(diagonal(layout.container.bounds()) + self.cell)
     }
 
-    /// The forms of all items.
+    /// Returns the forms of all items.
     pub(super) fn forms(
         &self,
         layout: &Layout,
@@ -70,7 +71,7 @@ impl Lattice {
         let mut left = control.max_bytes;
         for (item, maps) in layout.items.iter().zip(maps) {
             let longest = (0..3).map(|k| item.bounds.max[k] - item.bounds.min[k]).fold(0.0, f64::max);
-            // What is longer than the container is across goes in nowhere, and has many cells.
+            // An item longer than the container's diagonal fits nowhere, and has many cells.
             let maps = if longest > across { &[] } else { &maps[..] };
             let own =
                 Forms::of(item, maps, [self.cell, clearance], &Control { max_bytes: left, ..*control })?;
@@ -82,7 +83,7 @@ impl Lattice {
         Ok(forms)
     }
 
-    /// The space in which forms go: what is beside the container, obstacles, and what is placed, are taken.
+    /// Returns the space for forms. The outside of the container, obstacles, and placed copies are taken.
     pub(super) fn space(
         &self,
         layout: &Layout,
@@ -121,8 +122,8 @@ impl Lattice {
         Ok(space)
     }
 
-    /// The cells that a solid takes from others, how many of the search each of them is large, and where the
-    /// first of them is.
+    /// Returns the cells that a solid takes from others, the edge of such a cell in cells of the search, and
+    /// the position of the first of them.
     fn taken(
         &self,
         solid: &AnySolid,

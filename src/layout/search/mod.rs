@@ -1,19 +1,20 @@
-//! Placing what is not placed yet.
+//! The search for places of items.
 //!
-//! Items go first as boxes, where boxes alone tell: that takes no split. Then they go as cells, of which all
-//! count that are not proven empty; the places of a layer at which a shape meets nothing that is taken are
-//! found together. Each place that is taken is proven by the solids themselves. At last items settle, and
-//! what goes into the room that comes of it is added.
+//! Boxes come first: where boxes alone prove a place, no split is needed. Then items are placed as cells; all
+//! cells that are not proven empty count. All places of a layer where a shape meets no taken cell are found
+//! together. The solids themselves prove each place. Finally the items settle, and the search fills the space
+//! that becomes free.
 //!
-//! | question | file |
+//! | topic | file |
 //! |---|---|
-//! | in which order, and which place is preferred? | `plan` |
-//! | where do boxes go? | `rooms`, in the free boxes of `boxes` |
-//! | which cells has an item, in each orientation? | `voxels`, `forms`, rows of `bits` |
-//! | which cells are taken before anything is placed? | `ground` |
-//! | where does a shape go? | `space`, one item after another in `round` |
-//! | can it move down yet? | `settle` |
-//! | what comes after what, and which layout is the best? | `run`, `tally` |
+//! | order of the items, and preferred places | `plan` |
+//! | places for boxes | `rooms`, in the free boxes of `boxes` |
+//! | cells of an item in each orientation | `voxels`, `forms`, rows of `bits` |
+//! | cells taken before anything is placed | `ground` |
+//! | places for a shape | `space`, one item after another in `round` |
+//! | moving items down | `settle` |
+//! | sequence of the steps, and choice of the best layout | `run`, `tally` |
+//! | remaining budget | `budget` |
 //! | is anything left to spend? | `budget` |
 
 mod bits;
@@ -34,7 +35,7 @@ use super::Layout;
 use crate::control::Control;
 use crate::error::Error;
 
-/// What a search is after. First of all as much is placed as goes in.
+/// The objective of a search. The first aim is always to place as much as possible.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum Objective {
     /// As many items as possible.
@@ -43,7 +44,7 @@ pub enum Objective {
     Height,
     /// As much volume as possible.
     Density,
-    /// As many items as possible, with the centre of gravity of all that are placed near to a point (model
+    /// As many items as possible, with the centre of gravity of all placed copies near to a point (model
     /// units).
     Balance([f64; 3]),
 }
@@ -58,27 +59,28 @@ pub struct Direction {
 }
 
 impl Direction {
-    /// The other way.
+    /// The opposite direction.
     fn back(self) -> (usize, bool) {
         (usize::from(self.axis), !self.upward)
     }
 }
 
-/// How a search proceeds.
+/// The options of a search.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct SearchOptions {
-    /// What it is after.
+    /// The objective.
     pub objective: Objective,
-    /// What chance depends on: the same seed gives the same layout, for any number of threads.
+    /// The seed of the random choices: the same seed gives the same layout, for any number of threads.
     pub seed: u64,
-    /// How often everything is placed anew, in other orders; the best layout stays. At least 1.
+    /// The number of rounds, at least 1. Each round places everything anew, in another order; the best layout
+    /// is kept.
     pub rounds: u32,
-    /// Cells along the longest side of the container; 0: as the items ask for.
+    /// The number of cells along the longest side of the container; 0: chosen by the sizes of the items.
     pub cells: u32,
-    /// Places that are looked at by the solids themselves; `None`: no limit.
+    /// The maximal number of places tested by the solids themselves; `None`: no limit.
     pub max_tests: Option<u64>,
-    /// All items can be taken out along this direction, one after another, the last that was placed first:
-    /// none of the others, and no obstacle, is in the way of a straight move. (The container may be.)
+    /// If set, all items can be taken out along this direction, one after another, the last placed first: no
+    /// other item, and no obstacle, is in the way of a straight move. (The container may be.)
     pub free_along: Option<Direction>,
 }
 
@@ -95,55 +97,56 @@ impl Default for SearchOptions {
     }
 }
 
-/// Why a search ended.
+/// The reason why a search ended.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
 pub enum SearchEnd {
-    /// Everything is placed, and nothing else is asked for.
+    /// Everything is placed, and the objective requires nothing else.
     Complete,
     /// All rounds were made.
     Rounds,
     /// `max_tests` of the options, or `max_splits` of the control, is spent.
     Budget,
-    /// The caller cancelled. What was best until then is placed.
+    /// The caller cancelled. The best layout found until then is kept.
     Cancelled,
 }
 
-/// What a search did.
+/// The report of a search.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct SearchReport {
-    /// Copies that were placed.
+    /// Number of copies placed.
     pub placed: u64,
-    /// Copies that were not.
+    /// Number of copies not placed.
     pub left: u64,
-    /// Rounds that were made, those by boxes not counted.
+    /// Number of rounds, without the rounds by boxes.
     pub rounds: u64,
-    /// Places that were looked at by the solids themselves.
+    /// Number of places tested by the solids themselves.
     pub tests: u64,
-    /// Cells that were split for that. (Cells of items and of the container that were made to search by are
-    /// not counted.)
+    /// Number of cell splits for these tests. (The count excludes the cells of items and of the container
+    /// that the search itself uses.)
     pub splits: u64,
-    /// Why it ended.
+    /// Why the search ended.
     pub end: SearchEnd,
 }
 
 impl Layout {
-    /// Places copies of items that are not placed yet, and leaves those where they are that are.
+    /// Places copies of items that are not placed yet. Placed copies stay where they are.
     ///
-    /// Each is proven to lie in the container, to overlap with nothing, and to be as far from everything as
-    /// it should be: by boxes, by the triangles of meshes, or by splits of the solids. What could not be
-    /// proven is not placed. The layout that is kept is the best of all rounds by what the options are after.
-    /// A cancel ends the search, and keeps what was best by then; so does a budget.
+    /// Each new copy is proven to lie in the container, to overlap with nothing, and to keep the required
+    /// distance from everything: by boxes, by the triangles of meshes, or by splits of the solids. A copy
+    /// without a proof is not placed. The result is the best layout of all rounds by the objective. A cancel
+    /// ends the search and keeps the best layout found until then; so does a budget.
     ///
-    /// Memory is that of the items' cells in all orientations, and of the container's cells: some megabytes
-    /// for a hundred cells along the container, a hundred times as much for five hundred. `control.max_bytes`
-    /// limits that of the items. A step takes O(r n² / 64) for n cells along the container, an item of r runs
-    /// of cells, and each layer that is looked at, which are n a form and round and one more a step.
+    /// Memory holds the items' cells in all orientations, and the container's cells: some megabytes for a
+    /// hundred cells along the container, a hundred times as much for five hundred. `control.max_bytes`
+    /// limits the memory for the items. A step takes O(r n² / 64) for n cells along the container, an item
+    /// with r runs of cells, and each visited layer. There are n layers for each form and round, and one more
+    /// for each step.
     ///
     /// # Errors
     /// [`Error::Argument`] if `rounds` is 0, `cells` is not 0 and not between 4 and 512, an axis is not 0, 1
     /// or 2, or a coordinate is not a number; [`Error::TooLarge`] and [`Error::Limit`] if the cells of items
-    /// take more than `control.max_bytes`; what the solids refuse; [`Error::OutOfMemory`]. Then the layout is
-    /// as it was.
+    /// take more than `control.max_bytes`; the solids' own errors; [`Error::OutOfMemory`]. In each case the
+    /// layout stays unchanged.
     pub fn search(&mut self, options: &SearchOptions, control: &Control<'_>) -> Result<SearchReport, Error> {
         let refuse = |name, problem| Err(Error::Argument { name, problem });
         if options.rounds == 0 {

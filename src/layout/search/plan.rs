@@ -1,4 +1,4 @@
-//! In which order items are placed, and which places are preferred.
+//! The order of placement, and the preferred places.
 
 use super::super::random::Random;
 use super::tally::Figure;
@@ -7,51 +7,52 @@ use crate::lattice::Affine;
 use crate::memory;
 use alloc::vec::Vec;
 
-/// Something that is to be placed.
+/// A copy to place.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Step {
     pub(super) item: usize,
     pub(super) placement: Affine,
 }
 
-/// How one round goes.
+/// The plan of one round.
 #[derive(Debug, Clone)]
 pub(super) struct Plan {
-    /// The items, as often as they are to be placed.
+    /// The items, repeated by the number of copies to place.
     pub(super) order: Vec<usize>,
-    /// How much the height of an item counts beside that of its place.
+    /// The weight of an item's height relative to the height of its place.
     pub(super) lean: f64,
-    /// How much contact with others counts: all around, as much as so many of its mean sides in height.
+    /// The weight of contact with others: full contact counts as much as this many mean sides of the item in
+    /// height.
     pub(super) grip: f64,
-    /// Whether items go where the centre of gravity wants them, and not down: where there is hardly room, not
-    /// all go there.
+    /// Whether places are chosen for the centre of gravity instead of for the least height. Where space is
+    /// scarce, not all items fit that way.
     pub(super) is_for_balance: bool,
-    /// Which way items go within a layer.
+    /// The preferred direction within a layer.
     pub(super) way: Way,
 }
 
-/// Which of the places of a layer is preferred.
+/// The preference among the places of a layer.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(super) enum Way {
-    /// The least along y, then along x.
+    /// The least coordinate along y, then along x.
     Rows,
-    /// The least along x, then along y.
+    /// The least coordinate along x, then along y.
     Columns,
-    /// That nearest to the corner.
+    /// The place nearest to the corner.
     Corner,
 }
 
 impl Plan {
-    /// The plan of a round: `left` says how many copies of each item are to be placed, `figures` how large
-    /// each is.
+    /// Builds the plan of a round. `left` is the number of copies of each item to place, `figures` are the
+    /// sizes of the items.
     pub(super) fn new(left: &[u32], figures: &[Figure], round: u64, seed: u64) -> Result<Plan, Error> {
         const LEANS: [f64; 4] = [1.0, 0.5, 0.75, 0.25];
         const GRIPS: [f64; 4] = [2.0, 4.0, 0.5, 1.0];
         const WAYS: [Way; 3] = [Way::Corner, Way::Rows, Way::Columns];
         let mut random = Random::new(seed.wrapping_add(round.wrapping_mul(0xA076_1D64_78BD_642F)));
-        // The first rounds go by size, later ones more and more by chance.
+        // The first rounds go by size, later rounds are increasingly random.
         let spread = if round < LEANS.len() as u64 { 0.0 } else { 0.15 * (1 + (round - 4) % 8) as f64 };
-        // What is long finds no place late, and what is large neither.
+        // Long items hardly find a place late, and neither do large ones.
         let size = |figure: &Figure| match round % 2 {
             0 => figure.volume,
             _ => figure.longest * figure.longest * figure.longest,
@@ -76,8 +77,8 @@ impl Plan {
         })
     }
 
-    /// The rank of a place: the least comes first. `left` is what is left beside the item where it is
-    /// tightest.
+    /// Returns the rank of a place; the least rank is best. `left` is the remaining space beside the item in
+    /// the tightest direction.
     pub(super) fn rank(&self, at: [f64; 3], size: [f64; 3], left: f64) -> [f64; 4] {
         let [x, y, z] = at;
         let high = z + self.lean * size[2];

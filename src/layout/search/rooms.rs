@@ -1,4 +1,4 @@
-//! Places for the boxes of items: what takes no split.
+//! Places for the boxes of items, without splits.
 
 use super::super::Layout;
 use super::super::proof::wider;
@@ -10,15 +10,15 @@ use crate::lattice::{Affine, Bounds, axes};
 use crate::memory;
 use alloc::vec::Vec;
 
-/// An orientation, and the box of the item in it.
+/// An orientation, and the item's box in it.
 struct Turned {
     map: Affine,
     block: Bounds,
-    /// The box of the item as it is.
+    /// The box of the item in the given orientation.
     own: Bounds,
 }
 
-/// The boxes of items in their orientations, of which no two are of the same size.
+/// The boxes of items in their orientations. No two boxes of an item have the same size.
 pub(super) struct Rooms {
     items: Vec<Vec<Turned>>,
     whole: Bounds,
@@ -26,7 +26,7 @@ pub(super) struct Rooms {
 }
 
 impl Rooms {
-    /// `None` if the container is not known to be a box, or has no room.
+    /// Prepares the boxes; `None` if the container is not proven to be a box, or has no free space.
     pub(super) fn new(layout: &Layout, maps: &[Vec<Affine>]) -> Result<Option<Rooms>, Error> {
         let container = &layout.container;
         let (bounds, margin) = (container.bounds(), container.clearance());
@@ -50,7 +50,7 @@ impl Rooms {
         Ok(Some(Rooms { items, whole, least }))
     }
 
-    /// Places what finds a place, in the order of a plan. Nothing is proven yet.
+    /// Places items as far as they find a place, in the order of a plan. Nothing is proven yet.
     pub(super) fn round(
         &self,
         layout: &Layout,
@@ -83,7 +83,7 @@ impl Rooms {
         Ok(steps)
     }
 
-    /// The best place for an item, and its box there.
+    /// Returns the best place for an item, and the item's box there.
     fn place(&self, item: usize, free: &Free, plan: &Plan) -> Option<(Step, Bounds)> {
         let mut best: Option<([f64; 4], Step, Bounds)> = None;
         for turned in &self.items[item] {
@@ -106,16 +106,15 @@ impl Rooms {
     }
 }
 
-/// The box within another one all points of which are no nearer than a margin to its faces; `None` if there
-/// is none.
+/// Returns the box of points in a box that keep a margin from its faces; `None` if there is none.
 fn narrower(bounds: &Bounds, margin: f64) -> Option<Bounds> {
-    // (Where the margin is rounded it is so outward, seen from the faces.)
+    // (A rounded margin is rounded away from the faces.)
     let low = wider(&Bounds { min: bounds.min, max: bounds.min }, margin).max;
     let high = wider(&Bounds { min: bounds.max, max: bounds.max }, margin).min;
     Bounds::new(low, high)
 }
 
-/// Moves a turned item into the lower corner of a room: where rounding leaves its box within.
+/// Moves a turned item into the lower corner of a room, so that its box lies within in spite of rounding.
 fn put(turned: &Turned, room: &Bounds) -> Option<(Affine, Bounds)> {
     let mut to: [f64; 3] = axes(|k| room.min[k] - turned.block.min[k]);
     for _ in 0..4 {

@@ -1,4 +1,4 @@
-//! A round of the search by cells: one item after another goes to the best place that is left.
+//! A round of the search by cells: one item after another goes to the best remaining place.
 
 use super::super::Layout;
 use super::budget::Budget;
@@ -14,7 +14,7 @@ use crate::memory;
 use crate::parallel;
 use alloc::vec::Vec;
 
-/// What a round goes by.
+/// The input of a round.
 pub(super) struct Round<'g> {
     pub(super) lattice: Lattice,
     pub(super) forms: &'g [Forms],
@@ -23,7 +23,7 @@ pub(super) struct Round<'g> {
     pub(super) parallel: bool,
 }
 
-/// A place for an item: the least rank is the best.
+/// A place for an item; the least rank is best.
 #[derive(Debug, Clone, Copy)]
 struct Place {
     rank: [f64; 4],
@@ -31,12 +31,12 @@ struct Place {
     at: [usize; 3],
 }
 
-/// A place that was not proven to be free: the item, its form, and where.
+/// A place that was not proven to be free: the item, its form, and the cell.
 type Refused = (usize, usize, [usize; 3]);
 
 impl Round<'_> {
-    /// Places items beside what is placed in a layout, each with its proof, and leaves them there. `space` is
-    /// what is taken.
+    /// Places items beside the placed copies of a layout, each with its proof, and leaves them there. `space`
+    /// holds the taken cells.
     pub(super) fn run(
         &self,
         layout: &mut Layout,
@@ -47,7 +47,7 @@ impl Round<'_> {
         let mut masses = Masses::of(layout, self.figures);
         let mut is_full = memory::filled(self.forms.len(), false)?;
         let mut refused: Vec<Refused> = Vec::new();
-        // Below that layer there is no place for a form.
+        // Lower bounds of the layers with a place, for each form.
         let mut lowest = memory::with_capacity(self.forms.len())?;
         for forms in self.forms {
             lowest.push(memory::filled(forms.all.len(), 0usize)?);
@@ -74,8 +74,7 @@ impl Round<'_> {
                 }
                 let number = layout.place(item, &placement)?;
                 let offset = place.at.map(|at| at as isize - form.below as isize);
-                // What comes later must get out, too: nothing goes to where what is there would be in its
-                // way.
+                // Later items must get out, too: no item may go where this one would be in its way.
                 space.take(&form.taken, form.scale, offset, self.options.free_along.map(Direction::back))?;
                 masses.add(layout, self.figures, &layout.placed[number]);
                 break;
@@ -84,7 +83,7 @@ impl Round<'_> {
         Ok(())
     }
 
-    /// Where the lower corner of a form at some cell is.
+    /// Returns the lower corner of a form at a cell.
     fn corner(&self, at: [usize; 3]) -> [f64; 3] {
         axes(|k| self.lattice.origin[k] + self.lattice.cell * at[k] as f64)
     }
@@ -103,7 +102,7 @@ impl Round<'_> {
         }))
     }
 
-    /// The best place of an item in any of its forms.
+    /// Returns the best place of an item in any of its forms.
     fn best(
         &self,
         item: usize,
@@ -130,7 +129,7 @@ impl Round<'_> {
         Ok(best)
     }
 
-    /// The best place in the lowest layer that has one.
+    /// Returns the best place in the lowest layer that has one.
     #[expect(clippy::too_many_arguments, reason = "what the caller shares among forms")]
     fn lowest(
         &self,
@@ -169,7 +168,7 @@ impl Round<'_> {
         Ok(best)
     }
 
-    /// The place whose centre is nearest to a point.
+    /// Returns the place whose centre is nearest to a point.
     fn nearest(
         &self,
         form: &Form,

@@ -1,4 +1,4 @@
-//! One search: by boxes, by cells, and what is left when all has settled.
+//! The course of a search: by boxes, by cells, and again for the remaining items after settling.
 
 use super::super::{Layout, Placed};
 use super::budget::Budget;
@@ -15,30 +15,30 @@ use crate::lattice::Affine;
 use crate::memory;
 use alloc::vec::Vec;
 
-/// Rounds by boxes, times items.
+/// Limits of the search by boxes: rounds times items, and rounds.
 const BOX_STEPS: u64 = 1 << 14;
 const BOX_ROUNDS: u64 = 1 << 10;
 
-/// How often everything settles, and what is left is tried again.
+/// The number of times that all items settle and the remaining ones are tried again.
 const SETTLINGS: u32 = 3;
 
-/// A search under way.
+/// The state of a search.
 struct Search<'s, 'c> {
     layout: &'s mut Layout,
     options: &'s SearchOptions,
     control: Control<'c>,
     budget: Budget<'c>,
-    /// How many were placed before.
+    /// The number of copies placed before the search.
     before: usize,
     left: Vec<u32>,
     wanted: u64,
     figures: Vec<Figure>,
-    /// What was placed in the best layout so far.
+    /// The copies placed in the best layout so far.
     best: Vec<Placed>,
     rounds: u64,
 }
 
-/// Places what is not placed yet; see [`Layout::search`].
+/// Places copies that are not placed yet; see [`Layout::search`].
 pub(super) fn search(
     layout: &mut Layout,
     options: &SearchOptions,
@@ -49,7 +49,7 @@ pub(super) fn search(
     let end = match search.run(parallel) {
         Ok(end) => end,
         Err(Error::Cancelled) => {
-            // (A round that was begun may be better than those before.)
+            // (An unfinished round may be better than those before.)
             search.keep()?;
             SearchEnd::Cancelled
         }
@@ -116,7 +116,7 @@ impl<'s, 'c> Search<'s, 'c> {
         }
     }
 
-    /// Why nothing more is to be done, if that is so.
+    /// Returns why the search is over; `None` if it is not.
     fn end(&self) -> Option<SearchEnd> {
         if self.budget.is_spent() {
             return Some(SearchEnd::Budget);
@@ -125,13 +125,13 @@ impl<'s, 'c> Search<'s, 'c> {
         (is_whole && self.options.objective == Objective::Count).then_some(SearchEnd::Complete)
     }
 
-    /// Takes away all that the search has placed.
+    /// Removes all copies that the search has placed.
     fn clear(&mut self) {
         self.layout.placed.truncate(self.before);
         self.layout.boxes.truncate(self.before);
     }
 
-    /// Keeps what is placed, if it is the best so far, and takes it away.
+    /// Stores the placed copies if they are the best layout so far, and removes them from the layout.
     fn keep(&mut self) -> Result<(), Error> {
         let objective = self.options.objective;
         let now = Tally::of(self.layout, self.before, &self.figures, objective);
@@ -175,7 +175,7 @@ impl<'s, 'c> Search<'s, 'c> {
         }
         let mut steps = best.map_or(Vec::new(), |best| best.1);
         if let Some(way) = self.options.free_along {
-            // What is further along the way gets out first, and nothing in its way is left.
+            // A copy further along the way gets out first, so that nothing remains in the way of the others.
             let end = |step: &Step| {
                 let block = self.layout.items[step.item].bounds.placed(&step.placement);
                 let axis = usize::from(way.axis);
@@ -183,7 +183,7 @@ impl<'s, 'c> Search<'s, 'c> {
             };
             steps.sort_unstable_by(|a, b| end(a).total_cmp(&end(b)).then(a.item.cmp(&b.item)));
         }
-        // Boxes that are apart prove it; what they do not prove is left out.
+        // Separate boxes are a proof. A copy without a proof is omitted.
         for step in &steps {
             if self.budget.is_spent() {
                 break;
@@ -219,8 +219,8 @@ impl<'s, 'c> Search<'s, 'c> {
                 progress((round + 1) as f64 / shares);
             }
         }
-        // (What settles may not get out any more along the way it came; and where the middle should be,
-        // nothing is to move.)
+        // (A settled item may no longer get out along its way. Nor may items move if the centre of gravity
+        // has a target.)
         if options.free_along.is_some() || matches!(options.objective, Objective::Balance(_)) {
             return Ok(SearchEnd::Rounds);
         }

@@ -1,4 +1,4 @@
-//! What is placed moves towards the corner, as far as it is proven that it may.
+//! The settling of placed items: moves towards the corner, as far as they are proven to be free.
 
 use super::super::Layout;
 use super::budget::Budget;
@@ -7,14 +7,14 @@ use crate::lattice::{Affine, axes};
 use crate::memory;
 use alloc::vec::Vec;
 
-/// The last step along an axis is the first one divided by two to this power.
+/// The binary logarithm of the ratio between the first step along an axis and the last.
 const HALVINGS: u32 = 5;
 
-/// Passes over everything that is placed.
+/// The number of passes over all placed items.
 const PASSES: usize = 1;
 
-/// Moves everything that is placed from number `first` on down along z, y and x, the lowest first; `step` is
-/// the first step (model units).
+/// Moves all copies from number `first` on down along z, y and x, the lowest first; `step` is the first step
+/// (model units).
 pub(super) fn settle(
     layout: &mut Layout,
     first: usize,
@@ -35,8 +35,7 @@ pub(super) fn settle(
     Ok(())
 }
 
-/// Moves one down along an axis: by steps that grow as long as they succeed, and are halved where they do
-/// not.
+/// Moves a copy down along an axis. The steps grow as long as they succeed, and are halved where they fail.
 fn lower(
     layout: &mut Layout,
     number: usize,

@@ -1,26 +1,26 @@
-//! Where shapes of cells go among cells that are taken.
+//! The places of shapes of cells among taken cells.
 //!
-//! A shape is a list of runs along x. Where a run of length 2^k meets a taken cell is known of all places at
-//! once, if each bit has been joined with those up to 2^k − 1 cells further on; any other run is two of these
-//! that overlap. So 64 places take two shifts a run, and the places of one layer are told by the runs of the
-//! shape, with nothing that is transformed or rounded. (Fourier transforms tell all places of all layers:
-//! Cui, Rong, Chen & Matusik 2023. The lowest layer with a place takes less, and cells that are taken later
-//! never free one, so that no layer is looked at again.)
+//! A shape is a list of runs along x. The places where a run of length 2^k meets a taken cell are known all
+//! at once, if each bit has been joined with those up to 2^k − 1 cells further on. Any other run is the union
+//! of two overlapping runs of such lengths. A run thus takes two shifts for 64 places, and the runs of the
+//! shape determine the places of a layer, without transforms or rounding. (Fourier transforms find all places
+//! of all layers: Cui, Rong, Chen & Matusik 2023. Searching for the lowest layer with a place takes less
+//! time. Cells that are taken later never free a place, so that no layer is visited again.)
 
 use super::bits::{Bits, Run};
 use crate::error::Error;
 use crate::memory;
 use alloc::vec::Vec;
 
-/// Cells that are taken.
+/// The taken cells of the search.
 pub(super) struct Space {
     size: [usize; 3],
     words: usize,
-    /// By k: which cells have one that is taken among the 2^k from them on.
+    /// For each k, the cells that have a taken cell among the 2^k cells from them on.
     joined: Vec<Vec<u64>>,
 }
 
-/// Places of a layer: a bit is set where the shape does not go.
+/// The places of a layer: a bit is set where the shape does not fit.
 #[derive(Debug, Default)]
 pub(super) struct Layer {
     bits: Vec<u64>,
@@ -28,7 +28,7 @@ pub(super) struct Layer {
     rows: usize,
 }
 
-/// A shape that is to be placed.
+/// A shape to place.
 pub(super) struct Shape {
     pub(super) size: [usize; 3],
     pub(super) runs: Vec<Run>,
@@ -40,7 +40,8 @@ impl Shape {
     }
 }
 
-/// The cells around a shape: runs, from one cell below its lower corner, and how many cells they are.
+/// The cells around a shape: runs, relative to one cell below the shape's lower corner, and the number of
+/// cells.
 pub(super) struct Halo {
     runs: Vec<Run>,
     count: u32,
@@ -58,14 +59,14 @@ impl Halo {
         Ok(Halo { runs: around.runs()?, count: around.count() as u32 })
     }
 
-    /// What it takes in memory.
+    /// The memory of the runs, in bytes.
     pub(super) fn bytes(&self) -> usize {
         memory::bytes_of(&self.runs)
     }
 }
 
 impl Space {
-    /// The part of the cells around a shape that are taken, or beyond the sides or the floor.
+    /// Returns the part of the cells around a shape that are taken, or beyond the sides or the floor.
     pub(super) fn contact(&self, halo: &Halo, at: [usize; 3]) -> f64 {
         let mut count = 0;
         let size = self.size.map(|size| size as isize);
@@ -98,10 +99,10 @@ impl Space {
         f64::from(count) / f64::from(halo.count.max(1))
     }
 
-    /// Nothing is taken. No shape has a run that is longer than `longest`, which is not 0.
+    /// Builds a space without taken cells. No shape may have a run longer than `longest`, which is not 0.
     pub(super) fn new(size: [usize; 3], longest: usize) -> Result<Space, Error> {
         let words = size[0].div_ceil(64);
-        // (Reading goes on beyond the end of a row.)
+        // (Reading continues beyond the end of a row.)
         let count = words * size[1] * size[2] + words + 2;
         let mut joined = Vec::new();
         for _ in 0..=longest.ilog2() {
@@ -110,7 +111,7 @@ impl Space {
         Ok(Space { size, words, joined })
     }
 
-    /// The same cells, once more.
+    /// Copies the space.
     pub(super) fn try_clone(&self) -> Result<Space, Error> {
         let mut joined = memory::with_capacity(self.joined.len())?;
         for list in &self.joined {
@@ -123,7 +124,7 @@ impl Space {
         self.size
     }
 
-    /// Takes the cells of a row from `from` up to `to`, which may lie beyond its ends.
+    /// Takes the cells of a row from `from` up to `to`, which may lie beyond the row's ends.
     pub(super) fn take_row(&mut self, from: isize, to: isize, y: usize, z: usize) {
         let (from, to) = (from.max(0) as usize, to.clamp(0, self.size[0] as isize) as usize);
         if from >= to {
@@ -140,8 +141,8 @@ impl Space {
         }
     }
 
-    /// Takes cells that lie at an offset, each as large as `scale` of the space along each axis; and, if
-    /// `shade` is an axis and a sense, all that lie from them on that way.
+    /// Takes cells at an offset. Each of them is as large as `scale` cells of the space along each axis. If
+    /// `shade` is an axis and a sense, all cells beyond them in that direction are taken, too.
     pub(super) fn take(
         &mut self,
         cells: &Bits,
@@ -184,14 +185,14 @@ impl Space {
         Ok(())
     }
 
-    /// The places in layer `z` where a shape does not go, which fits into the space. `false` if it goes
-    /// nowhere.
+    /// Finds the places in layer `z` where a shape does not fit. The shape must be no larger than the space.
+    /// Returns `false` if the shape fits nowhere.
     pub(super) fn layer(&self, shape: &Shape, z: usize, layer: &mut Layer) -> Result<bool, Error> {
         let rows = self.size[1] - shape.size[1] + 1;
         let words = self.words;
         layer.bits.clear();
         layer.bits.try_reserve(rows * words)?;
-        // Bits of places along x at which the shape would stick out.
+        // The bits of places along x at which the shape would stick out.
         let places = self.size[0] - shape.size[0] + 1;
         for _ in 0..rows {
             for word in 0..words {
@@ -236,7 +237,8 @@ impl Space {
 }
 
 impl Layer {
-    /// Places where the shape goes, and not to one side along x, nor to one along y.
+    /// Returns the places where the shape fits, but not one step further on some side along x, nor one step
+    /// further on some side along y.
     pub(super) fn corners(&self) -> impl Iterator<Item = [usize; 2]> {
         let is_taken = move |x: isize, y: isize| {
             if x < 0 || y < 0 || y as usize >= self.rows || x as usize >= 64 * self.words {
@@ -250,7 +252,7 @@ impl Layer {
         })
     }
 
-    /// The places where the shape goes, by y and then by x.
+    /// Returns the places where the shape fits, by y and then by x.
     pub(super) fn places(&self) -> impl Iterator<Item = [usize; 2]> {
         (0..self.rows).flat_map(move |y| {
             let row = &self.bits[self.words * y..][..self.words];

@@ -1,18 +1,18 @@
-//! Which of two layouts is the better one.
+//! The comparison of two layouts.
 
 use super::super::{Layout, Placed};
 use super::Objective;
 use crate::lattice::exact::sqrt;
 use crate::lattice::{Bounds, axes};
 
-/// About how large an item is, and where its middle lies.
+/// The approximate size and centre of an item.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Figure {
-    /// Cubic model units.
+    /// The volume, in cubic model units.
     pub(super) volume: f64,
-    /// The longest side of its box (model units).
+    /// The longest side of the item's box (model units).
     pub(super) longest: f64,
-    /// In the item's own coordinates.
+    /// The centre, in the item's own coordinates.
     pub(super) centre: [f64; 3],
 }
 
@@ -27,7 +27,7 @@ impl Figure {
     }
 }
 
-/// Masses, for a centre of gravity.
+/// A sum of masses, for a centre of gravity.
 #[derive(Debug, Clone, Copy, Default)]
 pub(super) struct Masses {
     mass: f64,
@@ -35,7 +35,7 @@ pub(super) struct Masses {
 }
 
 impl Masses {
-    /// Those of everything that is placed.
+    /// The masses of all placed copies.
     pub(super) fn of(layout: &Layout, figures: &[Figure]) -> Masses {
         let mut masses = Masses::default();
         layout.placed.iter().for_each(|placed| masses.add(layout, figures, placed));
@@ -50,7 +50,7 @@ impl Masses {
         (0..3).for_each(|k| self.moment[k] += mass * centre[k]);
     }
 
-    /// Where the centre of another mass should be for that of the whole to be at a point.
+    /// Returns the centre of another mass that moves the centre of gravity of the whole to a point.
     pub(super) fn wanted(&self, mass: f64, target: &[f64; 3]) -> [f64; 3] {
         if mass <= 0.0 {
             return *target;
@@ -58,7 +58,7 @@ impl Masses {
         axes(|k| ((self.mass + mass) * target[k] - self.moment[k]) / mass)
     }
 
-    /// How far the centre of gravity is from a point.
+    /// The distance of the centre of gravity from a point.
     fn off(&self, target: &[f64; 3]) -> f64 {
         if self.mass <= 0.0 {
             return f64::INFINITY;
@@ -68,19 +68,19 @@ impl Masses {
     }
 }
 
-/// What counts of a layout.
+/// The compared quantities of a layout.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Tally {
     count: f64,
     volume: f64,
-    /// How far the highest reaches along z.
+    /// The greatest height along z.
     height: f64,
-    /// How far the centre of gravity is from where it should be.
+    /// The distance of the centre of gravity from its target.
     off: f64,
 }
 
 impl Tally {
-    /// That of a layout, in which all from `first` on were placed by the search.
+    /// Computes the tally of a layout, in which the search placed all copies from `first` on.
     pub(super) fn of(layout: &Layout, first: usize, figures: &[Figure], objective: Objective) -> Tally {
         let new = &layout.placed[first..];
         let off = match objective {

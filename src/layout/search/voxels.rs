@@ -1,4 +1,4 @@
-//! The cells that a solid may have points in.
+//! The cells in which a solid may have points.
 
 use super::super::item::on_any_frame;
 use super::bits::Bits;
@@ -10,19 +10,19 @@ use crate::op::{Rule, build};
 use crate::solid::AnySolid;
 use alloc::vec::Vec;
 
-/// Cells of a solid, and the lower corner of the first of them (model units).
+/// The cells of a solid, and the lower corner of the first of them (model units).
 pub(super) struct Voxels {
     pub(super) bits: Bits,
     pub(super) origin: [f64; 3],
 }
 
-/// How far the first cell begins below the solid, as a part of a cell: so that no two solids in neighbouring
-/// cells touch.
+/// The distance from the first cell's lower end to the solid, as a part of a cell: it ensures that no two
+/// solids in neighbouring cells touch.
 const BELOW: f64 = 1.0 / 64.0;
 
 impl Voxels {
-    /// Those with the edge `cell` of a solid in a box. Their corners are multiples of `cell` beyond `from`,
-    /// if there is one.
+    /// Computes the cells, of edge `cell`, of a solid in a box. Their corners are multiples of `cell` beyond
+    /// `from`, if that is given.
     pub(super) fn of(
         solid: &AnySolid,
         bounds: &Bounds,
@@ -41,7 +41,7 @@ impl Voxels {
         if depth > u32::from(MAX_DEPTH) {
             return Err(Error::Argument {
                 name: "cells",
-                problem: "so many that an item takes more than 2^20 of them",
+                problem: "must be fewer: an item takes more than 2^20 of them along an axis",
             });
         }
         let frame = Frame::new(origin, cell * f64::from(1u32 << depth), depth as u8)?;
@@ -57,7 +57,8 @@ impl Voxels {
     }
 }
 
-/// Cells of a box that are not proven to lie in a solid, and `pad` more at every end, which are not.
+/// Returns the cells of a box that are not proven to lie in a solid, and all cells of a margin of `pad` cells
+/// at every end.
 pub(super) fn outside(
     solid: &AnySolid,
     origin: [f64; 3],
@@ -93,8 +94,8 @@ pub(super) fn outside(
     Ok(outside)
 }
 
-/// The cells of a frame that a solid may have points in, and those that are proven to lie in it: in the box
-/// of `outer`.
+/// Computes the cells of a frame in which a solid may have points, in the box of `outer`, and the cells that
+/// are proven to lie in the solid.
 fn on_frame(
     solid: &AnySolid,
     frame: &Frame,

@@ -1,7 +1,7 @@
-//! A ball that lies in both of two solids that overlap.
+//! A ball in the overlap of two solids.
 //!
-//! It begins around a cell that lies in both. Its centre then moves to where the nearest points outside of
-//! one of the solids are further away. Lengths are in finest cells.
+//! The ball begins around a cell that lies in both solids. Its centre then moves towards larger distances
+//! from the nearest outside points of either solid. Lengths are in finest cells.
 
 use super::nodes::Nodes;
 use super::piece::{self, Bodies, Content, Piece};
@@ -15,14 +15,14 @@ use crate::solid::Classifier;
 use crate::walk::Queue;
 use core::cmp::Reverse;
 
-/// Cells that are looked at for a cell that lies in both, and for each centre.
+/// The maximal number of visited cells in the search for a common cell, and for each centre.
 const CELLS: u64 = 1 << 12;
 
-/// Centres at most.
+/// The maximal number of centres.
 const CENTRES: u32 = 256;
 
-/// The centre of a ball that is proven to lie in both, and its radius in model units; `None` if no common
-/// cell is found.
+/// Returns the centre of a ball that is proven to lie in both solids, and its radius in model units; `None`
+/// if no common cell is found.
 pub(super) fn common_ball<A: Classifier, B: Classifier>(
     search: &mut Search<'_, A, B>,
     job: &Job<'_>,
@@ -34,7 +34,7 @@ pub(super) fn common_ball<A: Classifier, B: Classifier>(
     let mut left = CENTRES;
     while step > radius / 32.0 && left > 0 && !search.is_spent() {
         let mut best = None;
-        // The 26 ways to the neighbours of a cube, until one is better.
+        // Try the 26 directions to the neighbours of a cube, until one is better.
         for way in (0..27).filter(|way| *way != 13) {
             let offset = [way % 3, way / 3 % 3, way / 9].map(|k: u32| step * (f64::from(k) - 1.0));
             let moved = axes(|axis| centre[axis] + offset[axis]);
@@ -54,7 +54,7 @@ pub(super) fn common_ball<A: Classifier, B: Classifier>(
     Ok(Some((centre, product_down(radius, size))))
 }
 
-/// The middle of a cell that lies in both, and half its edge: a large one, if there is one.
+/// Returns the centre of a cell that lies in both solids, and half its edge. Large cells are preferred.
 fn common_cell<A: Classifier, B: Classifier>(
     search: &mut Search<'_, A, B>,
     job: &Job<'_>,
@@ -62,7 +62,7 @@ fn common_cell<A: Classifier, B: Classifier>(
     if search.a.is_empty() || search.b.is_empty() {
         return Ok(None);
     }
-    // The larger cells first; among equals, what was met earlier.
+    // Larger cells come first; among equals, the cells met earlier.
     let mut open: Queue<(Reverse<u8>, Reverse<u64>), (usize, usize)> = Queue::new();
     open.push((Reverse(0), Reverse(0)), (0, 0))?;
     let mut left = CELLS;
@@ -107,7 +107,7 @@ fn common_cell<A: Classifier, B: Classifier>(
     Ok(None)
 }
 
-/// The radius of a ball around a point that is proven to lie in both.
+/// Returns the radius of a ball around a point that is proven to lie in both solids.
 fn around<A: Classifier, B: Classifier>(
     search: &mut Search<'_, A, B>,
     centre: [f64; 3],
@@ -121,8 +121,8 @@ fn around<A: Classifier, B: Classifier>(
     Ok(own.min(other))
 }
 
-/// The radius of a ball around a point that is proven to lie in a solid; more than `most` is not asked for,
-/// and no more than `left` cells are looked at.
+/// Returns the radius, at most `most`, of a ball around a point that is proven to lie in a solid. At most
+/// `left` cells are visited.
 fn free<C: Classifier>(
     nodes: &mut Nodes<'_, C>,
     centre: [f64; 3],

@@ -1,8 +1,8 @@
 //! The distance of solids whose boundaries are known to consist of triangles.
 //!
-//! The boundaries are compared triangle by triangle, along the trees of both meshes. Where they have no point
-//! in common, each connected part of one boundary lies inside of the other solid or outside of it as a whole:
-//! one point of it tells.
+//! The boundaries are compared triangle by triangle, along the trees of both meshes. If they have no point in
+//! common, each connected part of one boundary lies entirely inside or entirely outside of the other solid:
+//! one point of the part decides.
 
 use super::search::Goal;
 use crate::control::{Control, Job};
@@ -16,14 +16,14 @@ use crate::query::StopReason;
 use crate::solid::{AskWhole, Batch, BoundaryFacets, Classifier, Direct};
 use alloc::vec::Vec;
 
-/// Pairs of nodes are looked at that much more often than cells are split.
+/// The ratio of visited pairs of nodes to cell splits in the budget.
 const STEPS: u64 = 64;
 
-/// Triangles that lie in a closed solid and have its whole boundary among them. Those within the solid do no
-/// harm: of solids that are apart they are further away.
+/// Triangles that lie in a closed solid and include its whole boundary. Triangles inside the solid do no
+/// harm: if the solids are apart, these triangles are further away.
 pub(super) struct Boundary {
     facets: BoundaryFacets,
-    /// Points of the boundary lie no further from the triangles.
+    /// The maximal distance of the boundary's points from the triangles.
     radius: f64,
     /// A vertex of each connected part.
     parts: Vec<[f64; 3]>,
@@ -31,8 +31,8 @@ pub(super) struct Boundary {
 }
 
 impl Boundary {
-    /// That of a solid in the universe, if it is one. O(t), and what the solid does at the first such
-    /// question.
+    /// Returns the boundary of a solid in the universe, if the boundary consists of triangles. Complexity:
+    /// O(t), and the solid's own preparation at the first such query.
     pub(super) fn of<C: Classifier>(solid: &C, control: &Control<'_>) -> Result<Option<Boundary>, Error> {
         if solid.exterior() != Tag::Empty {
             return Ok(None);
@@ -69,44 +69,44 @@ impl Boundary {
     }
 }
 
-/// At most how long a vector is whose coordinates are no greater.
+/// An upper bound of the length of a vector whose coordinates are at most `coordinate`.
 fn length(coordinate: f64) -> f64 {
     if coordinate > 0.0 { (coordinate * sqrt(3.0)).next_up().next_up() } else { 0.0 }
 }
 
-/// What the triangles of two boundaries tell.
+/// The result of comparing the triangles of two boundaries.
 pub(super) struct ByFacets {
     pub(super) distance: Interval,
     pub(super) points: Option<[[f64; 3]; 2]>,
     pub(super) normals: [Option<[f64; 3]>; 2],
     pub(super) stop_reason: StopReason,
-    /// Whether neither is proven: that the solids are apart, and that they have a point in common.
+    /// Whether neither is proven: that the solids are apart, or that they have a point in common.
     pub(super) is_open: bool,
 }
 
-/// Two solids with such boundaries, the second of which may be moved.
+/// Two solids with such boundaries. The second may be moved.
 pub(super) struct Pair<'p, A, B> {
     pub(super) solids: (&'p A, &'p B),
     pub(super) boundaries: [&'p Boundary; 2],
     pub(super) placement: Option<&'p Affine>,
 }
 
-/// Whether one solid reaches into another one whose boundary it does not cross.
+/// The position of one solid relative to another solid whose boundary it does not cross.
 enum Reach {
     Apart,
-    /// A point lies in both.
+    /// This point lies in both.
     Within([f64; 3]),
     Unknown,
 }
 
-/// Points that are asked for, and how far each may be off.
+/// Points to locate, and the maximal error of each.
 struct Probes {
     points: Vec<[f64; 3]>,
     off: f64,
 }
 
 impl<A: Classifier, B: Classifier> Pair<'_, A, B> {
-    /// The distance, as far as `wanted` asks for it. `budget`: see [`clearance`](super::clearance).
+    /// Returns the distance, as far as `wanted` requires it. `budget`: see [`clearance`](super::clearance).
     pub(super) fn distance(&self, wanted: Goal, budget: u64, job: &Job<'_>) -> Result<ByFacets, Error> {
         let control = job.control();
         let [own, other] = self.boundaries;
@@ -170,7 +170,7 @@ impl<A: Classifier, B: Classifier> Pair<'_, A, B> {
         Ok(ByFacets { distance: known, points, normals, stop_reason, is_open })
     }
 
-    /// How far both boundaries together may lie beside the triangles.
+    /// The maximal distance of both boundaries together from their triangles.
     fn off(&self) -> f64 {
         let [own, other] = self.boundaries;
         match (own.radius, self.stretched(other)) {
@@ -180,7 +180,7 @@ impl<A: Classifier, B: Classifier> Pair<'_, A, B> {
         }
     }
 
-    /// How far the second boundary may lie beside its moved triangles.
+    /// The maximal distance of the second boundary from its moved triangles.
     fn stretched(&self, other: &Boundary) -> f64 {
         self.placement.map_or(other.radius, |placement| placement.lengthened(other.radius))
     }
@@ -190,8 +190,8 @@ impl<A: Classifier, B: Classifier> Pair<'_, A, B> {
         [p, self.placement.map_or(q, |placement| placement.apply(q))]
     }
 
-    /// Unit vectors that lead out of the solids at their nearest points: across the triangle if the point
-    /// lies inside of it, and towards the other point on edges and corners.
+    /// Unit vectors that lead out of the solids at their nearest points: normal to the triangle if the point
+    /// lies in its interior, towards the other point if it lies on an edge or a corner.
     fn normals(&self, near: &NearTriangles) -> [Option<[f64; 3]>; 2] {
         [0, 1].map(|k| {
             let outward = if k == 0 { near.way } else { near.way.map(|c| -c) };
@@ -202,7 +202,7 @@ impl<A: Classifier, B: Classifier> Pair<'_, A, B> {
         })
     }
 
-    /// A unit vector across a triangle.
+    /// A unit normal of a triangle.
     fn across(&self, k: usize, triangle: u32) -> Option<[f64; 3]> {
         let [a, b, c] = self.boundaries[k].corners(triangle);
         let edge = |p: [f64; 3]| -> [f64; 3] {
@@ -219,7 +219,8 @@ impl<A: Classifier, B: Classifier> Pair<'_, A, B> {
         }))
     }
 
-    /// Whether a part of one boundary lies in the other solid, if the boundaries are that far apart at least.
+    /// Returns whether a part of one boundary lies in the other solid. The boundaries are at least `gap`
+    /// apart.
     fn reach(&self, gap: f64) -> Result<Reach, Error> {
         let (a, b) = self.solids;
         let Some([of_own, of_other]) = self.probes()? else { return Ok(Reach::Unknown) };
@@ -235,8 +236,8 @@ impl<A: Classifier, B: Classifier> Pair<'_, A, B> {
         self.reach_into(a, 0, &of_other, gap)
     }
 
-    /// A point of each part of the first boundary, as the second solid sees it before it is moved, and the
-    /// other way round.
+    /// Returns a point of each part of the first boundary, in the coordinates of the second solid before it
+    /// is moved, and a point of each part of the second boundary in those of the first.
     fn probes(&self) -> Result<Option<[Probes; 2]>, Error> {
         let [own, other] = self.boundaries;
         let Some(placement) = self.placement else {
@@ -254,7 +255,7 @@ impl<A: Classifier, B: Classifier> Pair<'_, A, B> {
                 }
                 map.apply(p)
             }))?;
-            // An inverse is off by less than 2^-50 of its entries, and the image of a point by as much.
+            // The error of an inverse is less than 2^-50 of its entries, and that of a point's image as much.
             let rounding = length(most * (8.0 * f64::EPSILON));
             let radius = map.lengthened(boundary.radius);
             Ok(Probes { points, off: (rounding + radius) * (1.0 + 1e-9) })
@@ -262,7 +263,7 @@ impl<A: Classifier, B: Classifier> Pair<'_, A, B> {
         Ok(Some([moved(&back, own)?, moved(placement, other)?]))
     }
 
-    /// Whether one of the points lies in a solid.
+    /// Returns whether one of the points lies in a solid.
     fn reach_into<C: Classifier>(
         &self,
         solid: &C,
@@ -277,8 +278,8 @@ impl<A: Classifier, B: Classifier> Pair<'_, A, B> {
             Some(placement) => placement.lengthened(probes.off),
             None => probes.off,
         };
-        // The point that is meant and the one that is asked lie on the same side of a boundary that is
-        // further away.
+        // The exact point and the computed point lie on the same side of a boundary that is further away than
+        // their distance.
         let is_sure = |point: &[f64; 3]| {
             if off == 0.0 || off < gap {
                 return true;
@@ -304,7 +305,7 @@ fn dot(a: [f64; 3], b: [f64; 3]) -> f64 {
     a[0] * b[0] + a[1] * b[1] + a[2] * b[2]
 }
 
-/// A vector of length 1 in the same direction.
+/// Returns the vector of length 1 in the same direction.
 fn unit(way: [f64; 3]) -> Option<[f64; 3]> {
     let most = way.iter().fold(0.0, |most: f64, c| most.max(c.abs()));
     let way = way.map(|c| c / most);

@@ -1,4 +1,4 @@
-//! How far apart are two solids?
+//! The distance between two solids.
 
 mod depth;
 mod facets;
@@ -24,101 +24,104 @@ use piece::Place;
 pub(crate) use ready::{Asked, Ready};
 use search::{Found, Goal, Search};
 
-/// What is known of the distance between two solids.
+/// Proven bounds of the distance between two solids, with the points that attain it.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Clearance {
-    /// The least distance between points of the two, in model units: 0 if they touch or overlap. The upper
-    /// bound is infinite as long as no point of one of them is proven, and the lower one too
-    /// if one of them is proven to be empty. The lower bound is 0 if `clipped`.
+    /// The least distance between points of the two solids, in model units: 0 if they touch or overlap. The
+    /// upper bound is infinite as long as one of the solids has no proven point. The lower bound is infinite
+    /// too if one of the solids is proven to be empty. The lower bound is 0 if `clipped`.
     pub distance: Interval,
-    /// A point of the first solid and one of the second (model units) that are no further apart than the
-    /// upper bound, but for the rounding of their coordinates to doubles; of a mesh with a
-    /// [`displacement`](crate::TriangleMesh::displacement) it is one of the mesh. Of solids that are proven
-    /// to overlap with a `depth`, the same point twice. They are known whenever the upper bound is finite.
+    /// A point of the first solid and a point of the second (model units). Their distance is at most the
+    /// upper bound, except for the rounding of their coordinates to doubles. For a mesh with a
+    /// [`displacement`](crate::TriangleMesh::displacement) the point is one of the mesh. If the solids are
+    /// proven to overlap with a `depth`, both points are the same. The points are present whenever the upper
+    /// bound is finite.
     pub points: Option<[[f64; 3]; 2]>,
     /// For each of the points, a unit vector that leads out of the solid there, if the point lies next to a
-    /// surface whose direction is known: normal to it, but for rounding and for the surface's curvature
-    /// within the cell.
+    /// surface with a known direction. The vector is normal to the surface, except for rounding and for the
+    /// surface's curvature within the cell.
     pub normals: [Option<[f64; 3]>; 2],
-    /// Cells of the first and of the second solid that hold these points; of the frame's depth if the points
-    /// are those of triangles.
+    /// The cells of the first and of the second solid that hold these points. They are cells of the frame's
+    /// depth if the points come from triangles.
     pub nearest: Option<[Cell; 2]>,
-    /// Of solids that overlap: the radius (model units) of a ball that is proven to lie in both. The largest
-    /// such ball is at least as large. 0 if none was found; solids that touch have none.
+    /// For solids that overlap: the radius (model units) of a ball that is proven to lie in both. The largest
+    /// such ball is at least as large. 0 if no ball was found, as for solids that only touch.
     pub depth: f64,
     /// Why the search ended.
     pub stop_reason: StopReason,
-    /// Cells that were split, of the first solid and of the second. 0 where triangles tell the distance.
+    /// Number of cell splits in the first solid and in the second. 0 where triangles determine the distance.
     pub splits: [u64; 2],
-    /// What of the first and of the second solid is proven: what is not counts as undecided.
+    /// Which verdicts of the first and of the second solid are proven. Unproven verdicts count as undecided.
     pub proofs: [Proof; 2],
-    /// Whether one of the solids may go on outside of the universe, where it may come nearer to the other.
+    /// Whether one of the solids continues, or may continue, outside of the universe, where it may come
+    /// nearer to the other.
     pub clipped: bool,
 }
 
-/// Whether two solids are at least as far apart as they should be.
+/// The verdict on a minimum gap: whether two solids are at least a given distance apart.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
 #[repr(u8)]
 pub enum GapVerdict {
-    /// Proven: no two points of them are nearer.
+    /// Proven: no two points of the solids are nearer.
     Yes = 0,
-    /// Proven: two points are nearer. They are among the evidence.
+    /// Proven: two points are nearer. The evidence contains them.
     No = 1,
-    /// Not decided at the frame's depth, or before the splits were spent; or a solid goes on outside of the
+    /// Not decided at the frame's depth, or before the splits were spent; or a solid continues outside of the
     /// universe, where it may come nearer.
     Undecided = 2,
 }
 
-/// Whether two solids are at least as far apart as they should be, and what proves it.
+/// A verdict on a minimum gap, with the evidence.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Gap {
     /// The answer.
     pub verdict: GapVerdict,
-    /// What was known of the distance when the search ended. Its `depth` is not looked for, and is 0.
+    /// The bounds of the distance when the search ended. The search does not compute `depth`, which is 0.
     pub evidence: Clearance,
 }
 
-/// Steps that [`clearance`] takes if `control.max_splits` sets no other limit: some seconds, and some hundred
-/// megabytes at the most.
+/// The maximal number of steps of [`clearance`] if `control.max_splits` sets no other limit: some seconds,
+/// and some hundred megabytes at the most.
 pub const CLEARANCE_SPLITS: u64 = 1 << 20;
 
-/// The least distance between `a` and `b`, with a point of each that are as near; a solid under a placement
-/// is moved first (see [`AnySolid::placed`](crate::AnySolid::placed)). What is looked at is the universe of
-/// `frame`.
+/// Returns the least distance between `a` and `b`, with a point of each solid at that distance. To move a
+/// solid first, put it under a placement (see [`AnySolid::placed`](crate::AnySolid::placed)). The search
+/// covers the universe of `frame`.
 ///
 /// The search ends, and the result's `stop_reason` says why:
 /// - `Tolerance`: the interval is no wider than `tolerance` (model units).
 /// - `Exhausted`: the cells of the frame's depth cannot raise the lower bound, and the interval is no wider
-///   than twice their diagonal, which is what cells can tell of most solids; or no pair of cells is left; or
-///   a solid may go on outside of the universe, which keeps the lower bound at 0.
-/// - `Budget`: `control.max_splits` steps were taken, or [`CLEARANCE_SPLITS`] if that is `None`. A step looks
-///   at the children of one cell. A cell whose children are looked at again, next to another cell, counts
-///   once more. Or what is remembered of a solid comes near to `control.max_bytes`.
+///   than twice their diagonal, which is the resolution of cells for most solids; or no pair of cells is
+///   left; or a solid may continue outside of the universe, which keeps the lower bound at 0.
+/// - `Budget`: `control.max_splits` steps were taken, or [`CLEARANCE_SPLITS`] if that is `None`. A step
+///   visits the children of one cell. A cell whose children are visited again, next to another cell, counts
+///   once more. The search ends for the same reason when the stored parts of a solid come near to
+///   `control.max_bytes`.
 ///
-/// Where the boundaries of both solids are known to consist of triangles
-/// ([`WholeQuestion::Walls`](crate::solid::WholeQuestion::Walls)), as those of closed meshes in the universe
-/// are, the triangles are compared, and no cells: the distance is known to rounding, some 10^-13 of the
-/// meshes' sizes and of their distance. Bodies of a mesh may overlap, unless the rule is
-/// [`FillRule::Positive`](crate::FillRule::Positive), triangles lie on each other, or vertices were moved. A
-/// step is then 64 pairs of boxes around triangles. It takes O(t) to get ready, some ten to a hundred
-/// microseconds to find the nearest place of two parts, and O(t) where surfaces run alongside each other.
-/// Only how deep solids overlap is found by cells.
+/// If the boundaries of both solids are known to consist of triangles
+/// ([`WholeQuestion::Walls`](crate::solid::WholeQuestion::Walls)), the search compares triangles instead of
+/// cells. This applies to closed meshes in the universe. The bodies of such a mesh may overlap, unless the
+/// rule is [`FillRule::Positive`](crate::FillRule::Positive), or triangles lie on each other, or vertices
+/// were moved. The distance is then known to rounding, about 10^-13 of the meshes' sizes and of their
+/// distance. A step is 64 pairs of boxes around triangles. The preparation takes O(t). Finding the nearest
+/// place of two parts takes about ten to a hundred microseconds, or O(t) where surfaces run alongside each
+/// other. Only the depth of an overlap is found by cells.
 ///
-/// Where both solids know the slabs of cells ([`Enclosure`](crate::solid::Enclosure)), each level makes the
-/// interval about four times as narrow, and plane faces are known at once. Where they know the surfaces too
+/// If both solids provide slabs of cells ([`Enclosure`](crate::solid::Enclosure)), each level makes the
+/// interval about four times as narrow, and plane faces are known at once. If they provide the surfaces too
 /// ([`OpenSurfaces`](crate::solid::OpenSurfaces)), as expressions and extended octrees do, balls and
 /// cylinders are known at once: a pin in a bore with the same play all around takes some hundred splits.
-/// Without slabs a level makes the interval half as wide. Then the upper bound is finite once the search has
-/// met a FULL cell of each solid, and the work grows with the area where the distance is about the least one,
+/// Without slabs a level makes the interval half as wide. The upper bound is then finite once the search has
+/// met a FULL cell of each solid. The work grows with the area where the distance is about the least one,
 /// measured in cells as large as the tolerance.
 ///
-/// The search looks for points of both solids first, with
-/// up to half of the budget. With nothing else left to do, it spends all of the budget on that.
-/// Memory is linear in the steps and in what is compared. One thread.
+/// The search looks for points of both solids first, with up to half of the budget. If nothing else is left
+/// to do, it spends all of the budget on the points. Memory is linear in the steps and in the size of the
+/// compared solids. It uses one thread.
 ///
 /// # Errors
-/// [`Error::Argument`] if `tolerance` is negative or not a number; what the solids refuse;
-/// [`Error::OutOfMemory`], and [`Error::Cancelled`].
+/// [`Error::Argument`] if `tolerance` is negative or not a number; the solids' own errors;
+/// [`Error::OutOfMemory`] and [`Error::Cancelled`].
 ///
 /// ```
 /// use leafless::{Control, Csg, Frame, clearance};
@@ -147,11 +150,12 @@ pub fn clearance<A: Solid, B: Solid>(
     Ok(found)
 }
 
-/// As [`clearance`] of `a` and `b` under each of the `placements`, in their order; the first of both is known
-/// on `frame`, the second on its `own` frame, and both are prepared once. The same for any number of threads;
-/// `control.max_splits` concerns each placement. Meshes whose triangles tell the distance are moved exactly,
-/// and get ready once. Expressions are moved exactly ([`Motion::Exact`]), octrees that keep their surfaces
-/// with these, as [`Transform`] moves them, and all others by their cells.
+/// Returns the [`clearance`] of `a` and `b` under each of the `placements`, in their order. The solid `a`
+/// stands on `frame`, `b` on its `own` frame; both are prepared once. The results do not depend on the number
+/// of threads. `control.max_splits` applies to each placement. Meshes whose triangles determine the distance
+/// are moved exactly, and are prepared once. Expressions are moved exactly ([`Motion::Exact`]). Octrees that
+/// keep their surfaces are moved with these surfaces, as [`Transform`] moves them. All other solids are moved
+/// by their cells.
 ///
 /// # Errors
 /// As [`clearance`].
@@ -178,16 +182,16 @@ pub fn clearance_at<A: Solid, B: Solid>(
     at_each((a, b), own, placements, frame, Goal::width(tolerance), control)
 }
 
-/// Whether no point of `a` is nearer than `least` (model units) to one of `b`. The search ends as soon as
-/// that is proven or disproven, which takes less than to find out the distance: where the solids are much
-/// further apart, or much nearer, a few cells tell. What is looked at is the universe of `frame`.
+/// Returns whether no point of `a` is nearer than `least` (model units) to a point of `b`. The search ends as
+/// soon as the answer is proven. This is faster than computing the distance: if the solids are much further
+/// apart, or much nearer, a few cells decide. The search covers the universe of `frame`.
 ///
-/// The budget is that of [`clearance`], and so are memory and threads. If the distance is `least` to the last
-/// digit, nothing may be proven within the budget.
+/// Budget, memory and threads are as for [`clearance`]. If the distance equals `least` to the last digit, the
+/// budget may end without a proof.
 ///
 /// # Errors
-/// [`Error::Argument`] if `least` is not between 2^-256 and 2^256 (whether solids overlap,
-/// [`interference`](crate::interference) tells); what the solids refuse; [`Error::OutOfMemory`], and
+/// [`Error::Argument`] if `least` is not between 2^-256 and 2^256 (to find out whether solids overlap, use
+/// [`interference`](crate::interference)); the solids' own errors; [`Error::OutOfMemory`] and
 /// [`Error::Cancelled`].
 ///
 /// ```
@@ -217,8 +221,8 @@ pub fn gap_at_least<A: Solid, B: Solid>(
     Ok(Gap::new(evidence, least))
 }
 
-/// As [`gap_at_least`] of `a` and `b` under each of the `placements`, which are taken as [`clearance_at`]
-/// takes them.
+/// Returns [`gap_at_least`] of `a` and `b` under each of the `placements`. Frames and placements have the
+/// same meaning as for [`clearance_at`].
 ///
 /// # Errors
 /// As [`gap_at_least`].
@@ -247,7 +251,7 @@ impl Gap {
     }
 }
 
-/// Placements that are handed to the threads at once.
+/// Number of placements handed to the threads at once.
 const PIECE: usize = 4096;
 
 fn at_each<A: Solid, B: Solid>(
@@ -272,7 +276,7 @@ fn at_each<A: Solid, B: Solid>(
     };
     let mut found = memory::with_capacity(placements.len())?;
     control.run(placements.len() > 1, |parallel| {
-        // By pieces, so that what is collected behind the scenes stays small.
+        // Work in batches, so that the results collected in the background stay small.
         for piece in placements.chunks(PIECE) {
             found.extend(each(parallel, piece.iter(), one)?);
         }
@@ -280,16 +284,16 @@ fn at_each<A: Solid, B: Solid>(
     })
 }
 
-/// A solid on its own frame, which is compared with others in many places.
+/// A solid on its own frame, for comparison with others in many placements.
 struct Moved<'m, B: Solid> {
     solid: &'m B,
     own: &'m Frame,
     classifier: &'m Proven<B::Classifier>,
     bounds: Option<Bounds>,
     keeps_surfaces: bool,
-    /// Whether what lies outside of the universe does not count.
+    /// Whether the part outside of the universe does not count.
     is_clipped: bool,
-    /// Whether it is asked how deep solids overlap.
+    /// Whether the depth of an overlap is wanted.
     asks_depth: bool,
 }
 
@@ -306,8 +310,8 @@ impl<'m, B: Solid> Moved<'m, B> {
         Ok(Moved { solid, own, classifier, bounds, keeps_surfaces, is_clipped: true, asks_depth: true })
     }
 
-    /// How far it is from `a` in some place; `boundaries` are those of both solids, if both consist of
-    /// triangles.
+    /// Returns the distance from `a` under a placement. `boundaries` are the boundaries of both solids, if
+    /// both consist of triangles.
     fn apart_from<A: Classifier>(
         &self,
         a: &A,
@@ -342,8 +346,8 @@ impl<'m, B: Solid> Moved<'m, B> {
     }
 }
 
-/// The boundaries of two solids, if both consist of triangles. What is no mesh tells so at once, and is asked
-/// first: `is_mesh` says whether the second is one.
+/// Returns the boundaries of two solids, if both consist of triangles. A solid that is not a mesh answers
+/// immediately and is therefore queried first: `is_mesh` says whether the second solid is a mesh.
 fn boundaries<A: Classifier, B: Classifier>(
     (a, b): (&A, &B),
     is_mesh: bool,
@@ -357,7 +361,7 @@ fn boundaries<A: Classifier, B: Classifier>(
     Ok(Boundary::of(a, control)?.map(|own| [own, other]))
 }
 
-/// What is known of two solids on one frame: by triangles, or by cells.
+/// Returns the clearance of two solids on one frame, from triangles or from cells.
 fn both_apart<A: Classifier, B: Classifier>(
     (a, b): (&A, &B),
     is_mesh: bool,
@@ -373,8 +377,8 @@ fn both_apart<A: Classifier, B: Classifier>(
     }
 }
 
-/// What is known by triangles; of solids that overlap, how deep they do is found by the cells of `on_frame`,
-/// if that is asked for.
+/// Returns the clearance from triangles. If the solids overlap and the depth is wanted, the cells of
+/// `on_frame` determine it.
 fn apart_by_facets<A: Classifier, B: Classifier, C: Classifier>(
     pair: &Pair<'_, A, B>,
     on_frame: (&A, &C),
@@ -404,7 +408,7 @@ fn apart_by_facets<A: Classifier, B: Classifier, C: Classifier>(
     Ok(Clearance { distance, points, normals, nearest, depth, stop_reason, splits, proofs, clipped: false })
 }
 
-/// What is known of two solids on one frame by their cells.
+/// Returns the clearance of two solids on one frame from their cells.
 fn apart<A: Classifier, B: Classifier>(
     a: &A,
     b: &B,
@@ -433,7 +437,7 @@ fn apart<A: Classifier, B: Classifier>(
         points = Some([modelled(frame, &centre.map(Interval::exactly)); 2]);
         normals = [None; 2];
     }
-    // What goes on outside of the universe may come as near as it likes.
+    // A part outside of the universe may come arbitrarily near.
     let clipped = search.a.subject.is_clipped() || search.b.subject.is_clipped();
     let distance = if clipped { Interval::between(0.0, distance.upper) } else { distance };
     let is_wide = match wanted {
@@ -458,7 +462,7 @@ fn apart<A: Classifier, B: Classifier>(
     })
 }
 
-/// A point in model units, but for rounding.
+/// A point in model units, up to rounding.
 fn modelled(frame: &Frame, place: &Place) -> [f64; 3] {
     axes(|axis| {
         let cells = 0.5 * (place[axis].lower + place[axis].upper);

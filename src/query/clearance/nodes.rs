@@ -18,19 +18,19 @@ use crate::walk::Subject;
 use alloc::vec::Vec;
 use core::ops::Range;
 
-/// What is known of a cell.
+/// The state of a cell.
 pub(super) enum Known<P> {
-    /// What the solid says of it.
+    /// Not split: the solid's verdict.
     Whole(Verdict<P>),
-    /// Split, into those nodes that are not EMPTY.
+    /// Split: the range of child nodes that are not EMPTY.
     Split(Range<usize>),
 }
 
-/// What a solid says of a PARTIAL cell beyond its verdict.
+/// Additional information from a solid about a PARTIAL cell.
 #[derive(Default)]
 pub(super) struct Lore {
     enclosure: Option<Enclosure>,
-    /// Balls and cylinders on one side of which the solid lies in the cell.
+    /// Balls and cylinders that hold the solid's part in the cell on one side.
     rings: [Option<Ring>; 2],
     /// The surfaces that cross the cell, if all of them have forms.
     pub(super) open: Option<OpenSurfaces>,
@@ -40,11 +40,11 @@ pub(super) struct Lore {
 pub(super) struct Node<P> {
     cell: Cell,
     known: Known<P>,
-    /// The number of its lore, or one of those below.
+    /// The index of the cell's lore, or one of the constants below.
     lore: u32,
 }
 
-/// Nobody has asked for a cell's lore yet, or there is none.
+/// `UNASKED`: the lore of a cell was not queried yet. `NONE`: the cell has no lore.
 const UNASKED: u32 = u32::MAX;
 const NONE: u32 = u32::MAX - 1;
 
@@ -54,17 +54,17 @@ pub(super) struct Nodes<'s, C: Classifier> {
     nodes: Vec<Node<Part<C>>>,
     lore: Vec<Lore>,
     surfaces: Vec<PlacedHalfSpace>,
-    /// The forms of the surfaces, once somebody has asked.
+    /// The forms of the surfaces, once queried.
     forms: Vec<Option<Option<Form>>>,
-    /// The surfaces on the frame, once a cell has several; none if exact numbers would become too long.
+    /// The surfaces on the frame, once a cell has several; `None` if exact numbers would become too long.
     placed: Option<Vec<Placed>>,
 }
 
-/// A function of fewer surfaces tells as much as it can.
+/// A function of fewer surfaces cannot be simplified.
 const SEVERAL: usize = 3;
 
 impl<'s, C: Classifier> Nodes<'s, C> {
-    /// The universe, unless it is EMPTY.
+    /// Builds the node of the universe, unless the universe is EMPTY.
     pub(super) fn new(classifier: &'s C, control: &'s Control<'s>) -> Result<Self, Error> {
         let surfaces = classifier.surfaces(control)?.unwrap_or_default();
         let forms = memory::filled(surfaces.len(), None)?;
@@ -75,7 +75,7 @@ impl<'s, C: Classifier> Nodes<'s, C> {
         Ok(nodes)
     }
 
-    /// Takes in a cell unless it is EMPTY, with the number of the lore that it has if it is FULL.
+    /// Adds a cell unless it is EMPTY. `of_full` is the index of the cell's lore if the cell is FULL.
     fn add(&mut self, cell: Cell, verdict: Verdict<Part<C>>, of_full: u32) -> Result<(), Error> {
         let lore = match verdict {
             Verdict::Empty => return Ok(()),
@@ -94,7 +94,7 @@ impl<'s, C: Classifier> Nodes<'s, C> {
         self.nodes[node].cell.level == self.subject.classifier.frame().depth()
     }
 
-    /// Whether there are finer cells.
+    /// True if the cell has finer cells.
     pub(super) fn can_be_split(&self, node: usize) -> bool {
         match self.nodes[node].known {
             Known::Whole(Verdict::Partial(_)) => !self.is_finest(node),
@@ -103,19 +103,19 @@ impl<'s, C: Classifier> Nodes<'s, C> {
         }
     }
 
-    /// Whether there are finer cells that nobody has asked for yet.
+    /// True if the cell has finer cells that were not computed yet.
     fn is_whole(&self, node: usize) -> bool {
         matches!(self.nodes[node].known, Known::Whole(_)) && self.can_be_split(node)
     }
 
-    /// The children of a node that can be split; those of no other.
+    /// Returns the children of a node that can be split; an empty range for any other node.
     pub(super) fn children(&mut self, node: usize) -> Result<Range<usize>, Error> {
         if let Node { cell, known: Known::Whole(Verdict::Partial(part)), .. } = &self.nodes[node]
             && !self.is_finest(node)
         {
             let cell = *cell;
             let children = self.subject.split(cell, part)?;
-            // A FULL child lies on the same side of balls and cylinders as all that the solid has in the
+            // A FULL child lies on the same side of balls and cylinders as the solid's whole part in the
             // cell.
             let rings = self.lore(node).map_or([None; 2], |lore| lore.rings);
             let mut inherited = NONE;
@@ -140,7 +140,7 @@ impl<'s, C: Classifier> Nodes<'s, C> {
         self.nodes[node].cell
     }
 
-    /// The children of a node that can be split, by octants; nothing stands for one that is EMPTY.
+    /// Returns the children of a node that can be split, by octants; `None` for an EMPTY octant.
     pub(super) fn octants(&mut self, node: usize) -> Result<[Option<usize>; 8], Error> {
         let mut octants = [None; 8];
         for child in self.children(node)? {
@@ -149,9 +149,9 @@ impl<'s, C: Classifier> Nodes<'s, C> {
         Ok(octants)
     }
 
-    /// The node of a cell, as fine as that of `near`, that holds a point: of several, the one next to the
-    /// middle of `near`. Its way is split where it is not yet, as long as there are splits `left`. Nothing if
-    /// the cell is EMPTY.
+    /// Returns the node of a cell that holds a point. The cell is as fine as the cell of `near`. Among
+    /// several such cells, the result is the one next to the middle of `near`. Missing cells on the way are
+    /// split as long as there are splits `left`. `None` if the cell is EMPTY.
     pub(super) fn at(
         &mut self,
         point: [f64; 3],
@@ -181,12 +181,12 @@ impl<'s, C: Classifier> Nodes<'s, C> {
         Ok(Some(node))
     }
 
-    /// The complement of what lies in a cell, as far as was learnt.
+    /// The complement of the solid's part in a cell, as far as it was learnt.
     pub(super) fn hollow(&self, node: usize) -> Option<Enclosure> {
         Some(self.lore(node)?.enclosure.as_ref()?.complement())
     }
 
-    /// Asks for a cell's lore, once.
+    /// Queries a cell's lore, once.
     pub(super) fn learn(&mut self, node: usize) -> Result<(), Error> {
         let Node { cell, known: Known::Whole(Verdict::Partial(part)), lore: UNASKED } = &self.nodes[node]
         else {
@@ -236,7 +236,7 @@ impl<'s, C: Classifier> Nodes<'s, C> {
         Ok(())
     }
 
-    /// Whether the solid has told more of any cell than its verdict.
+    /// True if the solid has provided more than its verdict for some cell.
     pub(super) fn has_lore(&self) -> bool {
         !self.lore.is_empty()
     }
@@ -245,18 +245,17 @@ impl<'s, C: Classifier> Nodes<'s, C> {
         self.lore.get(self.nodes[node].lore as usize)
     }
 
-    /// Whether the solid lies within a ball or a cylinder in a cell.
+    /// True if the solid lies within a ball or a cylinder in a cell.
     pub(super) fn is_round(&self, node: usize) -> bool {
         self.lore(node).is_some_and(|lore| lore.rings.iter().flatten().any(|ring| ring.is_near))
     }
 
-    /// How far the solid may be from what is known of it in a cell, in finest cells, but for rounding: what
-    /// splitting the cell may tell.
+    /// An estimate, up to rounding, of the distance between the solid and its known bounds in a cell, in
+    /// finest cells: the possible gain from splitting the cell.
     pub(super) fn doubt(&self, node: usize) -> f64 {
         let Piece { half, content, rings, .. } = self.piece(node);
         let open = self.lore(node).and_then(|lore| lore.open);
-        // (Where a plane cuts a ball, neither alone tells where the nearest point is; a cylinder ends
-        // somewhere.)
+        // (Where a plane cuts a ball, neither alone determines the nearest point. A cylinder is finite.)
         let is_ball = open.is_some_and(|open| open.indices().len() == 1)
             && rings.iter().flatten().any(|ring| ring.is_near && ring.round.axis.is_none());
         match content {
@@ -267,13 +266,13 @@ impl<'s, C: Classifier> Nodes<'s, C> {
                 let widths = known.slabs.iter().filter(|slab| slab.normal != [0.0; 3]);
                 let widths =
                     widths.map(|slab| (slab.outer - slab.inner) / sqrt(dot(slab.normal, slab.normal)));
-                // What is one-sided has an infinite width.
+                // A one-sided slab has an infinite width.
                 half * widths.fold(0.0, f64::max).min(2.0)
             }
         }
     }
 
-    /// A unit vector that leads out of the solid next to a point of a cell, if slabs tell.
+    /// Returns a unit vector that leads out of the solid next to a point of a cell, if slabs determine it.
     pub(super) fn normal(&self, node: usize, place: &Place) -> Option<[f64; 3]> {
         let known = self.lore(node)?.enclosure.as_ref()?;
         let Piece { centre, half, .. } = self.piece(node);
@@ -284,17 +283,17 @@ impl<'s, C: Classifier> Nodes<'s, C> {
                 let size = sqrt(dot(slab.normal, slab.normal));
                 ((dot(slab.normal, own) - slab.inner) / size, slab.normal.map(|c| c / size))
             });
-        // Of a union, the point lies behind those slabs that hold it: what is nearest counts in either case.
+        // In a union, the point lies behind the slabs that hold it: the nearest slab counts in either case.
         let nearest = seen.min_by(|a, b| a.0.abs().total_cmp(&b.0.abs()));
         nearest.map(|(_, normal)| normal)
     }
 
-    /// The form of a surface, if it is known and there is one.
+    /// Returns the form of a surface, if it was queried and exists.
     pub(super) fn form(&self, index: u32) -> Option<&Form> {
         self.forms.get(index as usize)?.as_ref()?.as_ref()
     }
 
-    /// What of the solid lies in a cell, as far as was learnt.
+    /// Returns the solid's part in a cell, as far as it was learnt.
     pub(super) fn piece(&self, node: usize) -> Piece<'_> {
         let (low, high) = self.extent(node);
         let lore = self.lore(node);
@@ -311,16 +310,16 @@ impl<'s, C: Classifier> Nodes<'s, C> {
         }
     }
 
-    /// Whether no cell of the solid is left: it is proven to be empty, if all of them were looked at.
+    /// True if no cell of the solid is left. The solid is proven to be empty if all cells were visited.
     pub(super) fn is_empty(&self) -> bool {
         self.nodes.is_empty()
     }
 
-    /// The first FULL cell that turns up, for `budget` splits at the most; what was split does not cost any.
+    /// Finds the first FULL cell, with at most `budget` splits; earlier splits cost nothing.
     ///
-    /// The largest open cell and one of the smallest are split by turns: large FULL cells are found by going
-    /// through the coarse levels, which a thin wall has none on, and thin walls by going down, where a
-    /// solid's sharp edge would hold the search up.
+    /// The search splits the largest open cell and one of the smallest by turns. Large FULL cells are found
+    /// by going through the coarse levels, where a thin wall has none. Thin walls are found by going down,
+    /// where a solid's sharp edge would delay the search.
     pub(super) fn find_full(&mut self, budget: &mut u64, job: &Job<'_>) -> Result<Option<usize>, Error> {
         let mut open: Vec<Vec<usize>> = memory::filled(MAX_DEPTH as usize + 1, Vec::new())?;
         if !self.is_empty() {
@@ -350,13 +349,13 @@ impl<'s, C: Classifier> Nodes<'s, C> {
         Ok(None)
     }
 
-    /// The least and the greatest coordinates, in finest cells.
+    /// Returns the least and the greatest coordinates, in finest cells.
     pub(super) fn extent(&self, node: usize) -> ([u32; 3], [u32; 3]) {
         Cube { frame: self.subject.classifier.frame(), cell: self.cell(node) }.planes()
     }
 }
 
-/// The form of a surface; `None` of one that is no plane and no quadric.
+/// Returns the form of a surface; `None` for a surface that is neither a plane nor a quadric.
 fn form<'f>(
     forms: &'f mut [Option<Option<Form>>],
     surfaces: &[PlacedHalfSpace],
@@ -375,9 +374,9 @@ fn form<'f>(
     Ok(place.as_ref().and_then(Option::as_ref))
 }
 
-/// The function of a cell on those signs that its surfaces may have there together, and the slabs of that if
-/// it is of fewer surfaces. (A bore that goes on beyond a block has an end in the same cell as the block has,
-/// and nothing of the solid lies there.)
+/// Restricts the function of a cell to the sign combinations that its surfaces can have in the cell, and
+/// returns also the slabs of that function if it has fewer surfaces. (If a bore extends beyond a block, the
+/// end of the bore and the end of the block lie in the same cell, and the solid has no points there.)
 fn simplified(
     placed: &mut Option<Vec<Placed>>,
     surfaces: &[PlacedHalfSpace],
@@ -412,7 +411,8 @@ fn simplified(
     Ok((simple, literals.and_then(|literals| literals.enclosure(all, cell))))
 }
 
-/// Which sign a surface's function has wherever the solid is; `None` if the solid has points on both sides.
+/// Returns the sign of a surface's function wherever the solid is; `None` if the solid has points on both
+/// sides.
 fn needed(open: &OpenSurfaces, place: usize) -> Option<bool> {
     let lies_where = |sign: bool| {
         (0..1u8 << open.indices().len()).any(|signs| (signs >> place & 1 != 0) == sign && open.inside(signs))
@@ -424,12 +424,12 @@ fn needed(open: &OpenSurfaces, place: usize) -> Option<bool> {
     }
 }
 
-/// Whether the slabs of a host hold no contradiction.
+/// True if the slabs of a host are not contradictory.
 fn is_sound(known: &Enclosure) -> bool {
     let slabs = known.slabs.iter().filter(|slab| slab.normal != [0.0; 3]);
     slabs.clone().all(|slab| {
         let range = slab.normal.iter().map(|c| c.abs()).sum::<f64>();
-        // (What is no number is not less.)
+        // (A comparison with NaN is false.)
         range > 1e-200 && range < 1e200 && slab.inner <= slab.outer
     })
 }

@@ -1,14 +1,14 @@
-//! What of a solid lies in a cell, and how far two such pieces are apart.
+//! The part of a solid in a cell, and the distance of two such parts.
 //!
 //! Lengths are in finest cells. A piece lies in the convex bodies that the outer ends of its slabs cut off
-//! the cell, and holds those of the inner ends. Plain doubles find the nearest points of two bodies. The
-//! direction between these then proves a lower bound: for any direction n, the distance is at least the least
-//! n · x of the one piece less the greatest of the other, divided by the length of n (weak duality). A
-//! direction that is off by an angle costs the square of the angle. The nearest points of the inner bodies,
-//! if they are proven to lie there, are an upper bound.
+//! the cell, and contains the bodies of the inner ends. Plain doubles find the nearest points of two bodies.
+//! The direction between these points then proves a lower bound (weak duality): for any direction n, the
+//! distance is at least the minimum of n · x over one piece minus the maximum over the other, divided by the
+//! length of n. An angular error of the direction affects the bound only by its square. The nearest points of
+//! the inner bodies, if they are proven to lie there, give an upper bound.
 //!
-//! A piece may also lie on one side of a ball or a cylinder. Of two such pieces the bound is exact where the
-//! surfaces run alongside each other, as a shaft and its bore do: cells of any size tell it.
+//! A piece may also lie on one side of a ball or a cylinder. For two such pieces the bound is exact where the
+//! surfaces run alongside each other, as a shaft and its bore do, whatever the size of the cells.
 
 use super::simplex::{Near, dot, minus, nearest, plus};
 use crate::cut::reach;
@@ -16,10 +16,10 @@ use crate::lattice::exact::{floor, sqrt};
 use crate::lattice::{Interval, axes};
 use crate::solid::{Enclosure, Round, Slab, SlabJoin};
 
-/// A point whose coordinates are known within intervals: in finest cells, from the universe's lower corner.
+/// A point whose coordinates are bounded by intervals: in finest cells, from the universe's lower corner.
 pub(super) type Place = [Interval; 3];
 
-/// One side of a ball or a cylinder, in which a piece lies.
+/// One side of a ball or a cylinder that contains a piece.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Ring {
     pub(super) round: Round,
@@ -27,7 +27,7 @@ pub(super) struct Ring {
     pub(super) is_near: bool,
 }
 
-/// What is known of the solid in a cell.
+/// The knowledge about the solid in a cell.
 #[derive(Debug, Clone, Copy)]
 pub(super) enum Content<'n> {
     Full,
@@ -44,24 +44,25 @@ pub(super) struct Piece<'n> {
     pub(super) rings: [Option<&'n Ring>; 2],
 }
 
-/// Most corners of a body. (Nine planes make fourteen; more only if rounding tells some apart that are one.)
+/// The maximal number of corners of a body. (Nine planes make fourteen corners; more occur only if rounding
+/// separates equal corners.)
 const MOST: usize = 32;
 
-/// What a body's corners may stick out by, as a share of the cell.
+/// The maximal distance of a body's corners outside of the body, as a share of the cell.
 const SLACK: f64 = 1e-12;
 
-/// How far inner ends are moved inward, as a share of the normal's range.
+/// The inward shift of inner ends, as a share of the normal's range.
 const MARGIN: f64 = 1.0 / (1u64 << 44) as f64;
 
 /// A convex body in a cell: in the cell's coordinates, from its centre in half edges.
 pub(super) struct Body {
-    /// One to three slabs, of which all count; `None` for the whole cell.
+    /// One to three slabs, whose intersection is the body; `None` for the whole cell.
     slabs: Option<Enclosure>,
     corners: [[f64; 3]; MOST],
     count: usize,
 }
 
-/// The bodies whose union holds a piece, or that a piece holds.
+/// The bodies whose union contains a piece, or that a piece contains.
 pub(super) struct Bodies {
     all: [Option<Body>; 3],
 }
@@ -90,7 +91,7 @@ impl Bodies {
         let is_slab = |slab: &&Slab| slab.normal != [0.0; 3];
         let count = known.slabs.iter().filter(is_slab).count();
         if count == 0 {
-            // No slab says nothing.
+            // Without slabs nothing is known.
             return if outer { Bodies::whole() } else { Bodies { all: [None, None, None] } };
         }
         if known.join == SlabJoin::All || count == 1 {
@@ -119,7 +120,7 @@ impl Body {
         for slab in body.slabs.iter().flat_map(|known| known.slabs).filter(|slab| slab.normal != [0.0; 3]) {
             let range = slab.normal.iter().map(|c| c.abs()).sum::<f64>();
             let offset = if outer { slab.outer / range } else { slab.inner / range - MARGIN };
-            // (What is no number is not less.)
+            // (A comparison with NaN is false.)
             if offset < 1.0 {
                 planes[count] = (slab.normal.map(|c| c / range), offset);
                 count += 1;
@@ -171,7 +172,7 @@ impl Body {
 
     /// Adds a point if it lies in the cell and behind all planes.
     fn add(&mut self, planes: &[([f64; 3], f64)], point: [f64; 3]) {
-        // What is no number lies nowhere.
+        // NaN lies nowhere.
         let lies_within = point.iter().all(|c| c.abs() <= 1.0 + SLACK)
             && planes.iter().all(|(normal, offset)| dot(*normal, point) <= offset + SLACK);
         let point = point.map(|c| c.clamp(-1.0, 1.0));
@@ -181,14 +182,13 @@ impl Body {
         }
     }
 
-    /// The corners in finest cells, from `origin`.
+    /// The corners in finest cells, relative to `origin`.
     fn seen(&self, piece: &Piece<'_>, origin: [f64; 3]) -> [[f64; 3]; MOST] {
         let from = minus(piece.centre, origin);
         self.corners.map(|corner| plus(from, piece.half, corner))
     }
 
-    /// Proven: no point of the body lies further along a direction, from the centre of the cell in half
-    /// edges.
+    /// A proven upper bound of the body's reach along a direction, from the centre of the cell in half edges.
     fn reach(&self, direction: [f64; 3]) -> Interval {
         match &self.slabs {
             Some(known) => {
@@ -202,7 +202,7 @@ impl Body {
         }
     }
 
-    /// Whether a point of the closed cell is proven to be a limit of points inside of all slabs.
+    /// True if a point of the closed cell is proven to be a limit of points inside of all slabs.
     fn holds(&self, point: [f64; 3]) -> bool {
         let slabs = self.slabs.iter().flat_map(|known| &known.slabs).filter(|slab| slab.normal != [0.0; 3]);
         point.iter().all(|c| c.abs() <= 1.0)
@@ -238,7 +238,7 @@ pub(super) fn between(a: &Place, b: &Place) -> Interval {
 }
 
 impl Round {
-    /// How far a point is from the core.
+    /// The distance of a point from the core.
     fn away(&self, point: &Place) -> Interval {
         let from = less(point, &exact(self.core));
         match self.axis {
@@ -254,13 +254,13 @@ impl Round {
         }
     }
 
-    /// The same, but for rounding.
+    /// The distance of a point from the core, up to rounding.
     fn about(&self, point: [f64; 3]) -> f64 {
         let from = minus(point, self.nearest(point));
         sqrt(dot(from, from))
     }
 
-    /// The ends of the core's part to which a cell projects: twice the centre for a ball.
+    /// The ends of the cell's projection onto the core: twice the centre for a ball.
     fn ends(&self, piece: &Piece<'_>) -> [Place; 2] {
         let core = exact(self.core);
         let Some(axis) = self.axis else { return [core; 2] };
@@ -273,7 +273,7 @@ impl Round {
             .map(|t| axes(|i| core[i].plus(along[i].times(Interval::exactly(t)))))
     }
 
-    /// The point of the core that is nearest to a point, but for rounding.
+    /// The point of the core that is nearest to a point, up to rounding.
     fn nearest(&self, point: [f64; 3]) -> [f64; 3] {
         match self.axis {
             None => self.core,
@@ -281,12 +281,12 @@ impl Round {
         }
     }
 
-    /// At least as far from the core are points of the far side.
+    /// A lower bound of the distance from the core to points of the far side.
     fn least(&self) -> Interval {
         Interval::exactly(self.square.lower).root()
     }
 
-    /// At most as far are those of the near side.
+    /// An upper bound of the distance from the core to points of the near side.
     fn most(&self) -> Interval {
         Interval::exactly(self.square.upper).root()
     }
@@ -301,13 +301,13 @@ impl Piece<'_> {
         self.rings.iter().flatten().filter(|ring| !ring.is_near).map(|ring| &ring.round)
     }
 
-    /// Whether anything is known of it beyond its cell.
+    /// True if more is known of the piece than its cell.
     pub(super) fn says_more(&self) -> bool {
         matches!(self.content, Content::Slabs(_)) || self.rings.iter().any(Option::is_some)
     }
 
-    /// Proven: no point of the piece lies further along a direction, from the centre of the cell in finest
-    /// cells. −∞ if there is no point.
+    /// A proven upper bound of the piece's reach along a direction, from the centre of the cell in finest
+    /// cells. −∞ if the piece has no point.
     fn reach(&self, body: &Body, direction: [f64; 3]) -> f64 {
         let own = body.reach(direction).times(Interval::exactly(self.half)).upper;
         let towards = exact(direction);
@@ -318,7 +318,7 @@ impl Piece<'_> {
         })
     }
 
-    /// Proven: no point of the piece is further from the core of a ball or a cylinder.
+    /// A proven upper bound of the distance between the piece's points and the core of a ball or a cylinder.
     fn furthest_from(&self, round: &Round) -> f64 {
         if let Some(own) = self.near_rounds().next() {
             let [from, to] = own.ends(self).map(|end| round.away(&end).upper);
@@ -329,7 +329,7 @@ impl Piece<'_> {
         });
         let about = corners.map(|corner| round.about(corner));
         let most = about.iter().fold(0.0, |most: f64, &away| most.max(away));
-        // Rounding cannot make up for more.
+        // Rounding cannot compensate a larger difference.
         let size = corners.iter().chain([&round.core]).flatten().fold(most, |most: f64, c| most.max(c.abs()));
         let near = most - 1e-9 * size;
         let furthest = corners.iter().zip(about).filter(|(_, away)| away.is_nan() || *away >= near);
@@ -337,8 +337,8 @@ impl Piece<'_> {
     }
 }
 
-/// Proven: no two points of the pieces are nearer, as the round surface tells on the far side of which one of
-/// them lies around the other.
+/// A proven lower bound of the distance of two pieces, from the round surface that has one of them on its far
+/// side around the other.
 pub(super) fn lower_around(a: &Piece<'_>, b: &Piece<'_>) -> f64 {
     let around = |inner: &Piece<'_>, outer: &Piece<'_>| {
         outer.far_rounds().fold(0.0, |most: f64, round| {
@@ -348,8 +348,8 @@ pub(super) fn lower_around(a: &Piece<'_>, b: &Piece<'_>) -> f64 {
     around(a, b).max(around(b, a))
 }
 
-/// Proven: no two points of the pieces are nearer; ∞ if one of the pieces is empty. What is no more than
-/// `least` is not proven.
+/// A proven lower bound of the distance of two pieces; ∞ if one of the pieces is empty. A bound that does not
+/// exceed `known` is not proven.
 pub(super) fn lower(a: (&Piece<'_>, &Bodies), b: (&Piece<'_>, &Bodies), known: f64) -> f64 {
     let mut least = f64::INFINITY;
     for own in a.1.iter() {
@@ -365,7 +365,7 @@ pub(super) fn lower(a: (&Piece<'_>, &Bodies), b: (&Piece<'_>, &Bodies), known: f
 fn lower_of([a, b]: [&Piece<'_>; 2], [own, other]: [&Body; 2], known: f64) -> f64 {
     let apart = minus(b.centre, a.centre);
     if own.count == 0 || other.count == 0 {
-        // Doubles find no point: they may be wrong.
+        // The corners in doubles may be wrong.
         let is_empty =
             |body: &Body| body.count == 0 && body.reach([1.0, 0.0, 0.0]).upper == f64::NEG_INFINITY;
         return if is_empty(own) || is_empty(other) { f64::INFINITY } else { 0.0 };
@@ -375,7 +375,7 @@ fn lower_of([a, b]: [&Piece<'_>; 2], [own, other]: [&Body; 2], known: f64) -> f6
         if !is_usable {
             return 0.0;
         }
-        // (Of any length; one of about 1 keeps squares in range.)
+        // (The direction may have any length. A length of about 1 keeps squares in range.)
         let size = direction.iter().fold(0.0, |most: f64, c| most.max(c.abs()));
         let direction = direction.map(|c| c / size);
         let (far, near) = (a.reach(own, direction), b.reach(other, direction.map(|c| -c)));
@@ -396,7 +396,7 @@ fn lower_of([a, b]: [&Piece<'_>; 2], [own, other]: [&Body; 2], known: f64) -> f6
     }
     let mut best = if about <= known { 0.0 } else { prove(way).max(0.0) };
     if is_round {
-        // From core to core, or to the nearest point of the other body.
+        // The direction from core to core, or to the nearest point of the other body.
         let core = |piece: &Piece<'_>, corners: [[f64; 3]; MOST], count: usize| {
             let Some(round) = piece.near_rounds().next() else { return (corners, count) };
             let mut own = corners;
@@ -413,7 +413,7 @@ fn lower_of([a, b]: [&Piece<'_>; 2], [own, other]: [&Body; 2], known: f64) -> f6
             best = best.max(prove(way));
         }
     }
-    // Where bodies nearly touch, the way between their nearest points is rounded off.
+    // Where bodies nearly touch, rounding spoils the direction between their nearest points.
     if about > known && best < about * (1.0 - 1e-9) {
         let normals = |body: &Body, sign: f64| {
             let slabs = body.slabs.map(|known| known.slabs);
@@ -430,8 +430,8 @@ fn lower_of([a, b]: [&Piece<'_>; 2], [own, other]: [&Body; 2], known: f64) -> f6
     best
 }
 
-/// Points that are proven to be limits of points of the pieces, as near to each other as a search by doubles
-/// finds some, and how far they are apart.
+/// Returns points that are proven to be limits of points of the pieces, as near to each other as a search in
+/// doubles finds them, and their distance.
 pub(super) fn upper(a: &Piece<'_>, b: &Piece<'_>) -> Option<(Interval, [Place; 2])> {
     let (of_a, of_b) = (Bodies::inner(a), Bodies::inner(b));
     let mut best: Option<(Interval, [Place; 2])> = None;
@@ -458,10 +458,10 @@ pub(super) fn upper(a: &Piece<'_>, b: &Piece<'_>) -> Option<(Interval, [Place; 2
     best
 }
 
-/// A point next to a given one (in finest cells from the universe's corner) that is proven to lie in two
-/// bodies.
+/// Returns a point next to a given one (in finest cells from the universe's corner) that is proven to lie in
+/// two bodies.
 fn common(bodies: [(&Piece<'_>, &Body); 2], point: [f64; 3]) -> Option<Place> {
-    // So short that differences to centres are exact.
+    // So few digits that differences to centres are exact.
     const STEPS: f64 = (1u64 << 20) as f64;
     if !point.iter().all(|c| (0.0..STEPS * 2.0).contains(c)) {
         return None;
@@ -472,8 +472,8 @@ fn common(bodies: [(&Piece<'_>, &Body); 2], point: [f64; 3]) -> Option<Place> {
     bodies.iter().all(lies_in).then(|| exact(point))
 }
 
-/// A point near `point`, from the cell's centre in finest cells, that is proven to be a limit of points of a
-/// body.
+/// Returns a point near `point`, from the cell's centre in finest cells, that is proven to be a limit of
+/// points of a body.
 fn proven(body: &Body, piece: &Piece<'_>, point: [f64; 3], towards: [f64; 3]) -> Option<Place> {
     let own = point.map(|c| (c / piece.half).clamp(-1.0, 1.0));
     let own = match &body.slabs {

@@ -1,9 +1,7 @@
-//! Points of two solids that are nearer to each other than those that slabs tell, where the surfaces
-//! themselves are known.
+//! Refinement of the nearest points of two solids on their actual surfaces, where these are known.
 //!
-//! Points move along straight lines to where these leave a solid, in plain doubles. The points where they end
-//! are then proven to lie in the solids, by intervals of the surfaces' functions. Lengths are in finest
-//! cells.
+//! Points move along straight lines to where these leave a solid, in plain doubles. Interval evaluation of
+//! the surfaces' functions then proves that the final points lie in the solids. Lengths are in finest cells.
 
 use super::piece::{Place, between};
 use super::simplex::{dot, minus, plus};
@@ -12,7 +10,7 @@ use crate::lattice::axes;
 use crate::lattice::exact::sqrt;
 use crate::solid::{Form, OpenSurfaces};
 
-/// The solid in a cell whose points may move.
+/// The solid in a cell, within which points may move.
 pub(super) struct Side<'n> {
     /// The corners of the cell.
     pub(super) ends: [[f64; 3]; 2],
@@ -22,14 +20,14 @@ pub(super) struct Side<'n> {
     pub(super) open: Option<(OpenSurfaces, [Option<&'n Form>; OpenSurfaces::MOST])>,
 }
 
-/// Rounds of movements, each along a few lines.
+/// The number of rounds of movements, each along a few lines.
 const ROUNDS: usize = 6;
 
-/// Halvings of a line.
+/// The number of bisections of a line.
 const HALVINGS: usize = 52;
 
-/// How far a point is moved inward at first, and at most how often it is moved eight times as far, until it
-/// is proven to be inside.
+/// The initial inward shift of a point, and the maximal number of times that the shift grows eightfold until
+/// the point is proven to be inside.
 const INWARD: f64 = 1.0 / (1u64 << 50) as f64;
 const TIMES: usize = 10;
 
@@ -42,7 +40,7 @@ impl Side<'_> {
         self.open.iter().flat_map(|(_, forms)| forms).enumerate().filter_map(|(k, form)| Some((k, (*form)?)))
     }
 
-    /// Whether a point lies in the solid, but for rounding.
+    /// True if a point lies in the solid, up to rounding.
     fn holds(&self, point: [f64; 3]) -> bool {
         let at = point.map(|c| c / self.cells);
         let signs =
@@ -50,7 +48,7 @@ impl Side<'_> {
         self.is_within(point) && self.open.as_ref().is_none_or(|(open, _)| open.inside(signs))
     }
 
-    /// Whether that is proven.
+    /// True if a point is proven to lie in the solid.
     fn proves(&self, point: [f64; 3]) -> bool {
         // (The number of cells is a power of two.)
         let at = point.map(|c| Interval::exactly(c / self.cells));
@@ -67,7 +65,7 @@ impl Side<'_> {
         self.is_within(point) && self.open.as_ref().is_none_or(is_inside)
     }
 
-    /// Whether a point lies in the solid or hardly outside of it.
+    /// True if a point lies in the solid or only just outside.
     fn holds_about(&self, point: [f64; 3]) -> bool {
         let (from, to) = (self.ends[0], self.ends[1]);
         let middle = axes(|axis| 0.5 * (from[axis] + to[axis]));
@@ -82,7 +80,7 @@ impl Side<'_> {
             || self.holds(plus(point, 1e-12, minus(middle, point)))
     }
 
-    /// The surface that is nearest to a point, and the direction across it.
+    /// Returns the surface that is nearest to a point, and the surface's normal direction.
     fn nearest(&self, point: [f64; 3]) -> Option<(&Form, [f64; 3])> {
         let at = point.map(|c| c / self.cells);
         let seen = self.surfaces().map(|(_, form)| {
@@ -98,7 +96,7 @@ impl Side<'_> {
         Some(self.nearest(point)?.1)
     }
 
-    /// The last point of the solid on a way that begins in it.
+    /// Returns the last point of the solid on a line that begins in it.
     fn last_on(&self, from: [f64; 3], way: [f64; 3]) -> [f64; 3] {
         let at = |t: f64| plus(from, t, way);
         if self.holds(at(1.0)) {
@@ -116,7 +114,7 @@ impl Side<'_> {
         at(inside)
     }
 
-    /// A point next to one, away from `direction`, that is proven to lie in the solid.
+    /// Returns a point that is proven to lie in the solid, next to `point` and shifted against `direction`.
     fn proven(&self, point: [f64; 3], direction: [f64; 3]) -> Option<[f64; 3]> {
         if self.proves(point) {
             return Some(point);
@@ -134,16 +132,16 @@ impl Side<'_> {
     }
 }
 
-/// What became of two points.
+/// The result of moving two points.
 #[derive(Default)]
 pub(super) struct Polished {
-    /// Points that are proven to lie in the solids, and how far they are apart.
+    /// Points that are proven to lie in the solids, and their distance.
     pub(super) proven: Option<(Interval, [Place; 2])>,
     /// Points in other cells that may be nearer.
     pub(super) beyond: Option<[[f64; 3]; 2]>,
 }
 
-/// Points near two points of the solids that are nearer to each other than `least`.
+/// Returns points near two points of the solids whose distance is less than `least`.
 pub(super) fn polished(sides: [&Side<'_>; 2], points: [[f64; 3]; 2], least: f64) -> Polished {
     let mut beyond = None;
     let proven = moved(sides, points, least, &mut beyond);
@@ -214,17 +212,17 @@ fn moved(
     (distance.upper < least).then_some((distance, places))
 }
 
-/// Points of the two surfaces next to two points whose distance is stationary, by Newton's method: the way
-/// between them is normal to both surfaces. Of surfaces that run alongside each other, as a pin and its bore,
-/// points near to the given ones are found: a little is added to the system's diagonal, which would be
-/// singular. `None` if it is singular nevertheless.
+/// Returns points of the two surfaces next to two given points whose distance is stationary, by Newton's
+/// method: the line between them is normal to both surfaces. Surfaces that run alongside each other, such as
+/// a pin and its bore, make the system singular. A small number is therefore added to its diagonal, and
+/// points near to the given ones are found. `None` if the system is singular nevertheless.
 fn stationary([a, b]: [&Side<'_>; 2], [p, q]: [[f64; 3]; 2]) -> Option<[[f64; 3]; 2]> {
     const STEPS: usize = 8;
     const ADDED: f64 = 1e-10;
     let cells = a.cells;
     let (f, g) = (a.nearest(p)?.0, b.nearest(q)?.0);
     let [mut p, mut q] = [p, q].map(|point| point.map(|c| c / cells));
-    // The functions are scaled so that their slopes are about 1.
+    // The functions are scaled so that their gradients have a length of about 1.
     let scale = |form: &Form, at: [f64; 3]| {
         let gradient = form.about(at).1;
         1.0 / sqrt(dot(gradient, gradient))
@@ -266,7 +264,7 @@ fn stationary([a, b]: [&Side<'_>; 2], [p, q]: [[f64; 3]; 2]) -> Option<[[f64; 3]
     found.iter().flatten().all(|c| c.is_finite()).then_some(found)
 }
 
-/// The solution of eight linear equations, whose right sides stand in the last column.
+/// Solves eight linear equations, whose right-hand sides stand in the last column.
 fn solved(mut rows: [[f64; 9]; 8]) -> Option<[f64; 8]> {
     for k in 0..8 {
         let pivot = (k..8).max_by(|&i, &j| rows[i][k].abs().total_cmp(&rows[j][k].abs()))?;

@@ -1,4 +1,4 @@
-//! Solids that are ready to be compared with each other, in whatever places.
+//! Solids that are prepared for comparison with each other under any placement.
 
 use super::facets::Boundary;
 use super::search::Goal;
@@ -9,7 +9,7 @@ use crate::lattice::{Affine, Bounds, Frame, MAX_DEPTH};
 use crate::solid::{AnyClassifier, AnySolid, Classifier, Solid, Transform};
 use crate::walk::Proven;
 
-/// A solid that ends, on a frame of its own and on one that holds what may be near to it.
+/// A bounded solid, on a frame of its own and on a frame that holds its possible neighbours.
 pub(crate) struct Ready {
     solid: AnySolid,
     bounds: Bounds,
@@ -19,27 +19,27 @@ pub(crate) struct Ready {
     boundary: Option<Boundary>,
 }
 
-/// What two solids are asked.
+/// The query about two solids.
 #[derive(Clone, Copy)]
 pub(crate) enum Asked {
-    /// Whether they are at least so far apart (model units), as [`gap_at_least`](crate::query::gap_at_least)
-    /// finds it.
+    /// Whether the solids are at least so far apart (model units), as
+    /// [`gap_at_least`](crate::query::gap_at_least) determines it.
     AtLeast(f64),
-    /// How far they are apart, within an interval no wider than `tolerance`, unless that is `below` at least
-    /// (model units), as [`clearance`](crate::clearance) finds it.
+    /// The distance of the solids, within an interval no wider than `tolerance`, unless the distance is at
+    /// least `below` (model units), as [`clearance`](crate::clearance) determines it.
     Distance { tolerance: f64, below: f64 },
 }
 
 impl Ready {
-    /// Others are looked at in the universe of `frame`, which should hold those that may be near. O(t) of a
-    /// mesh with t triangles, and what the solid takes to be put on frames.
+    /// Prepares a solid. Other solids are compared in the universe of `frame`, which should hold the possible
+    /// neighbours. Complexity: O(t) for a mesh with t triangles, and the cost of putting the solid on frames.
     pub(crate) fn new(
         solid: &AnySolid,
         bounds: &Bounds,
         frame: &Frame,
         control: &Control<'_>,
     ) -> Result<Ready, Error> {
-        // (A stored octree is known on its own frame alone.)
+        // (A stored octree exists only on its own frame.)
         let (own, moved, fixed) = match solid.home() {
             Some(home) => {
                 let around = AnySolid::new(Transform::of(solid.clone(), &Affine::IDENTITY));
@@ -59,12 +59,13 @@ impl Ready {
         &self.solid
     }
 
-    /// A box that holds it.
+    /// The bounding box.
     pub(crate) fn bounds(&self) -> &Bounds {
         &self.bounds
     }
 
-    /// What is known of this solid and another one under a placement, but for how deep they overlap.
+    /// Returns the clearance between this solid and another one under a placement, without the depth of an
+    /// overlap.
     pub(crate) fn compared(
         &self,
         other: &Ready,
@@ -84,7 +85,7 @@ impl Ready {
             && let Some(around) = other.bounds.placed(placement)
             && !around.is_within(self.fixed.frame())
         {
-            // (What is that far away is rarely asked for.)
+            // (Solids that far away are rarely compared.)
             let both = self.bounds.hull(&around);
             let frame = Frame::fitted(both.min, both.max, MAX_DEPTH)?;
             let far = Ready::new(&self.solid, &self.bounds, &frame, control)?;

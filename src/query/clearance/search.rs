@@ -1,23 +1,24 @@
 //! The search for the least distance.
 //!
-//! Every cell of the first solid has with it those cells of the second that may be nearest to it: a *group*.
-//! The group whose nearest companion is least far away comes first, which raises the lower bound. The larger
-//! of its cells are split, each cell of either solid once only however many others it is compared with.
+//! Each cell of the first solid is stored with the cells of the second solid that may be nearest to it (its
+//! *companions*): a *group*. The group whose nearest companion is least far away comes first, which raises
+//! the lower bound. The search splits the larger cells of the group. It splits each cell of either solid only
+//! once, however many other cells it is compared with.
 //!
-//! Cells that are cut are as far apart as what the solids have in them, which `piece` bounds by slabs, to
-//! second order.
+//! Cut cells are as far apart as the solids' parts in them. The module `piece` bounds this distance by slabs,
+//! to second order.
 //!
-//! Two FULL cells bound the distance from above, and so do points that slabs prove. They are looked for where
-//! the lower bound is: now and then the search *plunges* from the first group to small cells that are near.
-//! Where that finds nothing, any FULL cell of either solid will do. Where the surfaces are known, `polish`
+//! Two FULL cells bound the distance from above, and so do points that slabs prove. They are searched where
+//! the lower bound is: from time to time the search *plunges* from the first group to small, near cells. If
+//! the plunge finds nothing, any FULL cell of either solid serves. Where the surfaces are known, `polish`
 //! moves the points to them.
 //!
-//! A pair that is further apart than the upper bound less the tolerance does not matter to the lower bound,
-//! since the search ends once all others are looked into. Such companions are put off, so that groups stay
+//! A pair that is further apart than the upper bound minus the tolerance does not affect the lower bound,
+//! since the search ends once all other pairs are examined. Such companions are put off, so that groups stay
 //! small.
 //!
-//! (The companions make the difference to a heap of pairs: of two faces that are parallel all the pairs that
-//! lie a little askew would have to be looked at, and a cell needs its nearest companion only.)
+//! (Companions are the advantage over a heap of pairs: for two parallel faces, the heap would have to process
+//! all slightly oblique pairs, although a cell needs only its nearest companion.)
 
 use super::nodes::Nodes;
 use super::piece::{self, Bodies, Place};
@@ -33,32 +34,31 @@ use crate::walk::Queue;
 use alloc::vec::Vec;
 use core::cmp::Reverse;
 
-/// How far a cell of the second solid is from one of the first: the least distance and the greatest, in
-/// finest cells, as the bits of doubles that are not negative, which have the order of their bits; and the
-/// node.
+/// The distance of a cell of the second solid from a cell of the first: the least and the greatest distance,
+/// in finest cells, and the node. The distances are the bits of non-negative doubles, whose order is the
+/// order of the doubles.
 type Companion = (u64, u64, usize);
 
-/// A cell of the first solid with those of the second that may be nearest to it.
+/// A cell of the first solid with the cells of the second that may be nearest to it.
 struct Group {
     node: usize,
     companions: Vec<usize>,
-    /// The companion whose least distance is the least.
+    /// The companion with the smallest least distance.
     nearest: Companion,
-    /// The companion whose greatest distance is the least.
+    /// The companion with the smallest greatest distance.
     closest: Companion,
-    /// Of the companions whose least distance is about the least: the one whose greatest distance is the
-    /// least.
+    /// Among the companions whose least distance is about the smallest: the one with the smallest greatest
+    /// distance.
     likeliest: Companion,
 }
 
-/// A distance without its last digits. (Bounds that are inherited, and such that are proven once more, differ
-/// in those.)
+/// A distance without its last digits. (Inherited bounds and recomputed bounds differ in those digits.)
 fn about(least: u64) -> u64 {
     least >> 20
 }
 
 impl Group {
-    /// Adds a companion to the group of a cell, which begins with it.
+    /// Adds a companion to the group of a cell. The first companion creates the group.
     fn add(group: &mut Option<Group>, node: usize, this: Companion) -> Result<(), Error> {
         let empty = || Group { node, companions: Vec::new(), nearest: this, closest: this, likeliest: this };
         let group = group.get_or_insert_with(empty);
@@ -72,56 +72,57 @@ impl Group {
         memory::push(&mut group.companions, this.2)
     }
 
-    /// Nothing in it is nearer.
+    /// A lower bound of the distance of all companions.
     fn least(&self) -> f64 {
         f64::from_bits(self.nearest.0)
     }
 }
 
-/// A place in the queue: the lesser numbers come first; among equals, what was met later, which is finer.
+/// A rank in the queue: lesser numbers come first; among equals the group met later, which is finer.
 type Rank = (Reverse<[u64; 3]>, u64);
 
-/// Steps of the search for a first upper bound.
+/// The number of steps of the search for a first upper bound.
 const DIVE: u64 = 4096;
 
-/// Steps of a plunge, and how many others come between two of them; of solids with slabs, how many splits.
+/// The number of steps of a plunge; the number of other steps between two plunges; for solids with slabs, the
+/// number of splits between two plunges.
 const PLUNGE: u64 = 64;
 const BETWEEN: u64 = 256;
 const SPLITS_BETWEEN: u64 = 64;
 
-/// Steps of a plunge that do not lower the upper bound any more.
+/// The number of steps after which a plunge ends if the upper bound no longer falls.
 const STALLED: u64 = 16;
 
-/// By which factor what is not known of two cells may differ before it counts.
+/// The factor between the doubts in two cells from which on the difference counts.
 const ALIKE: f64 = 4.0;
 
-/// Pairs of cells in which points are moved to the surfaces, one after the other.
+/// The maximal number of successive pairs of cells in which points are moved to the surfaces.
 const CELLS_ON: usize = 4;
 
-/// Plunges in vain, one after the other, that end a search in which slabs cannot raise the lower bound any
-/// more.
+/// The number of successive plunges in vain that end a search in which slabs can no longer raise the lower
+/// bound.
 const IN_VAIN: u32 = 6;
 
 /// Points or cells of both solids.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Reached {
-    /// They are no further apart, in finest cells.
+    /// An upper bound of their distance, in finest cells.
     pub(super) upper: f64,
     pub(super) nodes: [usize; 2],
     pub(super) points: [Place; 2],
 }
 
-/// What is asked for.
+/// The goal of the search.
 #[derive(Debug, Clone, Copy)]
 pub(super) enum Goal {
-    /// An interval that is no wider than `tolerance`, unless the distance is `below` at least (model units).
+    /// An interval no wider than `tolerance`, unless the distance is at least `below` (model units).
     Width { tolerance: f64, below: f64 },
-    /// Whether the distance is at least that (model units).
+    /// Whether the distance is at least this (model units).
     AtLeast(f64),
 }
 
 impl Goal {
-    /// An interval that is no wider (model units), however far the solids are apart.
+    /// An interval no wider than `tolerance` (model units), at any distance.
     pub(super) fn width(tolerance: f64) -> Goal {
         Goal::Width { tolerance, below: f64::INFINITY }
     }
@@ -129,32 +130,32 @@ impl Goal {
 
 /// Distances in finest cells.
 struct Bounds {
-    /// The least of a pair that no more will be known of.
+    /// The least distance of the pairs that cannot be refined.
     settled: f64,
-    /// The least that is not exceeded.
+    /// The least proven upper bound, and where it is attained.
     reached: Option<Reached>,
-    /// A lower bound of this is enough.
+    /// A sufficient lower bound.
     goal: f64,
 }
 
-/// What is under way.
+/// The state of the search.
 pub(super) struct Search<'s, A: Classifier, B: Classifier> {
     pub(super) a: Nodes<'s, A>,
     pub(super) b: Nodes<'s, B>,
     open: Queue<Rank, Group>,
-    /// Whether small cells that are near come first.
+    /// Whether small, near cells come first.
     plunging: bool,
     bounds: Bounds,
-    /// The nearest points that were met since the last plunge began, and the distance of those that were last
-    /// moved to the surfaces.
+    /// The nearest points that were met since the last plunge began, and the distance of the points that were
+    /// last moved to the surfaces.
     candidate: Option<Reached>,
     polished: f64,
     wanted: Goal,
-    /// What is left of the budget.
+    /// The rest of the budget.
     pub(super) left: u64,
 }
 
-/// What the search has found.
+/// The result of the search.
 pub(super) struct Found {
     pub(super) distance: Interval,
     pub(super) reached: Option<Reached>,
@@ -195,13 +196,12 @@ impl<'s, A: Classifier, B: Classifier> Search<'s, A, B> {
         })
     }
 
-    /// Searches until as much is known as is asked for, the budget is spent, or the cells have no more to
-    /// tell.
+    /// Searches until the goal is reached, the budget is spent, or the cells cannot improve the result.
     pub(super) fn run(&mut self, job: &Job<'_>) -> Result<Found, Error> {
         if !self.a.is_empty() && !self.b.is_empty() {
             self.meet(0, [0], 0.0)?;
         }
-        // (Whether the solids are as far apart as they should be may be proven without points.)
+        // (A gap may be proven without points.)
         if matches!(self.wanted, Goal::Width { .. }) {
             let budget = self.left;
             self.plunge(DIVE.min(budget / 4), job)?;
@@ -214,7 +214,7 @@ impl<'s, A: Classifier, B: Classifier> Search<'s, A, B> {
             let distance = self.distance();
             let least =
                 self.open.peek().map(|group| group.item.least()).filter(|&least| !self.is_beyond(least));
-            // Whether the lower bound is what it will be.
+            // True if the lower bound is final.
             let is_final = least.is_none_or(|least| self.bounds.settled <= least);
             // The distance from an empty solid is known, too.
             if self.is_known(distance) {
@@ -256,23 +256,23 @@ impl<'s, A: Classifier, B: Classifier> Search<'s, A, B> {
         Ok(Found { distance: self.distance(), reached: self.bounds.reached, stop_reason })
     }
 
-    /// Whether the steps or the memory that the caller allows are spent.
+    /// True if the steps or the memory that the caller allows are spent.
     pub(super) fn is_spent(&self) -> bool {
         self.left == 0 || self.a.subject.takes(4) || self.b.subject.takes(4)
     }
 
-    /// Whether both solids have told more of cells than their verdicts.
+    /// True if both solids have provided more about cells than their verdicts.
     fn has_lore(&self) -> bool {
         self.a.has_lore() && self.b.has_lore()
     }
 
-    /// What is reached, in finest cells.
+    /// The upper bound of the distance, in finest cells.
     fn reached(&self) -> f64 {
         self.bounds.reached.map_or(f64::INFINITY, |reached| reached.upper)
     }
 
-    /// From the first group to small cells that are near, until the upper bound falls; as far as slabs lower
-    /// it further, they do.
+    /// Goes from the first group to small, near cells until the upper bound falls, and further as long as
+    /// slabs lower the bound.
     fn plunge(&mut self, steps: u64, job: &Job<'_>) -> Result<(), Error> {
         let Some(group) = self.open.pop() else { return Ok(()) };
         let (before, least) = (self.reached(), group.least().min(self.bounds.settled));
@@ -285,7 +285,7 @@ impl<'s, A: Classifier, B: Classifier> Search<'s, A, B> {
             if self.reached() < reached {
                 (reached, since) = (self.reached(), self.left);
             }
-            // Slabs lower it further on the way down; cells do not.
+            // Slabs lower the bound further on the way down; cells do not.
             let is_lowest = !self.has_lore() || since - self.left >= STALLED;
             if reached < before && is_lowest || !self.step(job)? {
                 break;
@@ -297,7 +297,7 @@ impl<'s, A: Classifier, B: Classifier> Search<'s, A, B> {
         met.into_items().try_for_each(|group| self.push(group))
     }
 
-    /// Any FULL cells of both are an upper bound.
+    /// Takes any FULL cells of both solids as an upper bound.
     fn find_full(&mut self, budget: u64, job: &Job<'_>) -> Result<(), Error> {
         let mut left = budget;
         if let Some(a) = self.a.find_full(&mut left, job)?
@@ -314,8 +314,8 @@ impl<'s, A: Classifier, B: Classifier> Search<'s, A, B> {
             let (least, greatest, _) = group.nearest;
             [least, greatest, 0]
         } else if self.has_lore() {
-            // The finest cells first: what slabs say of the least distance is a better guide than the
-            // greatest.
+            // The finest cells come first: the least distance by slabs is a better guide than the greatest
+            // distance.
             let (least, greatest, b) = group.likeliest;
             let levels = self.a.cell(group.node).level + self.b.cell(b).level;
             [u64::from(u8::MAX - levels), about(least), greatest]
@@ -326,7 +326,7 @@ impl<'s, A: Classifier, B: Classifier> Search<'s, A, B> {
         self.open.push((Reverse(order), self.open.met()), group)
     }
 
-    /// Splits the larger cells of the first group; false if there is none.
+    /// Splits the larger cells of the first group. Returns `false` if there is no group.
     fn step(&mut self, job: &Job<'_>) -> Result<bool, Error> {
         job.check()?;
         while let Some(Group { node: a, companions, nearest, closest, likeliest }) = self.open.pop() {
@@ -352,18 +352,18 @@ impl<'s, A: Classifier, B: Classifier> Search<'s, A, B> {
         Ok(false)
     }
 
-    /// Whether of two cells the first is to be split: for a lower bound that of which less is known, and
-    /// among equals the larger one, so that neither is split without need. (Points are found in small cells
-    /// of both.)
+    /// Returns whether the first of two cells is to be split. For a lower bound the cell with the greater
+    /// doubt is split, and among equals the larger one, so that neither is split without need. (Points are
+    /// found in small cells of both.)
     fn is_first_due(&self, a: usize, b: usize) -> bool {
-        // (What is round is bounded by its core, next to which the doubt in a cell says little.)
+        // (A round solid is bounded by its core. The doubt in a cell next to the core says little.)
         let are_alike = self.plunging || self.a.is_round(a) && self.b.is_round(b);
         let [of_a, of_b] = if are_alike { [0.0; 2] } else { [self.a.doubt(a), self.b.doubt(b)] };
         let is_alike = of_a.max(of_b) <= ALIKE * of_a.min(of_b);
         if is_alike { self.a.cell(a).level <= self.b.cell(b).level } else { of_a > of_b }
     }
 
-    /// Splits the companion `b` of `a`, and if a proof needs them all the others of its size, too.
+    /// Splits the companion `b` of `a`, and also all others of its size if a proof needs them.
     fn split_companions(
         &mut self,
         a: usize,
@@ -373,7 +373,7 @@ impl<'s, A: Classifier, B: Classifier> Search<'s, A, B> {
     ) -> Result<(), Error> {
         let level = self.b.cell(b).level;
         let count = companions.len();
-        // (Others wait for the next step: a better upper bound may make them needless.)
+        // (Other companions wait for the next step: a better upper bound may make them needless.)
         let enough = if self.has_lore() { self.left.saturating_sub(SPLITS_BETWEEN) } else { 0 };
         for i in 0..count {
             let node = companions[i];
@@ -392,12 +392,12 @@ impl<'s, A: Classifier, B: Classifier> Search<'s, A, B> {
         self.meet(a, companions.into_iter().filter(|&node| node != usize::MAX), least)
     }
 
-    /// Whether nothing at this distance can lower the upper bound.
+    /// True if nothing at this distance can lower the upper bound.
     fn is_beyond(&self, least: f64) -> bool {
         least >= self.reached()
     }
 
-    /// The least and the greatest distance of two cells.
+    /// Returns the least and the greatest distance of two cells.
     fn apart(&self, a: usize, b: usize) -> (Interval, f64) {
         let ((low_a, high_a), (low_b, high_b)) = (self.a.extent(a), self.b.extent(b));
         let (mut least, mut greatest) = (0, 0);
@@ -410,9 +410,9 @@ impl<'s, A: Classifier, B: Classifier> Search<'s, A, B> {
         (root(least), root(greatest).upper)
     }
 
-    /// Takes in a cell of the first solid with companions, all of which are parts of cells that are proven to
-    /// be as far apart as `known`. Those that do not matter to the lower bound are put off in a group of
-    /// their own.
+    /// Adds a cell of the first solid with companions. All companions are parts of cells that are proven to
+    /// be at least `known` apart from this cell. Companions that do not affect the lower bound are put off in
+    /// a group of their own.
     fn meet(&mut self, a: usize, nodes: impl IntoIterator<Item = usize>, known: f64) -> Result<(), Error> {
         let (full, can_be_split) = (self.a.is_full(a), self.a.can_be_split(a));
         let mut groups: [Option<Group>; 2] = [None, None];
@@ -451,7 +451,8 @@ impl<'s, A: Classifier, B: Classifier> Search<'s, A, B> {
         groups.into_iter().flatten().try_for_each(|group| self.push(group))
     }
 
-    /// A lower bound of the distance of what lies in two cells that are that far apart.
+    /// Returns a lower bound of the distance of the solids' parts in two cells that are at least `least`
+    /// apart.
     fn look(&mut self, a: usize, b: usize, bodies: &mut Option<Bodies>, least: f64) -> Result<f64, Error> {
         self.a.learn(a)?;
         self.b.learn(b)?;
@@ -468,7 +469,7 @@ impl<'s, A: Classifier, B: Classifier> Search<'s, A, B> {
         Ok(around.max(piece::lower((&own, of_a), (&other, &Bodies::outer(&other)), known)))
     }
 
-    /// Takes in points of what lies in two cells, if such are proven, and tells how far they are apart.
+    /// Records points of the parts in two cells, if such points are proven, and returns their distance.
     fn reach_points(&mut self, a: usize, b: usize) -> Option<f64> {
         let (distance, points) = piece::upper(&self.a.piece(a), &self.b.piece(b))?;
         let found = Reached { upper: distance.upper, nodes: [a, b], points };
@@ -479,7 +480,7 @@ impl<'s, A: Classifier, B: Classifier> Search<'s, A, B> {
         Some(distance.upper)
     }
 
-    /// Takes in two FULL cells.
+    /// Records two FULL cells.
     fn reach_cells(&mut self, a: usize, b: usize) {
         let (least, _) = self.apart(a, b);
         let ((low_a, high_a), (low_b, high_b)) = (self.a.extent(a), self.b.extent(b));
@@ -505,7 +506,7 @@ impl<'s, A: Classifier, B: Classifier> Search<'s, A, B> {
         (self.polished, self.candidate) = (upper, None);
         let before = self.reached();
         let mut about = points.map(|point| point.map(|c| 0.5 * (c.lower + c.upper)));
-        // The nearest points may lie in cells next to these.
+        // The nearest points may lie in neighbouring cells.
         for _ in 0..CELLS_ON {
             let (Some(own), Some(other)) = (side(&self.a, a), side(&self.b, b)) else { break };
             let Polished { proven, beyond } = polished([&own, &other], about, self.reached());
@@ -526,15 +527,14 @@ impl<'s, A: Classifier, B: Classifier> Search<'s, A, B> {
         Ok(())
     }
 
-    /// Takes in an upper bound, unless a better one is known.
+    /// Records an upper bound, unless a better one is known.
     fn reach(&mut self, found: Reached) {
         if found.upper >= self.reached() {
             return;
         }
         self.bounds.reached = Some(found);
         let Goal::Width { tolerance, .. } = self.wanted else { return };
-        // The first distance that is known well enough; what floating point says is off by little at the
-        // most.
+        // Find the first lower bound that meets the goal. The floating-point estimate is only slightly off.
         let about = found.upper - tolerance / self.a.subject.classifier.frame().cell_size();
         let mut goal = if about > 0.0 { about } else { 0.0 };
         let grain = found.upper.next_up() - found.upper;
@@ -553,12 +553,12 @@ impl<'s, A: Classifier, B: Classifier> Search<'s, A, B> {
         }
     }
 
-    /// What cells can tell of most solids: twice the diagonal of a finest one.
+    /// The resolution of cells for most solids: twice the diagonal of a finest cell.
     fn resolution(&self) -> f64 {
         2.0 * sqrt(3.0) * self.a.subject.classifier.frame().cell_size()
     }
 
-    /// What is known if this is the least distance of all that is not reached.
+    /// The interval of the distance if `least` is the least distance of all pairs that are still open.
     fn between(&self, least: f64) -> Interval {
         let (reached, size) = (self.reached(), self.a.subject.classifier.frame().cell_size());
         let of = |cells: f64, rounded: fn(f64, f64) -> f64| {
@@ -567,14 +567,14 @@ impl<'s, A: Classifier, B: Classifier> Search<'s, A, B> {
         Interval::between(of(least.min(reached), product_down), of(reached, product_up))
     }
 
-    /// What is known.
+    /// The present interval of the distance.
     fn distance(&self) -> Interval {
         let open = self.open.peek().map_or(f64::INFINITY, |group| group.item.least());
         self.between(open.min(self.bounds.settled))
     }
 }
 
-/// The solid in a cell of which all is known.
+/// The solid in a cell, if all of it is known.
 fn side<'n, C: Classifier>(nodes: &'n Nodes<'_, C>, node: usize) -> Option<Side<'n>> {
     let (low, high) = nodes.extent(node);
     let ends = [low.map(f64::from), high.map(f64::from)];

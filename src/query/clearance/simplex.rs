@@ -1,25 +1,25 @@
 //! The nearest points of two convex bodies that are given by their vertices, in plain doubles: nothing here
 //! is proven.
 //!
-//! The method is that of Gilbert, Johnson and Keerthi (1988). A simplex of differences of vertices moves
-//! towards the origin; which of its faces is nearest is found by looking at all of them.
+//! The method is by Gilbert, Johnson and Keerthi (1988). A simplex of differences of vertices moves towards
+//! the origin. The nearest face of the simplex is found by testing all faces.
 
-/// Differences of vertices at most, before the search gives up with what it has.
+/// The maximal number of iterations. The search then returns its best points.
 const TURNS: usize = 40;
 
-/// How near both sides of the optimum come, as a share of it.
+/// The relative gap between both sides of the optimum at which the search ends.
 const ENOUGH: f64 = 1e-15;
 
-/// Points of two bodies.
+/// The nearest points of two bodies.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Near {
     /// A point of each body.
     pub(super) points: [[f64; 3]; 2],
-    /// The second less the first, as the simplex has it: zero if the bodies meet.
+    /// The second point minus the first, as the simplex has it: zero if the bodies meet.
     pub(super) way: [f64; 3],
 }
 
-/// A difference of vertices, and these.
+/// A difference of two vertices, and the vertices.
 #[derive(Clone, Copy)]
 struct Corner {
     way: [f64; 3],
@@ -54,7 +54,7 @@ fn furthest(body: &[[f64; 3]], direction: [f64; 3]) -> [f64; 3] {
     best.1
 }
 
-/// The nearest points of the hulls of two sets of vertices, to rounding; neither set is to be empty.
+/// Returns the nearest points of the hulls of two nonempty sets of vertices, to rounding.
 pub(super) fn nearest(a: &[[f64; 3]], b: &[[f64; 3]], towards: [f64; 3]) -> Near {
     let corner = |direction: [f64; 3]| {
         // The difference b − a that is furthest against the direction.
@@ -71,7 +71,7 @@ pub(super) fn nearest(a: &[[f64; 3]], b: &[[f64; 3]], towards: [f64; 3]) -> Near
             break;
         }
         let next = corner(way);
-        // What is no number is no gain.
+        // NaN is no gain.
         let gains = square - dot(way, next.way) > ENOUGH * square;
         if !gains || simplex[..count].iter().any(|known| known.way == next.way) {
             break;
@@ -97,8 +97,8 @@ pub(super) fn nearest(a: &[[f64; 3]], b: &[[f64; 3]], towards: [f64; 3]) -> Near
     Near { points, way }
 }
 
-/// The nearest point to the origin of a simplex: its weights, and how many corners are left, which are moved
-/// to the front.
+/// Returns the point of a simplex that is nearest to the origin: its weights, the point, and the number of
+/// remaining corners, which are moved to the front.
 fn reduced(simplex: &mut [Corner; 4], count: usize) -> ([f64; 4], [f64; 3], usize) {
     let mut best = (f64::INFINITY, [0.0; 4], [0.0; 3], 1u32);
     for set in 1u32..1 << count {
@@ -123,8 +123,8 @@ fn reduced(simplex: &mut [Corner; 4], count: usize) -> ([f64; 4], [f64; 3], usiz
     (weights, way, left)
 }
 
-/// The weights of the point nearest to the origin of the flat through some corners; `None` if it lies outside
-/// of these.
+/// Returns the weights of the point nearest to the origin in the affine hull of some corners; `None` if the
+/// point lies outside of the corners' convex hull.
 fn weights(corners: &[[f64; 3]; 4], size: usize) -> Option<[f64; 4]> {
     let [p, q, r, s] = *corners;
     let found = match size {
@@ -147,7 +147,7 @@ fn weights(corners: &[[f64; 3]; 4], size: usize) -> Option<[f64; 4]> {
             [a / all, b / all, c / all, d / all]
         }
     };
-    // (What is no number is no weight.)
+    // (NaN is no weight.)
     found.iter().all(|&weight| weight >= 0.0).then_some(found)
 }
 

@@ -1,4 +1,4 @@
-//! Height maps: how far the solid reaches in each column, seen from one side.
+//! Height maps: the reach of the solid in each column, seen from one side.
 
 use super::{Columns, Shadow, Visitor};
 use crate::error::Error;
@@ -6,18 +6,18 @@ use crate::lattice::{Frame, Interval};
 use crate::memory;
 use alloc::vec::Vec;
 
-/// Where columns are looked at from.
+/// The side from which columns are seen.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
 #[repr(u8)]
 pub enum Side {
-    /// From above, towards lower coordinates: what counts is the highest cell.
+    /// From above, towards lower coordinates: the highest cell counts.
     Above = 0,
-    /// From below: what counts is the lowest cell.
+    /// From below: the lowest cell counts.
     Below = 1,
 }
 
-/// How far the solid cells of columns reach, seen from one side: the upper faces of the highest cells, or the
-/// lower faces of the lowest ones.
+/// A height map: the reach of the solid cells in columns, seen from one side. A height is the upper face of
+/// the highest cell, or the lower face of the lowest cell.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Heights {
     frame: Frame,
@@ -31,13 +31,13 @@ pub struct Heights {
 const NONE: u32 = u32::MAX;
 
 impl Heights {
-    /// `count` is that of the columns.
+    /// Builds an empty height map. `count` is the number of columns.
     pub(super) fn new(frame: Frame, columns: Columns, side: Side, count: usize) -> Result<Heights, Error> {
         let (full, upper) = (memory::filled(count, NONE)?, memory::filled(count, NONE)?);
         Ok(Heights { frame, columns, side, full, upper })
     }
 
-    /// Takes over what is known of a block of the columns.
+    /// Copies the results of a block of the columns.
     pub(super) fn take(&mut self, block: &Heights) {
         let size = block.columns.size();
         let row = size[0] as usize;
@@ -54,15 +54,15 @@ impl Heights {
         &self.columns
     }
 
-    /// Where they are looked at from.
+    /// The side from which the columns are seen.
     pub fn side(&self) -> Side {
         self.side
     }
 
-    /// How far the solid reaches in the column with this [place](Columns::index), in model units: the
-    /// greatest coordinate of its points along the axis, or the least one from below, lies in this interval.
-    /// The end that needs a proof is infinite if no cell of the column is FULL. `None` if the column is
-    /// proven empty, or is none of these.
+    /// Returns an interval, in model units, for the reach of the solid in the column with this
+    /// [index](Columns::index): the greatest coordinate of the solid's points along the axis, or the least
+    /// one from below. The end of the interval that needs a proof is infinite if no cell of the column is
+    /// FULL. `None` if the column is proven empty, or is not selected.
     pub fn height(&self, index: usize) -> Option<Interval> {
         let axis = self.columns.axis;
         let possible = self.frame.plane(axis, self.upper_plane(index)?);
@@ -77,13 +77,13 @@ impl Heights {
         })
     }
 
-    /// The lattice plane, 0 to 2^depth, in which the first FULL cell of a column ends towards the side;
-    /// `None` if there is none.
+    /// Returns the lattice plane, 0 to 2^depth, in which a column's first FULL cell ends towards the side;
+    /// `None` if the column has no FULL cell.
     pub fn full_plane(&self, index: usize) -> Option<u32> {
         self.full.get(index).copied().filter(|&plane| plane != NONE)
     }
 
-    /// The same of the first cell that is FULL or PARTIAL.
+    /// Returns the same plane for the first cell that is FULL or PARTIAL.
     pub fn upper_plane(&self, index: usize) -> Option<u32> {
         self.upper.get(index).copied().filter(|&plane| plane != NONE)
     }
@@ -105,7 +105,7 @@ impl Visitor for Heights {
         Ok(())
     }
 
-    /// Cells come from the side, so that each behind a FULL one is hidden.
+    /// Cells come from the side, so that a FULL cell hides all cells behind it.
     fn skips(&self, shadow: &Shadow) -> bool {
         shadow.places(self.columns).all(|column| self.full[column] != NONE)
     }

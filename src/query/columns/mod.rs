@@ -1,4 +1,4 @@
-//! Columns of finest cells along an axis: which cells of each are solid, and how high these reach.
+//! Columns of finest cells along an axis: the solid cells of each column, and their height.
 //!
 //! Each column stands for all lines along the axis within it, such as the ray through the centres of its
 //! cells.
@@ -25,7 +25,7 @@ pub struct Columns {
 }
 
 impl Columns {
-    /// All columns of a frame along `axis`: 0 is x, 1 y, 2 z.
+    /// Selects all columns of a frame along `axis`: 0 is x, 1 y, 2 z.
     ///
     /// # Errors
     /// [`Error::Argument`] if `axis` is greater than 2.
@@ -33,8 +33,8 @@ impl Columns {
         Columns::within(axis, [0; 2], [frame.cells(); 2])
     }
 
-    /// The columns along `axis` whose cells have coordinates from `first` to before `end` on the other two
-    /// axes, in the order x, y, z.
+    /// Selects the columns along `axis` whose cells have coordinates from `first` to before `end` on the
+    /// other two axes. These axes stand in the order x, y, z.
     ///
     /// # Errors
     /// [`Error::Argument`] if `axis` is greater than 2, or `first` lies beyond `end`.
@@ -48,7 +48,7 @@ impl Columns {
         Ok(Columns { axis, first, end })
     }
 
-    /// The axis that they run along: 0 is x, 1 y, 2 z.
+    /// The axis that the columns run along: 0 is x, 1 y, 2 z.
     pub fn axis(&self) -> usize {
         self.axis
     }
@@ -58,25 +58,25 @@ impl Columns {
         self.first
     }
 
-    /// How many columns lie beside each other along these axes.
+    /// The number of columns beside each other along each of these axes.
     pub fn size(&self) -> [u32; 2] {
         [0, 1].map(|i| self.end[i] - self.first[i])
     }
 
-    /// How many columns there are.
+    /// The number of columns.
     pub fn count(&self) -> u64 {
         let [width, height] = self.size();
         width as u64 * height as u64
     }
 
-    /// The place of a column in results, by the coordinates of its cells on the other two axes; `None` if it
-    /// is none of these. The first of the axes varies fastest.
+    /// Returns the index of a column in results, from the coordinates of its cells on the other two axes;
+    /// `None` if the column is not selected. The first of the axes varies fastest.
     pub fn index(&self, at: [u32; 2]) -> Option<usize> {
         let inside = (0..2).all(|i| (self.first[i]..self.end[i]).contains(&at[i]));
         inside.then(|| self.place([0, 1].map(|i| at[i] - self.first[i])))
     }
 
-    /// The same by the steps from the first column.
+    /// Returns the index of a column from the steps from the first column.
     fn place(&self, steps: [u32; 2]) -> usize {
         steps[1] as usize * self.size()[0] as usize + steps[0] as usize
     }
@@ -86,7 +86,7 @@ impl Columns {
         [[1, 2], [0, 2], [0, 1]][self.axis]
     }
 
-    /// How many there are, if they are columns of a frame, and memory can hold something of each.
+    /// Returns the number of columns, if they are columns of a frame, and memory can hold an entry for each.
     fn counted(&self, frame: &Frame) -> Result<usize, Error> {
         if self.end.iter().any(|&end| end > frame.cells()) {
             return Err(Error::Argument { name: "columns", problem: "reach beyond the universe" });
@@ -94,7 +94,8 @@ impl Columns {
         usize::try_from(self.count()).map_err(|_| Error::OutOfMemory)
     }
 
-    /// What lies in these columns of the cube with its lowest finest cell at `low`; `None` if nothing does.
+    /// Returns the part of a cube that lies in these columns; `None` if that part is empty. `low` is the
+    /// cube's lowest finest cell.
     fn shadow(&self, low: [u32; 3], edge: u32) -> Option<Shadow> {
         let across = self.across();
         let range = |i: usize| {
@@ -116,17 +117,17 @@ struct Shadow {
 }
 
 impl Shadow {
-    /// The places of its columns.
+    /// The indices of the shadow's columns.
     fn places(&self, columns: Columns) -> impl Iterator<Item = usize> + '_ {
         self.steps[1].clone().flat_map(move |v| self.steps[0].clone().map(move |u| columns.place([u, v])))
     }
 }
 
-/// What a walk makes of the cells that are not EMPTY and not split. The cells of each column come in
-/// ascending order, or in descending order if the walk says so.
+/// A receiver of the cells that are neither EMPTY nor split. The cells of each column come in ascending
+/// order, or in descending order if the walk says so.
 trait Visitor {
     fn meet(&mut self, is_full: bool, shadow: &Shadow) -> Result<(), Error>;
 
-    /// Whether these cells, all of which come next, change nothing.
+    /// Returns whether these cells, all of which come next, change nothing.
     fn skips(&self, shadow: &Shadow) -> bool;
 }

@@ -10,9 +10,9 @@ use crate::octree::view::OctreeRef;
 use crate::octree::{Octree, Tag};
 
 impl OctreeRef<'_> {
-    /// Which of the octree's cells in these columns are solid, whatever they prove of the solid that the tree
-    /// was made from. O(cells in the columns + columns · cells along each), counting cells as they are
-    /// stored; whatever the bytes, no element is read twice. One thread.
+    /// Returns the solid cells of the octree in these columns, whatever they prove of the solid that the tree
+    /// was made from. Complexity: O(cells in the columns + columns · cells along each), counting cells as
+    /// they are stored. No element is read twice, whatever the bytes. It uses one thread.
     ///
     /// # Errors
     /// [`Error::Argument`] if the columns reach beyond the universe; [`Error::OutOfMemory`].
@@ -34,8 +34,8 @@ impl OctreeRef<'_> {
         ColumnCells::gathered(columns, count, &[lists])
     }
 
-    /// How far the octree's solid cells reach in these columns, whatever they prove of the solid that the
-    /// tree was made from. Costs as [`columns`](Self::columns).
+    /// Returns the reach of the octree's solid cells in these columns, whatever they prove of the solid that
+    /// the tree was made from. The cost is that of [`columns`](Self::columns).
     ///
     /// # Errors
     /// As [`columns`](Self::columns).
@@ -46,7 +46,7 @@ impl OctreeRef<'_> {
     }
 }
 
-/// Shows all cells in the columns to a visitor, in Morton order.
+/// Passes all cells in the columns to a visitor, in Morton order.
 fn walk(tree: &OctreeRef<'_>, columns: &Columns, visitor: &mut impl Visitor) -> Result<(), Error> {
     let mut walk = Walk { tree, columns: *columns, windows: Windows::new(tree), visitor };
     match tree.root {
@@ -71,8 +71,8 @@ impl<V: Visitor> Walk<'_, '_, '_, V> {
         }
     }
 
-    /// The part of element `index` of level `e` that lies in the columns; `low` is its lowest finest cell.
-    /// The recursion is as deep as the tree has element levels, ten at the most.
+    /// Walks the part of element `index` of level `e` that lies in the columns; `low` is the element's lowest
+    /// finest cell. The recursion is as deep as the tree has element levels, ten at the most.
     fn element(&mut self, e: usize, index: usize, low: [u32; 3]) -> Result<(), Error> {
         let (levels, cells) = (self.tree.levels(), self.tree.frame().cells());
         let shift = 2 * (levels - 1 - e);
@@ -111,7 +111,7 @@ impl<V: Visitor> Walk<'_, '_, '_, V> {
                     let below = (e + 1).min(levels - 1);
                     match self.windows.child(self.tree, index, planes.branch(), c, below) {
                         Ok(child) if e + 1 < levels => self.element(e + 1, child, corner(c))?,
-                        // Damage.
+                        // The tree is damaged.
                         _ => self.meet(Tag::Partial, corner(c), 1 << shift)?,
                     }
                 }
@@ -123,7 +123,7 @@ impl<V: Visitor> Walk<'_, '_, '_, V> {
 }
 
 impl Octree {
-    /// As [`OctreeRef::columns`].
+    /// Returns the solid cells in columns. See [`OctreeRef::columns`] for the full contract.
     ///
     /// # Errors
     /// As [`OctreeRef::columns`].
@@ -131,7 +131,7 @@ impl Octree {
         self.view().columns(columns)
     }
 
-    /// As [`OctreeRef::heights`].
+    /// Returns the heights of columns. See [`OctreeRef::heights`] for the full contract.
     ///
     /// # Errors
     /// As [`OctreeRef::columns`].

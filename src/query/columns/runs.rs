@@ -11,11 +11,11 @@ use alloc::vec::Vec;
 pub struct Run {
     /// The coordinate of the lowest cell along the column.
     pub start: u32,
-    /// How many cells there are, at least one.
+    /// The number of cells, at least one.
     pub length: u32,
 }
 
-/// Runs of cells in columns, in compressed rows. The runs of a column ascend, and no two of them touch.
+/// Runs of cells in columns, as compressed rows. The runs of a column ascend, and no two of them touch.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct ColumnRuns {
     offsets: Vec<u64>,
@@ -23,7 +23,8 @@ pub struct ColumnRuns {
 }
 
 impl ColumnRuns {
-    /// The runs of the column with this [place](Columns::index); none if there is no such column.
+    /// Returns the runs of the column with this [index](Columns::index); an empty slice if there is no such
+    /// column.
     pub fn column(&self, index: usize) -> &[Run] {
         let end = index.checked_add(1).and_then(|next| self.offsets.get(next));
         match (self.offsets.get(index), end) {
@@ -32,7 +33,7 @@ impl ColumnRuns {
         }
     }
 
-    /// Where the runs of each column begin in [`runs`](Self::runs), and behind these the number of all runs.
+    /// The index in [`runs`](Self::runs) of each column's first run, followed by the number of all runs.
     pub fn offsets(&self) -> &[u64] {
         &self.offsets
     }
@@ -43,7 +44,7 @@ impl ColumnRuns {
     }
 }
 
-/// Which cells of columns are solid.
+/// The solid cells of columns.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct ColumnCells {
     /// The cells that are proven to be solid: FULL.
@@ -53,7 +54,7 @@ pub struct ColumnCells {
 }
 
 impl ColumnCells {
-    /// What was found in blocks of the columns.
+    /// Combines the results of blocks of the columns.
     pub(super) fn gathered(columns: &Columns, count: usize, blocks: &[CellLists]) -> Result<Self, Error> {
         Ok(ColumnCells {
             full: gathered(columns, count, blocks, |block| &block.full)?,
@@ -62,10 +63,10 @@ impl ColumnCells {
     }
 }
 
-/// The place of no run.
+/// The index that stands for no run.
 const NONE: usize = usize::MAX;
 
-/// Runs in the order in which they were met, each with a link to the one before it in its column.
+/// Runs in the order in which they were met, each with a link to the previous run of its column.
 struct Lists {
     last: Vec<usize>,
     runs: Vec<(Run, usize)>,
@@ -110,7 +111,7 @@ pub(super) struct CellLists {
 }
 
 impl CellLists {
-    /// `count` is that of the block's columns.
+    /// Builds empty lists. `count` is the number of the block's columns.
     pub(super) fn new(block: Columns, count: usize) -> Result<CellLists, Error> {
         Ok(CellLists { block, full: Lists::new(count)?, upper: Lists::new(count)? })
     }
@@ -133,14 +134,14 @@ impl Visitor for CellLists {
     }
 }
 
-/// The columns of blocks in the order of the whole: count, sum up, fill.
+/// Arranges the columns of blocks in the order of the whole: count, sum up, fill.
 fn gathered(
     columns: &Columns,
     count: usize,
     blocks: &[CellLists],
     lists: impl Fn(&CellLists) -> &Lists,
 ) -> Result<ColumnRuns, Error> {
-    // A place for each column of a block in its own lists, and in the whole.
+    // For each column of a block, its index in the block's own lists and in the whole.
     let places = |block: &Columns| {
         let (block, size, columns) = (*block, block.size(), *columns);
         (0..size[1]).flat_map(move |v| {

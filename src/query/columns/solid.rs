@@ -1,4 +1,4 @@
-//! Columns of any solid, without an octree: blocks of columns, each by a descent of its own.
+//! Columns of any solid, without an octree: blocks of columns, each with its own descent.
 
 use super::runs::CellLists;
 use super::{ColumnCells, Columns, Heights, Shadow, Side, Visitor};
@@ -12,13 +12,13 @@ use crate::walk::Proven;
 use crate::walk::split_one;
 use alloc::vec::Vec;
 
-/// Which cells of `frame` in these columns are solid: `full` are proven to be, and what is not in `upper` is
-/// proven not to be. Splits all PARTIAL cells in the columns down to the frame's depth. The answer is the
-/// same for any number of threads.
+/// Returns the solid cells of `frame` in these columns. The cells in `full` are proven to be solid; the cells
+/// that are not in `upper` are proven to be empty. All PARTIAL cells in the columns are split down to the
+/// frame's depth. The answer does not depend on the number of threads.
 ///
 /// # Errors
-/// [`Error::Argument`] if the columns reach beyond the universe; what the solid refuses; [`Error::Limit`] if
-/// the result takes more than `control.max_bytes`; [`Error::OutOfMemory`], and [`Error::Cancelled`].
+/// [`Error::Argument`] if the columns reach beyond the universe; the solid's own errors; [`Error::Limit`] if
+/// the result takes more than `control.max_bytes`; [`Error::OutOfMemory`] and [`Error::Cancelled`].
 ///
 /// ```
 /// use leafless::{Control, Csg, Frame, query::{Columns, columns}};
@@ -37,14 +37,15 @@ pub fn columns<S: Solid>(
     control: &Control<'_>,
 ) -> Result<ColumnCells, Error> {
     let count = columns.counted(frame)?;
-    // What the lists of a column take, and its offsets.
+    // The bytes of a column's lists and offsets.
     let bytes = 4 * size_of::<u64>();
     let lists = in_blocks(solid, frame, columns, 0, bytes, control, CellLists::new)?;
     ColumnCells::gathered(columns, count, &lists)
 }
 
-/// How far a solid reaches in these columns, as far as cells of `frame` tell. A PARTIAL cell is split unless
-/// a FULL one hides it in each of its columns. The answer is the same for any number of threads.
+/// Returns the reach of a solid in these columns, as far as the cells of `frame` determine it. A PARTIAL cell
+/// is split unless a FULL cell hides it in each of its columns. The answer does not depend on the number of
+/// threads.
 ///
 /// # Errors
 /// As [`columns`].
@@ -78,12 +79,13 @@ pub fn heights<S: Solid>(
     Ok(heights)
 }
 
-/// Blocks that columns are divided into along each axis, or one more.
+/// The number of blocks, or one less, that columns are divided into along each axis.
 const BLOCKS: u32 = 8;
 /// The least edge of a block, in cells.
 const SMALLEST: u32 = 16;
 
-/// The columns in blocks, whose edge is a power of two, so that a cell of that edge lies in one of them.
+/// Divides the columns into blocks. Their edge is a power of two, so that a cell of that edge lies in one
+/// block.
 fn blocks(columns: &Columns) -> Result<(u32, Vec<Columns>), Error> {
     let size = columns.size();
     let edge = size[0].max(size[1]).div_ceil(BLOCKS).next_power_of_two().max(SMALLEST);
@@ -102,8 +104,8 @@ fn blocks(columns: &Columns) -> Result<(u32, Vec<Columns>), Error> {
     Ok((edge, blocks))
 }
 
-/// Walks through each block, of which a visitor of its own is made from its columns and their count. A column
-/// takes so many `bytes`. Octants are met in the order k ^ `mirror`.
+/// Walks through each block with its own visitor. The visitor is made from the block's columns and their
+/// count. A column takes `bytes` bytes. Octants are met in the order k ^ `mirror`.
 fn in_blocks<S: Solid, V: Visitor + Send>(
     solid: &S,
     frame: &Frame,
@@ -118,7 +120,7 @@ fn in_blocks<S: Solid, V: Visitor + Send>(
     let (edge, blocks) = blocks(columns)?;
     let classifier = Proven(solid.on(frame, control)?);
     let descent = Descent { job: &job, depth: frame.depth(), mirror };
-    // What is greater than a block is split once for all of them.
+    // Cells greater than a block are split once for all blocks.
     let mut above = classifier.worker()?;
     let mut front = Vec::new();
     let root = above.root()?;
@@ -142,10 +144,10 @@ fn in_blocks<S: Solid, V: Visitor + Send>(
     })
 }
 
-/// A cell, and what is known of it.
+/// A cell and its verdict.
 type Known<W> = (Cell, Verdict<<W as Parts>::Part>);
 
-/// The way down through the cells in columns.
+/// The descent through the cells in columns.
 struct Descent<'j> {
     job: &'j Job<'j>,
     depth: u8,
@@ -153,13 +155,13 @@ struct Descent<'j> {
 }
 
 impl Descent<'_> {
-    /// What lies in columns of a cell.
+    /// Returns the part of a cell that lies in columns.
     fn shadow(&self, columns: &Columns, cell: Cell) -> Option<Shadow> {
         let shift = self.depth - cell.level;
         columns.shadow(cell.at.map(|a| a << shift), 1 << shift)
     }
 
-    /// The children of a cell in the order of the walk.
+    /// Returns the children of a cell in the order of the walk.
     fn split<W: Worker>(&self, worker: &mut W, cell: Cell, part: &W::Part) -> Result<[Known<W>; 8], Error> {
         self.job.check()?;
         let mut children = split_one(worker, cell, part, self.job.control())?;
@@ -169,9 +171,9 @@ impl Descent<'_> {
         }))
     }
 
-    /// Adds the cells in the columns that are not EMPTY to `front`, in the order of the walk: those of an
-    /// edge, and greater ones that are not split. The recursion is as deep as the frame, 20 levels at the
-    /// most.
+    /// Adds the cells in the columns that are not EMPTY to `front`, in the order of the walk: the cells of
+    /// the given edge, and larger cells that are not split. The recursion is as deep as the frame, 20 levels
+    /// at the most.
     fn gather<W: Worker>(
         &self,
         worker: &mut W,
@@ -194,8 +196,8 @@ impl Descent<'_> {
         }
     }
 
-    /// Shows a cell in the columns, or what it is split into, to a visitor. The recursion is as deep as the
-    /// frame.
+    /// Passes a cell in the columns, or the cells that it is split into, to a visitor. The recursion is as
+    /// deep as the frame.
     fn walk<W: Worker>(
         &self,
         worker: &mut W,

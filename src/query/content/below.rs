@@ -5,12 +5,13 @@ use crate::error::Damage;
 use crate::octree::links::Windows;
 use crate::octree::{OctreeRef, Planes, Tag};
 
-/// FULL and PARTIAL finest cells below element `index` of level `e`. In level order they are one range of
-/// entries for each level. `windows`, which have admitted the element, pass what is read.
+/// Counts the FULL and the PARTIAL finest cells below element `index` of level `e`. In level order these
+/// cells are one range of entries for each level. `windows`, which have admitted the element, also check each
+/// element that is read.
 ///
 /// # Errors
-/// If the entries of a level do not belong to the branches of the one above. (So more cells than there are
-/// below the element are never counted.)
+/// An error if the entries of a level do not belong to the branches of the level above. (The count therefore
+/// never exceeds the number of cells below the element.)
 pub(super) fn count(
     tree: &OctreeRef<'_>,
     e: usize,
@@ -35,7 +36,7 @@ pub(super) fn count(
         found[0] += counts.full << shift;
         found[1] += counts.partial << shift;
         if level + 1 == levels {
-            // Nothing lies below bricks.
+            // Bricks have no children.
             return if counts.branches == 0 { Ok(found) } else { Err(damage) };
         }
         if counts.branches == 0 {

@@ -1,4 +1,4 @@
-//! How much of a stored solid lies in a box?
+//! The common volume and the common cells of a stored solid and a box.
 
 use crate::error::Error;
 use crate::lattice::axes;
@@ -8,8 +8,8 @@ use crate::octree::view::OctreeRef;
 use crate::octree::{Octree, Planes, Tag};
 
 impl OctreeRef<'_> {
-    /// The finest cells from `min` to before `max` that are surely solid, and those that are possibly solid:
-    /// FULL ones, and FULL and PARTIAL ones. Whatever the bytes, no element is read twice.
+    /// Counts the finest cells from `min` to before `max` that are surely solid (FULL), and those that are
+    /// possibly solid (FULL or PARTIAL). No element is read twice, whatever the bytes.
     ///
     /// # Errors
     /// [`Error::Argument`] if min > max on an axis, or `max` lies outside of the universe.
@@ -26,11 +26,11 @@ impl OctreeRef<'_> {
         Ok(count(self, Window { first: min, last: max.map(|end| end - 1) }))
     }
 
-    /// The volume that the solid has in common with the box `[min, max]` (model units, min ≤ max), in cubic
-    /// model units, as the octree's cells tell it: FULL ones bound it from below, FULL and PARTIAL ones from
-    /// above. The faces of the box may lie anywhere; cells that they cut count with the part in the box,
-    /// rounded outward. What lies outside of the universe does not count. Whatever the bytes, no element is
-    /// read more than 27 times.
+    /// Returns the volume that the solid has in common with the box `[min, max]` (model units, min ≤ max), in
+    /// cubic model units, as the octree's cells determine it: FULL cells bound it from below, FULL and
+    /// PARTIAL cells from above. The faces of the box may lie anywhere. A cell that they cut counts with its
+    /// part in the box, rounded outward. The outside of the universe does not count. No element is read more
+    /// than 27 times, whatever the bytes.
     ///
     /// (For regions of other shapes: [`volume_in`](OctreeRef::volume_in).)
     ///
@@ -69,7 +69,7 @@ impl OctreeRef<'_> {
 }
 
 impl Octree {
-    /// As [`OctreeRef::cells_in_box`].
+    /// Counts cells in a box. See [`OctreeRef::cells_in_box`] for the full contract.
     ///
     /// # Errors
     /// As [`OctreeRef::cells_in_box`].
@@ -77,7 +77,7 @@ impl Octree {
         self.view().cells_in_box(min, max)
     }
 
-    /// As [`OctreeRef::volume_in_box`].
+    /// Returns the volume in a box. See [`OctreeRef::volume_in_box`] for the full contract.
     ///
     /// # Errors
     /// As [`OctreeRef::volume_in_box`].
@@ -86,7 +86,7 @@ impl Octree {
     }
 }
 
-/// Cells of which as much lies in a box along an axis.
+/// Cells with the same length in a box along an axis.
 #[derive(Clone, Copy)]
 struct Rows {
     first: u32,
@@ -94,13 +94,14 @@ struct Rows {
     length: Interval,
 }
 
-/// The cells of a box along an axis: the first and the last one, if the box cuts them, and those between.
+/// Returns the cells of a box along an axis: the first and the last cell, if the box cuts them, and the cells
+/// between.
 fn rows(frame: &Frame, axis: usize, min: f64, max: f64, window: &Window) -> [Option<Rows>; 3] {
     let (first, last) = (window.first[axis], window.last[axis]);
     let whole = Interval::exactly(frame.cell_size());
     let (lower, upper) = (2 * i64::from(first), 2 * i64::from(last));
     let cuts = [frame.side(axis, min, lower) > 0, frame.side(axis, max, upper + 2) < 0];
-    // From the lower plane of a cell to the box's face in it.
+    // The distance from a cell's lower plane to the box's face in the cell.
     let low = || frame.rounded_offset(axis, min, lower);
     let high = || frame.rounded_offset(axis, max, upper);
     let row = |first: u32, last: u32, length: Interval| {
@@ -119,7 +120,7 @@ fn rows(frame: &Frame, axis: usize, min: f64, max: f64, window: &Window) -> [Opt
     ]
 }
 
-/// The finest cells in a window that are surely and possibly solid.
+/// Counts the surely and the possibly solid finest cells in a window.
 fn count(tree: &OctreeRef<'_>, window: Window) -> (u64, u64) {
     let mut count = Count { tree, window, windows: Windows::new(tree), full: 0, partial: 0 };
     match tree.root {
@@ -150,13 +151,14 @@ impl Count<'_, '_> {
         }
     }
 
-    /// Counts in the part of element `index` of level `e` that lies in the window; `origin` is its lowest
-    /// finest cell. The recursion is as deep as the tree has element levels, ten at the most.
+    /// Counts the cells in the part of element `index` of level `e` that lies in the window; `origin` is the
+    /// element's lowest finest cell. The recursion is as deep as the tree has element levels, ten at the
+    /// most.
     fn element(&mut self, e: usize, index: usize, origin: [u32; 3]) {
         let levels = self.tree.levels();
         let shift = 2 * (levels - 1 - e) as u32;
         let planes = self.tree.entry(index).unwrap_or(Planes::uniform(Tag::Partial));
-        // How much of each cell lies in the window along each axis, in finest cells.
+        // The length of each cell in the window along each axis, in finest cells.
         let lengths = axes(|axis| {
             [0, 1, 2, 3].map(|k| {
                 let start = origin[axis] + (k << shift);

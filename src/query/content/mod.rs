@@ -1,4 +1,4 @@
-//! How much of a solid lies in a region?
+//! The common volume and the common cells of a solid and a region.
 
 mod below;
 mod in_box;
@@ -16,11 +16,12 @@ use once::Once;
 use sums::Sums;
 use walk::{Counted, walk};
 
-/// How many finest cells of a solid lie in a region, between bounds.
+/// Bounds of the number of a solid's finest cells in a region.
 ///
-/// A cell where the region is FULL lies in it, one where it is EMPTY does not, and one where it is PARTIAL
-/// may. So the bounds hold however "in" is understood: whether a cell counts that lies in the region as a
-/// whole, whose centre does, or that has any volume in common with it.
+/// A cell lies in the region if the region is FULL there, and does not if the region is EMPTY there. If the
+/// region is PARTIAL, the cell may lie in the region. The bounds therefore hold for each meaning of "in":
+/// cells that lie in the region as a whole, cells whose centre does, and cells with any volume in common with
+/// it.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Eq, Hash)]
 pub struct CellsIn {
     /// FULL cells of the solid that are proven to lie in the region.
@@ -33,17 +34,17 @@ pub struct CellsIn {
     pub upper_most: u64,
 }
 
-/// How many finest cells of `frame` lie in a solid and in a region, which is a ball
-/// ([`Csg::ball`](crate::Csg::ball)) or any other solid. What is not proven of either counts as PARTIAL, and
-/// what lies outside of the universe does not count.
+/// Returns the number of finest cells of `frame` that lie in both a solid and a region. The region is a ball
+/// ([`Csg::ball`](crate::Csg::ball)) or any other solid. Unproven verdicts of either count as PARTIAL. The
+/// outside of the universe does not count.
 ///
-/// No octree is made. A cell is split only where neither is EMPTY and one is undecided, so the time is about
-/// that of splitting the region's boundary inside of the solid and the solid's boundary inside of the region,
-/// down to the frame's depth; the memory is O(depth). Once `control.max_splits` cells of both are split, the
-/// others count as undecided. One thread.
+/// No octree is made. A cell is split only where neither is EMPTY and one is undecided. The time is therefore
+/// about that of splitting the region's boundary inside of the solid and the solid's boundary inside of the
+/// region, down to the frame's depth. The memory is O(depth). Once `control.max_splits` cells of both are
+/// split, the other cells count as undecided. It uses one thread.
 ///
 /// # Errors
-/// What solid and region refuse; [`Error::OutOfMemory`], and [`Error::Cancelled`].
+/// The own errors of the solid and of the region; [`Error::OutOfMemory`] and [`Error::Cancelled`].
 ///
 /// ```
 /// use leafless::{Control, Csg, Frame, query::cells_in};
@@ -62,13 +63,13 @@ pub fn cells_in<S: Solid, R: Solid>(
     Ok(content(solid, region, frame, Sums::of_cells(), control)?.cells())
 }
 
-/// The volume that a solid and a region have in common inside of the universe of `frame`, in cubic model
-/// units: an interval that contains the truth. The region is a ball ([`Csg::ball`](crate::Csg::ball)) or any
-/// other solid.
+/// Returns the volume that a solid and a region have in common inside of the universe of `frame`, in cubic
+/// model units: an interval that contains the true volume. The region is a ball
+/// ([`Csg::ball`](crate::Csg::ball)) or any other solid.
 ///
-/// Cells are split as [`cells_in`] does. In a cell of the finest level the volume is known as well as solid
-/// and region know it there, by their moments or enclosures, and lies between nothing and the cell's where
-/// they know nothing. (To split until a volume is known to a tolerance, [`measure`](crate::measure) the
+/// Cells are split as in [`cells_in`]. In a cell of the finest level the volume is as exact as the moments or
+/// enclosures that solid and region provide there. Where they provide nothing, the volume lies between zero
+/// and the cell's volume. (To split until the volume is known to a tolerance, [`measure`](crate::measure) the
 /// intersection.)
 ///
 /// # Errors
@@ -107,17 +108,19 @@ fn in_region<S: Counted, R: Solid>(
 }
 
 impl OctreeRef<'_> {
-    /// How many finest cells of the octree lie in a region, which is a ball ([`Csg::ball`](crate::Csg::ball))
-    /// or any other solid: the FULL ones, and the FULL and PARTIAL ones. The octree's cells are taken as they
-    /// are, whatever they prove; what is not proven of the region counts as PARTIAL.
+    /// Returns the number of finest cells of the octree in a region: bounds for the FULL cells, and bounds
+    /// for the FULL and PARTIAL cells. The region is a ball ([`Csg::ball`](crate::Csg::ball)) or any other
+    /// solid. The octree's cells are taken as they are, whatever they prove. Unproven verdicts of the region
+    /// count as PARTIAL.
     ///
-    /// Where the region is FULL, whole subtrees are counted, 64 cells at a time; where it is EMPTY, nothing
-    /// is read; and where it is undecided and the octree is not EMPTY, it is split, down to the octree's
-    /// depth. The memory is O(depth). Once `control.max_splits` cells of both are split, the others count as
-    /// undecided. One thread. Whatever the bytes, no element is read twice, and damage reads as PARTIAL.
+    /// Where the region is FULL, whole subtrees are counted, 64 cells at a time. Where it is EMPTY, nothing
+    /// is read. Where it is undecided and the octree is not EMPTY, it is split, down to the octree's depth.
+    /// The memory is O(depth). Once `control.max_splits` cells of both are split, the other cells count as
+    /// undecided. It uses one thread. Whatever the bytes, no element is read twice, and damage reads as
+    /// PARTIAL.
     ///
     /// # Errors
-    /// What the region refuses; [`Error::OutOfMemory`], and [`Error::Cancelled`].
+    /// The region's own errors; [`Error::OutOfMemory`] and [`Error::Cancelled`].
     ///
     /// ```
     /// use leafless::{Control, Csg, Frame, Rule, build};
@@ -133,14 +136,13 @@ impl OctreeRef<'_> {
         Ok(self.content_in(region, Sums::of_cells(), control)?.cells())
     }
 
-    /// The volume that the solid and a region have in common, in cubic model units, as the octree's cells
-    /// tell it: FULL ones bound it from below, FULL and PARTIAL ones from above. The region is a ball
-    /// ([`Csg::ball`](crate::Csg::ball)) or any other solid; what lies outside of the universe does not
-    /// count.
+    /// Returns the volume that the solid and a region have in common, in cubic model units, as the octree's
+    /// cells determine it: FULL cells bound it from below, FULL and PARTIAL cells from above. The region is a
+    /// ball ([`Csg::ball`](crate::Csg::ball)) or any other solid. The outside of the universe does not count.
     ///
-    /// In a finest cell that the region cuts, its volume is known as well as the region knows it there: that
-    /// of a ball to the third order. Time, memory and hostile bytes are as for
-    /// [`cells_in`](OctreeRef::cells_in), with one or two microseconds more for each cell that is cut.
+    /// In a finest cell that the region cuts, the region's volume is as exact as the region provides it: for
+    /// a ball to the third order. Time, memory and the treatment of hostile bytes are as for
+    /// [`cells_in`](OctreeRef::cells_in), with one or two microseconds more for each cut cell.
     ///
     /// # Errors
     /// As [`cells_in`](OctreeRef::cells_in).
@@ -165,7 +167,7 @@ impl OctreeRef<'_> {
 }
 
 impl Octree {
-    /// As [`OctreeRef::cells_in`].
+    /// Returns the number of cells in a region. See [`OctreeRef::cells_in`] for the full contract.
     ///
     /// # Errors
     /// As [`OctreeRef::cells_in`].
@@ -173,10 +175,10 @@ impl Octree {
         self.view().cells_in(region, control)
     }
 
-    /// As [`OctreeRef::volume_in`].
+    /// Returns the volume in a region. See [`OctreeRef::volume_in`] for the full contract.
     ///
     /// # Errors
-    /// As [`OctreeRef::volume_in`].
+    /// As [`OctreeRef::cells_in`].
     pub fn volume_in<R: Solid>(&self, region: &R, control: &Control<'_>) -> Result<Interval, Error> {
         self.view().volume_in(region, control)
     }

@@ -12,13 +12,14 @@ use crate::solid::{FreeParts, OneByOne, Question, Verdict, Worker, split_twice};
 use alloc::vec::Vec;
 
 /// An octree as it is, whatever its cells prove. Each cell may be split once, depth first and in Morton
-/// order: so the links need not be checked before, which would take time in proportion to the whole tree.
+/// order. The links therefore need no check beforehand, which would take time in proportion to the whole
+/// tree.
 pub(super) struct Once<'t, 'a> {
     tree: &'t OctreeRef<'a>,
     windows: Windows,
 }
 
-/// Where a cut cell is described.
+/// The place where a cut cell is described.
 #[derive(Clone, Copy)]
 pub(super) enum Place {
     Element { level: usize, index: usize },
@@ -52,7 +53,7 @@ impl<'t, 'a> Once<'t, 'a> {
 impl Counted for Once<'_, '_> {
     fn below(&mut self, cells: u64, place: &Place) -> Option<[u64; 2]> {
         let Place::Element { level, index } = *place else { return None };
-        // What is damaged is undecided.
+        // A damaged cell is undecided.
         Some(below::count(self.tree, level, index, Some(&mut self.windows)).unwrap_or([0, cells]))
     }
 }

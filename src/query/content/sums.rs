@@ -1,4 +1,4 @@
-//! What is added up of cells.
+//! Sums over cells.
 
 use super::CellsIn;
 use crate::cut;
@@ -6,21 +6,21 @@ use crate::lattice::{CellMoments, Frame, Interval};
 use crate::octree::Tag;
 use crate::solid::Enclosure;
 
-/// A finest cell's volume in the units in which volumes are added up: at most 2^60 cells, so sums are below
+/// The volume of a finest cell, in the units of the sums. There are at most 2^60 cells, so sums are below
 /// 2^100.
 const CELL: i128 = 1 << BITS;
 const BITS: u32 = 40;
 
-/// More than what bounds of a cell's volume are off by, and their rounding to whole units.
+/// A bound above the error of a cell's volume bounds, including the rounding to whole units.
 const SLACK: f64 = 2.0;
 
-/// Numbers of cells, and their volume if it is asked for.
+/// Numbers of cells, and their volume if it is wanted.
 pub(super) struct Sums {
     cells: CellsIn,
     volume: Option<Share>,
 }
 
-/// What is known of a volume, in units: of a cell's, or of a sum's.
+/// The bounds of a volume, of a cell or of a sum, in units.
 #[derive(Clone, Copy)]
 pub(super) struct Share {
     least: i128,
@@ -41,17 +41,17 @@ impl Share {
         Share::between(low.volume, high.volume)
     }
 
-    /// Of eighths of a cell, as bounds by slabs and moments have them.
+    /// The share between two volumes in eighths of a cell, the unit of bounds by slabs and moments.
     fn between(low: f64, high: f64) -> Share {
         const EIGHTH: f64 = CELL as f64 / 8.0;
         let (low, high) = (libm::floor(low * EIGHTH) - SLACK, libm::ceil(high * EIGHTH) + SLACK);
-        // What is no number says nothing.
+        // NaN gives no bound.
         let least = if low > 0.0 { (low as i128).min(CELL) } else { 0 };
         let most = if high < CELL as f64 { (high as i128).max(least) } else { CELL };
         Share { least, most }
     }
 
-    /// What two sets have in common of which this is known.
+    /// The bounds of the intersection of two sets within a cell that have these bounds.
     pub(super) fn common(self, other: Share) -> Share {
         Share { least: (self.least + other.least - CELL).max(0), most: self.most.min(other.most) }
     }
@@ -66,13 +66,13 @@ impl Sums {
         Sums { cells: CellsIn::default(), volume: Some(Share { least: 0, most: 0 }) }
     }
 
-    /// Whether [`add_share`](Self::add_share) is wanted.
+    /// True if [`add_share`](Self::add_share) is wanted.
     #[inline(always)]
     pub(super) fn has_volume(&self) -> bool {
         self.volume.is_some()
     }
 
-    /// Adds `count` finest cells with these tags, neither of which is EMPTY, but for their volume.
+    /// Adds `count` finest cells with these tags, neither of which is EMPTY, without their volume.
     #[inline(always)]
     pub(super) fn add(&mut self, solid: Tag, region: Tag, count: u64) {
         let CellsIn { full_least, full_most, upper_least, upper_most } = &mut self.cells;
@@ -85,13 +85,13 @@ impl Sums {
         add(upper_most, true);
     }
 
-    /// Adds `count` finest cells that the region may meet, and of whose tags in the solid nothing is known.
+    /// Adds `count` finest cells that the region may meet and whose tags in the solid are unknown.
     pub(super) fn add_unknown(&mut self, count: u64) {
         let CellsIn { full_most, upper_most, .. } = &mut self.cells;
         (*full_most, *upper_most) = (full_most.saturating_add(count), upper_most.saturating_add(count));
     }
 
-    /// Adds the volume of `count` cells, of each of which as much is known.
+    /// Adds the volume of `count` cells that each have this share.
     #[inline(always)]
     pub(super) fn add_share(&mut self, share: Share, count: u64) {
         if let Some(volume) = &mut self.volume {
@@ -104,7 +104,7 @@ impl Sums {
         self.cells
     }
 
-    /// In cubic model units.
+    /// The volume in cubic model units.
     pub(super) fn volume(&self, frame: &Frame) -> Interval {
         let Share { least, most } = self.volume.unwrap_or(Share { least: 0, most: 0 });
         let units = Interval::between(Interval::of_integer(least).lower, Interval::of_integer(most).upper);

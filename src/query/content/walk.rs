@@ -11,10 +11,10 @@ use crate::walk::ProvenWorker;
 use crate::walk::split_one;
 use alloc::vec::Vec;
 
-/// A worker that may know how many cells there are below a cut one.
+/// A worker that may provide the number of cells below a cut cell.
 pub(super) trait Counted: Worker {
-    /// FULL and PARTIAL finest cells below a cell of so many, if that is known without splitting it. The cell
-    /// is not split after that.
+    /// Returns the number of FULL and of PARTIAL finest cells below a cell with `cells` finest cells, if it
+    /// is known without a split. The cell is not split afterwards.
     fn below(&mut self, cells: u64, part: &Self::Part) -> Option<[u64; 2]>;
 }
 
@@ -37,7 +37,7 @@ pub(super) fn walk<S: Counted, R: Worker>(
     job: &Job<'_>,
 ) -> Result<Sums, Error> {
     let roots = (solid.root()?, region.root()?);
-    // Where splits are counted, and where each may take long, there is one at a time.
+    // Where splits are counted, or each split may take long, cells are split one at a time.
     let by_eight = job.control().max_splits.is_some() || solid.likes_many() || region.likes_many();
     let left = job.control().max_splits.unwrap_or(u64::MAX);
     let (solid_parts, region_parts) = (Vec::new(), Vec::new());
@@ -50,7 +50,7 @@ pub(super) fn walk<S: Counted, R: Worker>(
 struct Walk<'a, S: Worker, R: Worker> {
     solid: S,
     region: R,
-    /// Of the blocks that are under way, each with the place in its block.
+    /// The parts of the present blocks, each with its place in its block.
     solid_parts: Vec<(u8, S::Part)>,
     region_parts: Vec<(u8, R::Part)>,
     depth: u8,
@@ -58,22 +58,22 @@ struct Walk<'a, S: Worker, R: Worker> {
     left: u64,
     sums: Sums,
     job: &'a Job<'a>,
-    /// Parts of the work that the progress knows of.
+    /// The progress reported so far.
     told: usize,
 }
 
-/// The finest level of which the progress is told.
+/// The finest level whose cells are reported as progress.
 const TOLD: u8 = 4;
 
 impl<S: Counted, R: Worker> Walk<'_, S, R> {
-    /// Takes in a cell, and tells of it.
+    /// Takes in a cell, and reports it as progress.
     fn cell(&mut self, cell: Cell, solid: Verdict<S::Part>, region: Verdict<R::Part>) -> Result<(), Error> {
         self.take(cell, solid, region)?;
         self.tell(cell);
         Ok(())
     }
 
-    /// Tells of the cells up to one, in Morton order. Of finer ones nothing is told.
+    /// Reports the cells up to this one, in Morton order. Finer cells are not reported.
     fn tell(&mut self, cell: Cell) {
         if cell.level <= TOLD {
             let place = (0..cell.level).fold(0, |place, level| {
@@ -155,7 +155,7 @@ impl<S: Counted, R: Worker> Walk<'_, S, R> {
         let of_region = grandchildren(&mut self.region, cell, region, &mut self.region_parts)?;
         let is_last = cell.level + 2 == self.depth;
         let both = !of_solid.empty() & !of_region.empty();
-        // Cells of which a part has more to tell: of the finest ones how much of them is solid.
+        // Cells with a part that provides more: for the finest cells, the volume.
         let mut open = 0;
         if !is_last || self.sums.has_volume() {
             let own = self.solid_parts[s..].iter().map(|(c, _)| *c);
@@ -179,7 +179,7 @@ impl<S: Counted, R: Worker> Walk<'_, S, R> {
         Ok(())
     }
 
-    /// Adds cells of which no more is known than their tags.
+    /// Adds cells of which only the tags are known.
     #[inline(always)]
     fn add(&mut self, solid: Tag, region: Tag, cells: u64) {
         self.sums.add(solid, region, cells);
@@ -187,7 +187,7 @@ impl<S: Counted, R: Worker> Walk<'_, S, R> {
         self.sums.add_share(if is_whole { Share::WHOLE } else { Share::UNKNOWN }, cells);
     }
 
-    /// Adds the volume of a cell that is split no more.
+    /// Adds the volume of a cell that is not split any further.
     fn add_cut(
         &mut self,
         cell: Cell,
@@ -203,7 +203,7 @@ impl<S: Counted, R: Worker> Walk<'_, S, R> {
     }
 }
 
-/// The children of a cell; each is as the cell, if that cannot be split.
+/// Returns the verdicts of a cell's children: the cell's own verdict for each, if the cell cannot be split.
 fn children<W: Worker>(
     worker: &mut W,
     cell: Cell,
@@ -222,7 +222,7 @@ fn children<W: Worker>(
     })
 }
 
-/// As [`children`], two levels below.
+/// Returns the verdicts two levels below, like [`children`].
 fn grandchildren<W: Worker>(
     worker: &mut W,
     cell: Cell,
@@ -235,8 +235,8 @@ fn grandchildren<W: Worker>(
     }
 }
 
-/// What a block says of cell `c`. `next` is the first part of the block that was not met before, which is
-/// none of an earlier cell.
+/// Returns the verdict of cell `c` of a block. `next` is the index of the block's first part that was not met
+/// before; it never belongs to an earlier cell.
 fn verdict<P: Clone>(planes: Planes, c: u8, parts: &[(u8, P)], next: &mut usize) -> Verdict<P> {
     match planes.tag(c.into()) {
         Tag::Empty => Verdict::Empty,
@@ -253,7 +253,7 @@ fn verdict<P: Clone>(planes: Planes, c: u8, parts: &[(u8, P)], next: &mut usize)
     }
 }
 
-/// What a worker knows of the volume in a cell.
+/// Returns the volume that a worker provides for a cell.
 fn share<W: Worker>(worker: &mut W, cell: Cell, verdict: &Verdict<W::Part>) -> Result<Share, Error> {
     Ok(match verdict {
         Verdict::Full => Share::WHOLE,
@@ -261,7 +261,7 @@ fn share<W: Worker>(worker: &mut W, cell: Cell, verdict: &Verdict<W::Part>) -> R
             Some(moments) => Share::of_moments(&moments),
             None => worker.enclosure(cell, part)?.map_or(Share::UNKNOWN, |known| Share::of_enclosure(&known)),
         },
-        // (An EMPTY cell has nothing to add, and is not asked about.)
+        // (An EMPTY cell adds nothing, and is not queried.)
         Verdict::Empty | Verdict::Undecided => Share::UNKNOWN,
     })
 }

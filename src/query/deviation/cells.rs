@@ -1,10 +1,10 @@
-//! The boundary of a solid by its cells.
+//! The boundary of a solid from its cells.
 //!
-//! The cells whose polygons would tell least are split first, until all of them tell enough. Then the
-//! boundary is made up of the polygons in PARTIAL cells, of the walls between what lies in the solid and what
-//! lies outside, and of what is left in PARTIAL cells of which nothing is known. That has the middle of the
-//! cell for a place, which is known to be near to the boundary if something of the closed cell lies in the
-//! solid and something outside.
+//! The cells with the greatest doubt are split first, until all polygons are exact enough. The boundary then
+//! consists of the polygons in PARTIAL cells, of the walls between the inside and the outside of the solid,
+//! and of the remaining PARTIAL cells of which nothing is known. Such a cell is represented by its middle,
+//! which is known to be near to the boundary if the closed cell holds points inside of the solid and points
+//! outside.
 
 use super::polygon::Polygon;
 use super::slabs::{Region, Slabs};
@@ -22,17 +22,17 @@ use alloc::sync::Arc;
 use alloc::vec::Vec;
 use core::cmp::Reverse;
 
-/// What is known of a cell.
+/// The state of a cell.
 #[derive(Clone, Copy)]
 enum Known {
     Empty,
     Full,
-    /// PARTIAL: the boundary may be anywhere in it. Whether something of the closed cell surely lies in the
-    /// solid, and outside.
+    /// PARTIAL: the boundary may be anywhere in the cell. Whether the closed cell surely has points inside of
+    /// the solid, and points outside.
     Open([bool; 2]),
-    /// PARTIAL, and its slabs are known: a place in the list.
+    /// PARTIAL, with known slabs: an index into the list.
     Slabs(u32),
-    /// The first of its eight children.
+    /// Split: the index of the first of its eight children.
     Split(u32),
 }
 
@@ -43,13 +43,13 @@ struct Cells {
     slabs: Vec<Slabs>,
 }
 
-/// What is open: the cell, the part, and the place of its slabs.
+/// An open cell: its node and its part.
 type Waiting<P> = (usize, P);
 
-/// The greatest radius first, then what was met earlier.
+/// The greatest radius first, then the cell met earlier.
 type Rank = (u64, Reverse<u64>);
 
-/// The boundary of a solid in the universe, where its slabs tell it, to `tolerance`.
+/// Returns the boundary of a solid in the universe, to `tolerance` where slabs determine it.
 pub(super) fn surface<C: Classifier>(
     solid: &C,
     tolerance: f64,
@@ -81,7 +81,7 @@ pub(super) fn surface<C: Classifier>(
         for (octant, child) in (0..8).zip(children) {
             cells.add(&mut subject, &mut open, cell.child(octant), child, tolerance)?;
         }
-        // (2^32 nodes would be a hundred gigabytes.)
+        // (2^32 nodes would take a hundred gigabytes.)
         cells.nodes[node].1 = Known::Split(first as u32);
     }
     drop(open);
@@ -117,8 +117,7 @@ impl Cells {
                 let slabs = subject.worker.enclosure(cell, &part)?.as_ref().and_then(Slabs::new);
                 let whole = sqrt(3.0) * half;
                 let radius = slabs.as_ref().map_or(whole, |slabs| (slabs.radius() * half).min(whole));
-                // Where the boundary runs along a wall, cells whose slabs are some times thinner tell on
-                // which side.
+                // Where the boundary runs along a wall, cells with slabs some times thinner decide the side.
                 const THINNER: f64 = 64.0;
                 let is_met = slabs.as_ref().is_none_or(Slabs::is_met);
                 let doubt = if is_met { radius } else { (THINNER * radius).min(whole) };
@@ -129,8 +128,8 @@ impl Cells {
                         Known::Slabs(self.slabs.len() as u32 - 1)
                     }
                     None if is_finest => {
-                        // A centre in the solid, or on its boundary, is a limit of the solid's points; others
-                        // likewise.
+                        // A centre in the solid, or on its boundary, is a limit of the solid's points. The
+                        // same holds for the outside.
                         let inside = subject.worker.sample(cell, &part)?;
                         Known::Open([inside == Some(true), inside == Some(false)])
                     }
@@ -146,8 +145,8 @@ impl Cells {
         memory::push(&mut self.nodes, (cell, known))
     }
 
-    /// Regions of a cell that surely lie in the solid, or outside of it. `None`: the space outside of the
-    /// universe.
+    /// Regions of a cell that surely lie inside of the solid, or surely outside. `None` as the node: the
+    /// space outside of the universe.
     fn regions(&self, node: Option<usize>, exterior: Tag, solid: bool) -> ([Region; 3], usize) {
         let all = |is_there: bool| ([Region::ALL; 3], usize::from(is_there));
         match node.map(|node| self.nodes[node].1) {
@@ -159,7 +158,7 @@ impl Cells {
         }
     }
 
-    /// Looks at all walls between cells.
+    /// Processes all walls between cells.
     fn walls(
         &mut self,
         exterior: Tag,
@@ -167,8 +166,7 @@ impl Cells {
         cores: &mut Layers,
         job: &Job<'_>,
     ) -> Result<(), Error> {
-        // Two cells, or one and the space outside, that have a wall in common across an axis: the lower one
-        // first.
+        // Two cells, or a cell and the space outside, with a common wall across an axis: the lower one first.
         let mut walls: Vec<([Option<usize>; 2], usize)> = Vec::new();
         for axis in 0..3 {
             memory::push(&mut walls, ([None, Some(0)], axis))?;
@@ -189,7 +187,7 @@ impl Cells {
                 for k in 0..4 {
                     let (u, v) = (1 << ((axis + 1) % 3), 1 << ((axis + 2) % 3));
                     let octant = u * (k & 1) + v * (k >> 1);
-                    // Of the lower cell the upper children.
+                    // In the lower cell, the upper children.
                     let part = |side: usize| match firsts[side] {
                         Some(first) => Some(first + octant + if side == 0 { 1 << axis } else { 0 }),
                         None => pair[side],
@@ -211,7 +209,7 @@ impl Cells {
         }
     }
 
-    /// Looks at the wall between two cells that are not split.
+    /// Processes the wall between two cells that are not split.
     fn wall(
         &mut self,
         pair: [Option<usize>; 2],
@@ -242,7 +240,7 @@ impl Cells {
                 _ => {}
             }
         }
-        // The smaller cell has all of the wall.
+        // The wall of the smaller cell lies entirely on the wall of the larger one.
         let level = |node: Option<usize>| node.map_or(-1, |node| i32::from(self.nodes[node].0.level));
         let side = usize::from(level(pair[1]) > level(pair[0]));
         let Some(own) = pair[side] else { return Ok(()) };
@@ -267,7 +265,7 @@ impl Cells {
         Ok(())
     }
 
-    /// Looks at all cells in which the boundary may be.
+    /// Processes all cells that may contain a part of the boundary.
     fn insides(&self, covers: &mut Layers, cores: &mut Layers, job: &Job<'_>) -> Result<(), Error> {
         for (count, &(cell, known)) in self.nodes.iter().enumerate() {
             if count % 4096 == 0 {
@@ -286,12 +284,12 @@ impl Cells {
                 }
                 Known::Open(met) => {
                     let mut polygon = Polygon::square(0, 0.0, 0.125);
-                    // What is left has the middle of the cell as a corner.
+                    // The remaining polygon has the middle of the cell as a corner.
                     polygon.clip([0.0, -1.0, 0.0], 0.0);
                     polygon.clip([0.0, 0.0, -1.0], 0.0);
                     covers.add(&self.frame, cell, &polygon, sqrt(3.0))?;
                     if met == [true; 2] {
-                        // All points of the cell are that near to the boundary.
+                        // All points of the cell are within this distance of the boundary.
                         cores.add(&self.frame, cell, &polygon, sqrt(3.0) + 0.25)?;
                     }
                 }
@@ -301,7 +299,7 @@ impl Cells {
     }
 }
 
-/// The coordinates of a cell, times the first number, plus the others, are those of a cell that is no
+/// Returns the scale and the offset that map the coordinates of `cell` to those of `other`, which is no
 /// smaller.
 fn seen_from(cell: Cell, other: Cell) -> (f64, [f64; 3]) {
     let scale = 1i64 << (cell.level - other.level);
@@ -310,7 +308,7 @@ fn seen_from(cell: Cell, other: Cell) -> (f64, [f64; 3]) {
     (1.0 / scale as f64, from)
 }
 
-/// Triangles with about one radius.
+/// Triangles with about the same radius.
 #[derive(Default)]
 struct Growing {
     vertices: Vec<[f64; 3]>,
@@ -318,10 +316,10 @@ struct Growing {
     radius: f64,
 }
 
-/// Triangles by their radii: up to the tolerance, and up to each further power of four times that.
+/// Triangles by their radii: up to the tolerance, and up to each further factor of four.
 struct Layers {
     tolerance: f64,
-    /// More than what rounding moves points by.
+    /// A bound above the displacement of points by rounding.
     rounding: f64,
     layers: Vec<Growing>,
 }
@@ -333,7 +331,7 @@ impl Layers {
         let Some(first) = corners.first() else { return Ok(()) };
         let cube = Cube { frame, cell };
         let (half, (min, max)) = (cube.half_edge(), cube.bounds());
-        // (Corners of cells are met exactly.)
+        // (Corners of cells are exact.)
         let place = |corner: &[f64; 3]| {
             axes(|axis| match corner[axis] {
                 1.0 => max[axis],
@@ -365,8 +363,8 @@ impl Layers {
             }
         }
         if !is_any {
-            // All of it is hardly longer than rounding makes, or a line: triangles with three different
-            // corners, next to it.
+            // The polygon is hardly longer than the rounding error, or degenerates to a line: use triangles
+            // with three different corners, next to it.
             layer.radius = layer.radius.max(radius + self.rounding);
             let mut beside = place(first);
             for axis in 0..2 {

@@ -1,4 +1,4 @@
-//! How far are the boundaries of two solids from each other?
+//! The distance between the boundaries of two solids (Hausdorff distance).
 
 mod cells;
 mod piece;
@@ -29,71 +29,69 @@ use search::Beyond;
 use search::Search;
 use surface::{Seen, Surface};
 
-/// What is known of how far the boundaries of two solids are from each other.
+/// Proven bounds of the distances between the boundaries of two solids, in both directions.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Deviation {
-    /// How far points of the first boundary are from the second one.
+    /// The greatest distance of a point of the first boundary from the second boundary.
     pub a_to_b: OneWay,
-    /// How far points of the second boundary are from the first one.
+    /// The greatest distance of a point of the second boundary from the first boundary.
     pub b_to_a: OneWay,
-    /// Why the search ended: that of both directions which says least.
+    /// Why the search ended: the weaker of both directions' reasons.
     pub stop_reason: StopReason,
-    /// Cells that were split, of the first solid and of the second; 0 of a solid whose boundary is known to
+    /// Number of cell splits in the first solid and in the second; 0 for a solid whose boundary is known to
     /// consist of triangles.
     pub splits: [u64; 2],
-    /// How often pieces of the first boundary were cut, and pieces of the second.
+    /// Number of cuts of the first boundary's pieces, and of the second boundary's pieces.
     pub cuts: [u64; 2],
-    /// What of the first and of the second solid is proven: what is not counts as undecided.
+    /// Which verdicts of the first and of the second solid are proven. Unproven verdicts count as undecided.
     pub proofs: [Proof; 2],
-    /// Whether the first solid and the second may go on outside of the universe. What is there is not looked
-    /// at: the points of a boundary are those in the universe, and the distances are those from all of the
-    /// other one.
+    /// Whether the first solid and the second may continue outside of the universe. The search considers only
+    /// the boundary points inside of the universe, but their distances from all of the other boundary.
     pub clipped: [bool; 2],
 }
 
-/// How far points of one boundary are from another one.
+/// Proven bounds of the greatest distance of a boundary's points from another boundary.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct OneWay {
     /// The greatest distance of a point of the one boundary from the nearest point of the other, in model
     /// units. 0 if the first solid has no boundary; infinite if the second has none and the first has.
     pub distance: Interval,
-    /// Where the lower bound is found, if it is greater than 0.
+    /// Where the lower bound is attained, if it is greater than 0.
     pub at: Option<Witness>,
 }
 
-/// A place where two boundaries are far from each other.
+/// A witness: a place where two boundaries are far from each other.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Witness {
     /// A point next to the first boundary (model units).
     pub point: [f64; 3],
-    /// The first boundary is that near to the point, or nearer: 0 if the point is a vertex of a mesh.
+    /// An upper bound of the point's distance from the first boundary: 0 if the point is a vertex of a mesh.
     pub apart: f64,
-    /// The point next to the second boundary that is nearest to it, but for what is not known of that
-    /// boundary.
+    /// The nearest point next to the second boundary, as far as that boundary is known.
     pub nearest: [f64; 3],
 }
 
-/// Whether two boundaries are within a distance of each other.
+/// The verdict on a maximal distance: whether two boundaries are within a distance of each other.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
 #[repr(u8)]
 pub enum Within {
-    /// Proven: each point of one boundary is that near to the other.
+    /// Proven: the distance of each point of either boundary from the other is at most this.
     Yes = 0,
     /// Proven: a point of one boundary is further away from the other.
     No = 1,
-    /// Not decided by what is known.
+    /// Neither is proven.
     Undecided = 2,
 }
 
 impl Deviation {
-    /// The greater of both directions: the Hausdorff distance of the boundaries.
+    /// Returns the greater of both directions: the Hausdorff distance of the boundaries.
     pub fn distance(&self) -> Interval {
         let (one, other) = (self.a_to_b.distance, self.b_to_a.distance);
         Interval::between(one.lower.max(other.lower), one.upper.max(other.upper))
     }
 
-    /// Whether the boundaries are within a distance (model units) of each other. Of two solids that end in
-    /// the universe, a distance of 0 asks whether they have the same boundary.
+    /// Returns whether the boundaries are within a distance (model units) of each other. For two solids that
+    /// are bounded by the universe, a distance of 0 tests whether they have the same boundary.
     pub fn within(&self, distance: f64) -> Within {
         let known = self.distance();
         if known.upper <= distance {
@@ -106,54 +104,54 @@ impl Deviation {
     }
 }
 
-/// Cells of a solid that [`deviation`] splits if `control.max_splits` sets no other limit; and a 64th of the
-/// cuts of pieces.
+/// The maximal number of cells of a solid that [`deviation`] splits if `control.max_splits` sets no other
+/// limit; and a 64th of the maximal number of cuts of pieces.
 pub const DEVIATION_SPLITS: u64 = 1 << 18;
 
-/// How exactly a limit is looked at, as a part of it.
+/// The precision of a comparison with a limit, as a part of the limit.
 #[cfg(feature = "std")]
 const EXACT: f64 = 1.0 / 128.0;
 
-/// How often a triangle is cut to find out whether it is within a limit.
+/// The maximal number of cuts of a triangle in a comparison with a limit.
 #[cfg(feature = "std")]
 const BEYOND: u64 = 1 << 10;
 
-/// Cells tell the boundary to this part of the tolerance.
+/// Cells determine the boundary to the tolerance divided by this.
 const CELLS: f64 = 12.0;
 
-/// Pieces are cut that much more often than cells are split.
+/// The ratio of cuts of pieces to cell splits in the budget.
 const CUTS: u64 = 64;
 
-/// How far the boundaries of `a` and `b` are from each other, in both directions (the Hausdorff distance is
-/// the greater one); a solid under a placement is moved first (see
-/// [`AnySolid::placed`](crate::AnySolid::placed)). What is looked at is the universe of `frame`.
+/// Returns the distances between the boundaries of `a` and `b`, in both directions (the Hausdorff distance is
+/// the greater one). To move a solid first, put it under a placement (see
+/// [`AnySolid::placed`](crate::AnySolid::placed)). The search covers the universe of `frame`.
 ///
-/// The boundary of a closed mesh whose triangles do not intersect is known exactly; triangles within the
-/// solid, as those of a body inside of another one, are none of it. Triangles that intersect others are cut
-/// into pieces, which are known exactly up to a twelfth of `tolerance` (model units) from where they meet.
-/// (Where triangles lie on each other, or 524 288 pieces are too few, cells are asked.) Of any other solid,
-/// cells of `frame` are split until the slabs of each tell where the boundary lies to a twelfth of
-/// `tolerance`, and faces between FULL and EMPTY cells are known exactly; what is not decided widens the
-/// intervals. Both boundaries are then pieces of planes, and the answer is found to rounding (some 10^-12 of
-/// the coordinates) by cutting these.
+/// The boundary of a closed mesh whose triangles do not intersect is known exactly. Triangles within the
+/// solid, such as those of a body inside of another one, do not belong to the boundary. Triangles that
+/// intersect others are cut into pieces, which are known exactly except within a twelfth of `tolerance`
+/// (model units) of the intersections. (Where triangles lie on each other, or 524 288 pieces are too few,
+/// cells are used.) For any other solid, cells of `frame` are split until the slabs of each locate the
+/// boundary to a twelfth of `tolerance`. Faces between FULL and EMPTY cells are known exactly. Undecided
+/// cells widen the intervals. Both boundaries then consist of plane pieces. The search cuts these pieces and
+/// finds the answer to rounding (about 10^-12 of the coordinates).
 ///
-/// The result's `stop_reason` says:
-/// - `Tolerance`: both intervals are no wider than `tolerance`. Two solids that are proven and have
-///   the same [fingerprint](Solid::fingerprint) have the distance 0.
-/// - `Exhausted`: neither cells nor pieces have more to tell. The cells of a solid without slabs tell about
-///   four times the diagonal of a finest cell.
+/// The result's `stop_reason` means:
+/// - `Tolerance`: both intervals are no wider than `tolerance`. Two solids that are proven and have the same
+///   [fingerprint](Solid::fingerprint) have the distance 0.
+/// - `Exhausted`: neither cells nor pieces can improve the result. The cells of a solid without slabs locate
+///   the boundary to about four times the diagonal of a finest cell.
 /// - `Budget`: `control.max_splits` cells of a solid were split, or [`DEVIATION_SPLITS`] if that is `None`,
-///   or 64 times as many pieces cut; or what is remembered comes near to `control.max_bytes`. The largest
-///   doubt is dealt with first.
+///   or 64 times as many pieces cut; or the stored data comes near to `control.max_bytes`. The largest doubt
+///   is processed first.
 ///
-/// O(n log n) for meshes of n triangles whose surfaces lie close to each other, some microseconds a triangle.
-/// Memory is linear in the triangles, and in the cells: of a curved surface with the area s and the greatest
-/// curvature c there are about c · s / `tolerance`. The same for any number of threads, which share the
-/// pieces; one thread splits cells.
+/// Complexity: O(n log n) for meshes of n triangles whose surfaces lie close to each other, some microseconds
+/// a triangle. Memory is linear in the triangles and in the cells: a curved surface with the area s and the
+/// greatest curvature c has about c · s / `tolerance` cells. The result does not depend on the number of
+/// threads, which share the pieces. One thread splits cells.
 ///
 /// # Errors
-/// [`Error::Argument`] if `tolerance` is negative or not a number; what the solids refuse;
-/// [`Error::OutOfMemory`], and [`Error::Cancelled`].
+/// [`Error::Argument`] if `tolerance` is negative or not a number; the solids' own errors;
+/// [`Error::OutOfMemory`] and [`Error::Cancelled`].
 ///
 /// ```
 /// use leafless::{Control, Csg, Frame, deviation, query::Within};
@@ -176,7 +174,7 @@ pub fn deviation<A: Solid, B: Solid>(
     job.check()?;
     let is_alike = a.fingerprint().is_some_and(|own| b.fingerprint() == Some(own));
     let (a, b) = (Proven(a.on(frame, control)?), Proven(b.on(frame, control)?));
-    // (Of two boundaries that lie somewhere beside the same mesh, each may lie elsewhere.)
+    // (Boundaries that lie somewhere near the same mesh may differ from each other.)
     let is_exact = |proof: Proof| proof.is_certified() && proof.displacement() == 0.0;
     let is_same = is_alike && is_exact(a.proof()) && is_exact(b.proof());
     let mut found = Deviation {
@@ -219,10 +217,10 @@ pub fn deviation<A: Solid, B: Solid>(
     Ok(found)
 }
 
-/// How far the triangles of two meshes are from each other at the most, in both directions, found no more
-/// exactly than `limit` asks, and the triangles of the second mesh next to which it is not proven to be
-/// within the limit (model units; in no order, some more than once). Unlike [`deviation`] of closed meshes it
-/// looks at all triangles, whatever they enclose.
+/// Returns an upper bound of the distance between the triangles of two meshes, in both directions, and the
+/// triangles of the second mesh near which the distance is not proven to be within the limit (model units; in
+/// no order, some more than once). The bound is only as exact as `limit` requires. Unlike [`deviation`] of
+/// closed meshes, the comparison uses all triangles, whatever they enclose.
 #[cfg(feature = "std")]
 pub(crate) fn meshes_apart(
     a: &TriangleMesh,
@@ -257,7 +255,7 @@ pub(crate) fn meshes_apart(
     Ok((most, beyond))
 }
 
-/// The boundary of a solid: exactly, or by no more than `budget` cells to a tolerance.
+/// Returns the boundary of a solid: exactly, or to a tolerance by at most `budget` cells.
 fn surface<C: Classifier>(solid: &C, tolerance: f64, budget: u64, job: &Job<'_>) -> Result<Surface, Error> {
     match solid.facets(job.control())? {
         Some(facets) => Surface::of_facets(facets),

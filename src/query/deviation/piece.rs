@@ -3,14 +3,14 @@
 use super::surface::{Facet, Near};
 use crate::lattice::axes;
 
-/// Corners of a piece at the most.
+/// The maximal number of corners of a piece.
 pub(super) const MOST: usize = 8;
 
-/// Pieces that were cut more often are not cut any more. Each cut rounds, by less than 2^-49 of the largest
-/// coordinate, and a piece is cut three times at once at the most.
+/// The maximal number of successive cuts of a piece. Each cut rounds, by less than 2^-49 of the largest
+/// coordinate, and a piece is cut at most three times at once.
 pub(super) const GENERATIONS: u8 = 60;
 
-/// A corner with what is known of its distance, if somebody has asked.
+/// A corner with the bounds of its distance, once computed.
 #[derive(Clone, Copy)]
 pub(super) struct Corner {
     pub(super) at: [f64; 3],
@@ -23,11 +23,11 @@ pub(super) struct Piece {
     corners: [Corner; MOST],
     count: u8,
     pub(super) generation: u8,
-    /// A facet that may be near to all of it.
+    /// A facet that may be near to all of the piece.
     pub(super) hint: Facet,
-    /// How far the surface may be from it.
+    /// The maximal distance of the surface from the piece.
     pub(super) radius: f64,
-    /// No point of the surface next to it has a greater distance.
+    /// An upper bound of the distance of the surface's points next to the piece.
     pub(super) upper: f64,
 }
 
@@ -66,7 +66,7 @@ impl Piece {
         axes(|axis| self.corners().iter().map(|corner| share * corner.at[axis]).sum())
     }
 
-    /// A part of the piece, without corners as yet.
+    /// A part of the piece, still without corners.
     fn part(&self, hint: Facet) -> Piece {
         Piece { count: 0, generation: self.generation + 1, hint, ..*self }
     }
@@ -76,7 +76,7 @@ impl Piece {
         self.count += 1;
     }
 
-    /// The corners that are farthest from each other, and the square of their distance.
+    /// Returns the two corners that are farthest from each other, and the square of their distance.
     pub(super) fn diameter(&self) -> (usize, usize, f64) {
         let corners = self.corners();
         let mut most = (0, 0, 0.0);
@@ -92,9 +92,9 @@ impl Piece {
         most
     }
 
-    /// The parts where a function is negative, and where it is positive, which has these values at the
-    /// corners and is about linear. Nothing if one of them would be the whole piece, or they would not be
-    /// convex.
+    /// Returns the parts where a function is negative and where it is positive. The function has these values
+    /// at the corners and is approximately linear. `None` if one of the parts would be the whole piece, or
+    /// the parts would not be convex.
     pub(super) fn cut(&self, value: impl Fn(&Corner) -> f64) -> Option<[Piece; 2]> {
         let (corners, count) = (self.corners(), self.count as usize);
         let mut values = [0.0; MOST];
@@ -103,7 +103,7 @@ impl Piece {
             *value_at = value(corner);
             most = most.max(value_at.abs());
         }
-        // What is about zero lies on the cut.
+        // A corner with a value of about zero lies on the cut.
         const ZERO: f64 = 1.0 / (1u64 << 36) as f64;
         let mut signs = [0i8; MOST];
         for (sign, &value) in signs.iter_mut().zip(&values[..count]) {
@@ -139,7 +139,7 @@ impl Piece {
         Some(parts)
     }
 
-    /// Two halves, across the longest way from corner to corner.
+    /// Cuts the piece into halves, across its diameter.
     pub(super) fn halves(&self) -> Option<[Piece; 2]> {
         let (i, j, _) = self.diameter();
         let (a, b) = (self.corners[i].at, self.corners[j].at);
@@ -147,7 +147,7 @@ impl Piece {
         self.cut(|corner| dot(way, minus(corner.at, middle)))
     }
 
-    /// Two parts with fewer corners, along a diagonal. (For five corners and more.)
+    /// Cuts the piece into two parts with fewer corners, along a diagonal. (For five corners and more.)
     pub(super) fn fans(&self) -> [Piece; 2] {
         let (corners, half) = (self.corners(), self.count as usize / 2);
         let mut parts = [self.part(self.hint), self.part(self.hint)];
@@ -156,8 +156,9 @@ impl Piece {
         parts
     }
 
-    /// The parts that lie beyond the edges of a triangle, seen along its normal, and the one that lies within
-    /// them, if that is not all. `facet` is the triangle. Nothing if no part lies within.
+    /// Returns the parts that lie beyond the edges of a triangle, projected along its normal, and the part
+    /// within the edges, if that is not the whole piece. `facet` is the triangle. `None` if no part lies
+    /// within.
     pub(super) fn seen_through(
         &self,
         [a, b, c]: [[f64; 3]; 3],
@@ -169,7 +170,7 @@ impl Piece {
             return None;
         }
         let outward = [[a, b], [b, c], [c, a]].map(|[from, to]| (from, cross(minus(to, from), normal)));
-        // Nothing lies within if all of it lies beyond one edge.
+        // No part lies within the triangle if the whole piece lies beyond one edge.
         let is_beyond = |&(from, outward): &([f64; 3], [f64; 3])| {
             self.corners().iter().all(|corner| dot(outward, minus(corner.at, from)) >= 0.0)
         };

@@ -3,7 +3,7 @@
 use super::piece::dot;
 use crate::lattice::axes;
 
-/// Corners of a polygon at the most: four of a face, and one more for each plane.
+/// The maximal number of corners of a polygon: four of a face, and one more for each plane.
 const MOST: usize = 16;
 
 /// A convex polygon.
@@ -14,7 +14,7 @@ pub(super) struct Polygon {
 }
 
 impl Polygon {
-    /// A square across an axis, at a coordinate.
+    /// Builds a square across an axis, at a coordinate.
     pub(super) fn square(axis: usize, at: f64, half: f64) -> Polygon {
         let mut corners = [[0.0; 3]; MOST];
         for (corner, [u, v]) in corners.iter_mut().zip([[-1.0, -1.0], [1.0, -1.0], [1.0, 1.0], [-1.0, 1.0]]) {
@@ -23,7 +23,7 @@ impl Polygon {
         Polygon { corners, count: 4 }
     }
 
-    /// What the plane n · x = level has in common with the cube [-half, half]³, but for rounding.
+    /// Builds the intersection of the plane n · x = level with the cube [-half, half]³, up to rounding.
     pub(super) fn of_plane(normal: [f64; 3], level: f64, half: f64) -> Polygon {
         let axis =
             (1..3).fold(0, |most, axis| if normal[axis].abs() > normal[most].abs() { axis } else { most });
@@ -39,7 +39,7 @@ impl Polygon {
         polygon
     }
 
-    /// Takes away what does not lie in n · x ≤ offset.
+    /// Removes the part outside of n · x ≤ offset.
     pub(super) fn clip(&mut self, normal: [f64; 3], offset: f64) {
         let old = *self;
         let height = |k: usize| dot(normal, old.corners[k]) - offset;
@@ -47,7 +47,7 @@ impl Polygon {
         for k in 0..old.count {
             let next = (k + 1) % old.count;
             let (a, b) = (height(k), height(next));
-            // (What is no number does not lie there.)
+            // (NaN does not lie there.)
             if a <= 0.0 {
                 self.push(old.corners[k]);
             }

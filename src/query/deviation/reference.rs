@@ -1,4 +1,4 @@
-//! How far meshes are from the boundary of one solid.
+//! The distance of meshes from the boundary of one solid.
 
 use super::piece::{dot, minus};
 use super::search::{Beyond, Search};
@@ -13,39 +13,39 @@ use crate::solid::Classifier;
 use alloc::sync::Arc;
 use alloc::vec::Vec;
 
-/// The boundary of a solid that ends in the universe, as far as it is known: meshes are compared with it.
+/// The boundary of a bounded solid, as far as it is known, for comparison with meshes.
 pub(crate) struct Reference(Option<Surface>);
 
-/// The greatest distance is known to this part of what is allowed.
+/// The precision of the greatest distance, as a part of the allowed distance.
 const SHARE: f64 = 1.0 / 16.0;
 
-/// Pieces are cut that often at the most, for each triangle, to tell the greatest distance more exactly than
-/// was asked for, and triangles of both surfaces for which that is done.
+/// The maximal number of extra cuts for each triangle, which make the greatest distance more exact than
+/// required; and the number of triangles of both surfaces up to which these cuts are made.
 const CUTS: u64 = 4;
 const MANY: usize = 1 << 15;
 
-/// A mesh that is compared with a boundary, perhaps not for the first time.
+/// A mesh to compare with a boundary. It may have been compared before.
 pub(crate) struct Remade<'c> {
     pub(crate) mesh: &'c Arc<TriangleMesh>,
-    /// Which of its triangles are looked at, and of the boundary what is near to these; all if it is empty.
+    /// The triangles to compare, also with the boundary near to them; all triangles if this is empty.
     pub(crate) is_new: &'c [bool],
-    /// How often a triangle is cut at the most to find out how far it is.
+    /// The maximal number of cuts of a triangle that are made to find its distance.
     pub(crate) cuts: u64,
 }
 
-/// What a comparison tells.
+/// The result of a comparison.
 pub(crate) struct Comparison {
-    /// No point of the triangles that were looked at is further from the boundary than that, and none of the
-    /// boundary next to them from the mesh (model units). That is proven; infinite if nothing is known.
+    /// A proven upper bound (model units) of the distance of the compared triangles from the boundary, and of
+    /// the nearby boundary from the mesh; infinite if nothing is known.
     pub(crate) most: f64,
-    /// Triangles of the mesh where one of both is proven to be further from the other than was allowed, or
-    /// nearly so.
+    /// Triangles of the mesh where one of these distances is proven to exceed the allowed distance, or nearly
+    /// so.
     pub(crate) beyond: Vec<u32>,
 }
 
 impl Reference {
-    /// Where the boundary is not known exactly, up to `budget` cells are split until it is known to
-    /// `tolerance` (model units).
+    /// Builds the reference. If the boundary is not known exactly, up to `budget` cells are split until it is
+    /// known to `tolerance` (model units).
     pub(crate) fn new<C: Classifier>(
         solid: &C,
         tolerance: f64,
@@ -58,7 +58,7 @@ impl Reference {
         super::surface(solid, tolerance, budget, job).map(|surface| Reference(Some(surface)))
     }
 
-    /// Compares a mesh with the boundary, no more exactly than it takes to tell where they are further apart
+    /// Compares a mesh with the boundary, only as exactly as necessary to find where they are further apart
     /// than `allowed` (model units).
     pub(crate) fn beyond(
         &self,
@@ -68,7 +68,7 @@ impl Reference {
     ) -> Result<Comparison, Error> {
         let job = &Job::new(control);
         let mut found = Comparison { most: f64::INFINITY, beyond: Vec::new() };
-        // (Nothing is proven to be too far from what may be anywhere.)
+        // (No distance from a boundary of unknown position is proven to be too large.)
         let Some(surface) = self.0.as_ref().filter(|surface| !surface.is_unknown()) else { return Ok(found) };
         found.most = 0.0;
         let new = compared.new_ones()?;
@@ -98,9 +98,9 @@ impl Reference {
         Ok(found)
     }
 
-    /// No point of a mesh is further from the boundary than that, and none of the boundary from the mesh
-    /// (model units): to a sixteenth of `allowed`, if that is found out soon. Infinite if nothing is known,
-    /// and where there are so many triangles that it takes long.
+    /// Returns an upper bound (model units) of the distance of a mesh's points from the boundary, and of the
+    /// boundary's points from the mesh: to a sixteenth of `allowed`, if that can be found quickly. Infinite
+    /// if nothing is known, and if the number of triangles is too large.
     pub(crate) fn apart(
         &self,
         mesh: &Arc<TriangleMesh>,
@@ -144,7 +144,7 @@ impl Reference {
 }
 
 impl Remade<'_> {
-    /// The triangles that are looked at, if these are not all.
+    /// The triangles to compare, unless these are all.
     fn new_ones(&self) -> Result<Option<TriangleMesh>, Error> {
         if self.is_new.is_empty() {
             return Ok(None);
@@ -158,7 +158,7 @@ impl Remade<'_> {
     }
 }
 
-/// Whether a triangle may be near to one of a tree.
+/// Returns whether a triangle may be within `distance` of a triangle of a tree.
 fn is_near(mesh: &TriangleMesh, triangle: u32, tree: &TriangleTree<'_>, distance: f64) -> bool {
     let [a, b, c] = mesh.triangles()[triangle as usize].map(|vertex| mesh.vertices()[vertex as usize]);
     let length = |p: [f64; 3]| dot(minus(p, a), minus(p, a));

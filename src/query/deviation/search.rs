@@ -1,14 +1,14 @@
 //! The search for the point of one surface that is farthest from another one.
 //!
-//! The distance from a convex set is a convex function, so that over a convex piece it is greatest at a
-//! corner. Hence no point of a piece is further from a surface than the farthest of its corners is from a
-//! single facet of that; the best such facet gives the upper bound. The distances of corners that lie on the
-//! first surface are lower bounds. Pieces whose upper bound is too great are cut: along the edges of a facet,
-//! seen along its normal, where it is near; where two facets are about equally far away; and now and then in
-//! the middle, so that pieces become small whatever happens.
+//! The distance from a convex set is a convex function. Over a convex piece it is therefore greatest at a
+//! corner. Hence no point of a piece is further from a surface than the farthest of the piece's corners is
+//! from a single facet of that surface. The best such facet gives the upper bound. The distances of corners
+//! that lie on the first surface are lower bounds. Pieces whose upper bound is too great are cut: along the
+//! edges of a facet, projected along its normal, if the facet is near; where two facets are about equally far
+//! away; and from time to time in the middle, so that pieces become small in any case.
 //!
-//! Pieces with the greatest upper bounds come first, some of them at once, and each of them goes on by itself
-//! for a while. What comes out does not depend on the threads.
+//! Pieces with the greatest upper bounds come first, in batches. Each piece of a batch is processed by itself
+//! for a while. The result does not depend on the number of threads.
 
 use super::piece::{Corner, GENERATIONS, MOST, Piece};
 use super::surface::{Facet, Near, Seen};
@@ -24,36 +24,37 @@ use crate::walk::Queue;
 use alloc::vec::Vec;
 use core::cmp::Reverse;
 
-/// Vertices or triangles that one task looks at.
+/// The number of vertices or triangles in one task.
 const CHUNK: usize = 1 << 10;
 
-/// Pieces that are taken up at once, and how often each of them and its parts are cut before it is put back.
+/// The number of pieces in a batch, and the number of cuts of each of them and its parts before the rest is
+/// put back.
 const BATCH: usize = 128;
 const CUTS: u64 = 64;
 
-/// Facets that are tried for the upper bound of a piece.
+/// The number of facets tried for the upper bound of a piece.
 const TRIED: usize = 5;
 
-/// The point with the greatest distance that is proven so far.
+/// The point with the greatest distance proven so far.
 #[derive(Clone, Copy)]
 struct Best {
     lower: f64,
-    /// The point, how far the surface may be from it, and the facet that is nearest to it.
+    /// The point, the maximal distance of the surface from it, and its nearest facet.
     at: Option<([f64; 3], f64, Facet)>,
 }
 
-/// A piece that is still to be looked into.
+/// A piece that is still to be processed.
 enum Item {
     /// A whole triangle of a layer.
     Triangle(usize, u32),
-    /// A place in the list of pieces.
+    /// An index into the list of pieces.
     Piece(usize),
 }
 
-/// The greatest upper bound first (the bits of a double that is not negative), then what was met earlier.
+/// The greatest upper bound first (the bits of a non-negative double), then the piece met earlier.
 type Rank = (u64, Reverse<u64>);
 
-/// What became of a piece.
+/// The result of cutting a piece.
 struct Refined {
     best: Best,
     settled: f64,
@@ -65,13 +66,13 @@ struct Refined {
 #[cfg(feature = "std")]
 pub(super) struct Beyond {
     pub(super) triangle: u32,
-    /// The triangle of the other surface that is nearest to where it is farthest, if that is known.
+    /// The triangle of the other surface that is nearest to this triangle's farthest point, if known.
     pub(super) nearest: Option<u32>,
-    /// Whether a point of it is proven to be further away.
+    /// Whether a point of the triangle is proven to be further away.
     pub(super) is_proven: bool,
 }
 
-/// Which triangles of which layers are looked at.
+/// A predicate that selects triangles by layer and index.
 pub(super) type Wanted<'w> = dyn Fn(usize, u32) -> bool + Sync + 'w;
 
 /// Two surfaces.
@@ -83,7 +84,7 @@ pub(super) struct Search<'s> {
 }
 
 impl Search<'_> {
-    /// The greatest distance of a point of the first surface from the second, and how many pieces were cut.
+    /// Returns the greatest distance of a point of the first surface from the second, and the number of cuts.
     pub(super) fn run(&self, parallel: bool, job: &Job<'_>) -> Result<(OneWay, u64, StopReason), Error> {
         let mut best = Best { lower: 0.0, at: None };
         if self.from.is_empty() {
@@ -136,9 +137,9 @@ impl Search<'_> {
         Ok((OneWay { distance, at: self.witness(&best) }, cuts, stop_reason))
     }
 
-    /// How far the wanted triangles of the first surface are from the second one at the most, found no more
-    /// exactly than `limit` and the tolerance ask, and those that are not proven to be within both together
-    /// after so many cuts each.
+    /// Returns an upper bound of the distance of the wanted triangles of the first surface from the second
+    /// one, only as exactly as `limit` and the tolerance require, and the triangles that are not proven to be
+    /// within `limit` plus the tolerance after `cuts` cuts each.
     #[cfg(feature = "std")]
     pub(super) fn beyond(
         &self,
@@ -199,7 +200,7 @@ impl Search<'_> {
         Some(Witness { point, apart, nearest: self.to.nearest_on(facet, point)? })
     }
 
-    /// What is known of all vertices that wanted triangles of the first surface have.
+    /// Returns the bounds of the distance for all vertices of the wanted triangles of the first surface.
     fn vertices(
         &self,
         parallel: bool,
@@ -247,8 +248,7 @@ impl Search<'_> {
         Piece::triangle(corners, from.radius)
     }
 
-    /// Looks at all triangles; those that matter are put into the queue. The greatest upper bound of the
-    /// others.
+    /// Processes all triangles and queues the relevant ones. Returns the greatest upper bound of the others.
     fn triangles(
         &self,
         parallel: bool,
@@ -296,7 +296,8 @@ impl Search<'_> {
         Ok(settled)
     }
 
-    /// Takes in a point of the pieces, which the surface is within `radius` of if it is known exactly.
+    /// Considers a point of the pieces as the best one. The surface is within `radius` of the point if the
+    /// surface is known exactly.
     fn consider(&self, best: &mut Best, at: [f64; 3], near: Near, radius: f64) {
         if near.lower <= best.lower {
             return;
@@ -304,18 +305,18 @@ impl Search<'_> {
         let apart = if self.from.is_exact() { radius } else { self.from.near_core(at, Facet::NONE).upper };
         let is_exact = apart == 0.0 || near.lower == f64::INFINITY;
         let lower = if is_exact { near.lower } else { (near.lower - apart).next_down() };
-        // (What is no number is not greater.)
+        // (NaN is not greater.)
         if apart < f64::INFINITY && lower > best.lower {
             *best = Best { lower, at: Some((at, apart, near.facet)) };
         }
     }
 
-    /// By how much distances of a piece may be those of the surface.
+    /// The maximal difference between the distances of a piece and those of the surface.
     fn slack(&self, piece: &Piece) -> f64 {
         piece.radius + if piece.generation > 0 { self.from.rounding } else { 0.0 }
     }
 
-    /// The upper bound of a piece by a facet, if that is less than another one.
+    /// Returns the upper bound of a piece by a facet, if it is less than `less_than`.
     fn upper_by(&self, piece: &Piece, facet: Facet, less_than: f64) -> Option<f64> {
         let slack = self.slack(piece);
         let mut most: f64 = 0.0;
@@ -330,7 +331,7 @@ impl Search<'_> {
         Some(if slack > 0.0 { (most + slack).next_up() } else { most })
     }
 
-    /// Finds the upper bound of a piece. One of no more than `enough` is good enough.
+    /// Finds the upper bound of a piece. A bound of at most `enough` is sufficient.
     fn bound(&self, piece: &mut Piece, enough: f64, best: &mut Best) {
         let mut tried = [Facet::NONE; TRIED];
         let mut count = 0;
@@ -361,7 +362,7 @@ impl Search<'_> {
         (piece.upper, piece.hint) = found;
     }
 
-    /// Cuts a piece and its parts some times, those with the greatest upper bounds first.
+    /// Cuts a piece and its parts up to `most` times, the parts with the greatest upper bounds first.
     fn refine(&self, piece: Piece, best: Best, most: u64, job: &Job<'_>) -> Result<Refined, Error> {
         job.check()?;
         let mut refined = Refined { best, settled: 0.0, rest: Vec::new(), cuts: 0 };
@@ -372,7 +373,7 @@ impl Search<'_> {
         {
             self.complete(&mut piece, &mut refined.best);
             let enough = refined.best.lower + self.tolerance;
-            // (No other one has a greater bound.)
+            // (No other piece has a greater bound.)
             if piece.upper <= enough || self.is_settled(&piece) {
                 refined.settled = refined.settled.max(piece.upper);
                 continue;
@@ -399,7 +400,7 @@ impl Search<'_> {
         Ok(refined)
     }
 
-    /// Finds out how far all corners of a piece are.
+    /// Computes the distances of all corners of a piece.
     fn complete(&self, piece: &mut Piece, best: &mut Best) {
         let (radius, hint) = (piece.radius + self.from.rounding, piece.hint);
         for corner in piece.corners_mut().iter_mut().filter(|corner| corner.near.facet == Facet::NONE) {
@@ -408,20 +409,20 @@ impl Search<'_> {
         }
     }
 
-    /// Whether cutting a piece tells no more.
+    /// True if cutting a piece cannot improve the result.
     fn is_settled(&self, piece: &Piece) -> bool {
         let slack = self.slack(piece);
         let fine = 4.0 * self.from.rounding;
         if piece.generation >= GENERATIONS || sqrt(piece.diameter().2) <= fine {
             return true;
         }
-        // Parts with a corner have an upper bound that is no less than that of the corner.
+        // A part with a corner has an upper bound no less than the corner's.
         let corners = piece.corners().iter().map(|corner| corner.near.upper);
         let least = corners.fold(0.0, f64::max) + slack;
         piece.upper - least <= (0.25 * self.tolerance).max(0.125 * slack).max(fine)
     }
 
-    /// Cuts a piece. False if it cannot be cut.
+    /// Cuts a piece. Returns `false` if the piece cannot be cut.
     fn cut(&self, piece: &Piece, parts: &mut [Option<Piece>; 4]) -> bool {
         let corners = piece.corners();
         let mut two = |cut: Option<[Piece; 2]>| {
@@ -431,7 +432,7 @@ impl Search<'_> {
             }
             is_cut
         };
-        // (Before all else: cuts along facets may leave long pieces long, however often there are some.)
+        // (First of all: any number of cuts along facets may leave long pieces long.)
         if piece.generation % 3 == 2 && two(piece.halves()) {
             return true;
         }
@@ -461,16 +462,16 @@ impl Search<'_> {
     }
 }
 
-/// Pieces that matter.
+/// The pieces that are still relevant.
 struct Open {
     queue: Queue<Rank, Item>,
     pieces: Vec<Piece>,
-    /// Places in the list that are not in use.
+    /// Indices of the list that are not in use.
     free: Vec<usize>,
 }
 
 impl Open {
-    /// The greatest upper bound, 0 if there is no piece.
+    /// The greatest upper bound; 0 if there is no piece.
     fn greatest(&self) -> f64 {
         self.queue.peek().map_or(0.0, |entry| f64::from_bits(entry.key.0))
     }
@@ -495,7 +496,7 @@ impl Open {
         Ok(self.pieces[place])
     }
 
-    /// Whether the pieces in memory take much of what the caller allows.
+    /// True if the pieces in memory take much of the bytes that the caller allows.
     fn takes_too_much(&self, control: &Control<'_>) -> bool {
         control.max_bytes.is_some_and(|limit| memory::bytes_of(&self.pieces) as u64 > limit / 4)
     }

@@ -1,7 +1,7 @@
-//! The boundary of a solid in a cell of which the enclosure is known, as polygons.
+//! The boundary of a solid in a cell with a known enclosure, as polygons.
 //!
-//! All of it is in the cell's own coordinates, from its centre in half edges. The slabs of a union are looked
-//! at as those of the complement, which has the same boundary.
+//! All coordinates are the cell's own, from its centre in half edges. The slabs of a union are replaced by
+//! those of the complement, which has the same boundary.
 
 use super::piece::dot;
 use super::polygon::Polygon;
@@ -9,7 +9,7 @@ use crate::cut;
 use crate::lattice::exact::sqrt;
 use crate::solid::{Enclosure, Slab, SlabJoin};
 
-/// More than what rounding changes in the coordinates of a cell, as a part of the normal's range.
+/// A bound above the rounding error in the coordinates of a cell, as a part of the normal's range.
 pub(super) const ROUNDING: f64 = 1.0 / (1u64 << 42) as f64;
 
 /// A part of a cell: the points with n · x ≤ offset for all of up to three half-spaces.
@@ -27,8 +27,8 @@ impl Region {
         self.count += 1;
     }
 
-    /// Leaves of a polygon in another cell's coordinates what surely lies in the region: those coordinates
-    /// times `ratio`, plus `from`, are the region's.
+    /// Reduces a polygon in another cell's coordinates to the part that surely lies in the region. The
+    /// region's coordinates are the polygon's times `ratio`, plus `from`.
     pub(super) fn clip(&self, polygon: &mut Polygon, ratio: f64, from: [f64; 3]) {
         for &(normal, offset) in &self.halves[..self.count] {
             let range: f64 = normal.iter().map(|c| c.abs()).sum();
@@ -37,22 +37,22 @@ impl Region {
     }
 }
 
-/// The slabs that cross a cell. The solid, or its complement, is what lies behind all of them.
+/// The slabs that cross a cell. The solid, or its complement, is the region behind all of them.
 #[derive(Clone, Copy)]
 pub(super) struct Slabs {
     slabs: [Slab; 3],
     count: u8,
-    /// Whether it is the complement.
+    /// Whether the region is the complement.
     is_hollow: bool,
-    /// Whether nothing lies behind all of them.
+    /// Whether the region behind all slabs is empty.
     is_void: bool,
-    /// Walls of the cell all of which is the wall of a FULL cell, and of an EMPTY one, as bits: 2 · axis, and
-    /// one more for the upper.
+    /// The walls of the cell that lie entirely on the wall of a FULL cell, and those on the wall of an EMPTY
+    /// cell, as bits: 2 · axis, and one more for the upper wall.
     walls: [u8; 2],
 }
 
 impl Slabs {
-    /// What an enclosure tells; nothing if it leaves open how far the boundary reaches.
+    /// Returns the slabs of an enclosure; `None` if they do not bound the boundary.
     pub(super) fn new(enclosure: &Enclosure) -> Option<Slabs> {
         let is_hollow = enclosure.join == SlabJoin::Any;
         let enclosure = if is_hollow { enclosure.complement() } else { *enclosure };
@@ -81,45 +81,45 @@ impl Slabs {
         &self.slabs[..self.count as usize]
     }
 
-    /// Half the width of a slab, and a little.
+    /// Half the width of a slab, slightly enlarged.
     fn half_width(slab: &Slab) -> f64 {
         let length = sqrt(dot(slab.normal, slab.normal));
         0.5 * (slab.outer - slab.inner) / length * (1.0 + ROUNDING) + 4.0 * ROUNDING
     }
 
-    /// How far the boundary may be from the polygons; 0 if there is none of it.
+    /// An upper bound of the boundary's distance from the polygons; 0 if the cell has no boundary.
     pub(super) fn radius(&self) -> f64 {
         if self.is_void { 0.0 } else { self.slabs().iter().map(Slabs::half_width).fold(0.0, f64::max) }
     }
 
-    /// Takes in that all of a wall is the wall of a FULL cell, or of an EMPTY one.
+    /// Records that a wall lies entirely on the wall of a FULL cell, or of an EMPTY one.
     pub(super) fn meet(&mut self, axis: usize, is_upper: bool, is_full: bool) {
         self.walls[usize::from(!is_full)] |= 1 << (2 * axis + usize::from(is_upper));
     }
 
-    /// Whether polygons tell where the boundary is, and not only where it may be: one slab has both its sides
-    /// in the cell.
+    /// True if polygons show where the boundary is, not only where it may be: a single slab has both its
+    /// sides in the cell.
     pub(super) fn is_met(&self) -> bool {
         let slab = &self.slabs[0];
         let is_away = self.is_void || self.count != 1 || cut::corners(slab).next().is_none();
         is_away || self.whole(slab).is_some_and(|(_, radius)| radius < 1.0)
     }
 
-    /// The plane in the middle of a slab that is alone, with a distance within which the boundary is from
-    /// each of its points, if it surely is. The way from a point of the slab to what lies in the solid, or to
-    /// what lies outside, meets the boundary.
+    /// Returns the middle plane of a single slab, with an upper bound of the distance between each of the
+    /// plane's points and the boundary, if there is one. A line from a point of the slab to a point inside of
+    /// the solid, or to a point outside, meets the boundary.
     fn whole(&self, slab: &Slab) -> Option<(Polygon, f64)> {
         let polygon = Polygon::of_plane(slab.normal, 0.5 * slab.inner + 0.5 * slab.outer, 1.0);
-        // (Where rounding makes a difference there is no polygon.)
+        // (Where rounding makes a difference, no polygon is returned.)
         cut::corners(slab).next()?;
         let sides = cut::sides(slab);
         let mut radius: f64 = 0.0;
         for (side, within) in sides.into_iter().enumerate() {
-            // Behind the slab lies the solid, or what is outside.
+            // The region behind the slab is the solid or its complement.
             let walls = self.walls[side ^ usize::from(self.is_hollow)];
             let from_wall = (0..6).filter(|wall| walls >> wall & 1 != 0).map(|wall| {
                 let sign = if wall & 1 != 0 { 1.0 } else { -1.0 };
-                // (Some point of the slab is as far as that.)
+                // (Some point of the slab is as far as this.)
                 cut::corners(slab).map(|p| 1.0 - sign * p[wall / 2]).fold(0.0, f64::max)
             });
             radius = radius.max(from_wall.fold(within, f64::min));
@@ -128,13 +128,14 @@ impl Slabs {
         (radius < f64::INFINITY).then_some((polygon, radius))
     }
 
-    /// Polygons with the radius of each. If `all`, all of the boundary in the cell is that near to one of
-    /// them; else all of each is that near to the boundary.
+    /// Returns polygons with the radius of each. If `all`, each boundary point in the cell is within the
+    /// radius of a polygon; otherwise each point of a polygon is within the radius of the boundary.
     ///
-    /// Each point of a slab that lies in front of no other one is within half the width of the plane in the
-    /// middle, of a point that is that much beyond the others and the walls at the most. From a point of that
-    /// plane that is that much behind the others and within the walls, the ways to both sides of its slab
-    /// lead into the solid and out of it.
+    /// A point of a slab that lies in front of no other slab is within half the slab's width of a point on
+    /// the slab's middle plane. This point lies at most as far beyond the other slabs and the walls.
+    /// Conversely, take a point of the middle plane that lies half the width behind the other slabs and
+    /// within the walls. The lines from this point to both sides of its slab lead into the solid and out of
+    /// it.
     pub(super) fn polygons(&self, all: bool) -> impl Iterator<Item = (Polygon, f64)> + '_ {
         let count = if self.is_void { 0 } else { self.count as usize };
         (0..count).map(move |k| {
@@ -152,14 +153,14 @@ impl Slabs {
         })
     }
 
-    /// One more polygon, all of which is near to the boundary, if the others may leave much of a slab out
-    /// that is near to a wall.
+    /// Returns one more polygon that lies near to the boundary as a whole, if the other polygons may omit a
+    /// large part of a slab near a wall.
     pub(super) fn beside_walls(&self) -> Option<(Polygon, f64)> {
         let is_alone = self.count == 1 && !self.is_void;
         is_alone.then(|| self.whole(&self.slabs[0])).flatten()
     }
 
-    /// Regions that surely lie in the solid, or surely outside of it.
+    /// Regions that surely lie inside of the solid, or surely outside.
     pub(super) fn regions(&self, solid: bool) -> ([Region; 3], usize) {
         let mut regions = [Region::ALL; 3];
         if solid != self.is_hollow {

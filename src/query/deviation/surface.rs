@@ -1,4 +1,4 @@
-//! A surface as triangles, and how far the boundary of a solid may be from them.
+//! A surface as triangles, with a bound of their distance from the boundary of a solid.
 
 use crate::control::Control;
 use crate::error::Error;
@@ -9,34 +9,35 @@ use crate::solid::{BoundaryFacets, BoundaryPieces};
 use alloc::sync::Arc;
 use alloc::vec::Vec;
 
-/// How far the pieces of a surface lie beside it, as a part of the largest coordinate.
+/// The maximal distance by rounding between a surface's pieces and the surface, as a part of the largest
+/// coordinate.
 pub(super) const ROUNDING: f64 = 1.0 / (1u64 << 41) as f64;
 
-/// Triangles, and a distance within which they tell where the boundary is.
+/// Triangles, and a radius within which they locate the boundary.
 pub(super) struct Layer {
     pub(super) mesh: Arc<TriangleMesh>,
-    /// Which triangles count; all if it is empty.
+    /// The triangles that count; all if this is empty.
     pub(super) chosen: Vec<bool>,
     pub(super) radius: f64,
 }
 
-/// What is known of the boundary of a solid in the universe.
+/// The known boundary of a solid in the universe.
 pub(super) struct Surface {
-    /// Each point of the boundary is within the radius of a layer of one of its triangles.
+    /// Each point of the boundary is within a layer's radius of one of the layer's triangles.
     pub(super) covers: Vec<Layer>,
-    /// Each point of these triangles is within the radius of the layer of a point of the boundary. `None`:
-    /// the covers are so, too.
+    /// Each point of these triangles is within the layer's radius of a point of the boundary. `None`: this
+    /// holds for the covers, too.
     pub(super) cores: Option<Vec<Layer>>,
-    /// The universe, if the boundary may go on outside of it.
+    /// The universe, if the boundary may continue outside of it.
     pub(super) clipped: Option<Frame>,
-    /// Cells that were split.
+    /// Number of cell splits.
     pub(super) splits: u64,
-    /// Whether more of them would have told more.
+    /// Whether more splits would have improved the result.
     pub(super) is_cut_short: bool,
 }
 
 impl Surface {
-    /// A surface that is known exactly.
+    /// Builds an exactly known surface.
     pub(super) fn of_facets(facets: BoundaryFacets) -> Result<Surface, Error> {
         let BoundaryFacets { mesh, chosen } = facets;
         let radius = mesh.radius();
@@ -48,13 +49,13 @@ impl Surface {
         Ok(Surface { covers, cores: None, clipped: None, splits: 0, is_cut_short: false })
     }
 
-    /// Whether nothing is known of where the boundary is, although there may be one.
+    /// True if the boundary may exist but nothing of its position is known.
     #[cfg(feature = "std")]
     pub(super) fn is_unknown(&self) -> bool {
         !self.covers.is_empty() && self.cores.as_ref().is_some_and(Vec::is_empty)
     }
 
-    /// A surface that is known exactly but where triangles intersect.
+    /// Builds a surface that is known exactly except where triangles intersect.
     pub(super) fn of_pieces(pieces: BoundaryPieces) -> Result<Surface, Error> {
         let BoundaryPieces { facets, sure, doubtful, rounding } = pieces;
         let radius = facets.mesh.radius() + 2.0 * rounding;
@@ -81,7 +82,7 @@ impl Surface {
         Ok(Surface { cores: Some(cores), ..surface })
     }
 
-    /// The triangles of a mesh, wherever the boundary that it stands for may lie.
+    /// Builds a surface from the triangles of a mesh, wherever the boundary that they represent may lie.
     #[cfg(feature = "std")]
     pub(super) fn of_triangles(mesh: &TriangleMesh) -> Result<Surface, Error> {
         let mut covers = memory::with_capacity(1)?;
@@ -91,13 +92,13 @@ impl Surface {
         Ok(Surface { covers, cores: None, clipped: None, splits: 0, is_cut_short: false })
     }
 
-    /// All triangles of a mesh, whatever they bound.
+    /// Builds a surface from all triangles of a mesh, whatever they bound.
     #[cfg(feature = "std")]
     pub(super) fn of_mesh(mesh: &Arc<TriangleMesh>) -> Result<Surface, Error> {
         Surface::of_facets(BoundaryFacets { mesh: mesh.clone(), chosen: Vec::new() })
     }
 
-    /// The same with the trees of the triangles.
+    /// Builds the same surface with the trees of the triangles.
     pub(super) fn seen<'s>(&'s self, control: &Control<'_>) -> Result<Seen<'s>, Error> {
         let trees = |layers: &'s [Layer]| {
             let mut trees = memory::with_capacity(layers.len())?;
@@ -117,7 +118,7 @@ impl Surface {
     }
 }
 
-/// A triangle of a layer that lies within its radius of the boundary.
+/// A triangle of a layer, within whose radius the boundary lies.
 #[derive(Clone, Copy, PartialEq)]
 pub(super) struct Facet {
     layer: u32,
@@ -127,7 +128,7 @@ pub(super) struct Facet {
 impl Facet {
     pub(super) const NONE: Facet = Facet { layer: u32::MAX, triangle: u32::MAX };
 
-    /// Its number in its layer, if it is one.
+    /// The index in its layer; `None` for `Facet::NONE`.
     #[cfg(feature = "std")]
     pub(super) fn triangle(self) -> Option<u32> {
         (self != Facet::NONE).then_some(self.triangle)
@@ -138,19 +139,19 @@ impl Facet {
     }
 }
 
-/// What is known of the distance of a point from the boundary.
+/// The bounds of the distance of a point from the boundary.
 #[derive(Clone, Copy)]
 pub(super) struct Near {
     pub(super) lower: f64,
     pub(super) upper: f64,
-    /// The triangle by which `upper` is known.
+    /// The triangle that determines `upper`.
     pub(super) facet: Facet,
 }
 
 impl Near {
-    /// Nobody has asked yet.
+    /// Not computed yet.
     pub(super) const OPEN: Near = Near { lower: 0.0, upper: f64::INFINITY, facet: Facet::NONE };
-    /// There is nothing.
+    /// There is no boundary.
     const NOTHING: Near = Near { lower: f64::INFINITY, upper: f64::INFINITY, facet: Facet::NONE };
 }
 
@@ -175,7 +176,7 @@ impl SeenLayer<'_> {
 pub(super) struct Seen<'s> {
     pub(super) covers: Vec<SeenLayer<'s>>,
     cores: Option<Vec<SeenLayer<'s>>>,
-    /// How far pieces of it may lie beside it by rounding.
+    /// The maximal distance by rounding between the surface's pieces and the surface.
     pub(super) rounding: f64,
     universe: Option<Bounds>,
 }
@@ -185,7 +186,7 @@ impl<'s> Seen<'s> {
         self.cores.as_deref().unwrap_or(&self.covers)
     }
 
-    /// Whether the triangles are the boundary itself.
+    /// True if the triangles are the boundary itself.
     pub(super) fn is_exact(&self) -> bool {
         self.cores.is_none()
     }
@@ -194,24 +195,24 @@ impl<'s> Seen<'s> {
         self.covers.is_empty()
     }
 
-    /// Whether nothing of the boundary is known to be anywhere.
+    /// True if nothing of the boundary's position is known.
     #[cfg(feature = "std")]
     pub(super) fn is_unknown(&self) -> bool {
         self.cores().is_empty()
     }
 
-    /// How many triangles there are.
+    /// The number of triangles.
     pub(super) fn count(&self) -> usize {
         self.covers.iter().map(|layer| layer.mesh.triangles().len()).sum()
     }
 
-    /// Whether there are so many triangles that threads are worth their while.
+    /// True if there are enough triangles to justify threads.
     pub(super) fn is_large(&self) -> bool {
         const MANY: usize = 1 << 12;
         self.count() > MANY
     }
 
-    /// How far a point is from the boundary; a facet that may be near saves time.
+    /// Returns the distance of a point from the boundary. A hint that is a near facet saves time.
     pub(super) fn near(&self, point: [f64; 3], hint: Facet) -> Near {
         let mut near = match &self.cores {
             None => Near::NOTHING,
@@ -222,7 +223,7 @@ impl<'s> Seen<'s> {
             let hint = hint.of_layer(number);
             let found = layer.tree.nearest_beside(&point, hint, |triangle| layer.is_chosen(triangle));
             let Some((found, distance)) = found else {
-                // A layer has triangles: the point is too far away.
+                // Every layer has triangles, so the point is too far away.
                 near.lower = 0.0;
                 continue;
             };
@@ -233,7 +234,7 @@ impl<'s> Seen<'s> {
             }
         }
         if let Some(Bounds { min, max }) = &self.universe {
-            // The boundary may begin right outside.
+            // The boundary may begin directly outside.
             let inside = (0..3).map(|axis| (point[axis] - min[axis]).min(max[axis] - point[axis]));
             near.lower = near.lower.min(inside.fold(f64::INFINITY, f64::min));
         }
@@ -241,7 +242,7 @@ impl<'s> Seen<'s> {
         near
     }
 
-    /// At most how far a point is from the boundary.
+    /// Returns an upper bound of a point's distance from the boundary.
     pub(super) fn near_core(&self, point: [f64; 3], hint: Facet) -> Near {
         let mut near = Near::NOTHING;
         for (number, layer) in (0..).zip(self.cores()) {
@@ -258,7 +259,7 @@ impl<'s> Seen<'s> {
         near
     }
 
-    /// More than how far a point is from the boundary next to a facet.
+    /// Returns an upper bound of a point's distance from the boundary next to a facet.
     pub(super) fn most_from(&self, facet: Facet, point: [f64; 3]) -> f64 {
         let Some(layer) = self.cores().get(facet.layer as usize) else { return f64::INFINITY };
         layer.tree.most_from(facet.triangle, &point) + layer.radius
@@ -269,7 +270,7 @@ impl<'s> Seen<'s> {
         Some(self.cores().get(facet.layer as usize)?.corners(facet.triangle))
     }
 
-    /// The point of a facet that is nearest to another one.
+    /// The point of a facet that is nearest to another point.
     pub(super) fn nearest_on(&self, facet: Facet, point: [f64; 3]) -> Option<[f64; 3]> {
         Some(self.cores().get(facet.layer as usize)?.tree.nearest_to(facet.triangle, &point))
     }

@@ -1,8 +1,8 @@
-//! How far are points from a solid?
+//! The distance of points from a solid.
 //!
-//! A solid S lies between two sets of cells: the FULL ones, and those that are FULL or PARTIAL. The distance
-//! from the second bounds the distance from S from below, that from the first bounds it from above. The space
-//! outside of the universe counts as one more cell, with the exterior's tag.
+//! A solid S lies between two sets of cells: the FULL cells, and the cells that are FULL or PARTIAL. The
+//! distance from the second set is a lower bound of the distance from S. The distance from the first set is
+//! an upper bound. The space outside of the universe counts as one more cell, with the exterior's tag.
 
 mod field;
 mod nearest;
@@ -18,27 +18,27 @@ pub use solid::{DISTANCE_SPLITS, NearPoint, PointDistance, distances};
 use crate::error::Error;
 use crate::lattice::Interval;
 
-/// What a distance is measured to.
+/// The target of a distance query.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
 #[repr(u8)]
 pub enum DistanceTo {
     /// To the solid: 0 for its points.
     Solid = 0,
-    /// To what is not solid: 0 for points outside.
+    /// To the complement of the solid: 0 for points outside.
     Complement = 1,
     /// To the boundary, with a sign: positive outside of the solid, negative inside.
     Boundary = 2,
 }
 
 impl DistanceTo {
-    /// What is known of a point that has no place.
+    /// The answer for a point that has no place.
     fn unknown(self) -> Interval {
         let lower = if self == DistanceTo::Boundary { f64::NEG_INFINITY } else { 0.0 };
         Interval::between(lower, f64::INFINITY)
     }
 
-    /// The answer, by one or two searches: `search(hollow)` is the distance from the solid, or from its
-    /// complement.
+    /// Computes the answer by one or two searches: `search(hollow)` is the distance from the solid, or from
+    /// its complement.
     fn ask(self, mut search: impl FnMut(bool) -> Result<Interval, Error>) -> Result<Interval, Error> {
         match self {
             DistanceTo::Solid => search(false),

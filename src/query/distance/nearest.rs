@@ -15,26 +15,27 @@ use core::cmp::Ordering;
 pub struct NearCell {
     /// The cell and its tag.
     pub found: TaggedCell,
-    /// The cell's nearest point, in model units: each coordinate is the given point's own, or a rounded one
-    /// of the cell's faces.
+    /// The cell's point nearest to the given point, in model units: each coordinate is the given point's own,
+    /// or a rounded coordinate of the cell's faces.
     pub point: [f64; 3],
     /// The distance of the closed cell from the given point, rounded outward.
     pub distance: Interval,
 }
 
 impl OctreeRef<'_> {
-    /// The `count` cells nearest to `point` (model units) whose tag is among `tags`, the nearest first; of
-    /// equally near ones the first in Morton order. There are fewer if the tree has no more. A cell is
-    /// closed, as large as the octree has it, and no BRANCH. The point may lie outside of the universe.
+    /// Returns the `count` cells nearest to `point` (model units) whose tag is among `tags`, the nearest
+    /// first. Equally near cells come in Morton order. The result is shorter if the tree has fewer such
+    /// cells. A cell is closed, as large as the octree stores it, and never a BRANCH. The point may lie
+    /// outside of the universe.
     ///
-    /// With `count` 1 and the tag FULL this is the nearest cell that is proven solid, with EMPTY and PARTIAL
-    /// the nearest one that is not.
+    /// With `count` 1 and the tag FULL, the result is the nearest cell that is proven solid. With EMPTY and
+    /// PARTIAL, it is the nearest cell that is not.
     ///
-    /// Cells are compared by their exact distance from a point next to the given one, no further than 2^-56
-    /// of the universe's edge or, far outside, 2^-57 of the distance.
+    /// Cells are compared by their exact distance from a point next to the given one. Its distance from the
+    /// given point is at most 2^-56 of the universe's edge or, far outside, 2^-57 of the distance.
     ///
-    /// O(count · log count) beside the cells that are looked at; whatever the bytes, these are no more than
-    /// the tree has.
+    /// Complexity: O(count · log count) in addition to the visited cells. Whatever the bytes, the search
+    /// visits no more cells than the tree has.
     ///
     /// # Errors
     /// [`Error::Argument`] if a coordinate is not a finite number; [`Error::OutOfMemory`].
@@ -67,7 +68,7 @@ impl OctreeRef<'_> {
 }
 
 impl Octree {
-    /// As [`OctreeRef::nearest_cells`].
+    /// Returns the cells nearest to a point. See [`OctreeRef::nearest_cells`] for the full contract.
     ///
     /// # Errors
     /// As [`OctreeRef::nearest_cells`].
@@ -76,10 +77,10 @@ impl Octree {
     }
 }
 
-/// A cell that may be among the nearest.
+/// A candidate for the nearest cells.
 struct Near {
     square: Square,
-    /// Its place in Morton order.
+    /// The cell's Morton number.
     order: u64,
     found: TaggedCell,
 }
@@ -117,7 +118,7 @@ struct Kept<'t> {
     cells: BinaryHeap<Near>,
 }
 
-/// The place in Morton order of a cell's first part on the finest level of all.
+/// The Morton number of a cell's first part on the finest possible level.
 fn order(cell: Cell) -> u64 {
     let [x, y, z] = cell.first_at(MAX_DEPTH).at;
     let spread =

@@ -1,5 +1,5 @@
-//! A point on a lattice so fine that hardly any doubles lie between its planes: distances to cells are
-//! integers there.
+//! A point on a lattice so fine that hardly any doubles lie between its planes. Distances to cells are
+//! integers on this lattice.
 
 use crate::lattice::axes;
 use crate::lattice::exact::{floor, two_diff, two_product};
@@ -8,28 +8,29 @@ use crate::lattice::{Cell, Cube, Frame, Interval};
 /// The edge of the universe is 2^UNITS units, or fewer for points far away.
 const UNITS: u32 = 56;
 
-/// No coordinate is further from the universe's corner, in units. So squares of distances are below 2^120.
+/// A bound of the coordinates' distance from the universe's corner, in units. Squares of distances are
+/// therefore below 2^120.
 const FAR: i64 = 1 << 58;
 
 /// The square of a distance, in units.
 pub(super) type Square = u128;
 
-/// What is further than all cells.
+/// A square greater than that of all cells.
 pub(super) const NOWHERE: Square = u128::MAX;
 
-/// A point next to the one that was asked for.
+/// A lattice point next to the queried point.
 #[derive(Clone, Copy)]
 pub(super) struct Place<'f> {
     frame: &'f Frame,
     at: [i64; 3],
     /// The edge of the universe is 2^bits units.
     bits: u32,
-    /// A bound of the distance from the point that was asked for, in model units.
+    /// A bound of the distance from the queried point, in model units.
     error: f64,
 }
 
 impl<'f> Place<'f> {
-    /// `None` if a coordinate is not a finite number.
+    /// Rounds a point to the lattice; `None` if a coordinate is not a finite number.
     pub(super) fn new(frame: &'f Frame, point: [f64; 3]) -> Option<Place<'f>> {
         if !point.iter().all(|c| c.is_finite()) {
             return None;
@@ -59,17 +60,17 @@ impl<'f> Place<'f> {
         Place { frame, at: half_cells.map(|c| c << shift), bits: UNITS, error: 0.0 }
     }
 
-    /// A square in half cells, of a place that lies [between cells](Self::between_cells).
+    /// Converts a square to half cells, for a place that lies [between cells](Self::between_cells).
     pub(super) fn in_half_cells(&self, square: Square) -> Square {
         square >> (2 * (self.shift(self.frame.depth()) - 1))
     }
 
-    /// How many bits of a coordinate lie below a cell of this level.
+    /// The number of a coordinate's bits below a cell of this level.
     fn shift(&self, level: u8) -> u32 {
         self.bits - u32::from(level)
     }
 
-    /// The squares of the distances along each axis from four cells of `level` in a row; the first is
+    /// The squares of the distances along each axis from four successive cells of `level`; the first cell is
     /// `first`.
     pub(super) fn squares(&self, level: u8, first: [u32; 3]) -> [[Square; 4]; 3] {
         let shift = self.shift(level);
@@ -97,7 +98,7 @@ impl<'f> Place<'f> {
         square(self.at.into_iter().map(depth).fold(u64::MAX, u64::min))
     }
 
-    /// The distance of which this is the square, from the point that was asked for.
+    /// Converts a square to a distance from the queried point.
     pub(super) fn distance(&self, square: Square) -> Interval {
         if square == NOWHERE {
             return Interval::exactly(f64::INFINITY);
@@ -112,8 +113,8 @@ impl<'f> Place<'f> {
         distance.plus(Interval::between(-self.error, self.error)).not_negative()
     }
 
-    /// The point of a closed cell that is nearest to `point`, next to which this place is: its coordinates
-    /// are those of the point, or rounded ones of the cell's faces.
+    /// The point of a closed cell that is nearest to `point`, which this place represents: its coordinates
+    /// are those of the point, or rounded coordinates of the cell's faces.
     pub(super) fn nearest_in(&self, cell: Cell, point: [f64; 3]) -> [f64; 3] {
         let (lower, upper) = Cube { frame: self.frame, cell }.planes();
         axes(|axis| {
@@ -131,7 +132,7 @@ impl<'f> Place<'f> {
 
 /// x − origin − units · unit, rounded outward.
 fn rest(frame: &Frame, axis: usize, x: f64, units: i64, unit: f64) -> Interval {
-    // Each of the two has at most 31 bits, so that the products are exact as pairs.
+    // Each of the two factors has at most 31 bits, so that the products are exact as pairs.
     let coarse = units >> 28 << 28;
     let (high, low) = two_diff(x, frame.origin()[axis]);
     let (product, error) = two_product(coarse as f64, unit);
@@ -141,7 +142,7 @@ fn rest(frame: &Frame, axis: usize, x: f64, units: i64, unit: f64) -> Interval {
     high.minus(product).minus(fine).plus(low.minus(error.plus(fine_error)))
 }
 
-/// How far a coordinate lies outside of an interval.
+/// The distance of a coordinate from an interval.
 #[inline(always)]
 fn gap(at: i64, low: i64, high: i64) -> u64 {
     (low - at).max(at - high).max(0) as u64

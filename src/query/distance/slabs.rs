@@ -1,31 +1,32 @@
-//! How far a point is from a solid in a cell of which the enclosure is known.
+//! The distance of a point from a solid in a cell with a known enclosure.
 //!
-//! All of it is in the cell's own coordinates, from its centre in half edges. For any direction d, no point x
-//! of the solid has d · x > reach; so a point p is no nearer than (d · p − reach) / |d|. A direction near
-//! that of the nearest point gives a bound that is off by the square of the angle between them.
+//! All coordinates are the cell's own, from its centre in half edges. For any direction d, no point x of the
+//! solid has d · x > reach. Hence the distance of a point p is at least (d · p − reach) / |d|. A direction
+//! near that of the nearest point gives a bound whose error is the square of the angle between them.
 
 use crate::cut::reach;
 use crate::lattice::Interval;
 use crate::lattice::axes;
 use crate::solid::{Enclosure, Slab, SlabJoin};
 
-/// A point, as seen from a cell.
+/// A point in a cell's coordinates.
 pub(super) type Seen = [Interval; 3];
 
-/// Proven: the distance of the solid in the cell is at least that, ∞ if there is none of it.
+/// Returns a proven lower bound of the distance of the solid in the cell; ∞ if the cell has no part of the
+/// solid.
 pub(super) fn lower(enclosure: &Enclosure, point: &Seen) -> f64 {
     match enclosure.join {
         SlabJoin::All => lower_of_all(enclosure, point),
         SlabJoin::Any => {
             let each = alone(enclosure).map(|one| lower_of_all(&one, point));
-            // No slab says nothing.
+            // Without slabs nothing is known.
             each.reduce(f64::min).unwrap_or(0.0)
         }
     }
 }
 
-/// Proven: a point of the closed solid in the cell, and a distance that it is not further away. `None` if no
-/// point of it is found.
+/// Returns an upper bound of the distance, and a point of the closed solid in the cell that is proven to be
+/// no further away. `None` if no point of the solid is found.
 pub(super) fn upper(enclosure: &Enclosure, point: &Seen) -> Option<(f64, [f64; 3])> {
     match enclosure.join {
         SlabJoin::All => upper_of_all(enclosure, point),
@@ -40,7 +41,7 @@ fn slabs(enclosure: &Enclosure) -> impl Iterator<Item = &Slab> {
     enclosure.slabs.iter().filter(|slab| slab.normal != [0.0; 3])
 }
 
-/// Enclosures by each of the slabs alone.
+/// The enclosures by each of the slabs alone.
 fn alone(enclosure: &Enclosure) -> impl Iterator<Item = Enclosure> {
     slabs(enclosure).map(|&slab| Enclosure {
         slabs: [slab, Slab::NONE, Slab::NONE],
@@ -104,11 +105,11 @@ fn upper_of_all(enclosure: &Enclosure, point: &Seen) -> Option<(f64, [f64; 3])> 
     Some((length(&axes(|axis| point[axis].minus(Interval::exactly(found[axis])))).upper, found))
 }
 
-/// A point of the cell near `point` that lies, to rounding, a little inside of all slabs, if some turns of
-/// projections find one.
+/// Returns a point of the cell near `point` that lies, to rounding, slightly inside of all slabs, if `TURNS`
+/// rounds of projections find one.
 fn pulled(enclosure: &Enclosure, point: [f64; 3]) -> [f64; 3] {
     const TURNS: usize = 16;
-    /// How far inside, as a share of the normal's range.
+    /// The distance from the slabs' inner ends, as a share of the normal's range.
     const MARGIN: f64 = 1.0 / (1u64 << 44) as f64;
     let mut point = in_cell(point);
     for _ in 0..TURNS {
@@ -129,7 +130,7 @@ fn pulled(enclosure: &Enclosure, point: [f64; 3]) -> [f64; 3] {
     point
 }
 
-/// Whether a point of the closed cell is proven to be a limit of points that lie inside of all slabs.
+/// True if a point of the closed cell is proven to be a limit of points that lie inside of all slabs.
 fn is_inside(enclosure: &Enclosure, point: [f64; 3]) -> bool {
     slabs(enclosure).all(|slab| {
         let [x, y, z] =

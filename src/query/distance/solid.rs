@@ -1,4 +1,4 @@
-//! How far points are from any solid, without an octree.
+//! The distance of points from any solid, without an octree.
 
 use super::DistanceTo;
 use super::place::Place;
@@ -19,36 +19,36 @@ use crate::walk::split_one;
 use alloc::vec::Vec;
 use core::cmp::Reverse;
 
-/// What is known of a point's distance.
+/// The proven bounds of a point's distance.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct PointDistance {
-    /// The distance, in model units. `upper` is ∞ as long as nothing is proven to be there, and so is `lower`
-    /// if it is proven that nothing is.
+    /// The distance, in model units. `upper` is ∞ as long as no point of the target is proven. `lower` is ∞
+    /// too if the target is proven to be empty.
     pub distance: Interval,
     /// Why the search ended.
     pub stop_reason: StopReason,
-    /// How many times a cell was split.
+    /// Number of cell splits.
     pub splits: u64,
-    /// The nearest point of the boundary, if one is known: whenever a solid answers distances itself, and of
-    /// others if the upper bound is finite, unless the point that was asked for may lie on the side of the
-    /// boundary from which no distance is measured.
+    /// The nearest point of the boundary, if known. It is known whenever a solid answers distances itself.
+    /// For other solids it is known if the upper bound is finite, unless the queried point may lie on the
+    /// side of the boundary where the distance is 0.
     pub nearest: Option<NearPoint>,
 }
 
 /// A point of a solid's boundary.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct NearPoint {
-    /// The point (model units), but for rounding: the nearest, or one whose distance lies in the interval as
-    /// well. If the interval of a distance from the boundary holds 0, it may lie within the solid, next to
-    /// the boundary.
+    /// The point (model units), up to rounding: the nearest point, or a point whose distance also lies in the
+    /// interval. If the interval of a distance from the boundary contains 0, the point may lie within the
+    /// solid, next to the boundary.
     pub point: [f64; 3],
-    /// The number of its surface: of a mesh, the triangle's. Of several on which the point lies, one that
-    /// bounds the solid next to it, if one is found.
+    /// The number of the point's surface; for a mesh, of its triangle. If the point lies on several surfaces,
+    /// this is one that bounds the solid next to the point, if such a surface is found.
     pub surface: Option<u32>,
 }
 
 impl PointDistance {
-    /// By the nearest point of the boundary.
+    /// Builds the answer from the nearest point of the boundary.
     fn direct(near: &NearestSurface, to: DistanceTo, tolerance: f64) -> PointDistance {
         let NearestSurface { distance: away, is_inside, point, surface } = *near;
         let zero = Interval::exactly(0.0);
@@ -66,43 +66,45 @@ impl PointDistance {
     }
 }
 
-/// Cells that [`distances`] splits for a point if `control.max_splits` sets no other limit: a tenth of a
-/// second or so.
+/// The maximal number of cells that [`distances`] splits for a point if `control.max_splits` sets no other
+/// limit: about a tenth of a second.
 pub const DISTANCE_SPLITS: u64 = 1 << 16;
 
-/// The distances of points (model units) from a solid, its complement or its boundary, one answer a point.
-/// Points may lie outside of the universe; what is known of the solid there is its
+/// Returns the distances of points (model units) from a solid, its complement or its boundary, one answer for
+/// each point. Points may lie outside of the universe, where the solid is described by its
 /// [`exterior`](Classifier::exterior). A point with a coordinate that is not a finite number gets the
 /// interval `[0, ∞]`, or all numbers for [`DistanceTo::Boundary`].
 ///
 /// The cells of `frame` that may be nearest are split first. The search for a point ends, and `stop_reason`
 /// says why:
 /// - `Tolerance`: the interval is no wider than `tolerance` (model units), or both ends are ∞.
-/// - `Exhausted`: no cell is left whose split would help, or of a solid without slabs, the nearest undecided
-///   cell cannot be split, and the interval is no wider than twice the diagonal of the frame's finest cells.
-/// - `Budget`: `control.max_splits` cells were split, or [`DISTANCE_SPLITS`] if that is `None`; or what is
-///   remembered comes near to `control.max_bytes`.
+/// - `Exhausted`: no cell is left whose split would help; or, for a solid without slabs, the nearest
+///   undecided cell cannot be split, and the interval is no wider than twice the diagonal of the frame's
+///   finest cells.
+/// - `Budget`: `control.max_splits` cells were split, or [`DISTANCE_SPLITS`] if that is `None`; or the stored
+///   data comes near to `control.max_bytes`.
 ///
-/// Where the solid knows the slabs of a cell ([`Enclosure`](crate::solid::Enclosure)), these bound how near
-/// it comes: each level then makes the interval about four times as narrow, and a plane face is known at
-/// once. Without slabs a level makes it half as wide. A point of the boundary that is as near as the upper
-/// bound says comes with the answer ([`PointDistance::nearest`]).
+/// Where the solid provides slabs of a cell ([`Enclosure`](crate::solid::Enclosure)), these bound the solid's
+/// distance: each level then makes the interval about four times as narrow, and a plane face is known at
+/// once. Without slabs a level makes the interval half as wide. The answer includes a boundary point that
+/// attains the upper bound ([`PointDistance::nearest`]).
 ///
 /// A closed mesh in the universe answers each point from a tree over its triangles, in microseconds and to
-/// the rounding of doubles (some 10^-12 of the distance and of the triangle), and tells the nearest point and
-/// its triangle. The first question makes the tree, and finds out which triangles bound the solid
-/// ([`MeshSolid`](crate::MeshSolid)). Where the nearest triangle intersects another one, the interval is up
-/// to 2^-31 of the mesh's extent wide; where it then lies within the solid or outside of it, cells are asked.
-/// A mesh with holes answers in the same way where its winding number is surely not one half in the ball that
-/// its triangles leave free; of other points, as a rule those next to a hole, cells are asked.
+/// the rounding of doubles (about 10^-12 of the distance and of the triangle). It also returns the nearest
+/// point and its triangle. The first query builds the tree, and determines the triangles that bound the solid
+/// ([`MeshSolid`](crate::MeshSolid)). If the nearest triangle intersects another one, the interval is up to
+/// 2^-31 of the mesh's extent wide. If the nearest point of that triangle then lies within the solid or
+/// outside of it, and is therefore not on the boundary, cells are used. A mesh with holes answers in the same
+/// way where its winding number is surely not one half in the ball around the point that is free of
+/// triangles. For other points, usually those next to a hole, cells are used.
 ///
-/// A point takes some dozen splits a level as a rule. It takes more the more of the surface is about as near:
-/// a ball's centre has no better bounds than cells as large as the budget allows. The answers are the same
-/// for any number of threads.
+/// A point usually takes some dozen splits a level. It takes more splits if more of the surface is about as
+/// near: for a ball's centre the bounds are only as good as cells as large as the budget allows. The answers
+/// do not depend on the number of threads.
 ///
 /// # Errors
-/// [`Error::Argument`] if `tolerance` is negative or not a number; what the solid refuses;
-/// [`Error::OutOfMemory`], and [`Error::Cancelled`].
+/// [`Error::Argument`] if `tolerance` is negative or not a number; the solid's own errors;
+/// [`Error::OutOfMemory`] and [`Error::Cancelled`].
 ///
 /// ```
 /// use leafless::{Control, Csg, Frame, query::{DistanceTo, distances}};
@@ -128,7 +130,7 @@ pub fn distances<S: Solid>(
     job.check()?;
     let classifier = Proven(solid.on(frame, control)?);
     let exterior = classifier.exterior();
-    // Of a solid that ends in the universe all of the boundary lies there.
+    // The whole boundary of a bounded solid lies in the universe.
     let is_direct = exterior == Tag::Empty && classifier.is_direct(Direct::Distances, control)?;
     let found = control.run(points.len() > CHUNK, |parallel| {
         job.each(parallel, points.chunks(CHUNK), |chunk| {
@@ -157,10 +159,10 @@ pub fn distances<S: Solid>(
     Ok(distances)
 }
 
-/// A distance in which there is some of a solid, and a point of it that is as near (model units).
+/// A proven upper bound of the distance, and a point of the solid that attains it (model units).
 type Found = (f64, [f64; 3]);
 
-/// Points that one worker takes on.
+/// Number of points in one worker's task.
 const CHUNK: usize = 1 << 4;
 
 fn distance<W: Worker>(
@@ -186,7 +188,7 @@ fn distance<W: Worker>(
             place,
             point,
             hollow,
-            // Near the boundary the interval is that of both searches.
+            // Near the boundary the interval combines both searches.
             tolerance: if to == DistanceTo::Boundary { 0.5 * tolerance } else { tolerance },
             upper: f64::INFINITY,
             nearest: None,
@@ -208,7 +210,7 @@ fn distance<W: Worker>(
     let point = match to {
         DistanceTo::Boundary if distance.upper < 0.0 => near[1],
         DistanceTo::Boundary => near[0],
-        // (Of what holds the point itself, no point of the boundary is known.)
+        // (If the target contains the queried point, no boundary point is known.)
         _ if distance.lower <= 0.0 => None,
         DistanceTo::Solid => near[0],
         DistanceTo::Complement => near[1],
@@ -217,8 +219,8 @@ fn distance<W: Worker>(
     Ok(PointDistance { distance, stop_reason, splits: budget - left, nearest })
 }
 
-/// The least distance of what may lie in a cell (the bits of a double that is not negative), the cell's
-/// height above the deepest level, the order of meeting.
+/// The least possible distance of the target in a cell (the bits of a non-negative double), the cell's height
+/// above the deepest level, the cell's serial number.
 type Key = Reverse<(u64, u8, u64)>;
 
 struct Search<'a, W: Worker> {
@@ -226,16 +228,16 @@ struct Search<'a, W: Worker> {
     frame: &'a Frame,
     place: Place<'a>,
     point: [f64; 3],
-    /// Whether the complement is sought.
+    /// Whether the target is the complement.
     hollow: bool,
     tolerance: f64,
-    /// The least distance of what is proven to be there, and a point that is as near, unless that lies beyond
+    /// The least proven distance of the target, and a point that attains it, unless that point lies beyond
     /// the universe.
     upper: f64,
     nearest: Option<[f64; 3]>,
-    /// The least distance of what may be there, in cells that are not split any more.
+    /// The least possible distance of the target in cells that are not split any further.
     settled: f64,
-    /// Whether the solid has told slabs.
+    /// Whether the solid has provided slabs.
     has_slabs: bool,
     /// Cells that can be split.
     open: Queue<Key, (Cell, W::Part)>,
@@ -243,7 +245,7 @@ struct Search<'a, W: Worker> {
 }
 
 impl<W: Worker> Search<'_, W> {
-    /// Whether the budget has ended it.
+    /// Runs the search. Returns whether the budget ended it.
     fn run(&mut self, exterior: Tag, left: &mut u64) -> Result<bool, Error> {
         let outside = self.place.distance(self.place.square_from_outside());
         match if self.hollow { exterior.complement() } else { exterior } {
@@ -264,7 +266,7 @@ impl<W: Worker> Search<'_, W> {
             }
             let Some((cell, part)) = self.open.pop() else { return Ok(false) };
             if *left == 0 || self.is_full() {
-                // It still counts.
+                // The cell still counts.
                 self.settled = self.settled.min(begin);
                 return Ok(true);
             }
@@ -277,18 +279,18 @@ impl<W: Worker> Search<'_, W> {
         }
     }
 
-    /// Whether the parts in memory take much of what the caller allows.
+    /// True if the parts in memory take much of the bytes that the caller allows.
     fn is_full(&self) -> bool {
         let allowed = self.job.control().max_bytes;
         allowed.is_some_and(|limit| self.worker.scratch_bytes() as u64 > limit / 4)
     }
 
-    /// The least distance of what may lie in the first open cell.
+    /// The least possible distance of the target in the first open cell.
     fn begin(&self) -> f64 {
         self.open.peek().map_or(f64::INFINITY, |entry| f64::from_bits(entry.key.0.0))
     }
 
-    /// What cells can tell: with slabs, as much as one likes; without, twice the diagonal of a finest one.
+    /// The resolution of cells: unlimited with slabs; without slabs, twice the diagonal of a finest cell.
     fn resolution(&self) -> f64 {
         if self.has_slabs { 0.0 } else { 2.0 * sqrt(3.0) * self.frame.cell_size() }
     }
@@ -297,7 +299,7 @@ impl<W: Worker> Search<'_, W> {
         Interval::between(self.upper.min(self.settled).min(self.begin()), self.upper)
     }
 
-    /// Takes in what is proven to be there.
+    /// Records a proven part of the target.
     fn reach(&mut self, distance: Interval, point: Option<[f64; 3]>) {
         if distance.upper < self.upper {
             (self.upper, self.nearest) = (distance.upper, point);
@@ -305,13 +307,13 @@ impl<W: Worker> Search<'_, W> {
         self.settled = self.settled.min(distance.lower);
     }
 
-    /// Takes in what is known of a cell in which nothing is nearer than `least`.
+    /// Takes in the verdict of a cell whose part of the target is no nearer than `least`.
     fn note(&mut self, cell: Cell, verdict: Verdict<W::Part>, least: f64) -> Result<(), Error> {
         let distance = self.place.distance(self.place.square_from(cell));
         let mut least = least.max(distance.lower);
         match if self.hollow { verdict.complement() } else { verdict } {
             Verdict::Empty => {}
-            // What is no nearer than something that is there does not matter.
+            // A cell that is no nearer than a proven part does not matter.
             _ if least >= self.upper => {}
             Verdict::Full => self.reach(distance, Some(self.place.nearest_in(cell, self.point))),
             Verdict::Undecided => self.settled = self.settled.min(least),
@@ -332,8 +334,8 @@ impl<W: Worker> Search<'_, W> {
         Ok(())
     }
 
-    /// From which distance on the solid in a PARTIAL cell begins, as its slabs tell: ∞ if there is none of
-    /// it; and a distance in which, with a point at which, some of it is proven to be.
+    /// Returns a lower bound of the distance of the solid in a PARTIAL cell from its slabs, ∞ if the cell has
+    /// no part of the solid; and a proven upper bound, with a point that attains it.
     fn by_slabs(&mut self, cell: Cell, part: &W::Part) -> Result<(f64, Option<Found>), Error> {
         let Some(enclosure) = self.worker.enclosure(cell, part)? else { return Ok((0.0, None)) };
         self.has_slabs = true;

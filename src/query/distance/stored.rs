@@ -1,4 +1,4 @@
-//! How far points are from the cells of a stored octree.
+//! The distance of points from the cells of a stored octree.
 
 use super::DistanceTo;
 use super::place::{NOWHERE, Place, Square};
@@ -12,9 +12,9 @@ use crate::octree::{Octree, Planes, Tag};
 
 /// The squares of the least distances.
 struct Least {
-    /// Whether the complement is sought.
+    /// Whether the target is the complement.
     hollow: bool,
-    /// From cells that are not proven outside.
+    /// From cells that are not proven outside of the target.
     outer: Square,
     /// From cells that are proven inside.
     inner: Square,
@@ -26,8 +26,8 @@ impl Least {
     }
 }
 
-/// Of a set of cells those that have none of it before them, as seen from the point: one of them is the
-/// nearest.
+/// Returns the cells of a set that have no other cell of the set in front of them, as seen from the point.
+/// The nearest cell is one of them.
 fn exposed(cells: u64, sides: [Option<bool>; 3]) -> u64 {
     (0..3).fold(cells, |exposed, axis| match sides[axis] {
         Some(above) => exposed & !morton::shifted(cells, axis, !above),
@@ -59,8 +59,8 @@ impl Visitor for Least {
     }
 }
 
-/// The squares of the distances from cells that are not proven outside, and from those that are proven
-/// inside.
+/// Returns the squares of the distances from cells that are not proven outside, and from cells that are
+/// proven inside.
 pub(super) fn least(tree: &OctreeRef<'_>, place: &Place<'_>, hollow: bool) -> Result<[Square; 2], Error> {
     let mut least = Least { hollow, outer: NOWHERE, inner: NOWHERE };
     match least.tag(tree.exterior) {
@@ -72,22 +72,22 @@ pub(super) fn least(tree: &OctreeRef<'_>, place: &Place<'_>, hollow: bool) -> Re
     Ok([least.outer, least.inner])
 }
 
-/// Points that one thread takes on.
+/// Number of points in one thread's task.
 const CHUNK: usize = 1 << 8;
 
 impl OctreeRef<'_> {
-    /// The distance of a point (model units) from the solid, its complement or its boundary, as the octree's
-    /// cells and its exterior tell it, whatever they prove of the solid that the tree was made from. The
-    /// point may lie outside of the universe. The interval is `[0, ∞]`, or all numbers for
-    /// [`DistanceTo::Boundary`], if a coordinate is not a finite number. `upper` is ∞ if there is no FULL
-    /// cell, and so is `lower` if there is no PARTIAL cell either.
+    /// Returns the distance of a point (model units) from the solid, its complement or its boundary, as the
+    /// octree's cells and its exterior determine it, whatever they prove of the solid that the tree was made
+    /// from. The point may lie outside of the universe. If a coordinate is not a finite number, the interval
+    /// is `[0, ∞]`, or all numbers for [`DistanceTo::Boundary`]. `upper` is ∞ if there is no FULL cell.
+    /// `lower` is ∞ too if there is no PARTIAL cell either.
     ///
-    /// Rounding adds about 2^-56 of the universe's edge to the interval's width; of a point further than four
-    /// edges away, 2^-57 of its distance. A point 2^37 edges away or more at depth 20 is treated as one that
-    /// is nearer, and the interval contains both.
+    /// Rounding adds about 2^-56 of the universe's edge to the interval's width; for a point further than
+    /// four edges away, 2^-57 of its distance. A point 2^37 edges away or more at depth 20 is replaced by a
+    /// nearer one, and the interval contains both distances.
     ///
-    /// Some dozen elements are read as a rule; whatever the bytes, no more than the tree has for each of two
-    /// searches.
+    /// The search usually reads some dozen elements. Whatever the bytes, each of the two searches reads no
+    /// more elements than the tree has.
     ///
     /// # Errors
     /// None at present: the search allocates nothing.
@@ -110,11 +110,11 @@ impl OctreeRef<'_> {
         })
     }
 
-    /// The distances of many points, `answers[i]` for `points[i]`: the same as [`distance`](Self::distance),
-    /// on the threads of `control`.
+    /// Computes the distances of many points, `answers[i]` for `points[i]`: the same as
+    /// [`distance`](Self::distance), on the threads of `control`.
     ///
     /// # Errors
-    /// [`Error::Argument`] if the slices differ in length; [`Error::OutOfMemory`], and [`Error::Cancelled`].
+    /// [`Error::Argument`] if the slices differ in length; [`Error::OutOfMemory`] and [`Error::Cancelled`].
     pub fn distances(
         &self,
         points: &[[f64; 3]],
@@ -145,7 +145,7 @@ impl OctreeRef<'_> {
 }
 
 impl Octree {
-    /// As [`OctreeRef::distance`].
+    /// Returns the distance of a point. See [`OctreeRef::distance`] for the full contract.
     ///
     /// # Errors
     /// As [`OctreeRef::distance`].
@@ -153,7 +153,7 @@ impl Octree {
         self.view().distance(point, to)
     }
 
-    /// As [`OctreeRef::distances`].
+    /// Computes the distances of many points. See [`OctreeRef::distances`] for the full contract.
     ///
     /// # Errors
     /// As [`OctreeRef::distances`].

@@ -1,4 +1,4 @@
-//! The cells of a stored octree, those that are near a point first.
+//! A walk over the cells of a stored octree in which near cells come first.
 
 use super::place::{Place, Square};
 use crate::error::Error;
@@ -8,24 +8,25 @@ use crate::octree::links::Step;
 use crate::octree::view::OctreeRef;
 use crate::octree::{Planes, Tag};
 
-/// What a search makes of the cells that it meets.
+/// A receiver of the cells that a walk meets.
 pub(super) trait Visitor {
-    /// Those of an element's `real` cells, none of which is a branch, that are worth a look. `sides` tells on
-    /// which side of the element the point lies along each axis, if on one: above it or not. `None` if the
-    /// cells are to be shown as the octree has them, octants of one tag as one cell.
+    /// Returns the cells to visit among an element's `real` cells, none of which is a branch. For each axis,
+    /// `sides` says on which side of the element the point lies, if on one: above it or below. `None` if the
+    /// cells are to be passed on as the octree stores them, octants of one tag as one cell.
     fn chosen(&self, planes: Planes, real: u64, sides: [Option<bool>; 3]) -> Option<u64>;
 
-    /// Whether a cell at this distance matters, be it a leaf of `tag` or a BRANCH with leaves of any tags.
+    /// Returns whether a cell at this distance matters. The cell is a leaf of `tag`, or a BRANCH with leaves
+    /// of any tags.
     fn wants(&self, square: Square, cell: Cell, tag: Tag) -> bool;
 
-    /// A leaf that matters.
+    /// Takes in a leaf that matters.
     fn meet(&mut self, square: Square, cell: Cell, tag: Tag) -> Result<(), Error>;
 }
 
-/// Shows the leaves of a tree to a visitor, near ones first as a rule.
+/// Passes the leaves of a tree to a visitor, usually the near ones first.
 ///
-/// In a sound tree no element is met twice. Over damaged bytes, as many are met as the tree has; the cells of
-/// all others then read as PARTIAL.
+/// In a sound tree no element is met twice. With damaged bytes, the walk meets at most as many elements as
+/// the tree has. The cells of all further elements read as PARTIAL.
 pub(super) fn walk(tree: &OctreeRef<'_>, place: &Place<'_>, visitor: &mut impl Visitor) -> Result<(), Error> {
     let left = tree.planes.len() + tree.bricks.len();
     let mut walk = Walk { tree, place, visitor, left };
@@ -39,7 +40,7 @@ struct Walk<'w, 't, V> {
     tree: &'w OctreeRef<'t>,
     place: &'w Place<'w>,
     visitor: &'w mut V,
-    /// Elements that may still be entered.
+    /// The number of elements that may still be entered.
     left: usize,
 }
 
@@ -48,7 +49,7 @@ impl<V: Visitor> Walk<'_, '_, V> {
         if self.visitor.wants(square, cell, tag) { self.visitor.meet(square, cell, tag) } else { Ok(()) }
     }
 
-    /// Shows the leaves in element `index` of level `e`, whose own cell is at `at` on its level. The
+    /// Passes on the leaves in element `index` of level `e`, whose own cell is at `at` on its level. The
     /// recursion is as deep as the tree has element levels, ten at the most.
     fn element(&mut self, e: usize, index: usize, at: [u32; 3]) -> Result<(), Error> {
         let level = self.tree.cell_level(e);
@@ -74,8 +75,8 @@ impl<V: Visitor> Walk<'_, '_, V> {
         if let Some(chosen) = chosen {
             singles &= chosen;
         } else if level > 1 {
-            // Octants of one tag are cells. (The universe is cut, whatever damaged bytes say of its
-            // children.)
+            // Octants of one tag are cells. (The universe counts as cut, whatever damaged bytes contain for
+            // its children.)
             for (octants, tag) in planes.octants().into_iter().zip([Tag::Empty, Tag::Full, Tag::Partial]) {
                 let mut octants = octants & singles;
                 while octants != 0 {

@@ -1,4 +1,4 @@
-//! Do two solids overlap, and by how much?
+//! The overlap of two solids, and its volume.
 
 mod oriented;
 mod pose;
@@ -19,93 +19,92 @@ use alloc::vec::Vec;
 use oriented::{Oriented, Waiting};
 use search::Search;
 
-/// Whether the interiors of two solids have points in common.
+/// The verdict on an overlap: whether the interiors of two solids have points in common.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
 #[repr(u8)]
 pub enum Overlap {
-    /// Proven: they have none. The solids may touch.
+    /// Proven: the interiors have no common points. The solids may touch.
     Disjoint = 0,
-    /// Proven: a ball lies in both.
+    /// Proven: a ball lies in both solids.
     Overlapping = 1,
-    /// Not decided at the frame's depth, or before the splits were spent; or both solids go on outside of the
-    /// universe, where they may overlap.
+    /// Not decided at the frame's depth, or before the splits were spent; or both solids continue outside of
+    /// the universe, where they may overlap.
     Undecided = 2,
 }
 
-/// All points that are no further than a radius from a centre.
+/// A closed ball.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Ball {
     /// The centre (model units).
     pub centre: [f64; 3],
-    /// The radius (model units), which is positive; 0 if rounding takes all of it, so that the ball is a
-    /// point that is rounded.
+    /// The radius (model units), which is positive. 0 if rounding consumes it, so that the ball is a single
+    /// rounded point.
     pub radius: f64,
 }
 
 impl Ball {
-    /// A ball in a cell, from the cell's centre in half edges.
+    /// Builds a ball in a cell. The coordinates count half edges from the cell's centre.
     fn in_cell(cube: &Cube<'_>, at: [f64; 3], radius: f64) -> Ball {
         let (lower, upper) = cube.bounds();
         let half = cube.half_edge();
         let centre = axes(|k| 0.5 * lower[k] + 0.5 * upper[k] + half * at[k]);
-        // More than what is rounded of the centre, with that of the cell's ends.
+        // A bound of the centre's rounding error, including that of the cell's ends.
         let size = (0..3).map(|k| lower[k].abs().max(upper[k].abs())).sum::<f64>();
         let radius = radius * half * (1.0 - 4.0 * f64::EPSILON) - 16.0 * f64::EPSILON * size;
         Ball { centre, radius: radius.max(0.0) }
     }
 
-    /// No more than its volume.
+    /// A lower bound of the ball's volume.
     fn volume(&self) -> f64 {
         4.18 * self.radius * self.radius * self.radius
     }
 }
 
-/// What is known of two solids.
+/// The proven verdict on the overlap of two solids, with its witness and volume.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Interference {
-    /// Whether they overlap.
+    /// Whether the solids overlap.
     pub verdict: Overlap,
-    /// A cell of the frame with points of both, if the proof of an overlap found one, as it does unless
-    /// stored octrees were asked for under placements.
+    /// A cell of the frame with points of both solids, if the proof of an overlap found one. It always does,
+    /// except for stored octrees under placements.
     pub witness: Option<Cell>,
-    /// If they are proven to overlap, a ball, all of which is proven to lie in both: in that cell, if there
-    /// is one. It is not the largest one.
+    /// If the solids are proven to overlap: a ball that is proven to lie in both, within that cell, if there
+    /// is one. It is not the largest such ball.
     pub ball: Option<Ball>,
-    /// The volume of what they have in common, in cubic model units; the upper bound is infinite if
-    /// `clipped`.
+    /// The volume of the intersection, in cubic model units. The upper bound is infinite if `clipped`.
     pub volume: Interval,
-    /// Cells that were split, of the first solid and of the second.
+    /// Number of cell splits in the first solid and in the second.
     pub splits: [u64; 2],
-    /// The finest level of which cells were looked at.
+    /// The finest level of the visited cells.
     pub level: u8,
-    /// What of the first and of the second solid is proven: what is not counts as undecided.
+    /// Which verdicts of the first and of the second solid are proven. Unproven verdicts count as undecided.
     pub proofs: [Proof; 2],
-    /// Whether both solids may go on outside of the universe. Then they are not proven to be disjoint. (If
-    /// one of them lies inside, all that they have in common does.)
+    /// Whether both solids may continue outside of the universe. They are then not proven to be disjoint. (If
+    /// one solid lies inside, the whole intersection does.)
     pub clipped: bool,
 }
 
-/// Whether `a` and `b` overlap; a solid under a placement is moved first (see
-/// [`AnySolid::placed`](crate::AnySolid::placed)). What is looked at is the universe of `frame`. Once an
-/// overlap is proven its volume is measured until the interval is no wider than `tolerance` (cubic model
-/// units); infinity ends the work with the proof.
+/// Returns whether `a` and `b` overlap, and the volume of their intersection. To move a solid first, put it
+/// under a placement (see [`AnySolid::placed`](crate::AnySolid::placed)). The search covers the universe of
+/// `frame`. Once an overlap is proven, its volume is measured until the interval is no wider than `tolerance`
+/// (cubic model units). With an infinite tolerance the work ends with the proof.
 ///
-/// Where both solids are made of surfaces (expressions of half-spaces, and octrees that keep their surfaces),
-/// cells are asked for the function of both: a plane, a quadric or another surface that bounds both, however
-/// both were placed, is one, and solids that touch in it from opposite sides are `Disjoint` by proof. So are
-/// solids on two planes or quadrics that touch: of any two, exact numbers tell whether a point lies inside of
-/// both. Where a solid is known between two planes (a mesh, a host's function), solids in contact stay
-/// `Undecided` within that width.
+/// If both solids are made of surfaces (expressions of half-spaces, and octrees that keep their surfaces),
+/// the search uses the joint function of both solids in a cell. A plane, a quadric or another surface that
+/// bounds both solids counts as one surface, however both were placed. Solids that touch in it from opposite
+/// sides are `Disjoint` by proof. So are solids on two planes or quadrics that touch: for any two of these
+/// surfaces, exact numbers decide whether a point lies inside of both. If a solid is only known between two
+/// planes (a mesh, a host's function), solids in contact stay `Undecided` within that width.
 ///
-/// The work ends at the frame's depth, or once `control.max_splits` cells of both are split or what is
-/// remembered of them comes near to `control.max_bytes`, with what is known by then. Memory is linear in the
-/// cells that are not decided. The search takes one thread, but for a host program's shape, which is asked
-/// about several cells at once; the measurement takes as many as `control` allows. The result is the same for
-/// any number of them.
+/// The work ends, with the results so far, at the frame's depth, or once `control.max_splits` cells of both
+/// are split or the stored parts come near to `control.max_bytes`. Memory is linear in the undecided cells.
+/// The search uses one thread, except for a host program's shape, which is queried about several cells at
+/// once. The measurement uses as many threads as `control` allows. The result does not depend on their
+/// number.
 ///
 /// # Errors
-/// [`Error::Argument`] if `tolerance` is negative or not a number; what the solids refuse;
-/// [`Error::OutOfMemory`], and [`Error::Cancelled`].
+/// [`Error::Argument`] if `tolerance` is negative or not a number; the solids' own errors;
+/// [`Error::OutOfMemory`] and [`Error::Cancelled`].
 ///
 /// ```
 /// use leafless::{Control, Csg, Frame, interference, query::Overlap};
@@ -131,7 +130,7 @@ pub fn interference<A: Solid, B: Solid>(
     Ok(found)
 }
 
-/// The same of solids on one frame.
+/// Returns the interference of two solids on one frame.
 fn of_classifiers<A: Classifier, B: Classifier>(
     a: A,
     b: B,
@@ -147,10 +146,10 @@ fn of_classifiers<A: Classifier, B: Classifier>(
         search.run(clipped, if parallel { parallel::threads() } else { 1 }, job)
     })?;
     if found.verdict == Overlap::Overlapping && found.volume.width() > tolerance {
-        // A split of what both have in common is one of each of them.
+        // A split of the intersection is one split of each solid.
         let own = Control { progress: None, ..*control };
         let measured = volume_within(&both, tolerance, found.left / 2, &own)?;
-        // (Both hold the truth.)
+        // (Both intervals contain the true volume.)
         found.volume = found.volume.common(measured.volume).unwrap_or(measured.volume);
         found.level = found.level.max(measured.level);
         for (splits, partial) in found.splits.iter_mut().zip(found.partial) {
@@ -171,24 +170,24 @@ fn of_classifiers<A: Classifier, B: Classifier>(
     })
 }
 
-/// As [`interference`] of `a` with `b` under each of the `placements`, in their order; the first of both is
-/// known on `frame`, the second on its `own` frame, and both are prepared once. An expression of half-spaces
-/// is moved itself ([`Motion::Exact`]), so that contacts are decided. The same for any number of threads;
-/// `control.max_splits` concerns each placement.
+/// Returns the [`interference`] of `a` with `b` under each of the `placements`, in their order. The solid `a`
+/// stands on `frame`, `b` on its `own` frame; both are prepared once. An expression of half-spaces is moved
+/// itself ([`Motion::Exact`]), so that contacts are decided. The results do not depend on the number of
+/// threads. `control.max_splits` applies to each placement.
 ///
 /// # Stored octrees
 /// Two [`Octree`](crate::Octree)s, or views of them, also behind [`AnySolid`](crate::AnySolid), are not
-/// searched by cells of `frame`: both trees descend in pairs of cells, as boxes that the placement turns.
-/// Nothing blurs, and a pair of solids that overlap by less than a cell is found out, too;
-/// [`Interference::ball`] is the proof. `splits` counts cells of both trees. The trees must be certified and
-/// without surfaces, cut an eighth of their universes, end inside of these, and be known on just the frames
-/// that are given. Any affine placement will do. Where a finite `tolerance` asks for the volume of an
-/// overlap, the search by cells follows.
+/// searched by cells of `frame`. Instead both trees descend in pairs of cells, as boxes that the placement
+/// turns. This loses no precision, and an overlap by less than a cell is found, too; [`Interference::ball`]
+/// is the proof. `splits` counts cells of both trees. The trees must be certified and without surfaces, must
+/// have at least one cut octant of the universe, must end inside of their universes, and must stand on
+/// exactly the given frames. Any affine placement is allowed. If a finite `tolerance` requires the volume of
+/// an overlap, the search by cells follows.
 ///
-/// Where that does not decide, an octree that keeps its surfaces is moved with these, as [`Transform`] moves
-/// it: contacts are decided as [`interference`] decides them.
+/// If that is not decisive, an octree that keeps its surfaces is moved with these, as [`Transform`] moves it.
+/// Contacts are then decided as by [`interference`].
 ///
-/// A placement takes a few microseconds, and more where the solids nearly touch: the work grows with the area
+/// A placement takes a few microseconds, and more if the solids nearly touch: the work grows with the area
 /// where the gap is as narrow as a cell, measured in such cells.
 ///
 /// ```
@@ -218,7 +217,7 @@ pub fn interference_at<A: Solid, B: Solid>(
     valid::tolerance("tolerance", tolerance)?;
     let job = Job::new(control);
     let (bounds, solid) = (b.bounds(), b);
-    // (Other solids need not be asked whether they are stored, which may cost a split.)
+    // (Other solids are not queried for a stored tree, because the query may cost a split.)
     let is_home = a.home() == Some(*frame) && b.home() == Some(*own);
     let (a, b) = (a.on(frame, control)?, b.on(own, control)?);
     let mut workers = (a.worker()?, b.worker()?);
@@ -229,7 +228,7 @@ pub fn interference_at<A: Solid, B: Solid>(
     let oriented = oriented.map(|(a, b)| Oriented::new(a, b));
     let keeps_surfaces = solid.home().is_some() && b.surfaces(control)?.is_some_and(|list| !list.is_empty());
     let a = Proven(a);
-    // The threads are those of the placements.
+    // The threads are shared out by placements.
     let alone = Control { threads: 1, ..*control };
     let one = |waiting: &mut Waiting, placement: &Affine| {
         if solid.motion() == Motion::Exact
@@ -256,7 +255,7 @@ pub fn interference_at<A: Solid, B: Solid>(
                 known.map_or(found, |known| found.with(&known))
             }
         };
-        // To move surfaces takes some thousand splits, which only close contacts are worth.
+        // Moving surfaces takes some thousand splits, which only close contacts justify.
         let found = if keeps_surfaces && found.verdict == Overlap::Undecided {
             let moved = Transform::new(solid, own, placement).on(frame, control)?;
             of_classifiers(a.clone(), Proven(moved), tolerance, &alone, &job)?.with(&found)
@@ -268,7 +267,7 @@ pub fn interference_at<A: Solid, B: Solid>(
     };
     let mut found = memory::with_capacity(placements.len())?;
     control.run(placements.len() > 1, |parallel| {
-        // By pieces, so that what is collected behind the scenes stays small.
+        // Work in batches, so that the results collected in the background stay small.
         for piece in placements.chunks(PIECE) {
             found.extend(each_with(parallel, piece.iter(), Waiting::default, one)?);
         }
@@ -276,15 +275,15 @@ pub fn interference_at<A: Solid, B: Solid>(
     })
 }
 
-/// Whether oriented boxes told all that is asked for. Cells on planes of the lattice tell more of contacts
-/// along these.
+/// True if oriented boxes gave the complete answer. Cells on planes of the lattice may decide contacts along
+/// these planes.
 fn is_enough(known: &Interference, placement: &Affine, tolerance: f64) -> bool {
     let is_certain = known.verdict != Overlap::Undecided || !placement.is_monomial();
     is_certain && known.volume.width() <= tolerance
 }
 
 impl Interference {
-    /// What two searches about the same solids found.
+    /// Combines the results of two searches about the same solids.
     fn with(self, known: &Interference) -> Interference {
         let lower = self.volume.lower.max(known.volume.lower);
         let stronger = if self.verdict == Overlap::Undecided { known } else { &self };
@@ -303,5 +302,5 @@ impl Interference {
     }
 }
 
-/// Placements that are handed to the threads at once.
+/// Number of placements handed to the threads at once.
 const PIECE: usize = 4096;

@@ -1,13 +1,13 @@
 //! Two stored octrees under a placement: both trees descend in pairs of cells, as oriented boxes.
 //!
 //! A pair of cells is dropped as soon as an axis separates them. Fifteen axes are tried: the normals of the
-//! faces of both boxes, and the products of an edge of one with an edge of the other. A larger cell is split
-//! first, and its eight children are tried against the other cell at once. Two FULL cells that no axis
-//! separates overlap, and a ball in both is the proof ([`super::pose`] does the arithmetic).
+//! faces of both boxes, and the products of an edge of one with an edge of the other. The larger cell of a
+//! pair is split first, and its eight children are tested against the other cell at once. Two FULL cells that
+//! no axis separates overlap, and a ball in both is the proof ([`super::pose`] does the arithmetic).
 //!
-//! The pair that overlaps most deeply comes first. So a collision is found after few pairs, and its cost does
-//! not grow with the resolution. If nothing overlaps, the order does not matter: all pairs have to be
-//! separated.
+//! The pair with the deepest overlap comes first. A collision is therefore found after few pairs, and its
+//! cost does not grow with the resolution. If nothing overlaps, the order does not matter: all pairs have to
+//! be separated.
 
 use super::pose::{Extent, Place, Pose, least_volume};
 use super::{Ball, Interference, Overlap};
@@ -21,19 +21,19 @@ use crate::octree::{OctreeRef, Planes, Proof, Tag};
 use crate::solid::{Classifier, OCTANTS, Verdict, Worker};
 use alloc::vec::Vec;
 
-/// A stored octree that a solid consists of.
+/// A solid that consists of a stored octree.
 #[derive(Clone, Copy)]
 pub(super) struct Stored<'t> {
     tree: OctreeRef<'t>,
     /// Whether the solid is the complement.
     flip: bool,
     proof: Proof,
-    /// At least the volume of the solid, in finest cells.
+    /// An upper bound of the solid's volume, in finest cells.
     most: f64,
 }
 
-/// The tree of a solid that is nothing but a stored octree, proven in all its cells, and ends inside of the
-/// universe.
+/// Returns the tree of a solid, if the solid is nothing but a stored octree with all cells proven, and ends
+/// inside of the universe.
 pub(super) fn stored<'w, C: Classifier>(
     classifier: &C,
     worker: &'w mut C::Worker,
@@ -45,7 +45,8 @@ pub(super) fn stored<'w, C: Classifier>(
     let Verdict::Partial(mut part) = worker.root()? else { return Ok(None) };
     let half_way = starts_half_way(classifier.frame().depth());
     if half_way {
-        // The root of such a tree is half an element, which no subtree names: its children are.
+        // The root of such a tree is half an element, which no subtree names. The root's children have
+        // subtrees.
         let children = worker.split(Cell::ROOT, &part)?;
         match first_of_one_tree(worker, &children) {
             Some(first) => part = first,
@@ -61,7 +62,7 @@ pub(super) fn stored<'w, C: Classifier>(
     Ok(Some(stored))
 }
 
-/// A child of the root by which a tree is known, if all children are those of one tree.
+/// Returns a child of the root that identifies the tree, if all children belong to one tree.
 fn first_of_one_tree<W: Worker>(worker: &W, children: &[Verdict<W::Part>; 8]) -> Option<W::Part> {
     let part = children.iter().find_map(|verdict| match verdict {
         Verdict::Partial(part) => Some(part),
@@ -82,12 +83,12 @@ fn first_of_one_tree<W: Worker>(worker: &W, children: &[Verdict<W::Part>; 8]) ->
     OCTANTS.into_iter().zip(children).all(is_same).then(|| part.clone())
 }
 
-/// What a node's cell is.
+/// The kind of a node's cell.
 #[derive(Clone, Copy, PartialEq)]
 enum Kind {
-    /// Described by all of an element.
+    /// A cell described by all of an element.
     Element,
-    /// Described by an octant of an element.
+    /// A cell described by an octant of an element.
     Octant(u8),
     Full,
     Partial,
@@ -97,7 +98,7 @@ enum Kind {
 #[derive(Clone, Copy)]
 struct Node {
     place: Place,
-    /// Where it is described, if it is cut: element level and index.
+    /// The place of the description, if the cell is cut: element level and index.
     level: u8,
     kind: Kind,
     index: usize,
@@ -117,13 +118,13 @@ struct Eight {
     cut: u8,
 }
 
-/// Cells of an element in the lower halves of their octants along each axis.
+/// The cells of an element in the lower halves of their octants along each axis.
 const LOWER: [u64; 3] = [0x5555_5555_5555_5555, 0x3333_3333_3333_3333, 0x0F0F_0F0F_0F0F_0F0F];
 
-/// Cells in the upper half of an element along each axis.
+/// The cells in the upper half of an element along each axis.
 const UPPER_HALF: [u64; 3] = [0xFF00_FF00_FF00_FF00, 0xFFFF_0000_FFFF_0000, 0xFFFF_FFFF_0000_0000];
 
-/// The low bits of the eight bytes.
+/// Collects the low bits of the eight bytes.
 fn low_bits(word: u64) -> u8 {
     (word.wrapping_mul(0x0102_0408_1020_4080) >> 56) as u8
 }
@@ -136,7 +137,7 @@ impl Stored<'_> {
     }
 
     fn eight(&self, node: &Node) -> Eight {
-        // (What is not there is not known.)
+        // (A missing entry is undecided.)
         let planes = self.tree.entry(node.index).unwrap_or(Planes::uniform(Tag::Partial));
         let planes = planes.complement_if(self.flip);
         match node.kind {
@@ -152,7 +153,7 @@ impl Stored<'_> {
         }
     }
 
-    /// A box around all of a node that is not EMPTY: in quarters of its edge, or halves.
+    /// Returns a box around the non-EMPTY part of a node, in quarters of the node's edge, or halves.
     fn extent(&self, node: &Node) -> Extent {
         let planes = match node.kind {
             Kind::Element | Kind::Octant(_) => self.tree.entry(node.index),
@@ -164,7 +165,7 @@ impl Stored<'_> {
         let some = planes.lower | planes.upper;
         let (mut low, mut high) = ([0; 3], [4; 3]);
         for axis in 0..3 {
-            // Which slabs across the axis there are, as bits.
+            // The occupied slabs across the axis, as bits.
             if let Kind::Octant(octant) = node.kind {
                 let some = some >> (8 * octant) & 0xFF;
                 let lower = LOWER[axis] & 0xFF;
@@ -184,7 +185,7 @@ impl Stored<'_> {
         node.place.part(low, high)
     }
 
-    /// Child `k` of a node, which is not EMPTY.
+    /// Returns child `k` of a node. The child is not EMPTY.
     fn child(&self, node: &Node, eight: &Eight, k: u8) -> Node {
         let place = node.place.child(k);
         let settled = |kind| Node { place, kind, ..*node };
@@ -203,7 +204,7 @@ impl Stored<'_> {
         }
     }
 
-    /// At least the volume of what lies in a node, in finest cells; only so many levels are looked at.
+    /// Returns an upper bound of the volume in a node, in finest cells. Only `levels` levels are visited.
     fn volume_within(&self, node: &Node, levels: u8) -> f64 {
         let edge = node.place.edge();
         if levels == 0 || !node.is_cut() {
@@ -219,21 +220,21 @@ impl Stored<'_> {
     }
 }
 
-/// Two cells that no axis separates, so far.
+/// Two cells that no axis has separated so far.
 #[derive(Clone, Copy)]
 struct Pair {
     a: Node,
     b: Node,
 }
 
-/// Ranks of pairs.
+/// The number of ranks of pairs.
 const RANKS: usize = 64;
 
-/// Pairs that wait, which one search leaves to the next one.
+/// The waiting pairs. A search leaves its memory to the next search.
 pub(super) struct Waiting {
-    /// By rank; of one rank the latest comes first.
+    /// The pairs by rank; within a rank the latest comes first.
     pairs: [Vec<Pair>; RANKS],
-    /// Which ranks there are.
+    /// The ranks in use, as bits.
     ranks: u64,
     count: usize,
 }
@@ -269,14 +270,14 @@ impl Waiting {
     }
 }
 
-/// The rank of a pair whose boxes overlap by `depth`, as a share of their sizes, from 0 to about 2.
+/// Returns the rank of a pair whose boxes overlap by `depth`, as a share of their sizes, from 0 to about 2.
 fn rank(depth: f32, steps: u32) -> u32 {
-    // A search without a price for depth would never come back from a contact.
+    // If depth had no price, the search would never leave a contact.
     let steep = (depth.max(0.0) * 32.0) as u32;
     (steep + 24).saturating_sub(steps).min(RANKS as u32 - 1)
 }
 
-/// Two stored octrees, of which the second one is moved.
+/// Two stored octrees, the second of which is moved.
 pub(super) struct Oriented<'t> {
     a: Stored<'t>,
     b: Stored<'t>,
@@ -288,9 +289,9 @@ struct Search<'s, 't> {
     pose: Pose,
     waiting: &'s mut Waiting,
     splits: [u64; 2],
-    /// The least edge of the cells that were looked at in the first tree, as a power of two.
+    /// The least edge of the visited cells in the first tree, as a power of two.
     least: u8,
-    /// Whether there are cells that may overlap and are not known to.
+    /// Whether there are cells that possibly overlap, without proof.
     doubt: bool,
     proof: Option<(Ball, Option<Cell>)>,
 }
@@ -300,7 +301,7 @@ impl<'t> Oriented<'t> {
         Oriented { a, b }
     }
 
-    /// What is known of the two with the second one placed.
+    /// Returns the interference of the two solids, with the second one placed.
     pub(super) fn interference(
         &self,
         placement: &Affine,
@@ -335,7 +336,7 @@ impl Search<'_, '_> {
             if steps.is_multiple_of(64) {
                 job.check()?;
             }
-            // Once there is doubt, cells that are not known add nothing.
+            // Once there is doubt, PARTIAL cells add nothing.
             if self.doubt && [pair.a.kind, pair.b.kind].contains(&Kind::Partial) {
                 continue;
             }
@@ -347,7 +348,7 @@ impl Search<'_, '_> {
         Ok(())
     }
 
-    /// Splits the larger cell of a pair that is cut.
+    /// Splits the larger cell of a pair. It is a cut cell.
     fn split(&mut self, pair: &Pair) -> Result<(), Error> {
         let Pair { a, b } = pair;
         let of_a = a.is_cut() && (!b.is_cut() || self.pose.is_larger(&a.place, &b.place));
@@ -380,7 +381,7 @@ impl Search<'_, '_> {
         Ok(())
     }
 
-    /// Two cells that are not cut.
+    /// Decides a pair of cells, neither of which is cut.
     fn decide(&mut self, pair: &Pair) {
         let (a, b) = (&pair.a.place, &pair.b.place);
         if pair.a.kind == Kind::Full && pair.b.kind == Kind::Full {
@@ -393,7 +394,7 @@ impl Search<'_, '_> {
         let (a, b) = (&self.solids.a, &self.solids.b);
         let frame = a.tree.frame();
         let (verdict, witness, ball) = match self.proof {
-            // A cell that lies in both has a ball in it.
+            // A cell that lies in both contains a ball.
             Some((_, Some(cell))) => {
                 let ball = Ball::in_cell(&Cube { frame, cell }, [0.0; 3], 1.0);
                 (Overlap::Overlapping, Some(cell), Some(ball))

@@ -1,18 +1,18 @@
 //! Cells of one lattice against cells of another one under an affine map: separating axes, and balls in both.
 //!
-//! A cell of the second lattice is a parallelepiped on the first one: a box that is turned, if the map is
-//! rigid. What depends on the map alone is computed once a pose: fifteen axes, the radius that a cell of
-//! either lattice has along each of them, and the steps that the centre makes from a cell to its children.
+//! A cell of the second lattice is a parallelepiped on the first one: a turned box, if the map is rigid. All
+//! data that depend only on the map are computed once for each pose: fifteen axes, the radius of each
+//! lattice's cells along each of them, and the steps of the centre from a cell to its children.
 //!
 //! # Rounding
 //!
-//! Any axis at all proves that two convex bodies are apart, if their shadows on it are. So the fifteen axes
-//! need not be accurate, and the doubles that they are count as exact. What is rounded are the map and the
-//! sums: `slack` bounds that per axis, and the bound is added to the radii.
+//! Any axis proves that two convex bodies are apart, if their projections on it are. The fifteen axes
+//! therefore need not be accurate, and their doubles count as exact. Only the map and the sums are rounded:
+//! `slack` bounds this error for each axis, and is added to the radii.
 //!
-//! Eight children are tried in single precision. Where a centre lies near the limit, it is about as large as
-//! the radii, and so its rounding is relative to these: all of it is less than 2^-22 of them, and 2^-20 are
-//! added.
+//! Eight children are tested in single precision. Near the limit, the distance of the centre is about as
+//! large as the radii, so its rounding error is relative to these. The whole error is less than 2^-22 of the
+//! radii; 2^-20 are added.
 
 use super::Ball;
 use crate::lattice::exact::{product_down, product_up, sqrt};
@@ -20,16 +20,17 @@ use crate::lattice::{Affine, Cell, Frame, axes};
 use crate::octree::stats::volume_of;
 use wide::f32x8;
 
-/// Axes that may separate two parallelepipeds: three normals of each, and nine products of edges.
+/// The number of axes that may separate two parallelepipeds: three normals of each, and nine products of
+/// edges.
 const AXES: usize = 15;
 
-/// The same with one that separates nothing, for vectors of two, four and eight.
+/// The number of axes including one that separates nothing, for vectors of two, four and eight.
 const LANES: usize = 16;
 
-/// Normals of faces, which come first.
+/// The number of face normals, which come first.
 const FACES: usize = 6;
 
-/// What radii are multiplied by for what is rounded in single precision.
+/// The factor of the radii that covers the rounding in single precision.
 const SINGLE: f64 = 1.0 + 1.0 / (1 << 20) as f64;
 
 /// A cell: its lower corner in finest cells, and its edge as a power of two.
@@ -52,7 +53,7 @@ impl Place {
         Place { at: axes(|axis| self.at[axis] + half(axis)), log }
     }
 
-    /// The box from a corner to another one, in quarters of the edge.
+    /// The box from one corner to another, in quarters of the edge.
     pub(super) fn part(&self, low: [u32; 3], high: [u32; 3]) -> Extent {
         let quarter = 0.25 * self.edge();
         Extent {
@@ -80,27 +81,27 @@ pub(super) struct Pose {
     placement: Affine,
     frame: Frame,
     own: Frame,
-    /// From finest cells of the second lattice to those of the first one: u = linear · v + offset.
+    /// The map from finest cells of the second lattice to those of the first one: u = linear · v + offset.
     linear: [[f64; 3]; 3],
     offset: [f64; 3],
-    /// How far the image of a centre may be off, along each axis of the first lattice.
+    /// The maximal error of a centre's image, along each axis of the first lattice.
     error: [f64; 3],
-    /// How long the longest edge of a finest cell of the second lattice is on the first one.
+    /// The length, on the first lattice, of the longest edge of the second lattice's finest cells.
     longest: f64,
-    /// Coordinates of the axes: of the first, the second, the third dimension.
+    /// The coordinates of the axes: of the first, the second, the third dimension.
     axes: [[f64; LANES]; 3],
     /// The radius of a cell of each lattice along the axes, for half an edge of 1.
     radii: [[f64; LANES]; 2],
-    /// The same of each of its three edges.
+    /// The contributions of each of the cell's three edges to the radius.
     shares: [[[f64; LANES]; 3]; 2],
-    /// What is added to radii for rounding.
+    /// The addition to the radii for rounding.
     slack: [f64; LANES],
-    /// How the difference of the centres changes along the axes from a cell of each lattice to its eight
+    /// The change of the centres' difference along the axes from a cell of each lattice to its eight
     /// children, for half an edge of 1 of a child.
     steps: [[f32x8; AXES]; 2],
-    /// From a distance along the normal of a face to one in finest cells.
+    /// The factor from a distance along a face normal to a distance in finest cells.
     units: [f32; FACES],
-    /// At least the volume of a finest cell of each lattice, in model units.
+    /// An upper bound of the volume of a finest cell of each lattice, in model units.
     volumes: [f64; 2],
 }
 
@@ -112,15 +113,15 @@ fn dot(a: [f64; 3], b: [f64; 3]) -> f64 {
     a[0] * b[0] + a[1] * b[1] + a[2] * b[2]
 }
 
-/// A vector along `v` whose longest coordinate is about 1. Of one that has no direction none separates
-/// anything.
+/// Returns a vector along `v` whose longest coordinate is about 1. A vector without direction is replaced by
+/// the first unit vector.
 fn direction(v: [f64; 3]) -> [f64; 3] {
     let largest = v.iter().fold(0.0, |largest: f64, c| largest.max(c.abs()));
     if largest > 0.0 && largest < f64::INFINITY { v.map(|c| c / largest) } else { [1.0, 0.0, 0.0] }
 }
 
 impl Pose {
-    /// Cells of `own`, placed, against those of `frame`.
+    /// Prepares the comparison of placed cells of `own` with cells of `frame`.
     pub(super) fn new(placement: &Affine, frame: &Frame, own: &Frame) -> Pose {
         let rows = placement.rows();
         let (cell, step) = (frame.cell_size(), own.cell_size());
@@ -132,7 +133,7 @@ impl Pose {
             let size =
                 terms.iter().map(|term| term.abs()).sum::<f64>() + row[3].abs() + frame.origin()[i].abs();
             let reach = linear[i].iter().map(|entry| entry.abs()).sum::<f64>() * f64::from(own.cells());
-            // Entries have two roundings, and each of the sums for a centre a dozen at the most.
+            // Each entry has two roundings, and each of the sums for a centre a dozen at the most.
             error[i] = 64.0 * f64::EPSILON * (reach + size / cell + f64::from(frame.cells()));
             ((terms[0] + terms[1] + terms[2]) + (row[3] - frame.origin()[i])) / cell
         });
@@ -170,11 +171,11 @@ impl Pose {
         pose
     }
 
-    /// Takes an axis.
+    /// Stores an axis.
     fn take(&mut self, axis: usize, along: [f64; 3], columns: &[[f64; 3]; 3]) {
         let sizes = along.map(f64::abs);
         let shadows = columns.map(|column| dot(along, column));
-        // (Three roundings of products of which the largest is counted.)
+        // (Three roundings of products, each counted like the largest.)
         let rounding = columns.map(|column| 8.0 * f64::EPSILON * dot(sizes, column.map(f64::abs)));
         let shares = [sizes, axes(|j| shadows[j].abs() + rounding[j])];
         for (lattice, shares) in shares.into_iter().enumerate() {
@@ -193,7 +194,7 @@ impl Pose {
                 (signed(x, 0) + signed(y, 1) + signed(z, 2)) as f32
             }))
         };
-        // The difference is that of the second centre and the first.
+        // The difference is the second centre minus the first.
         self.steps[0][axis] = steps(along.map(|c| -c));
         self.steps[1][axis] = steps(shadows);
         if axis < FACES {
@@ -201,7 +202,7 @@ impl Pose {
         }
     }
 
-    /// The difference of the centres of two cells, the second one placed.
+    /// Returns the difference of the centres of two cells, the second one placed.
     fn difference(&self, a: &Place, b: &Place) -> [f64; 3] {
         self.between(a.centre(), b.centre())
     }
@@ -211,14 +212,15 @@ impl Pose {
         axes(|i| (dot(self.linear[i], b) + self.offset[i]) - a[i])
     }
 
-    /// Whether a cell of the first lattice is at least as large as one of the second.
+    /// True if a cell of the first lattice is at least as large as a cell of the second.
     #[inline(always)]
     pub(super) fn is_larger(&self, a: &Place, b: &Place) -> bool {
         a.edge() >= b.edge() * self.longest
     }
 
-    /// Which of the children `some` of a cell, of the first lattice or of the second, no axis separates from
-    /// a box of the other lattice, and how deeply each overlaps as a share of the edges.
+    /// Returns the children among `some` that no axis separates from a box of the other lattice, and the
+    /// depth of each child's overlap as a share of the edges. The children belong to a cell of the first
+    /// lattice or of the second.
     #[inline(always)]
     pub(super) fn overlapping(&self, cell: &Place, of_a: bool, other: &Extent, some: u8) -> (u8, [f32; 8]) {
         let half = 0.25 * cell.edge();
@@ -262,7 +264,7 @@ impl Pose {
         (left, (depth * f32x8::splat(share)).to_array())
     }
 
-    /// Whether an axis separates two cells, in double precision.
+    /// True if an axis separates two cells, in double precision.
     pub(super) fn is_apart(&self, a: &Place, b: &Place) -> bool {
         let difference = self.difference(a, b);
         let (half, other) = (0.5 * a.edge(), 0.5 * b.edge());
@@ -273,8 +275,8 @@ impl Pose {
         })
     }
 
-    /// A ball in two cells, the second one placed, and a cell of the frame in both, if one is found. Nothing
-    /// if the cells touch, or overlap so little that rounding might be all of it.
+    /// Returns a ball in two cells, the second one placed, and a cell of the frame in both, if one is found.
+    /// `None` if the cells touch, or overlap so little that rounding may be the cause.
     pub(super) fn ball(&self, a: &Place, b: &Place) -> Option<(Ball, Option<Cell>)> {
         let (back, scale) = (self.placement.inverse_linear(), self.frame.cell_size() / self.own.cell_size());
         let two = Two {
@@ -288,22 +290,23 @@ impl Pose {
         two.ball()
     }
 
-    /// At most the volume that two solids have in common that take up so many finest cells each, in cubic
-    /// model units.
+    /// Returns an upper bound of the volume, in cubic model units, of the intersection of two solids that
+    /// occupy `a` and `b` finest cells.
     pub(super) fn most(&self, a: f64, b: f64) -> f64 {
         product_up(a, self.volumes[0]).min(product_up(b, self.volumes[1]))
     }
 }
 
-/// Two cells that may overlap, seen from the centre of the first one.
+/// Two cells that may overlap, in coordinates from the centre of the first one.
 struct Two<'p> {
     pose: &'p Pose,
     a: &'p Place,
-    /// The way of vectors back to the second lattice. Each entry is off by less than 2^-49 of itself.
+    /// The linear map of vectors back to the second lattice. The error of each entry is less than 2^-49 of
+    /// the entry.
     inverse: [[f64; 3]; 3],
     /// The centre of the second cell.
     difference: [f64; 3],
-    /// Half an edge of each, in finest cells of its lattice.
+    /// Half an edge of each cell, in finest cells of its lattice.
     half: f64,
     other: f64,
 }
@@ -321,20 +324,21 @@ impl Two<'_> {
         let (frame, centre) = (&self.pose.frame, self.a.centre());
         let inside = axes(|i| centre[i] + point[i]);
         let at = axes(|i| frame.origin()[i] + inside[i] * frame.cell_size());
-        // The centre is rounded twice, and the distances from it on the way here.
+        // The centre is rounded twice, and the distances from it are rounded as well.
         let size = frame.origin().iter().fold(frame.edge(), |size, origin| size.max(origin.abs()));
         let radius = radius * frame.cell_size() * (1.0 - 1e-9) - 16.0 * f64::EPSILON * (size + frame.edge());
         (radius > 0.0).then(|| (Ball { centre: at, radius }, self.cell(inside)))
     }
 
-    /// How large a ball around a point lies in both cells, in finest cells of the first lattice; not
-    /// positive, or no number, if none does.
+    /// Returns the radius of a ball around a point that lies in both cells, in finest cells of the first
+    /// lattice. The radius is not positive, or NaN, if there is no such ball.
     fn radius(&self, point: &[f64; 3]) -> f64 {
         let own = (0..3).map(|i| self.half - point[i].abs()).fold(f64::INFINITY, f64::min);
         (0..3).fold(own, |least, k| least.min((self.other - self.reach(k, point)) / norm(self.inverse[k])))
     }
 
-    /// At least how far a point lies from the centre of the second cell along an axis of the second lattice.
+    /// Returns an upper bound of a point's distance from the centre of the second cell along an axis of the
+    /// second lattice.
     fn reach(&self, k: usize, point: &[f64; 3]) -> f64 {
         let row = self.inverse[k];
         let away = axes(|i| point[i] - self.difference[i]);
@@ -344,7 +348,7 @@ impl Two<'_> {
         dot(row, away).abs() + rounding
     }
 
-    /// About the middle of what two cells have in common: the mean of the corners of that.
+    /// Returns the approximate middle of two cells' intersection: the mean of the intersection's corners.
     fn middle(&self) -> Option<[f64; 3]> {
         let (difference, half, other) = (&self.difference, self.half, self.other);
         let columns = axes(|j| axes(|i| self.pose.linear[i][j] * other));
@@ -361,7 +365,7 @@ impl Two<'_> {
                 add(corner);
             }
         }
-        // Faces of the second cell, cut off at the faces of the first one.
+        // Faces of the second cell, clipped at the faces of the first one.
         for face in 0..6 {
             let (axis, sign) = (face / 2, if face % 2 == 0 { 1.0 } else { -1.0 });
             let (u, v) = (columns[(axis + 1) % 3], columns[(axis + 2) % 3]);
@@ -377,11 +381,11 @@ impl Two<'_> {
         (count > 0.0).then(|| sum.map(|c| c / count))
     }
 
-    /// The largest cell of the frame around a point that lies in both cells, if one does.
+    /// Returns the largest cell of the frame around a point that lies in both cells, if there is one.
     fn cell(&self, inside: [f64; 3]) -> Option<Cell> {
         let (frame, a, centre) = (&self.pose.frame, self.a, self.a.centre());
         let most = frame.cells() - 1;
-        // (A number below zero becomes zero.)
+        // (A negative number becomes zero.)
         let finest = inside.map(|c| (c as u32).min(most));
         (0..=a.log).rev().find_map(|log| {
             let place = Place { at: finest.map(|c| c >> log << log), log };
@@ -397,28 +401,28 @@ impl Two<'_> {
     }
 }
 
-/// At least the length of a vector, as far as rounding goes.
+/// An upper bound of the length of a vector, considering rounding.
 fn norm(v: [f64; 3]) -> f64 {
     sqrt(dot(v, v)) * (1.0 + 8.0 * f64::EPSILON)
 }
 
-/// At most the volume of so many finest cells.
+/// An upper bound of the volume of `cells` finest cells.
 fn volume(frame: &Frame, cells: f64) -> f64 {
     let size = frame.cell_size();
     product_up(product_up(product_up(cells, size), size), size)
 }
 
-/// At most the volume of a finest cell that is placed: the product of its edges.
+/// An upper bound of the volume of a placed finest cell: the product of its edges.
 fn stretched_volume(placement: &Affine, own: &Frame) -> f64 {
     let edges = axes(|j| norm(axes(|i| placement.rows()[i][j])));
     edges.iter().fold(volume(own, 1.0), |volume, &edge| product_up(volume, edge))
 }
 
-/// At least the volume of a cell or of a ball in a frame, of which one is told.
+/// A lower bound of the volume of a cell or of a ball in a frame, whichever is given.
 pub(super) fn least_volume(frame: &Frame, cell: Option<Cell>, ball: Option<Ball>) -> f64 {
     let of_cell = |cell: Cell| volume_of(frame, 1 << (3 * (frame.depth() - cell.level)), u64::MAX).lower;
     let of_ball = |ball: Ball| {
-        // (A little less than 4/3 π.)
+        // (The factor is slightly less than 4/3 π.)
         product_down(product_down(product_down(4.188_790_2, ball.radius), ball.radius), ball.radius)
     };
     cell.map_or(0.0, of_cell).max(ball.map_or(0.0, of_ball))
@@ -443,7 +447,7 @@ impl Polygon {
         &self.corners[..self.count]
     }
 
-    /// What of it has a coordinate, taken with a sign, up to `limit`.
+    /// The part whose coordinate, taken with a sign, is at most `limit`.
     fn cut_off(&self, axis: usize, sign: f64, limit: f64) -> Polygon {
         let mut rest = Polygon::default();
         let corners = self.corners();

@@ -1,13 +1,13 @@
 //! The search for an overlap.
 //!
-//! Both solids are asked about the cells of one frame ([`Joint`]). A cell where one of them is EMPTY, or
-//! where what is known of both excludes each other, is done; a cell where both are FULL proves an overlap,
-//! and so does a ball in a cell on the inner sides of all slabs. Of any other cell the sides that are cut are
-//! split: so a cell of either is split once at the most, and only where the other one is.
+//! Both solids are queried about the cells of one frame ([`Joint`]). A cell where one solid is EMPTY, or
+//! where the known bounds of both exclude each other, is done. A cell where both are FULL proves an overlap.
+//! So does a ball in a cell on the inner sides of all slabs. In any other cell the cut solids are split. A
+//! cell of either solid is therefore split at most once, and only where the other solid is present.
 //!
-//! Which cell comes first does not matter to a proof that nothing overlaps, which needs them all. A proof of
-//! overlap needs a single one, so the search begins where it is likely: a cut cell with FULL siblings lies
-//! deeper in the solid than one with EMPTY ones.
+//! A proof that nothing overlaps needs all cells, so their order does not matter. A proof of overlap needs a
+//! single cell, so the search begins where an overlap is likely: a cut cell with FULL siblings lies deeper in
+//! the solid than one with EMPTY siblings.
 
 use super::{Ball, Overlap};
 use crate::control::{Control, Job};
@@ -29,24 +29,24 @@ struct Open<P> {
     verdict: Verdict<P>,
 }
 
-/// A cell of what two classifiers have in common.
+/// A cell of the intersection of two classifiers.
 type OpenOf<A, B> = Open<Part<Joint<A, B>>>;
 
-/// A place in the queue: the greater number comes first; among equals, what was met earlier.
+/// A rank in the queue: the greater number comes first; among equals, the cell met earlier.
 type Rank = (u64, Reverse<u64>);
 
-/// Cells of which a host program's shape is asked at once. (It does not depend on the threads, and so the
-/// result does not either.)
+/// The number of cells in one query to a host program's shape. (It does not depend on the threads, and hence
+/// neither does the result.)
 const GATHERED: usize = 16;
 
-/// What is under way.
+/// The state of the search.
 pub(super) struct Search<'s, A: Classifier, B: Classifier> {
     both: Subject<'s, Joint<A, B>>,
-    /// Splits of either solid, and those that may still be made.
+    /// The splits of either solid, and the number of splits still allowed.
     splits: [u64; 2],
     left: u64,
     open: Queue<Rank, OpenOf<A, B>>,
-    /// In finest cells: what is FULL of both, open, and not to be decided.
+    /// Numbers of finest cells: FULL in both, open, and undecidable.
     full: u64,
     waiting: u64,
     undecided: u64,
@@ -54,16 +54,16 @@ pub(super) struct Search<'s, A: Classifier, B: Classifier> {
     level: u8,
 }
 
-/// What a search found.
+/// The result of a search.
 pub(super) struct Found {
     pub(super) verdict: Overlap,
     pub(super) witness: Option<(Cell, Ball)>,
-    /// Cubic model units.
+    /// In cubic model units.
     pub(super) volume: Interval,
     pub(super) splits: [u64; 2],
-    /// Splits that may still be made.
+    /// The number of splits still allowed.
     pub(super) left: u64,
-    /// Which of both are PARTIAL in the universe.
+    /// Which of both solids are PARTIAL in the universe.
     pub(super) partial: [bool; 2],
     pub(super) level: u8,
 }
@@ -83,13 +83,13 @@ impl<'s, A: Classifier, B: Classifier> Search<'s, A, B> {
         })
     }
 
-    /// Whether a solid is better asked about several cells at once.
+    /// True if a solid prefers to be queried about several cells at once.
     pub(super) fn likes_many(&self) -> bool {
         self.both.worker.likes_many()
     }
 
-    /// Searches until an overlap is proven, none is possible, or the budget is spent. `threads` ask a host
-    /// program.
+    /// Searches until an overlap is proven, none is possible, or the budget is spent. `threads` threads query
+    /// a host program.
     pub(super) fn run(mut self, clipped: bool, threads: usize, job: &Job<'_>) -> Result<Found, Error> {
         job.check()?;
         let root = self.both.worker.root()?;
@@ -108,7 +108,7 @@ impl<'s, A: Classifier, B: Classifier> Search<'s, A, B> {
                 break;
             }
         }
-        // Where both go on outside of the universe, nobody knows what they do there.
+        // Where both continue outside of the universe, their overlap is unknown.
         let undecided = clipped || self.waiting + self.undecided > 0;
         Ok(Found {
             verdict: match self.witness {
@@ -129,7 +129,7 @@ impl<'s, A: Classifier, B: Classifier> Search<'s, A, B> {
         })
     }
 
-    /// Finest cells in a cell.
+    /// Number of finest cells in a cell.
     fn cells(&self, cell: Cell) -> u64 {
         1 << (3 * (self.both.classifier.frame().depth() - cell.level))
     }
@@ -152,7 +152,7 @@ impl<'s, A: Classifier, B: Classifier> Search<'s, A, B> {
                     self.find(cell, ball);
                 }
                 if cell.level < self.both.classifier.frame().depth() {
-                    // Doubles that are not negative have the order of their bits.
+                    // Non-negative doubles have the order of their bits.
                     let rank = ((part.likely * decay(cell.level)).to_bits(), Reverse(self.open.met()));
                     self.open.push(rank, Open { cell, verdict })?;
                     self.waiting += cells;
@@ -165,7 +165,7 @@ impl<'s, A: Classifier, B: Classifier> Search<'s, A, B> {
         Ok(())
     }
 
-    /// Takes in a ball, in half edges from the centre of a cell.
+    /// Records a ball, in half edges from the centre of a cell.
     fn find(&mut self, cell: Cell, (at, radius): ([f64; 3], f64)) {
         if self.witness.is_none() {
             let cube = Cube { frame: self.both.classifier.frame(), cell };
@@ -173,7 +173,7 @@ impl<'s, A: Classifier, B: Classifier> Search<'s, A, B> {
         }
     }
 
-    /// Takes up the cell that comes next, if the budget allows it to be split.
+    /// Takes the next cell from the queue, if the budget allows its split.
     fn take(&mut self) -> Option<OpenOf<A, B>> {
         let splits = splits(&self.open.peek()?.item);
         self.left = self.left.checked_sub(splits.iter().sum())?;
@@ -187,14 +187,14 @@ impl<'s, A: Classifier, B: Classifier> Search<'s, A, B> {
         let Verdict::Partial(part) = &open.verdict else { return Ok(()) };
         self.both.worker.spared = 0;
         let children = self.both.split(open.cell, part)?;
-        // Where nothing of the first solid is, the second was not split.
+        // Where the first solid is EMPTY, the second was not split.
         self.splits[1] -= self.both.worker.spared;
         self.left += self.both.worker.spared;
         self.meet_children(open.cell, children)
     }
 
-    /// As [`split`](Self::split) of a cell and those that come next, each solid being asked about all of its
-    /// cells at once.
+    /// Does the same as [`split`](Self::split) for a cell and the next ones. Each solid is queried about all
+    /// of its cells at once.
     fn split_many(&mut self, first: OpenOf<A, B>, threads: usize) -> Result<(), Error> {
         let mut all = memory::with_capacity(GATHERED)?;
         all.push(first);
@@ -227,8 +227,8 @@ impl<'s, A: Classifier, B: Classifier> Search<'s, A, B> {
         Ok(())
     }
 
-    /// Gives back memory that only parts hold which are not in use. `false` if those in use take too much of
-    /// what is allowed.
+    /// Frees the memory of parts that are not in use. Returns `false` if the parts in use take too much of
+    /// the allowed bytes.
     fn tidy(&mut self) -> Result<bool, Error> {
         let both = &mut self.both;
         let is_full = both.takes(2);
@@ -237,13 +237,13 @@ impl<'s, A: Classifier, B: Classifier> Search<'s, A, B> {
         }
         self.open.change(|all| {
             both.keep(all.iter_mut().map(|open| &mut open.item.verdict))?;
-            // Half of it must be free, or the next step would end here again.
+            // Half of the allowance must be free, or the next step would end here again.
             Ok(!(is_full && both.takes(4)))
         })
     }
 }
 
-/// How many splits of either solid it takes to split a cell.
+/// Returns the number of splits of either solid that splitting a cell takes.
 fn splits<A, B>(open: &Open<crate::solid::joint::JointPart<A, B>>) -> [u64; 2] {
     match &open.verdict {
         Verdict::Partial(part) => part.splits().map(u64::from),
@@ -251,9 +251,9 @@ fn splits<A, B>(open: &Open<crate::solid::joint::JointPart<A, B>>) -> [u64; 2] {
     }
 }
 
-/// What a cell's level costs in the search for an overlap: without it the search would never come back from a
-/// contact. (A product of its own: the library's powers differ between platforms, and the order of the search
-/// with them.)
+/// The price of a cell's level in the search for an overlap. Without it the search would never leave a
+/// contact. (The product is computed here: the library's powers differ between platforms, and would change
+/// the order of the search.)
 fn decay(level: u8) -> f64 {
     (0..level).fold(1.0, |product, _| product * 0.8)
 }

@@ -16,42 +16,45 @@ use core::ops::AddAssign;
 /// The area of a solid's boundary.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct SurfaceArea {
-    /// In square model units. It contains the truth; its upper end is infinite where nothing is known.
+    /// The area in square model units. The interval contains the true area; its upper end is infinite where
+    /// nothing is known.
     pub area: Interval,
-    /// Whether the solid may go on outside of the universe, or does: then the area is that of the boundary
-    /// inside.
+    /// Whether the solid continues, or may continue, outside of the universe. The area is then that of the
+    /// boundary inside.
     pub clipped: bool,
-    /// Why it ended.
+    /// Why the measurement ended.
     pub stop_reason: StopReason,
-    /// The finest level of which cells were looked at.
+    /// The finest level of the visited cells.
     pub level: u8,
-    /// How many times a cell was split.
+    /// Number of cell splits.
     pub splits: u64,
 }
 
-/// Splits after which the measurement of an area ends if `max_splits` does not say otherwise: some seconds.
+/// The maximal number of splits in the measurement of an area if `max_splits` sets no other limit: some
+/// seconds.
 pub const AREA_SPLITS: u64 = 1 << 23;
 
-/// How many frames are tried.
+/// The number of frames tried.
 const FRAMES: u8 = 8;
 
-/// The area of the boundary of `solid` in the universe of `frame`, as [`measure`](crate::measure) finds the
-/// volume: to a `tolerance` (a number is relative to the middle of the interval), with at most `max_splits`
-/// of `control` ([`AREA_SPLITS`] if there is none), and with the same result for any number of threads.
+/// Measures the area of the boundary of `solid` in the universe of `frame`. As in
+/// [`measure`](crate::measure), the measurement runs to a `tolerance` (a plain number is relative to the
+/// middle of the interval), with at most `max_splits` of `control` ([`AREA_SPLITS`] if that is `None`), and
+/// with the same result for any number of threads.
 ///
-/// With N splits the width goes down with 1/N on curved surfaces and where plane ones meet. A mesh that is
-/// closed and whose triangles do not intersect is not split.
+/// With N splits the width decreases with 1/N on curved surfaces and where plane ones meet. A closed mesh
+/// whose triangles do not intersect is not split.
 ///
-/// What lies between two cells belongs to neither of them. If the boundary has pieces in planes of the
-/// lattice, the area of a solid that ends inside of the universe is found on another lattice, whose planes
-/// are elsewhere. Three solids stay on their own lattice: an extended octree
-/// ([`build_extended`](crate::build_extended)), an octree without PARTIAL cells, and an expression that is
-/// clipped. Their cells count the pieces that lie in faces between cells, where the solid differs on the two
-/// sides. An extended octree so has the area of its source, as sharp after as many splits. A cell that keeps
-/// slabs has no upper bound, and neither has a cell that is given up.
+/// A boundary piece between two cells belongs to neither of them. If the boundary of a bounded solid has
+/// pieces in planes of the lattice, its area is measured on another lattice, whose planes are elsewhere.
+/// Three solids stay on their own lattice: an extended octree ([`build_extended`](crate::build_extended)), an
+/// octree without PARTIAL cells, and a clipped expression. Their cells count the pieces in faces between
+/// cells where the solid differs on the two sides. An extended octree therefore has the area of its source,
+/// as exact after as many splits. A cell that keeps slabs has no upper bound, and neither has a cell that is
+/// given up.
 ///
-/// Nothing is known of an octree with PARTIAL cells that keep no surfaces, of a host program's functions, and
-/// of a clipped mesh with faces in planes of the lattice.
+/// The area is unknown for an octree with PARTIAL cells that keep no surfaces, for a host program's
+/// functions, and for a clipped mesh with faces in planes of the lattice.
 ///
 /// # Errors
 /// As [`measure`](crate::measure).
@@ -75,7 +78,7 @@ pub fn surface_area<S: Solid>(
     valid::tolerance("tolerance", tolerance.absolute)?;
     let classifier = Proven(solid.on(frame, control)?);
     let clipped = !matches!(classifier.exterior(), Tag::Empty | Tag::Full);
-    // Without any splits.
+    // The result without any splits.
     let told = |area: Interval| {
         let wanted = tolerance.absolute.max(tolerance.relative * (0.5 * (area.lower + area.upper)));
         let is_met = area.upper < f64::INFINITY && area.width() <= wanted;
@@ -109,12 +112,12 @@ struct Search<'a, 'c> {
 }
 
 impl Search<'_, '_> {
-    /// Splits cells that know all of the boundary.
+    /// Splits cells of a solid whose whole boundary lies in cells.
     fn run<C: Classifier>(&self, classifier: &C) -> Result<SurfaceArea, Error> {
         let budget = self.control.max_splits.unwrap_or(AREA_SPLITS);
         let walked = walk::<Area, _>(classifier, self.tolerance, budget, self.control)?;
         let Found { lower, upper, unbounded } = walked.found;
-        // A half edge of the universe is 2^(BITS / 2) units.
+        // Half the universe's edge is 2^(BITS / 2) units.
         let edge = Interval::exactly(classifier.frame().edge());
         let unit = edge.square().times(Interval::exactly(0.25 / (1u128 << BITS) as f64));
         let most = if unbounded > 0 { f64::INFINITY } else { Interval::of_integer(upper).times(unit).upper };
@@ -124,7 +127,8 @@ impl Search<'_, '_> {
     }
 }
 
-/// The solid on a larger frame no plane of whose lattice holds a piece of the boundary, if one is found.
+/// Returns the solid on a larger frame whose lattice planes hold no piece of the boundary, if such a frame is
+/// found.
 fn off_lattice<S: Solid>(
     solid: &S,
     frame: &Frame,
@@ -132,7 +136,7 @@ fn off_lattice<S: Solid>(
 ) -> Result<Option<Proven<S::Classifier>>, Error> {
     let depth = (frame.depth() + 1).min(MAX_DEPTH);
     for k in 0..FRAMES {
-        // Shares of the golden ratio: no dimension of a part is like them.
+        // Multiples of the golden ratio: dimensions of parts are unlikely to coincide with them.
         let shift = [0.381_966_011_250_105, 0.236_067_977_499_790, 0.618_033_988_749_895];
         let origin = axes(|axis| frame.origin()[axis] - (shift[axis] + 0.01 * k as f64) * frame.edge());
         let Ok(other) = Frame::new(origin, 2.0 * frame.edge(), depth) else { continue };
@@ -144,20 +148,20 @@ fn off_lattice<S: Solid>(
     Ok(None)
 }
 
-/// Bits of what the square of the universe's half edge has.
+/// Fraction bits of the square of the universe's half edge.
 const BITS: u32 = SHARE_BITS + 2 * MAX_DEPTH as u32;
 
-/// Bits of what the square of a finest cell's half edge has.
+/// Fraction bits of the square of a finest cell's half edge.
 const SHARE_BITS: u32 = 44;
 
 /// The area of a boundary, in fixed point: sums are the same in any order.
 struct Area {
-    /// Per level the sums of lower and upper bounds, in the squares of the cells' half edges.
+    /// For each level, the sums of lower and upper bounds, in squares of the cells' half edges.
     levels: [[i128; 2]; MAX_DEPTH as usize + 1],
     unbounded: u64,
 }
 
-/// What is found of an area: its bounds, and the number of cells of which no upper bound is known.
+/// The bounds of an area, and the number of cells without an upper bound.
 #[derive(Debug, Clone, Copy, Default)]
 struct Found {
     lower: i128,
@@ -193,7 +197,7 @@ impl Quantity for Area {
     const NOTHING: Interval = Interval::between(0.0, f64::INFINITY);
 
     fn known<W: Worker>(worker: &mut W, cell: Cell, part: &W::Part) -> Result<Interval, Error> {
-        // No area is negative: a solid that says so says nothing.
+        // No area is negative: an answer with a negative upper bound is ignored.
         Ok(worker.area(cell, part)?.filter(|area| area.upper >= 0.0).unwrap_or(Area::NOTHING))
     }
 
@@ -208,7 +212,7 @@ impl Quantity for Area {
     fn full(&mut self, _: Cell) {}
 
     fn open(&mut self, cell: Cell, known: &Interval) {
-        // A surface that is folded without end may have more than that; it counts as unbounded.
+        // A surface with endless folds may have more area. It counts as unbounded.
         const MOST: f64 = (1u64 << 20) as f64;
         const SHARE: f64 = (1u64 << SHARE_BITS) as f64;
         let [lower, upper] = &mut self.levels[cell.level as usize];

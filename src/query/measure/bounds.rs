@@ -1,20 +1,21 @@
-//! What the moments of two sets prove of a solid that lies between them.
+//! Bounds of a solid's measures from the moments of two sets between which the solid lies.
 //!
-//! The solid S contains the FULL cells and the parts of PARTIAL ones that are known to be inside, F. It lies
-//! in A, which is F and what is open: PARTIAL cells, or the parts of them that are not decided. All its
-//! volume integrals of one sign are therefore bounded by those of F and of A, and so is more. (Where F and A
-//! are no sets but moments, their matrices are as those of such sets in the order of Loewner, which is all
-//! that is used.)
+//! The solid S contains F: the FULL cells and the parts of PARTIAL cells that are known to be inside. S lies
+//! in A, which is F and the open part: PARTIAL cells, or their undecided parts. All volume integrals of one
+//! sign over S are therefore bounded by those over F and A. (Where F and A are not sets but moments, their
+//! matrices behave like those of such sets in the order of Loewner, and the proofs use nothing else.) Other
+//! measures are bounded, too:
 //!
-//! - The matrix ∫ x xᵀ of second moments about a point grows with the set in the order of Loewner: the
-//!   difference for two nested sets is the matrix of what lies between, which is positive semidefinite. So
-//!   does the one about the set's own centroid, because uᵀ M u = ∫ (u·x − u·c)², and the centroid c makes
-//!   this a minimum.
+//! - The matrix ∫ x xᵀ of second moments about a point grows with the set in the order of Loewner: for two
+//!   nested sets, the difference is the matrix of the set between them, which is positive semidefinite. The
+//!   matrix about the set's own centroid grows, too, because uᵀ M u = ∫ (u·x − u·c)², and the centroid c
+//!   makes this a minimum.
 //! - From L ≼ M ≼ U follows, for elements off the diagonal, |2 Mij − Lij − Uij| ≤ √(Δii Δjj) with Δ = U − L.
 //!   (Both M − L and U − M have Mij² ≤ Mii Mjj; then Cauchy–Schwarz.)
-//! - The same holds of the matrix of the moments of 1 and x − c: ∫ (x − c) over S is at most the mean of
-//!   those over F and A plus ½ √(V ∫ (x − c)²) of what is open, of volume V. (Scarf's bound.) Where that
-//!   is 0, no centroid lies beyond c; elsewhere none further than that over the volume of F.
+//! - The same holds for the matrix of the moments of 1 and x − c: ∫ (x − c) over S is at most the mean of the
+//!   integrals over F and A plus ½ √(V ∫ (x − c)²) of the open part, whose volume is V. (Scarf's bound.) If
+//!   this is 0, no centroid lies beyond c. Otherwise the centroid lies beyond c by at most this bound divided
+//!   by the volume of F.
 
 use super::moments::{BITS, Moments, PAIRS, UNIVERSE};
 use super::volume::Found;
@@ -32,17 +33,17 @@ const ZERO: Interval = Interval::exactly(0.0);
 const NOT_NEGATIVE: Interval = Interval::between(0.0, f64::INFINITY);
 const HALF: Interval = Interval::exactly(0.5);
 const THREE: Interval = Interval::exactly(3.0);
-/// The unit of moments, as a share of what it would be without bits behind the point.
+/// The unit of moments, as a share of the unit without fraction bits.
 const UNIT: Interval = Interval::exactly(1.0 / (1u64 << BITS) as f64);
 
-/// The moments of F and of what is open.
+/// The moments of F and of the open part.
 pub(super) struct Known {
     /// The universe with grains as its finest cells.
     pub(super) frame: Frame,
     pub(super) found: Found,
 }
 
-/// Moments with their errors.
+/// Moments with error bounds.
 struct Bounded {
     volume: Interval,
     first: [Interval; 3],
@@ -74,7 +75,7 @@ impl Known {
         0.5 * self.frame.cell_size()
     }
 
-    /// From the units of moments to cubic model units.
+    /// Converts units of moments to cubic model units.
     fn to_model(&self, volume: Interval) -> Interval {
         let size = Interval::exactly(self.frame.cell_size());
         volume.times(UNIT).times(size).times(size).times(size)
@@ -83,12 +84,12 @@ impl Known {
     pub(super) fn volume(&self) -> Interval {
         let (full, all) = (Bounded::new(&self.found.full).volume, Bounded::new(&self.all()).volume);
         let universe = Interval::between(0.0, self.to_model(Interval::of_integer(UNIVERSE)).upper);
-        // (No solid that keeps the laws contradicts itself; of one that does, nothing is known.)
+        // (A consistent solid gives no contradiction. The volume of a self-contradictory solid is unknown.)
         let between = Interval::new(full.lower, all.upper).map(|volume| self.to_model(volume));
         between.and_then(|volume| volume.common(universe)).unwrap_or(universe)
     }
 
-    /// None if nothing is proven full.
+    /// Returns the centroid; `None` if nothing is proven full.
     pub(super) fn centroid(&self) -> Option<[Interval; 3]> {
         if self.found.full.volume <= self.found.full.error {
             return None;
@@ -116,14 +117,14 @@ impl Known {
         }))
     }
 
-    /// About the model's origin.
+    /// Returns the tensor about the model's origin.
     pub(super) fn inertia_about_origin(&self) -> Tensor {
         let [full, open, all] =
             [self.found.full, self.found.open, self.all()].map(|m| self.second_about_origin(&m));
         self.tensor(&full, &all, axes(|axis| open[axis].upper))
     }
 
-    /// About the solid's own centroid.
+    /// Returns the tensor about the solid's own centroid.
     pub(super) fn inertia_about_centroid(&self) -> Tensor {
         let [full, all] = [self.found.full, self.all()].map(|m| second_about_centroid(&m));
         let spread = match (self.found.open.volume, self.found.open.error) {
@@ -133,9 +134,9 @@ impl Known {
         self.tensor(&full, &all, spread)
     }
 
-    /// ∫ x xᵀ about the model's origin, in the units of [`Moments`] but for the factor 3.
+    /// Returns ∫ x xᵀ about the model's origin, in the units of [`Moments`] but without the factor 3.
     fn second_about_origin(&self, moments: &Moments) -> Symmetric {
-        // The plane next to the origin is the reference, so that nothing cancels.
+        // The plane next to the origin is the reference, to avoid cancellation.
         let cells = self.frame.cells() as f64;
         let planes = axes(|axis| {
             let at = self.frame.scaled(axis, 0.0).clamp(0.0, cells);
@@ -153,8 +154,8 @@ impl Known {
         second
     }
 
-    /// The tensor of inertia of a set whose second moments lie between `lower` and `upper`, the differences
-    /// of whose diagonals are at most `spread`.
+    /// Returns the tensor of inertia of a set whose second moments lie between `lower` and `upper`, where the
+    /// differences on the diagonal are at most `spread`.
     fn tensor(&self, lower: &Symmetric, upper: &Symmetric, spread: [f64; 3]) -> Tensor {
         let half = Interval::exactly(self.half());
         let to_model = |second: Interval| {
@@ -164,7 +165,7 @@ impl Known {
         let mut tensor = [[ZERO; 3]; 3];
         for (k, (i, j)) in (0..6).zip(PAIRS) {
             tensor[i][j] = to_model(if i == j {
-                // Of the other two axes.
+                // The sum over the other two axes.
                 let (a, b) = ((i + 1) % 3, (i + 2) % 3);
                 let between = Interval::new(lower[a].plus(lower[b]).lower, upper[a].plus(upper[b]).upper);
                 between.map_or(NOT_NEGATIVE, Interval::not_negative)
@@ -183,14 +184,15 @@ impl Known {
     }
 }
 
-/// ∫ (x − c)(x − c)ᵀ about the set's own centroid c, in the units of [`Moments`] but for the factor 3.
+/// Returns ∫ (x − c)(x − c)ᵀ about the set's own centroid c, in the units of [`Moments`] but without the
+/// factor 3.
 fn second_about_centroid(moments: &Moments) -> Symmetric {
     if moments.volume <= moments.error {
-        // Nothing, as far as is known; the greatest moments are those of the error.
+        // The set may be empty. The greatest moments are those of the error.
         let Bounded { second, .. } = Bounded::new(moments);
         return second.map(|sum| sum.joined(ZERO));
     }
-    // The half cell next to the centroid is the reference, so that little is taken off.
+    // The half cell next to the centroid is the reference, so that the subtracted term is small.
     let point = moments.first.map(|first| nearest(first, moments.volume).clamp(0, 2 << MAX_DEPTH));
     let about = moments.about(point);
     let Bounded { volume, first, second } = Bounded::new(&about);
@@ -202,13 +204,13 @@ fn second_about_centroid(moments: &Moments) -> Symmetric {
     second
 }
 
-/// The integer nearest to the quotient of two, if it is not negative; `b` is positive.
+/// Returns the integer nearest to a quotient, which is not negative; `b` is positive.
 fn nearest(a: i128, b: i128) -> i128 {
     (2 * a + b) / (2 * b)
 }
 
-/// A number that the centroid's coordinate does not exceed, from moments of F and of what is open along the
-/// axis; the volume of F is positive.
+/// Returns an upper bound of the centroid's coordinate along an axis, from moments of F and of the open part.
+/// The volume of F is positive.
 fn farthest(
     full_volume: Interval,
     full_first: Interval,
@@ -219,7 +221,8 @@ fn farthest(
     let [v, m, w, p, q] = [full_volume, full_first, open_volume, open_first, open_second]
         .map(|sum| 0.5 * (sum.lower + sum.upper));
     let (w, q) = (w.max(0.0), q / 3.0);
-    // Newton's method leads to about where the excess is 0; whatever comes out, what follows is proven of it.
+    // Newton's method finds the approximate zero of the excess. The code after the loop proves a bound for
+    // any result.
     let mut c = m / v;
     for _ in 0..20 {
         let about = p - c * w;

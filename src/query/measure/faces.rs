@@ -1,19 +1,19 @@
-//! A solid whose cells know what of the boundary lies in their faces.
+//! A solid whose cells include the boundary pieces in their faces.
 //!
-//! A piece of the boundary that lies in a plane of the lattice is in no open cell. It is where the solids on
-//! both sides of a face differ. So a cell goes with its neighbour below along each axis: it counts the pieces
-//! that lie in its three lower faces, and those in upper faces that lie in the universe's hull. Pieces of the
-//! hull count if what is outside is decided.
+//! A piece of the boundary in a plane of the lattice lies in no open cell. It lies where the solids on both
+//! sides of a face differ. Each cell therefore carries its lower neighbour along each axis. It counts the
+//! pieces in its three lower faces, and those in upper faces that lie in the universe's hull. Pieces of the
+//! hull count if the outside is decided.
 //!
-//! Faces that hold nothing are not looked at again, nor are parts of them:
-//! - Between the children of a cell no piece can be, if no surface of the cell holds a piece of a plane of
-//!   the lattice. So what is below a cut cell is asked as it would be without faces.
-//! - Between two cells that are cut there is none if the functions of their surfaces are the same. (But a
-//!   surface may vanish on the face, and be positive on one side and negative on the other: then its signs
-//!   there have nothing to do with each other.)
+//! Faces without pieces are not visited again, nor are parts of them:
+//! - There is no piece between the children of a cell, if no surface of the cell holds a piece of a plane of
+//!   the lattice. The cells below such a cut cell are queried without faces.
+//! - There is no piece between two cut cells if the functions of their surfaces are the same. (But a surface
+//!   may vanish on the face, and be positive on one side and negative on the other: then its signs there are
+//!   unrelated.)
 //!
-//! Between a cell that is cut and one that is decided, the piece is the section of the former with the face,
-//! or the rest of the face.
+//! Between a cut cell and a decided cell, the piece is the section of the cut cell with the face, or the rest
+//! of the face.
 
 use crate::control::Control;
 use crate::cut::Section;
@@ -27,24 +27,24 @@ use crate::solid::{
 use alloc::sync::Arc;
 use alloc::vec::Vec;
 
-/// A solid that knows the functions of surfaces that it is in cells ([`Question::Surfaces`]).
+/// A solid that provides the functions of surfaces in its cells ([`Question::Surfaces`]).
 #[derive(Clone)]
 pub(super) struct WithFaces<C> {
     inner: C,
     surfaces: Arc<[Holds]>,
 }
 
-/// What pieces a surface may hold.
+/// The kinds of pieces that a surface may hold.
 #[derive(Clone, Copy)]
 struct Holds {
-    /// Of planes of the lattice.
+    /// Pieces of planes of the lattice.
     of_lattice: bool,
-    /// Of faces of cells that it crosses.
+    /// Pieces of faces of cells that the surface crosses.
     of_faces: bool,
 }
 
 impl<C: Classifier> WithFaces<C> {
-    /// `None` if the solid is not made of surfaces that are known.
+    /// Builds the wrapper; `None` if the solid does not consist of known surfaces.
     ///
     /// # Errors
     /// [`Error::OutOfMemory`]; [`Error::Cancelled`] by `control`; [`Error::Limit`] if the exact map of a
@@ -96,7 +96,7 @@ impl<C: Classifier> Classifier for WithFaces<C> {
 
 pub(super) struct WithFacesWorker<W: Worker> {
     inner: W,
-    /// What is outside of the universe, if that is decided.
+    /// The verdict of the space outside of the universe, if it is decided.
     outside: Outside<W>,
     surfaces: Arc<[Holds]>,
 }
@@ -107,11 +107,11 @@ type Outside<W> = Option<Verdict<<W as Parts>::Part>>;
 #[derive(Clone)]
 pub(super) struct WithNeighbours<P> {
     own: Verdict<P>,
-    /// Along each axis the one below; nothing if the face between holds nothing, or does not count.
+    /// The lower neighbour along each axis; `None` if the face between holds no piece, or does not count.
     below: [Option<Verdict<P>>; 3],
 }
 
-/// Which face of a cell.
+/// The lower or the upper face of a cell.
 #[derive(Clone, Copy)]
 enum End {
     Lower,
@@ -154,7 +154,7 @@ impl<W: Worker> Parts for WithFacesWorker<W> {
 impl<W: Worker> OneByOne for WithFacesWorker<W> {}
 
 impl<W: Worker> WithFacesWorker<W> {
-    /// What is to be said of a cell with its neighbours.
+    /// Returns the verdict of a cell with its neighbours.
     fn verdict(
         &self,
         cell: Cell,
@@ -168,8 +168,8 @@ impl<W: Worker> WithFacesWorker<W> {
                 && self.outside.iter().all(|outside| is_same(outside) || !touches_upper_hull(cell))
         };
         let is_unknown = |verdict: &Verdict<W::Part>| matches!(verdict, Verdict::Undecided);
-        // No upper bound is known of what a neighbour like that has in common with the cell, nor of the
-        // neighbour itself.
+        // An undecided neighbour has no upper bound of the common area, and an undecided cell has none
+        // either.
         if is_unknown(&own) || below.iter().flatten().any(is_unknown) {
             Verdict::Undecided
         } else if is(Tag::Empty) {
@@ -188,8 +188,8 @@ impl<W: Worker> WithFacesWorker<W> {
         }
     }
 
-    /// The area of the boundary in a face of a cell, beyond which is a neighbour (in squares of the cell's
-    /// half edge).
+    /// Returns the area of the boundary in the face between a cell and a neighbour, in squares of the cell's
+    /// half edge.
     fn area_of_face(
         &mut self,
         axis: usize,
@@ -203,8 +203,8 @@ impl<W: Worker> WithFacesWorker<W> {
         };
         let a = self.section(axis, near, cell, own)?;
         let b = self.section(axis, far, neighbour, other)?;
-        // Of two sets of which only the areas are known, the difference has at least that of the areas; it
-        // has at most all that is in either, and at most all that is missing in either.
+        // Only the areas of both sets are known. The area of their difference is at least the difference of
+        // the areas. It is at most the sum of the areas, and at most the sum of the missing areas.
         let (sum, apart) = (a.plus(b), a.minus(b));
         let rest = Interval::exactly(8.0).minus(sum);
         let least = apart.lower.max(-apart.upper).max(0.0);
@@ -212,7 +212,7 @@ impl<W: Worker> WithFacesWorker<W> {
         Ok(Interval::new(least, most).unwrap_or(UNKNOWN))
     }
 
-    /// The area that the solid has in a face of a cell, seen from within.
+    /// Returns the area of the solid in a face of a cell, seen from within.
     fn section(
         &mut self,
         axis: usize,
@@ -234,7 +234,7 @@ impl<W: Worker> WithFacesWorker<W> {
         })
     }
 
-    /// Whether no surface of a cell holds a piece of a plane of the lattice.
+    /// True if no surface of a cell holds a piece of a plane of the lattice.
     fn is_off_lattice(&mut self, cell: Cell, verdict: &Verdict<W::Part>) -> Result<bool, Error> {
         let Verdict::Partial(part) = verdict else { return Ok(true) };
         let Some(open) = self.inner.surfaces(cell, part)? else { return Ok(false) };
@@ -245,7 +245,7 @@ impl<W: Worker> WithFacesWorker<W> {
         self.surfaces.get(index as usize).copied()
     }
 
-    /// Whether the face between two cells holds nothing because the solid is the same on both sides.
+    /// True if the face between two cells holds no piece because the solid is the same on both sides.
     fn are_alike(
         &mut self,
         (cell, own): (Cell, &Verdict<W::Part>),
@@ -263,7 +263,7 @@ impl<W: Worker> WithFacesWorker<W> {
         })
     }
 
-    /// Whether two functions are the same, and no surface separates the two sides of the face between them.
+    /// True if two functions are the same, and no surface separates the two sides of the face between them.
     fn are_equal(&self, a: &OpenSurfaces, b: &OpenSurfaces) -> bool {
         let mut all = a.indices().iter().chain(b.indices());
         if !all.all(|&index| self.holds(index).is_some_and(|holds| !holds.of_faces)) {
@@ -295,7 +295,7 @@ fn touches_upper_hull(cell: Cell) -> bool {
     (0..3).any(|axis| lies_at_upper_hull(cell, axis))
 }
 
-/// The neighbour of a cell below along an axis. (At the universe's hull nobody looks at it.)
+/// Returns the lower neighbour of a cell along an axis. (At the universe's hull the result is not used.)
 fn below(mut cell: Cell, axis: usize) -> Cell {
     cell.at[axis] = cell.at[axis].wrapping_sub(1);
     cell

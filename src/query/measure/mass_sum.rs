@@ -1,4 +1,4 @@
-//! Measures of the cells of a frame, which add up exactly.
+//! Measures of single cells of a frame, which add up exactly.
 
 use super::bounds::Known;
 use super::moments::{Moments, Tally, UNIVERSE};
@@ -12,12 +12,12 @@ use crate::octree::{Proof, Tag};
 use crate::solid::{Classifier, Solid};
 use crate::walk::Proven;
 
-/// What is known of the volume and the moments of a solid in some cells of its frame.
+/// Bounds of the volume and the moments of a solid in some cells of its frame.
 ///
-/// Sums are in fixed point: they are the same in any order, and taking off what was added leaves what there
-/// was. So the measures of a solid can be taken cell by cell, on several machines, and added up. What is
-/// measured of all cells of one level is what [`measure`](crate::measure) finds, as long as the splits are
-/// the same: of octrees without surfaces always, with a tolerance of 0.
+/// Sums are in fixed point: they are the same in any order, and a subtraction exactly reverses an addition.
+/// The measures of a solid can therefore be computed cell by cell, on several machines, and added up. The sum
+/// over all cells of one level equals the result of [`measure`](crate::measure), as long as the splits are
+/// the same: for octrees without surfaces always, with a tolerance of 0.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct MassSum {
     frame: Frame,
@@ -29,8 +29,9 @@ pub struct MassSum {
     splits: u64,
 }
 
-/// Measures the part of `solid` in one cell of `frame`, as [`measure`](crate::measure) does the whole: the
-/// tolerance concerns the volume in the cell. A solid that knows its moments is split all the same.
+/// Measures the part of `solid` in one cell of `frame`, as [`measure`](crate::measure) does for the whole
+/// solid. The tolerance applies to the volume in the cell. A solid that provides its moments is split all the
+/// same.
 ///
 /// # Errors
 /// As [`measure`](crate::measure); [`Error::Argument`] if the frame does not have the cell.
@@ -89,7 +90,8 @@ impl MassSum {
         }
     }
 
-    /// A cell of which nothing is known, and that takes nothing from what others prove.
+    /// Builds the sum of a cell of which nothing is known. Adding it does not reduce the proof of other
+    /// cells.
     ///
     /// # Errors
     /// [`Error::Argument`] if the frame does not have the cell.
@@ -113,11 +115,11 @@ impl MassSum {
         &self.frame
     }
 
-    /// The sum with that of other cells.
+    /// Adds the sum of other cells.
     ///
     /// # Errors
-    /// [`Error::FrameMismatch`]; [`Error::Argument`] if it is more than the universe holds: then a cell was
-    /// added twice.
+    /// [`Error::FrameMismatch`]; [`Error::Argument`] if the result exceeds the universe, which means that a
+    /// cell was added twice.
     pub fn plus(&self, other: &MassSum) -> Result<MassSum, Error> {
         self.with(
             other,
@@ -125,11 +127,11 @@ impl MassSum {
         )
     }
 
-    /// The sum without that of some of its cells: [`plus`](Self::plus) the other way round. What is proven
-    /// stays, and so do splits.
+    /// Subtracts the sum of some of the cells: the reverse of [`plus`](Self::plus). The proof and the number
+    /// of splits stay as they are.
     ///
     /// # Errors
-    /// [`Error::FrameMismatch`]; [`Error::Argument`] if that leaves less than nothing.
+    /// [`Error::FrameMismatch`]; [`Error::Argument`] if the result is less than nothing.
     pub fn minus(&self, other: &MassSum) -> Result<MassSum, Error> {
         let less = |a: Moments, b: Moments| Moments { error: a.error - b.error, ..a - b };
         let (full, open) = (less(self.found.full, other.found.full), less(self.found.open, other.found.open));
@@ -158,12 +160,12 @@ impl MassSum {
         match sum.is_sound() {
             true => Ok(sum),
             false => {
-                Err(Error::Argument { name: "other", problem: "has cells that the sum has, or has not" })
+                Err(Error::Argument { name: "other", problem: "overlaps the sum, or is not a part of it" })
             }
         }
     }
 
-    /// Whether all moments are those of a set in the universe, as far as single numbers tell.
+    /// True if all moments may be those of a set in the universe, as far as single numbers show.
     fn is_sound(&self) -> bool {
         // Lengths are less than 2^21 half grains, and the second moments have a factor of 3.
         let (first, second) = (UNIVERSE << 21, UNIVERSE << 44);
@@ -176,8 +178,8 @@ impl MassSum {
         })
     }
 
-    /// The sum as bytes, for another process that adds it up. Their meaning is that of one version of the
-    /// library.
+    /// Returns the sum as bytes, for another process that adds it up. Only the same version of the library
+    /// can read the bytes.
     pub fn to_bytes(&self) -> [u8; MassSum::BYTES] {
         let flags = self.proof.bits() | u8::from(self.clipped) << 2 | (self.stop_reason as u8) << 3;
         let frame = self.frame;
@@ -195,13 +197,13 @@ impl MassSum {
         bytes
     }
 
-    /// The sum of such bytes.
+    /// Reads a sum from the bytes of [`to_bytes`](Self::to_bytes).
     ///
     /// # Errors
-    /// [`Error::Argument`] if they are none.
+    /// [`Error::Argument`] if the bytes are not those of a sum.
     pub fn from_bytes(bytes: &[u8]) -> Result<MassSum, Error> {
         MassSum::read(bytes)
-            .ok_or(Error::Argument { name: "bytes", problem: "are none of a sum of measures" })
+            .ok_or(Error::Argument { name: "bytes", problem: "must be those of a sum of measures" })
     }
 
     fn read(bytes: &[u8]) -> Option<MassSum> {
@@ -241,15 +243,15 @@ impl MassSum {
         (rest.is_empty() && level <= depth && sum.is_sound()).then_some(sum)
     }
 
-    /// Of [`to_bytes`](Self::to_bytes).
+    /// The number of bytes of [`to_bytes`](Self::to_bytes).
     pub const BYTES: usize = 4 + 6 * 8 + 22 * 16;
 
     const VERSION: u8 = 1;
 
-    /// Volume, centroid and inertia.
+    /// Returns volume, centroid and inertia.
     ///
     /// # Errors
-    /// [`Error::Argument`] if the cells of depth 20 of the frame are too small to have coordinates of their
+    /// [`Error::Argument`] if the cells of the frame at depth 20 are too small to have coordinates of their
     /// own.
     pub fn properties(&self) -> Result<MassProperties, Error> {
         let known = Known { frame: self.frame.with_depth(MAX_DEPTH)?, found: self.found };

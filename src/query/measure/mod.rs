@@ -21,53 +21,55 @@ use crate::walk::Proven;
 use bounds::Known;
 use volume::Volume;
 
-/// Why a search or a measurement ended.
+/// The reason why a search or a measurement ended.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
 pub enum StopReason {
-    /// The result is known as well as was asked for.
+    /// The result is as exact as the tolerance requires.
     Tolerance,
     /// `max_splits` is spent.
     Budget,
-    /// No cell is left whose split would help: what is undecided has the size of the frame's finest cells, or
-    /// the solid itself knows no more about it, as a stored octree does of its PARTIAL cells.
+    /// No cell is left whose split would help: the undecided cells have the size of the frame's finest cells,
+    /// or the solid itself provides nothing more about them, as a stored octree for its PARTIAL cells.
     Exhausted,
 }
 
-/// Mass properties of a solid of density 1, in model units. All intervals contain the truth, and no rounding
-/// is left out.
+/// Mass properties of a solid of density 1, in model units. All intervals contain the true values, including
+/// all rounding errors.
 ///
-/// All of it concerns the solid inside of the universe. If `clipped` is not set, that is the whole solid.
+/// The properties are those of the solid's part inside of the universe. If `clipped` is not set, this is the
+/// whole solid.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct MassProperties {
-    /// Volume.
+    /// The volume.
     pub volume: Interval,
-    /// Centroid; `None` as long as no cell is proven full, and the solid may be empty.
+    /// The centroid; `None` as long as no cell is proven full, so that the solid may be empty.
     pub centroid: Option<[Interval; 3]>,
-    /// Tensor of inertia about the origin of the model: ∫ (|p|² δij − pi pj) over the points p of the solid,
-    /// so products of inertia are negative where the product of the coordinates is mostly positive.
-    /// Symmetric.
+    /// The tensor of inertia about the origin of the model: ∫ (|p|² δij − pi pj) over the points p of the
+    /// solid. Products of inertia are therefore negative where the product of the coordinates is mostly
+    /// positive. The tensor is symmetric.
     pub inertia_about_origin: [[Interval; 3]; 3],
-    /// The same about the solid's own centroid, wherever in the interval that lies.
+    /// The tensor of inertia about the solid's own centroid, wherever in its interval the centroid lies.
     pub inertia_about_centroid: [[Interval; 3]; 3],
-    /// What of the solid is proven: what is not counts as undecided. Where nothing is, as of a sampled
-    /// octree, the volume is only known to fit into the universe.
+    /// Which verdicts of the solid are proven. Unproven verdicts count as undecided. If nothing is proven, as
+    /// for a sampled octree, the volume is only known to fit into the universe.
     pub proof: Proof,
-    /// Whether the solid may go on outside of the universe, or does: the measures then are those of the part
-    /// inside.
+    /// Whether the solid continues, or may continue, outside of the universe. The measures are then those of
+    /// the part inside.
     pub clipped: bool,
-    /// Whether the solid was not split because it knows its own moments, up to rounding: a mesh does that is
-    /// closed and whose triangles do not intersect.
+    /// Whether the solid was not split because it provides its own moments, up to rounding. A closed mesh
+    /// whose triangles do not intersect does so.
     pub exact: bool,
-    /// Why it ended.
+    /// Why the measurement ended.
     pub stop_reason: StopReason,
-    /// The finest level of which cells were looked at.
+    /// The finest level of the visited cells.
     pub level: u8,
-    /// How many times a cell was split.
+    /// Number of cell splits.
     pub splits: u64,
 }
 
 impl MassProperties {
-    /// Of a solid in the universe that was not split, because it knows its moments.
+    /// Builds the mass properties of a solid in the universe that was not split, because it provides its
+    /// moments.
     fn known(moments: &VolumeMoments, proof: Proof, tolerance: Tolerance) -> MassProperties {
         let volume = moments.volume;
         let wanted = tolerance.absolute.max(tolerance.relative * (0.5 * (volume.lower + volume.upper)));
@@ -86,15 +88,16 @@ impl MassProperties {
     }
 }
 
-/// What is known of a volume.
+/// The proven bounds of a volume.
 pub(super) struct Measured {
-    /// Cubic model units.
+    /// In cubic model units.
     pub(super) volume: Interval,
     pub(super) level: u8,
     pub(super) splits: u64,
 }
 
-/// The volume of a solid in the universe of its frame, to an absolute tolerance, as [`measure`] finds it.
+/// Measures the volume of a solid in the universe of its frame, to an absolute tolerance, as [`measure`]
+/// does.
 pub(super) fn volume_within<C: Classifier>(
     classifier: &C,
     tolerance: f64,
@@ -107,53 +110,54 @@ pub(super) fn volume_within<C: Classifier>(
     Ok(Measured { volume: known.volume(), level: walked.level, splits: walked.splits })
 }
 
-/// How well a volume or an area is to be known: as soon as one of both is met.
+/// The precision of a volume or an area. The measurement ends as soon as one of both tolerances is met.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Tolerance {
-    /// Width of the interval, as a share of its middle.
+    /// The width of the interval, as a share of its middle.
     pub relative: f64,
-    /// Width of the interval, in cubic model units; of an area, in square ones.
+    /// The width of the interval, in cubic model units; for an area, in square model units.
     pub absolute: f64,
 }
 
 impl From<f64> for Tolerance {
-    /// A relative tolerance.
+    /// Builds a relative tolerance.
     fn from(relative: f64) -> Tolerance {
         Tolerance { relative, absolute: 0.0 }
     }
 }
 
-/// Splits after which a measurement ends if `max_splits` does not say otherwise: a minute or so.
+/// The maximal number of splits of a measurement if `max_splits` sets no other limit: about a minute.
 pub const MEASURE_SPLITS: u64 = 1 << 26;
 
-/// Measures `solid` in the universe of `frame`, without building a tree: the cells of which most is in doubt
-/// are split first, until the width of the volume's interval is within `tolerance` (a number is relative to
-/// the middle of the interval), `max_splits` of `control` ([`MEASURE_SPLITS`] if there is none) are spent, or
-/// nothing is left to split at the frame's depth. With a tolerance of 0 only the latter two end it, or that
-/// nothing is in doubt.
+/// Measures `solid` in the universe of `frame`, without building a tree. The cells with the greatest doubt
+/// are split first. The measurement ends when the width of the volume's interval is within `tolerance` (a
+/// plain number is relative to the middle of the interval), when `max_splits` of `control`
+/// ([`MEASURE_SPLITS`] if that is `None`) are spent, or when nothing is left to split at the frame's depth.
+/// With a tolerance of 0 it ends for one of the latter two reasons, or when nothing is in doubt.
 ///
-/// Where the solid knows the slabs of a cell ([`Enclosure`](crate::solid::Enclosure)), the cell contributes
-/// what the slabs cut off, and only the rest is in doubt; where it knows the moments
-/// ([`Question::Moments`](crate::solid::Question::Moments)), nothing is but their error. With N splits the
-/// width goes down with N^-1.5 where one curved half-space cuts a cell, with 1/N at other curved surfaces,
-/// with 1/N² at plane ones, and with N^-½ for solids that know no slabs.
+/// Where the solid provides slabs of a cell ([`Enclosure`](crate::solid::Enclosure)), the cell contributes
+/// the part that the slabs cut off, and only the rest is in doubt. Where it provides the moments
+/// ([`Question::Moments`](crate::solid::Question::Moments)), only their error is in doubt. With N splits the
+/// width decreases with N^-1.5 where one curved half-space cuts a cell, with 1/N at other curved surfaces,
+/// with 1/N² at plane surfaces, and with N^-½ for solids without slabs.
 ///
-/// A solid that knows its moments is not split, if it lies in the universe: a mesh that is closed and whose
-/// triangles do not intersect ([`TriangleMesh::moments`](crate::TriangleMesh::moments)). It is known up to
-/// rounding, whatever the tolerance.
+/// A solid in the universe that provides its moments is not split. This is so for a closed mesh whose
+/// triangles do not intersect ([`TriangleMesh::moments`](crate::TriangleMesh::moments)). Its properties are
+/// known up to rounding, whatever the tolerance.
 ///
-/// The result depends on the solid, the frame, the tolerance and `max_splits` only: it is the same bit for
-/// bit for any number of threads. Work goes in passes, and under a budget the last whole pass counts. Time is
-/// linear in the splits; memory is that of some ten thousand parts at the most, since from a number of
-/// undecided cells on the levels below are walked through again and again, each time deeper, and not kept;
-/// with a `max_bytes` of `control` from fewer cells on. Other limits are not heeded.
+/// The result depends only on the solid, the frame, the tolerance and `max_splits`: it is bitwise the same
+/// for any number of threads. The work is done in passes. Under a budget the last complete pass counts. Time
+/// is linear in the splits. Memory is limited to about ten thousand parts: from a certain number of undecided
+/// cells on, the levels below are walked again and again, each time deeper, and not kept. A `max_bytes` of
+/// `control` lowers this number. The measurement ignores other limits.
 ///
-/// Of what is in doubt any part may belong to the solid, and the intervals contain what comes of each choice.
-/// Volume and the diagonals of the tensors cannot be told better from the cells; products of inertia and the
-/// centroid are bounded by means of the second moments of what is in doubt (Loewner's order; Scarf 1958).
+/// Any part of the cells in doubt may belong to the solid, and the intervals contain the results of each
+/// choice. The bounds of the volume and of the tensors' diagonals are the best that the cells allow. Products
+/// of inertia and the centroid are bounded by the second moments of the part in doubt (Loewner's order; Scarf
+/// 1958).
 ///
 /// # Errors
-/// [`Error::Argument`] if `tolerance` is negative or not a number; what the solid refuses, as
+/// [`Error::Argument`] if `tolerance` is negative or not a number; the solid's own errors, as
 /// [`build`](crate::build); [`Error::Cancelled`]; [`Error::OutOfMemory`].
 ///
 /// ```

@@ -1,7 +1,7 @@
 //! Volume and its first and second moments, in fixed point: sums are the same in any order.
 //!
-//! Whole cells are counted and nothing of theirs is rounded. Of cut cells the moments are rounded, to a
-//! 2^44th of the cell; what they may be off by is counted too.
+//! Whole cells are counted, without any rounding. The moments of cut cells are rounded, to a 2^44th of the
+//! cell. The sums include the possible error.
 
 use crate::cut;
 use crate::lattice::axes;
@@ -10,27 +10,27 @@ use core::ops::{Add, AddAssign, Sub};
 
 pub(super) use crate::lattice::PAIRS;
 
-/// Bits behind the point of all moments.
+/// Fraction bits of all moments.
 pub(super) const BITS: u32 = 16;
 
 /// The volume of the universe.
 pub(super) const UNIVERSE: i128 = 1 << (3 * MAX_DEPTH as u32 + BITS);
 
-/// Moments of a set, about a point of the lattice of half *grains*, a grain being a 2^20th of the universe's
-/// edge. With lengths in half grains and volumes in grains they are volume, ∫x and 3·∫xy, times 2^[`BITS`],
-/// and integers: below 2^76, 2^97 and 2^120.
+/// Moments of a set, about a point of the lattice of half *grains*. A grain is a 2^20th of the universe's
+/// edge. With lengths in half grains and volumes in grains, the moments are volume, ∫x and 3·∫xy, times
+/// 2^[`BITS`]. They are integers below 2^76, 2^97 and 2^120.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
 pub(super) struct Moments {
     pub(super) volume: i128,
     pub(super) first: [i128; 3],
     /// In the order of [`PAIRS`].
     pub(super) second: [i128; 6],
-    /// What the volume is off by at most. Of a moment it is that times the greatest distances.
+    /// The maximal error of the volume. The error of a moment is this times the greatest distances.
     pub(super) error: i128,
 }
 
 impl Moments {
-    /// The same set's moments about `point` (half grains, 0 to 2^21) instead of the lattice's origin.
+    /// Returns the same set's moments about `point` (half grains, 0 to 2^21) instead of the lattice's origin.
     pub(super) fn about(&self, point: [i128; 3]) -> Moments {
         let mut second = self.second;
         for (moment, (i, j)) in second.iter_mut().zip(PAIRS) {
@@ -72,7 +72,7 @@ impl Sub for Moments {
     }
 }
 
-/// Sums over cells of one level: of their number, positions, and products of positions.
+/// Sums over cells of one level: the number, the positions, and the products of positions.
 #[derive(Clone, Copy, Default)]
 struct LevelSums {
     count: u64,
@@ -80,7 +80,8 @@ struct LevelSums {
     second: [u64; 6],
 }
 
-/// Positions are below 2^20, so that the products of this many cells fit into 64 bits.
+/// The maximal number of summands. Positions are below 2^20, so that the products of this many cells fit into
+/// 64 bits.
 const MOST: u64 = 1 << 23;
 
 impl LevelSums {
@@ -94,10 +95,10 @@ impl LevelSums {
         }
     }
 
-    /// Moments of the cells, whose edge is `size` grains.
+    /// The moments of the cells, whose edge is `size` grains.
     fn moments(&self, size: i128) -> Moments {
-        // A cell at a has its centre at c = size·(2a + 1) half finest cells; it has ∫x = size³·c,
-        // 3·∫xy = 3·size³·c·c', and 3·∫x² is larger than 3·size³·c² by size⁵: that is Steiner's theorem.
+        // A cell at a has its centre at c = size·(2a + 1) half finest cells. It has ∫x = size³·c, 3·∫xy =
+        // 3·size³·c·c', and 3·∫x² is larger than 3·size³·c² by size⁵ (Steiner's theorem).
         let count = self.count as i128;
         let first = self.first.map(|sum| 2 * sum as i128 + count);
         let cube = size * size * size;
@@ -115,7 +116,7 @@ impl LevelSums {
     }
 }
 
-/// Bits behind the point of what is known of one cut cell, as a share of the cell.
+/// Fraction bits of the moments of one cut cell, as a share of the cell.
 const SHARE_BITS: u32 = 44;
 
 /// Sums over cut cells of one level. A cell at c (half its own edges) with the shares v of the volume, m of
@@ -131,15 +132,15 @@ struct CutSums {
     own_second: [i128; 6],
 }
 
-/// More of them are not added up: so none of the sums passes 2^126.
+/// The maximal number of summands, so that no sum exceeds 2^126.
 const MOST_CUT: u64 = 1 << 36;
 
 impl CutSums {
     #[inline(always)]
     fn add(&mut self, at: [u32; 3], cut: &CubeMoments) {
-        // 2^44 eighths of the cell's [-1, 1]³.
+        // Shares are counted in 2^44 eighths of the cell's [-1, 1]³.
         const SHARE: f64 = (1u64 << SHARE_BITS) as f64 / 8.0;
-        // Magnitudes are at most 2^44, which leaves the rounding one bit behind the point.
+        // Magnitudes are at most 2^44, which leaves the rounding one fraction bit.
         let share = |x: f64| {
             const SHIFT: f64 = (3u64 << 51) as f64;
             let shifted = x * SHARE + SHIFT;
@@ -162,9 +163,9 @@ impl CutSums {
         }
     }
 
-    /// Moments of the sets, the cells' edge being 2^`log` grains.
+    /// The moments of the sets, where the cells' edge is 2^`log` grains.
     fn moments(&self, log: u32) -> Moments {
-        // Nothing that is shifted to the left passes the moments of the universe.
+        // No left-shifted sum exceeds the moments of the universe.
         let scaled = |sum: i128, dimension: u32| {
             let shift = (dimension * log + BITS) as i32 - SHARE_BITS as i32;
             if shift >= 0 { sum << shift } else { sum >> -shift }
@@ -181,7 +182,7 @@ impl CutSums {
     }
 }
 
-/// Adds up cells of any levels, whole ones and cut ones.
+/// A sum of cells of any levels, whole cells and cut cells.
 #[derive(Clone)]
 pub(super) struct Tally {
     levels: [LevelSums; MAX_DEPTH as usize + 1],
@@ -190,7 +191,7 @@ pub(super) struct Tally {
 }
 
 impl Tally {
-    /// Nothing.
+    /// The empty sum.
     pub(super) fn new() -> Tally {
         Tally { levels: Default::default(), cuts: Default::default(), moments: Moments::default() }
     }
@@ -225,7 +226,7 @@ impl Tally {
         }
     }
 
-    /// The moments of all that was added, about the lattice's origin.
+    /// Returns the moments of all added cells, about the lattice's origin.
     pub(super) fn finish(mut self) -> Moments {
         (0..=MAX_DEPTH).for_each(|level| self.flush(level));
         self.moments

@@ -1,4 +1,4 @@
-//! What cells contribute to volume and moments.
+//! The contributions of cells to volume and moments.
 
 use super::moments::{Moments, Tally, UNIVERSE};
 use super::quantity::{self, Quantity};
@@ -8,7 +8,7 @@ use crate::lattice::{Cell, CellMoments, CubeMoments};
 use crate::solid::{Ask, Enclosure, Worker};
 use core::ops::AddAssign;
 
-/// Moments of what is proven inside, and of what is open.
+/// The moments of the proven part and of the open part.
 #[derive(Debug, Clone, Copy, Default, PartialEq)]
 pub(super) struct Found {
     pub(super) full: Moments,
@@ -32,7 +32,7 @@ impl AddAssign for Found {
     }
 }
 
-/// What is known of an open cell.
+/// The knowledge about an open cell.
 pub(super) enum Known {
     Nothing,
     Slabs(Enclosure),
@@ -43,8 +43,8 @@ pub(super) enum Known {
 pub(super) struct Volume {
     full: Tally,
     open: Tally,
-    /// Of cells that an enclosure cuts: the sets in the solid, and those around it; and of those whose
-    /// moments are known, bounds of them.
+    /// For cells that an enclosure cuts: the sets inside the solid, and the sets around it. For cells with
+    /// known moments: their bounds.
     low: Tally,
     high: Tally,
 }
@@ -104,14 +104,14 @@ impl Volume {
     }
 }
 
-/// Moments of which the matrices are, in the order of Loewner, below and above that of the solid: this is all
-/// that follows, for what is concluded, from sets between which the solid lies.
+/// Returns moments whose matrices lie, in the order of Loewner, below and above that of the solid. The
+/// conclusions from sets between which the solid lies use no other property.
 ///
-/// The matrix is that of the products of 1, x, y and z, and none of its elements is off by more than the
-/// error e. A diagonal matrix is above all such differences if, for some s, its first element is e (1 + 3 s),
-/// and the others are e (3 + 1/s): its rows then dominate those of the difference, with the weights 1, s, s,
-/// s. The smaller s, the less is the volume in doubt, and the more the second moments about the centre, which
-/// count little in a small cell.
+/// The matrix is that of the products of 1, x, y and z. The error of each element is at most e. A diagonal
+/// matrix is above all such differences if, for some s, its first element is e (1 + 3 s), and the others are
+/// e (3 + 1/s): its rows then dominate those of the difference, with the weights 1, s, s, s. A smaller s
+/// means less volume in doubt, but greater second moments about the centre, which count little in a small
+/// cell.
 fn bounds(known: &CellMoments) -> (CubeMoments, CubeMoments) {
     let CellMoments { moments, error } = *known;
     let s = if error < 1.0 / 16.0 { 1.0 / 48.0 } else { 0.5 };

@@ -1,13 +1,13 @@
-//! Splitting those cells of which most is in doubt.
+//! A walk that splits the cells with the greatest doubt.
 //!
-//! The *doubt* of an undecided cell is a bound of what the quantity that is measured there may differ by: of
-//! a volume all of the cell, or what its enclosure leaves open. Work goes in passes. Each has a *threshold*,
-//! and splits all cells whose doubt is greater; the next one has a lower threshold. Cells whose doubt is not
-//! greater are *leaves*: they contribute what is known of them.
+//! The *doubt* of an undecided cell bounds the possible difference of the measured quantity in that cell: for
+//! a volume all of the cell, or the part that its enclosure leaves open. The work is done in passes. Each
+//! pass has a *threshold*, and splits all cells whose doubt is greater; the next pass has a lower threshold.
+//! Cells with at most this doubt are *leaves*: they contribute their known bounds.
 //!
-//! At first all open cells are kept with their parts: the *front*. Once it is long, memory matters more than
-//! splits, and it stays as it is: each pass walks depth first through what lies below it and keeps nothing
-//! but sums.
+//! At first all open cells are kept with their parts: the *front*. Once the front is long, memory matters
+//! more than splits, and the front stays as it is. Each pass then walks depth first through the cells below
+//! it and keeps only sums.
 
 use super::quantity::{Found, Quantity};
 use super::{StopReason, Tolerance};
@@ -24,25 +24,28 @@ use alloc::vec::Vec;
 use core::marker::PhantomData;
 use core::sync::atomic::{AtomicU64, Ordering::Relaxed};
 
-/// A longer front is not split further, but walked through.
+/// The greatest length of a front that is split further. A longer front is walked through.
 const LONG_FRONT: usize = 1 << 13;
 
-/// Nor is one whose parts take more bytes: eight times as many remain when all of it is split once more.
+/// The greatest size, in bytes, of a front that is split further: splitting it once more leaves eight times
+/// as many parts.
 const LARGE_FRONT: usize = 1 << 26;
 
-/// Cells of the front that have their scratch memory in common, and that one thread takes on at once.
+/// The number of cells of the front that share scratch memory, and that form one thread's task.
 const CHUNK: usize = 1 << 7;
 
-/// A longer front of a solid that is asked about all of it at once is not split further.
+/// The greatest length of a front that is split further, for a solid that is queried about all of the front
+/// at once.
 const LONG_GATHERED: usize = 1 << 22;
 
-/// Less doubt than that, as a share of the cell, is rounding: splitting does not lessen it.
+/// A doubt, as a share of the cell, that is due to rounding: splitting does not reduce it.
 const ROUNDING: f64 = 1e-12;
 
-/// Splits after which a walk below one chunk looks whether all of them have spent the budget.
+/// The number of splits after which a walk below one chunk checks whether all walks together have spent the
+/// budget.
 const BATCH: u64 = 1 << 10;
 
-/// What was found.
+/// The result of a walk.
 pub(super) struct Walked<F> {
     pub(super) found: F,
     pub(super) stop_reason: StopReason,
@@ -50,7 +53,7 @@ pub(super) struct Walked<F> {
     pub(super) splits: u64,
 }
 
-/// Cells that are not split: what they contribute, and the finest level of theirs.
+/// Cells that are not split: their contributions, and their finest level.
 struct Leaves<Q> {
     sum: Q,
     level: u8,
@@ -76,20 +79,21 @@ impl<Q: Quantity> Leaves<Q> {
 struct Open<P> {
     cell: Cell,
     part: P,
-    /// As a share of the universe.
+    /// The doubt, as a share of the universe.
     doubt: f64,
 }
 
-/// Neighbouring cells of the front, in Morton order, with the worker that has their parts.
+/// Neighbouring cells of the front, in Morton order, with the worker that holds their parts.
 struct Chunk<W: Worker, F> {
     worker: W,
     cells: Vec<Open<W::Part>>,
-    /// What the last whole pass has found below them.
+    /// The result of the last complete pass below the cells.
     found: F,
     level: u8,
 }
 
-/// What is known of a cell, and its doubt as a share of the universe: 0 if splitting does not lessen it.
+/// Returns the knowledge about a cell, and its doubt as a share of the universe: 0 if splitting does not
+/// reduce it.
 fn weigh<Q: Quantity, W: Worker>(
     worker: &mut W,
     cell: Cell,
@@ -101,7 +105,7 @@ fn weigh<Q: Quantity, W: Worker>(
     Ok((known, if doubt <= ROUNDING { 0.0 } else { doubt * size }))
 }
 
-/// Splits a solid until one of the reasons to end is met.
+/// Splits a solid until one of the stop reasons is met.
 pub(super) fn walk<Q: Quantity, C: Classifier>(
     classifier: &C,
     tolerance: Tolerance,
@@ -111,7 +115,7 @@ pub(super) fn walk<Q: Quantity, C: Classifier>(
     walk_in::<Q, C>(classifier, Cell::ROOT, tolerance, budget, control)
 }
 
-/// The same of the part of the solid in a cell of the frame.
+/// Does the same for the part of the solid in a cell of the frame.
 pub(super) fn walk_in<Q: Quantity, C: Classifier>(
     classifier: &C,
     within: Cell,
@@ -121,14 +125,14 @@ pub(super) fn walk_in<Q: Quantity, C: Classifier>(
 ) -> Result<Walked<Q::Found>, Error> {
     let job = Job::new(control);
     job.check()?;
-    // Shallow walks are done faster than threads are made.
+    // Shallow walks take less time than starting threads.
     let frame = classifier.frame();
     let likes_many = classifier.worker()?.likes_many();
     control.run(frame.depth() > 5 || likes_many, |parallel| {
-        // All of a front is asked at once.
+        // All of a front is queried at once.
         let (chunk, long) = if likes_many { (usize::MAX, LONG_GATHERED) } else { (CHUNK, LONG_FRONT) };
         let quantity = PhantomData::<Q>;
-        // (While a front is split there are two of them.)
+        // (While a front is split, two fronts exist.)
         let large = control.max_bytes.map_or(LARGE_FRONT, |limit| LARGE_FRONT.min((limit / 4) as usize));
         let job = &job;
         Walk { quantity, classifier, frame, within, tolerance, budget, job, chunk, long, large, parallel }
@@ -140,15 +144,15 @@ struct Walk<'a, Q, C> {
     quantity: PhantomData<Q>,
     classifier: &'a C,
     frame: &'a Frame,
-    /// The cell that is looked at.
+    /// The measured cell.
     within: Cell,
     tolerance: Tolerance,
     budget: u64,
     job: &'a Job<'a>,
-    /// Cells of a chunk, and of a front that is split further.
+    /// The maximal number of cells of a chunk, and of a front that is split further.
     chunk: usize,
     long: usize,
-    /// Bytes of a front that is split further.
+    /// The maximal number of bytes of a front that is split further.
     large: usize,
     parallel: bool,
 }
@@ -158,7 +162,7 @@ type Front<Q, C> = Vec<ChunkOf<Q, C>>;
 
 type ChunkOf<Q, C> = Chunk<<C as Classifier>::Worker, <Q as Quantity>::Found>;
 
-/// What is settled, the open cells, and the finest level.
+/// The settled sum, the open cells, and the finest level.
 type Step<Q, C> = (<Q as Quantity>::Found, Front<Q, C>, u8);
 
 /// A worker with the cells of the next front.
@@ -169,7 +173,7 @@ impl<Q: Quantity, C: Classifier> Walk<'_, Q, C> {
         let (mut settled, mut front, mut level) = self.root()?;
         let mut splits = 0;
         let mut unreported = WHOLE;
-        // What is in doubt after the last pass that was evaluated, and its threshold.
+        // The doubt after the last evaluated pass, and its threshold.
         let mut last: Option<(f64, f64)> = None;
         let mut threshold = 1.0;
         let (stop_reason, found) = loop {
@@ -195,7 +199,7 @@ impl<Q: Quantity, C: Classifier> Walk<'_, Q, C> {
                 self.job.advance(share);
                 continue;
             }
-            // From here on the front stays. What is known at its threshold comes first.
+            // From here on the front stays. Evaluate it at its own threshold first.
             let mut found = self.evaluate(&settled, &mut front, &mut level)?;
             let mut deepest = greatest;
             let stop_reason = loop {
@@ -225,12 +229,12 @@ impl<Q: Quantity, C: Classifier> Walk<'_, Q, C> {
         Ok(Walked { found, stop_reason, level, splits })
     }
 
-    /// Why no more is split where the budget does not allow it.
+    /// Returns why the walk ends where the budget does not allow more splits.
     fn reason(&self, found: &Q::Found) -> StopReason {
         if self.is_met(found) { StopReason::Tolerance } else { StopReason::Budget }
     }
 
-    /// What is settled at once, the first front, and the finest level.
+    /// Returns the sum settled at once, the first front, and the finest level.
     fn root(&self) -> Result<Step<Q, C>, Error> {
         let mut worker = self.classifier.worker()?;
         let mut settled = Leaves::<Q>::new();
@@ -264,33 +268,34 @@ impl<Q: Quantity, C: Classifier> Walk<'_, Q, C> {
         self.is_close(found.least(), found.doubt())
     }
 
-    /// Whether it is worth looking if the tolerance is met: doubts are bounds, and up to some times too
-    /// great.
+    /// True if the tolerance may be met, so that an evaluation is worthwhile. Doubts are upper bounds, often
+    /// several times too great.
     fn may_be_met(&self, settled: &Q::Found, doubts: f64) -> bool {
         let (least, doubt) = (settled.least(), settled.doubt());
         self.is_close(least + 0.5 * Q::UNIVERSE * doubts, doubt + 0.1 * Q::UNIVERSE * doubts)
     }
 
-    /// Whether `doubt` is little enough beside `least`, both in units of what is found. Where no upper bound
-    /// is known, it is not, though the middle is infinite too.
+    /// True if `doubt` is small enough compared with `least`, both in units of the sum. Without an upper
+    /// bound the answer is `false`, although the middle is infinite too.
     fn is_close(&self, least: f64, doubt: f64) -> bool {
         doubt <= 0.0
             || doubt < f64::INFINITY && doubt <= self.tolerance.relative * (least + 0.5 * doubt)
             || doubt * self.unit() <= self.tolerance.absolute
     }
 
-    /// The unit of what is found in model units, rounded.
+    /// Returns the unit of the sum in model units, rounded.
     fn unit(&self) -> f64 {
         let edge = self.frame.edge();
         (1..Q::DIMENSION).fold(edge, |power, _| power * edge) * Q::SIZE / Q::UNIVERSE
     }
 
-    /// The threshold of the next pass: where the tolerance should be met, judged by the pass before.
+    /// Returns the threshold of the next pass, at which the tolerance should be met, extrapolated from the
+    /// previous pass.
     fn next_threshold(&self, found: &Q::Found, threshold: f64, last: Option<(f64, f64)>) -> f64 {
         let (least, open) = (found.least().max(0.0), found.doubt().max(1.0));
         let wanted = (self.tolerance.relative * least).max(self.tolerance.absolute / self.unit());
-        // What is in doubt goes down with a power of the threshold: the third root where cells are in doubt
-        // as a whole, the square root where surfaces are curved, and faster at plane ones.
+        // The total doubt decreases with a power of the threshold: the third root where whole cells are in
+        // doubt, the square root where surfaces are curved, and faster at plane surfaces.
         let power = match last {
             Some((before, at)) if at > threshold && before > open => {
                 (libm::log(at / threshold) / libm::log(before / open)).clamp(1.0, 3.0)
@@ -302,7 +307,7 @@ impl<Q: Quantity, C: Classifier> Walk<'_, Q, C> {
         threshold * libm::pow(wanted, power).clamp(most, 1.0 / 4.0)
     }
 
-    /// What the front contributes as it is.
+    /// Returns the contributions of the present front.
     fn evaluate(
         &self,
         settled: &Q::Found,
@@ -323,8 +328,8 @@ impl<Q: Quantity, C: Classifier> Walk<'_, Q, C> {
         Ok(total(*settled, front))
     }
 
-    /// Splits the cells of the front whose doubt is greater: what is settled by it, the new front, and the
-    /// finest level.
+    /// Splits the cells of the front whose doubt exceeds the threshold. Returns the sum settled by the
+    /// splits, the new front, and the finest level.
     fn split(&self, front: &mut [ChunkOf<Q, C>], threshold: f64) -> Result<Step<Q, C>, Error> {
         let (mut settled, mut next, mut level) = (Q::Found::default(), Vec::new(), 0);
         let tasks = front.iter_mut();
@@ -400,7 +405,7 @@ impl<Q: Quantity, C: Classifier> Walk<'_, Q, C> {
         Ok((settled.sum.finish(), next, level))
     }
 
-    /// Where the next cell of the front goes.
+    /// Returns the place of the front's next cell.
     fn next<'o>(&self, out: &'o mut Option<Next<C>>) -> Result<&'o mut Next<C>, Error> {
         Ok(match out {
             Some(out) => out,
@@ -408,9 +413,9 @@ impl<Q: Quantity, C: Classifier> Walk<'_, Q, C> {
         })
     }
 
-    /// Walks through what lies below the front, to cells whose doubt is not greater: the number of splits,
-    /// and the greatest doubt of a cell that can be split. `None`, and nothing changed, if that takes more
-    /// splits than are left.
+    /// Walks through the cells below the front, down to cells whose doubt does not exceed the threshold.
+    /// Returns the number of splits, and the greatest doubt of a cell that can be split. If that takes more
+    /// splits than are left, the walk returns `None` and changes nothing.
     fn deepen(
         &self,
         front: &mut [ChunkOf<Q, C>],
@@ -472,7 +477,7 @@ struct Pass<'a, Q> {
     depth: u8,
     threshold: f64,
     leaves: Leaves<Q>,
-    /// Splits that have not been added to those of all.
+    /// The number of splits not yet added to the total.
     splits: u64,
     /// The greatest doubt of a leaf that can be split.
     deepest: f64,
@@ -488,7 +493,7 @@ impl<Q: Quantity> Pass<'_, Q> {
         self.spent.load(Relaxed) > self.left
     }
 
-    /// The recursion is as deep as the frame, 20 levels at the most.
+    /// Walks through the cells below a cell. The recursion is as deep as the frame, 20 levels at the most.
     fn below<W: Worker>(
         &mut self,
         worker: &mut W,

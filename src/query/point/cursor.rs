@@ -1,4 +1,4 @@
-//! Points that lie near each other.
+//! Point queries for points that lie near each other.
 
 use super::Membership;
 use super::cuts::DescendCuts;
@@ -10,14 +10,14 @@ use crate::octree::view::{MAX_ELEMENT_LEVELS, OctreeRef};
 use crate::octree::{Planes, Tag};
 use yoke::Yokeable;
 
-/// Point queries that remember the way to the last answer: for points that lie near each other, such as
-/// along a line or in scan order. A point in the same element as the last one costs no memory access.
+/// A point query that remembers the path to the last answer. It is made for points that lie near each other,
+/// such as along a line or in scan order. A point in the same element as the last one costs no memory access.
 #[derive(Clone, Yokeable)]
 pub struct PointCursor<'a> {
     tree: OctreeRef<'a>,
-    /// A cell in the element that gave the last answer. At first it lies outside of any universe.
+    /// A cell in the element that gave the last answer. Initially it lies outside of any universe.
     last: [u32; 3],
-    /// Elements on the way to `last`, valid up to level `reached`.
+    /// Elements on the path to `last`, valid up to level `reached`.
     path: [usize; MAX_ELEMENT_LEVELS],
     reached: usize,
     /// The cells of the element that gave the last answer, and the binary logarithm of their edge.
@@ -26,7 +26,7 @@ pub struct PointCursor<'a> {
 }
 
 impl<'a> PointCursor<'a> {
-    /// A cursor that has not been anywhere yet.
+    /// Builds a cursor without a last answer.
     pub fn new(tree: &OctreeRef<'a>) -> PointCursor<'a> {
         PointCursor {
             tree: *tree,
@@ -38,7 +38,7 @@ impl<'a> PointCursor<'a> {
         }
     }
 
-    /// As [`OctreeRef::contains`].
+    /// Returns whether the solid contains a point, like [`OctreeRef::contains`].
     #[inline]
     pub fn contains(&mut self, point: [f64; 3]) -> Membership {
         let Some(at) = self.tree.frame.cell_of(point) else { return Membership::Undecided };
@@ -48,14 +48,14 @@ impl<'a> PointCursor<'a> {
         }
     }
 
-    /// As [`OctreeRef::tag_at`].
+    /// Returns the tag of a finest cell, like [`OctreeRef::tag_at`].
     #[inline]
     pub fn tag_at(&mut self, at: [u32; 3]) -> Tag {
-        // Their number is a power of two, so one comparison tells whether all three are cells.
+        // The number of cells is a power of two, so one comparison tests all three coordinates.
         if at[0] | at[1] | at[2] >= self.tree.frame.cells() { Tag::Partial } else { self.locate(at) }
     }
 
-    /// The tag of a finest cell of the universe.
+    /// Returns the tag of a finest cell of the universe.
     #[inline]
     fn locate(&mut self, at: [u32; 3]) -> Tag {
         let changed = self.changed(at);
@@ -69,11 +69,11 @@ impl<'a> PointCursor<'a> {
         with_popcount(Move { cursor: self, at, changed })
     }
 
-    /// What the cut of a PARTIAL cell says that was just located.
+    /// Returns the answer of the cut of the PARTIAL cell that was just located.
     fn decide(&self, cuts: &CutsRef<'_>, point: [f64; 3], at: [u32; 3]) -> Membership {
         let index = self.path[self.reached];
         let way = DescendCuts { tree: &self.tree, cuts, point, at, from: (0, 0) };
-        // (A link that is damaged leads to no PARTIAL cell.)
+        // (A damaged link leads to no PARTIAL cell.)
         let c = Packed::new(at).cell(self.shift);
         if self.tree.root == Tag::Branch && self.planes.tag(c) == Tag::Partial {
             way.settled(Tag::Partial, index, self.planes, c, self.shift)
@@ -106,7 +106,7 @@ impl Hot for Move<'_, '_> {
         if tree.root != Tag::Branch {
             return tree.root;
         }
-        // Elements above the highest changed bit are on both ways.
+        // Elements above the highest changed bit are on both paths.
         let highest = (31 - (changed | 1).leading_zeros()) as usize / 2;
         let mut e = (tree.levels() - 1).saturating_sub(highest).min(cursor.reached);
         cursor.last = at;

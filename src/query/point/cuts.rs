@@ -9,13 +9,13 @@ use crate::octree::links::{Links, levels_below};
 use crate::octree::view::OctreeRef;
 use crate::octree::{Planes, Tag};
 
-/// A point on its way down a tree with cuts.
+/// A point in its descent of a tree with cuts.
 pub(super) struct DescendCuts<'t, 'a> {
     pub tree: &'t OctreeRef<'a>,
     pub cuts: &'t CutsRef<'a>,
     pub point: [f64; 3],
     pub at: [u32; 3],
-    /// The element to begin at, and its level.
+    /// The starting element and its level.
     pub from: (usize, usize),
 }
 
@@ -46,7 +46,7 @@ impl Hot for DescendCuts<'_, '_> {
 }
 
 impl DescendCuts<'_, '_> {
-    /// What cell `c` of an element says, whose cells have an edge of 2^shift.
+    /// Returns the answer of cell `c` of an element whose cells have an edge of 2^shift.
     #[inline(always)]
     pub(super) fn settled(&self, tag: Tag, index: usize, planes: Planes, c: u32, shift: u32) -> Membership {
         if tag != Tag::Partial {
@@ -56,7 +56,7 @@ impl DescendCuts<'_, '_> {
         self.record(self.cuts.record(index, planes, c), level)
     }
 
-    /// What the cut of a cell of `level` says.
+    /// Returns the answer of the cut of a cell of `level`.
     fn record(&self, mut record: usize, mut level: u8) -> Membership {
         let depth = self.tree.frame.depth();
         loop {
@@ -65,7 +65,7 @@ impl DescendCuts<'_, '_> {
                 CellCut::Table { ids, mut table } => {
                     let point = self.point.map(Ball::exactly);
                     for (i, &id) in ids.iter().enumerate() {
-                        // What is known of others may make it not matter.
+                        // The sides of other surfaces may make this one irrelevant.
                         if !Head::needs(table, i) {
                             continue;
                         }
@@ -92,7 +92,7 @@ impl DescendCuts<'_, '_> {
 }
 
 impl OctreeRef<'_> {
-    /// Whether a tree with cuts contains a point of its universe.
+    /// Returns whether a tree with cuts contains a point of its universe.
     pub(super) fn contains_by_cuts(&self, cuts: &CutsRef<'_>, point: [f64; 3]) -> Membership {
         match self.frame.cell_of(point) {
             Some(at) => with_popcount(DescendCuts { tree: self, cuts, point, at, from: (0, 0) }),

@@ -1,16 +1,16 @@
-//! The way of one point down a stored octree.
+//! The descent of one point in a stored octree.
 
 use crate::dispatch::{Hot, with_popcount};
 use crate::octree::links::{Links, levels_below};
 use crate::octree::view::OctreeRef;
 use crate::octree::{Planes, Tag};
 
-/// The coordinates of a finest cell side by side in one word, from which the cell's place in each element on
-/// the way is a few shifts away.
+/// The coordinates of a finest cell side by side in one word. A few shifts give the cell's place in each
+/// element on the path.
 #[derive(Clone, Copy, Default)]
 pub(super) struct Packed(u64);
 
-/// Bits that a coordinate takes in a [`Packed`].
+/// The number of bits for a coordinate in a [`Packed`].
 const FIELD: u32 = 21;
 
 impl Packed {
@@ -24,13 +24,13 @@ impl Packed {
     pub(super) fn cell(self, shift: u32) -> u32 {
         const FIELDS: u64 = 1 | 1 << FIELD | 1 << (2 * FIELD);
         let pairs = self.0 >> shift & (3 * FIELDS);
-        // Bits 0 and 1 of a field to 0 and 3, then the fields into one another.
+        // Move bits 0 and 1 of a field to 0 and 3, then interleave the fields.
         let spread = (pairs * 5) & (9 * FIELDS);
         (spread | spread >> (FIELD - 1) | spread >> (2 * FIELD - 2)) as u32 & 63
     }
 }
 
-/// One point on its way down from an element, which lies on a level that has elements below it.
+/// The descent of one point from an element, on a level that has elements below it.
 pub(super) struct Descend<'t, 'a> {
     pub(super) tree: &'t OctreeRef<'a>,
     pub(super) at: Packed,
@@ -39,7 +39,7 @@ pub(super) struct Descend<'t, 'a> {
 }
 
 impl Descend<'_, '_> {
-    /// The tag of a finest cell of the universe.
+    /// Returns the tag of a finest cell of the universe.
     #[inline(always)]
     pub(super) fn from_root(tree: &OctreeRef<'_>, at: Packed) -> Tag {
         with_popcount(Descend { tree, at, from: (0, 0) })
@@ -67,14 +67,14 @@ impl Hot for Descend<'_, '_> {
     }
 }
 
-/// The brick with this index; damage reads as undecided.
+/// Returns the brick with this index; damage reads as undecided.
 #[inline(always)]
 pub(super) fn brick(tree: &OctreeRef<'_>, index: usize) -> Planes {
     let brick = tree.bricks.get(index.wrapping_sub(tree.planes.len()));
     brick.unwrap_or(Planes::uniform(Tag::Partial))
 }
 
-/// A branch that leads nowhere is undecided.
+/// Converts a branch without an element to undecided.
 #[inline(always)]
 pub(super) fn settled(tag: Tag) -> Tag {
     if tag == Tag::Branch { Tag::Partial } else { tag }

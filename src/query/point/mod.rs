@@ -1,4 +1,4 @@
-//! Does the solid contain a point?
+//! Point membership in octrees.
 
 mod cursor;
 mod cuts;
@@ -31,14 +31,14 @@ pub enum Membership {
 }
 
 impl Membership {
-    /// What is proven of a point.
+    /// The answer for a point whose side is proven.
     pub(super) fn of(inside: bool) -> Membership {
         if inside { Membership::Inside } else { Membership::Outside }
     }
 }
 
 impl From<Tag> for Membership {
-    /// A branch that leads nowhere is undecided.
+    /// Converts a tag to an answer. A branch without an element is undecided.
     #[inline(always)]
     fn from(tag: Tag) -> Membership {
         const ANSWERS: [Membership; 4] =
@@ -47,17 +47,17 @@ impl From<Tag> for Membership {
     }
 }
 
-/// Points that a batch query keeps under way at once: enough to hide one point's cache misses and
-/// mispredicted branches behind the others' work.
+/// The number of points that a batch query processes together: enough to hide one point's cache misses and
+/// mispredicted branches behind the work of the others.
 const LANES: usize = 32;
 
 impl OctreeRef<'_> {
-    /// Whether the solid contains `point` (model units). A point on the boundary may be answered either
-    /// way. At most ⌈depth/2⌉ elements are read; never fails, whatever the bytes.
+    /// Returns whether the solid contains `point` (model units). A point on the boundary may get either
+    /// answer. The query reads at most ⌈depth/2⌉ elements. It never fails, whatever the bytes.
     ///
-    /// Cuts decide in place, by arithmetic in doubles: the answer may be [`Undecided`](Membership::Undecided)
-    /// for points that are next to a surface, by about 10^-15 of the coordinates. Asked as a
-    /// [solid](crate::contains), the tree decides these, too.
+    /// Cuts decide in place, by arithmetic in doubles. The answer may be [`Undecided`](Membership::Undecided)
+    /// for points next to a surface, within about 10^-15 of the coordinates. To decide these points too,
+    /// query the tree as a [solid](crate::contains).
     #[inline]
     pub fn contains(&self, point: [f64; 3]) -> Membership {
         if let Some(cuts) = &self.cuts {
@@ -69,7 +69,8 @@ impl OctreeRef<'_> {
         }
     }
 
-    /// The tag of the finest cell `at`, whatever its cut says (each coordinate below 2^depth, else PARTIAL).
+    /// Returns the tag of the finest cell `at`, regardless of any cut (each coordinate must be below 2^depth,
+    /// else the result is PARTIAL).
     pub fn tag_at(&self, at: [u32; 3]) -> Tag {
         if at.iter().any(|&a| a >= self.frame.cells()) {
             return Tag::Partial;
@@ -77,9 +78,9 @@ impl OctreeRef<'_> {
         Descend::from_root(self, Packed::new(at))
     }
 
-    /// Answers many points at once, `answers[i]` for `points[i]`; the same answers as
-    /// [`contains`](Self::contains). Points are kept under way in groups, level by level, which costs neither
-    /// mispredicted branches nor waiting for memory.
+    /// Answers many points at once, `answers[i]` for `points[i]`. The answers equal those of
+    /// [`contains`](Self::contains). Points are processed in groups, level by level, which avoids
+    /// mispredicted branches and waits for memory.
     ///
     /// # Errors
     /// [`Error::Argument`] if the slices differ in length.
@@ -96,14 +97,14 @@ impl OctreeRef<'_> {
     }
 }
 
-/// Many points on their way down, in groups.
+/// The descent of many points, in groups.
 struct Lockstep<'t, 'a> {
     tree: &'t OctreeRef<'a>,
     points: &'t [[f64; 3]],
     answers: &'t mut [Membership],
 }
 
-/// A point under way: its place in the group, its cell, and the element that it has come to.
+/// A point in descent: its index in the group, its cell, and the element that it has reached.
 #[derive(Clone, Copy, Default)]
 struct Lane {
     point: usize,
@@ -132,7 +133,8 @@ impl Hot for Lockstep<'_, '_> {
                 let mut kept = 0;
                 for i in 0..under_way {
                     let lane = lanes[i % LANES];
-                    // Whatever comes of this step is written; no branch depends on whether it ends here.
+                    // Every result of this step is written, so that no branch depends on whether the descent
+                    // ends here.
                     let (tag, index, goes_on) = links.step(lane.index, lane.at.cell(shift), level);
                     answers[lane.point] = tag.into();
                     lanes[kept % LANES] = Lane { index, ..lane };
@@ -148,8 +150,8 @@ impl Hot for Lockstep<'_, '_> {
 }
 
 impl<S: Solid> LazyOctree<S> {
-    /// Whether the solid contains `point` (model units), as far as cells have been split. A point on the
-    /// boundary may be answered either way. O(depth).
+    /// Returns whether the solid contains `point` (model units), as far as cells have been split. A point on
+    /// the boundary may get either answer. Complexity: O(depth).
     pub fn contains(&self, point: [f64; 3]) -> Membership {
         let level = self.frame().depth();
         self.frame().cell_of(point).map_or(Membership::Undecided, |at| self.tag(Cell { level, at }).into())
@@ -157,13 +159,13 @@ impl<S: Solid> LazyOctree<S> {
 }
 
 impl Octree {
-    /// As [`OctreeRef::contains`].
+    /// Returns whether the solid contains a point. See [`OctreeRef::contains`] for the full contract.
     #[inline]
     pub fn contains(&self, point: [f64; 3]) -> Membership {
         self.view().contains(point)
     }
 
-    /// As [`OctreeRef::contains_many`].
+    /// Answers many points at once. See [`OctreeRef::contains_many`] for the full contract.
     ///
     /// # Errors
     /// [`Error::Argument`] if the slices differ in length.

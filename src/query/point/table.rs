@@ -1,4 +1,4 @@
-//! Points by way of a table that stands for the first levels.
+//! Point queries by a table of the first levels.
 
 use super::Membership;
 use super::descent::{Descend, Packed};
@@ -12,8 +12,8 @@ use crate::octree::view::OctreeRef;
 use alloc::vec::Vec;
 use yoke::Yokeable;
 
-/// Point queries by way of a table of all cells of one level, where most points are decided: for points
-/// anywhere about twice as fast as [`OctreeRef::contains`].
+/// A point query with a table of all cells of one level, where most points are decided. For random points it
+/// is about twice as fast as [`OctreeRef::contains`].
 ///
 /// The table takes 4 · 8^level bytes: 1 MiB for level 6, 64 MiB for level 8. It belongs to the process and is
 /// no part of the file.
@@ -29,10 +29,10 @@ use yoke::Yokeable;
 #[derive(Clone, Yokeable)]
 pub struct PointTable<'a> {
     tree: OctreeRef<'a>,
-    /// Of each cell of the level, z slowest: its tag, and of a BRANCH the element that lies in it, two bits
-    /// higher.
+    /// For each cell of the level, z slowest: the cell's tag, and for a BRANCH, two bits higher, the index of
+    /// the element in the cell.
     entries: Vec<u32>,
-    /// The level of the cells, and that of the elements in them.
+    /// The level of the cells, and the level of the elements in them.
     level: u8,
     element_level: usize,
 }
@@ -41,9 +41,9 @@ pub struct PointTable<'a> {
 const FINEST: u8 = 8;
 
 impl<'a> PointTable<'a> {
-    /// A table of the cells of `level`, or of the next coarser level that the tree's arrays lead to: they
-    /// hold two levels each, the deepest of them that of the finest cells. Levels beyond 8, and beyond the
-    /// tree's depth, count as these. O(8^level).
+    /// Builds a table of the cells of `level`, or of the next coarser level that the tree's arrays lead to.
+    /// The arrays hold two levels each, and the deepest array holds the finest cells. A level beyond 8, or
+    /// beyond the tree's depth, is reduced to these. Complexity: O(8^level).
     ///
     /// # Errors
     /// [`Error::OutOfMemory`].
@@ -61,12 +61,12 @@ impl<'a> PointTable<'a> {
         Ok(table)
     }
 
-    /// The level of the cells.
+    /// The level of the table's cells.
     pub fn level(&self) -> u8 {
         self.level
     }
 
-    /// As [`OctreeRef::contains`].
+    /// Returns whether the solid contains a point, like [`OctreeRef::contains`].
     #[inline]
     pub fn contains(&self, point: [f64; 3]) -> Membership {
         let Some(at) = self.tree.frame.cell_of(point) else { return Membership::Undecided };
@@ -76,14 +76,14 @@ impl<'a> PointTable<'a> {
         }
     }
 
-    /// As [`OctreeRef::tag_at`].
+    /// Returns the tag of a finest cell, like [`OctreeRef::tag_at`].
     #[inline]
     pub fn tag_at(&self, at: [u32; 3]) -> Tag {
-        // Their number is a power of two, so one comparison tells whether all three are cells.
+        // The number of cells is a power of two, so one comparison tests all three coordinates.
         if at[0] | at[1] | at[2] >= self.tree.frame.cells() { Tag::Partial } else { self.locate(at) }
     }
 
-    /// As [`OctreeRef::contains_many`].
+    /// Answers many points at once, like [`OctreeRef::contains_many`].
     ///
     /// # Errors
     /// [`Error::Argument`] if the slices differ in length.
@@ -95,7 +95,7 @@ impl<'a> PointTable<'a> {
         Ok(())
     }
 
-    /// The tag of a finest cell of the universe.
+    /// Returns the tag of a finest cell of the universe.
     #[inline(always)]
     fn locate(&self, at: [u32; 3]) -> Tag {
         let below = self.tree.frame.depth() - self.level;
@@ -110,13 +110,13 @@ impl<'a> PointTable<'a> {
         }
     }
 
-    /// The place of a cell's entry.
+    /// The index of a cell's entry.
     #[inline(always)]
     fn place(&self, [x, y, z]: [u32; 3]) -> usize {
         (z as usize) << (2 * self.level) | (y as usize) << self.level | x as usize
     }
 
-    /// Fills in what lies in element `index` of level `e`, whose own cell is `at`. Each entry is written at
+    /// Fills in the cells of element `index` of level `e`, whose own cell is `at`. Each entry is written at
     /// most once, whatever the bytes. The recursion is as deep as the table has element levels.
     fn enter(&mut self, e: usize, index: usize, at: [u32; 3]) {
         let Some(planes) = self.tree.entry(index) else { return };
@@ -128,7 +128,7 @@ impl<'a> PointTable<'a> {
             let at = [4 * at[0] + x, 4 * at[1] + y, 4 * at[2] + z];
             match self.tree.step(e, index, planes, c) {
                 Step::Into(child) if e + 1 == self.element_level => {
-                    // A sound tree has fewer elements on such levels; others are damage.
+                    // A sound tree has fewer elements on such levels. A greater index is damage.
                     let child = u32::try_from(child).ok().filter(|&child| child < 1 << 30);
                     let place = self.place(at);
                     self.entries[place] =
@@ -140,7 +140,7 @@ impl<'a> PointTable<'a> {
         }
     }
 
-    /// Gives all entries in a cell its tag.
+    /// Writes a cell's tag to all of its entries.
     fn fill(&mut self, cell: Cell, tag: Tag) {
         let shift = self.level - cell.level;
         let [x, y, z] = cell.at.map(|a| a << shift);

@@ -1,5 +1,4 @@
-//! Rays that run side by side: the part of their way on which nothing stops them is found once for all of
-//! them.
+//! Rays that run side by side: one search finds the common part of their paths on which nothing stops them.
 
 use super::course::{Clear, Course};
 use crate::lattice::Frame;
@@ -9,38 +8,40 @@ use crate::octree::links::Step;
 use crate::octree::view::{OctreeRef, root_cells};
 use crate::octree::{Planes, Tag};
 
-/// Rays that are looked at together.
+/// The number of rays in a beam.
 pub(super) const RAYS: usize = 32;
 
-/// Elements that a beam looks into at most: a beam that grazes a surface is not worth more.
+/// The maximal number of elements that a beam visits. More elements do not pay for a beam that grazes a
+/// surface.
 const MOST_ELEMENTS: u32 = 48;
 
-/// Rays that run side by side, in lattice coordinates that are mirrored so that none falls.
+/// Rays that run side by side, in lattice coordinates that are mirrored so that no coordinate decreases.
 pub(super) struct Beam {
-    /// The axis along which they run fastest.
+    /// The axis along which the rays run fastest.
     axis: usize,
-    /// The others.
+    /// The other axes.
     across: [usize; 2],
     falls: [bool; 3],
     cells: f64,
-    /// No ray begins before this plane of the axis.
+    /// The plane of the axis before which no ray begins.
     start: f64,
-    /// Where the plane u of the axis is passed, at the least: `low[0] + u low[1]` on each axis across.
+    /// The lower bound of the place where the plane u of the axis is passed: `low[0] + u low[1]` on each axis
+    /// across.
     low: [[f64; 2]; 2],
-    /// The same at the most.
+    /// The upper bound, in the same form.
     high: [[f64; 2]; 2],
-    /// The edge of cells into which it is not worth looking.
+    /// The edge of cells that are too small to visit.
     edge: f64,
 }
 
-/// The widest beam, as a share of the universe.
+/// The greatest width of a beam, as a share of the universe.
 const WIDEST: f64 = 0.125;
 
-/// The greatest coordinate of a beam. Far enough, and half a cell is far more than its rounding errors.
+/// The greatest coordinate of a beam. It is far enough, and half a cell is far more than its rounding errors.
 const FARTHEST: f64 = (1u64 << 40) as f64;
 
 impl Beam {
-    /// The beam of some rays, or `None` if they do not run side by side.
+    /// Returns the beam of some rays, or `None` if they do not run side by side.
     #[inline(always)]
     pub(super) fn of(courses: &[Course; RAYS], frame: &Frame) -> Option<Beam> {
         let first = &courses[0];
@@ -73,7 +74,7 @@ impl Beam {
         let cells = f64::from(frame.cells());
         let width = |range: &[[f64; 2]; 2]| range[0][1] - range[0][0] + cells * (range[1][1] - range[1][0]);
         let width = width(&ranges[0]).max(width(&ranges[1]));
-        // The half cell that is added on each side is more than rounding errors, which are relative to the
+        // The half cell that is added on each side exceeds the rounding errors, which are relative to the
         // greatest of the numbers.
         let [low, high] = [0, 1].map(|end| {
             let pad = if end == 0 { -0.5 } else { 0.5 };
@@ -91,7 +92,7 @@ impl Beam {
         })
     }
 
-    /// Where nothing stops any of the rays.
+    /// Returns the region where nothing stops any of the rays.
     pub(super) fn clear(&self, tree: &OctreeRef<'_>) -> Clear {
         match tree.root {
             Tag::Empty => Clear { axis: self.axis, until: f64::INFINITY },
@@ -104,8 +105,9 @@ impl Beam {
         }
     }
 
-    /// Which cells of an element the beam may meet between two planes of its axis: the first and the last of
-    /// them along each axis across. The element begins at `corner`, its cells have this edge.
+    /// Returns the cells of an element that the beam may meet between two planes of its axis: the first and
+    /// the last of them along each axis across. The element begins at `corner`, and its cells have the edge
+    /// `edge`.
     #[inline(always)]
     fn across(&self, near: f64, far: f64, corner: [u32; 3], edge: f64) -> Option<[[usize; 2]; 2]> {
         let mut range = [[0; 2]; 2];
@@ -118,7 +120,7 @@ impl Beam {
             if high < corner || low > corner + 4.0 * edge {
                 return None;
             }
-            // The conversion takes what is less than 0 for 0.
+            // The conversion turns negative numbers into 0.
             range[k] = [low, high].map(|place| (((place - corner) / edge) as usize).min(3));
         }
         Some(range)
@@ -130,12 +132,12 @@ struct Search<'s, 'a> {
     beam: &'s Beam,
     tree: &'s OctreeRef<'a>,
     until: f64,
-    /// Elements that may still be looked into.
+    /// The number of elements that may still be visited.
     left: u32,
 }
 
 impl Search<'_, '_> {
-    /// Looks into an element of a level that begins at `corner`. As deep a recursion as there are levels.
+    /// Visits an element of a level that begins at `corner`. The recursion is as deep as there are levels.
     fn visit(&mut self, level: usize, index: usize, corner: [u32; 3]) {
         let (beam, tree) = (self.beam, self.tree);
         let mut planes = tree.entry(index).unwrap_or(Planes::uniform(Tag::Partial));

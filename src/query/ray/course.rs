@@ -6,29 +6,29 @@ use crate::lattice::axes;
 use crate::lattice::morton::SLABS;
 use wide::f64x4;
 
-/// A ray in lattice coordinates, mirrored so that none falls, in doubles with bounds of their errors. The
-/// fourth coordinate fills a register: the ray does not move along it.
+/// A ray in lattice coordinates, mirrored so that no coordinate decreases, in doubles with bounds of their
+/// errors. The fourth coordinate fills a register: the ray does not move along it.
 #[derive(Clone, Copy)]
 pub(super) struct Course {
-    /// Where the ray starts.
+    /// The start of the ray.
     pub(super) from: [f64; 4],
-    /// Cells a unit of t.
+    /// The speed, in cells for a unit of t.
     pub(super) speed: [f64; 4],
-    /// Units of t a cell.
+    /// The slowness, in units of t for a cell.
     pub(super) slowness: [f64; 4],
-    /// Bound of the error of a coordinate at an exact t.
+    /// A bound of the error of a coordinate at an exact t.
     place_error: [f64; 4],
-    /// Bound of the error of the t at which a plane of the universe is passed.
+    /// A bound of the error of the t at which a plane of the universe is passed.
     pub(super) time_error: [f64; 4],
-    /// Exclusive or with this mirrors the coordinate of a cell.
+    /// An exclusive or with this mirrors the coordinate of a cell.
     pub(super) mirror: [u32; 4],
 }
 
-/// A bound of all relative rounding errors of a coordinate together, of which each is 2^-53 and none counts
-/// more than twice. They are relative to the universe and the ray's start.
+/// A bound of all relative rounding errors of a coordinate together. Each error is 2^-53, and none counts
+/// more than twice. The errors are relative to the universe and the ray's start.
 const ERROR: f64 = 1.0 / (1u64 << 48) as f64;
 
-/// Adding this leaves the nearest integer in the low bits.
+/// Adding this constant leaves the nearest integer in the low bits.
 const ROUND: f64 = (3u64 << 51) as f64;
 
 impl Course {
@@ -61,7 +61,7 @@ impl Course {
         course
     }
 
-    /// The cells of an element that a ray may still meet which is in one of them; they have an edge of
+    /// Returns the cells of an element that a ray in one of them may still meet; the cells have an edge of
     /// 2^shift.
     #[inline(always)]
     pub(super) fn ahead(&self, place: [u32; 4], shift: u32) -> u64 {
@@ -72,20 +72,20 @@ impl Course {
         x & y & z
     }
 
-    /// Whether the ray was mirrored along an axis.
+    /// True if the ray was mirrored along an axis.
     #[inline(always)]
     pub(super) fn falls(&self, axis: usize) -> bool {
         self.mirror[axis] != 0
     }
 
-    /// When the ray passes a plane of an axis.
+    /// Returns the time at which the ray passes a plane of an axis.
     #[inline(always)]
     pub(super) fn time(&self, axis: usize, plane: u32) -> f64 {
         (plane as f64 - self.from[axis]) * self.slowness[axis]
     }
 
-    /// The coordinate of the cell in which the ray is at a time with this error, and whether rounding errors
-    /// cannot have changed it.
+    /// Returns the coordinate of the ray's cell at a time with this error, and whether the coordinate is
+    /// certain in spite of rounding errors.
     #[inline(always)]
     pub(super) fn cell(&self, axis: usize, t: f64, time_error: f64) -> (u32, bool) {
         let error = self.speed[axis] * time_error + self.place_error[axis];
@@ -97,15 +97,15 @@ impl Course {
 
 /// The same for all four coordinates at once.
 impl Course {
-    /// The planes by which the ray leaves a cell with an edge of 2^shift, and when it passes them; the ray is
-    /// in cell `at` of edge 1 there.
+    /// Returns the planes by which the ray leaves a cell with an edge of 2^shift, and the times at which it
+    /// passes them. The ray is in cell `at` of edge 1 there.
     #[inline(always)]
     pub(super) fn leaves(&self, at: [u32; 4], shift: u32) -> (f64x4, f64x4) {
         let far = f64x4::from(at.map(|a| (((a >> shift) + 1) << shift) as i32 as f64));
         (far, (far - f64x4::from(self.from)) * f64x4::from(self.slowness))
     }
 
-    /// As [`cell`](Self::cell).
+    /// Returns the cells of all coordinates, like [`cell`](Self::cell).
     #[inline(always)]
     pub(super) fn cells(&self, t: f64, time_error: f64) -> (f64x4, f64x4) {
         let speed = f64x4::from(self.speed);
@@ -115,23 +115,23 @@ impl Course {
         (cell, (place - cell).abs().simd_lt(f64x4::splat(0.5) - error))
     }
 
-    /// The integers that are given as doubles.
+    /// Converts integers in doubles to integers.
     #[inline(always)]
     pub(super) fn integers(cells: f64x4) -> [u32; 4] {
         (cells + ROUND).to_array().map(|shifted| shifted.to_bits() as u32)
     }
 }
 
-/// Units of t a cell that is never left.
+/// The slowness along an axis on which the cell is never left.
 const NEVER: f64 = f64::from_bits((1023 + 900) << 52);
 
-/// How a ray begins.
+/// The start of a ray.
 pub(super) enum Start {
-    /// It does not meet the universe.
+    /// The ray does not meet the universe.
     Beside,
-    /// It begins in this cell, or enters the universe there along an axis.
+    /// The ray begins in this cell, or enters the universe there along an axis.
     At([u32; 4], Option<usize>),
-    /// Rounding errors tell.
+    /// Rounding errors decide.
     Unsure,
 }
 
@@ -178,8 +178,9 @@ impl Course {
         }
     }
 
-    /// How a ray begins that begins `at` a cell `by` a plane, and that nothing stops before the plane `until`
-    /// of an axis: in the cell before that plane if rounding errors cannot change which one it is.
+    /// Returns the start of a ray that begins `at` a cell `by` a plane, and that nothing stops before the
+    /// plane `until` of an axis: the start is in the cell before that plane, if rounding errors cannot change
+    /// the choice of the cell.
     #[inline(always)]
     pub(super) fn skip(
         &self,
@@ -218,11 +219,11 @@ impl Course {
 #[derive(Clone, Copy)]
 pub(super) struct Clear {
     pub(super) axis: usize,
-    /// The first plane behind which something may; ∞ if nothing does.
+    /// The first plane behind which something may stop the ray; ∞ if nothing does.
     pub(super) until: f64,
 }
 
 impl Clear {
-    /// Nothing is known.
+    /// The value if nothing is known.
     pub(super) const UNKNOWN: Clear = Clear { axis: 0, until: 0.0 };
 }

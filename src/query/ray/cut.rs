@@ -12,24 +12,24 @@ pub(super) struct CutLine<'a> {
     high: f64,
 }
 
-/// A piece of a ray, from one part of its stay in the cell to another, 0 to 1.
+/// A piece of a ray, between two parameters of its stay in the cell, 0 to 1.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Piece {
     pub low: f64,
     pub high: f64,
-    /// Whether it lies inside; `None` if that is not known.
+    /// Whether the piece lies inside; `None` if unknown.
     pub is_inside: Option<bool>,
-    /// A surface that it may cross.
+    /// A surface that the piece may cross.
     pub surface: Option<u8>,
 }
 
-/// Most pieces that are looked at in a cell. What is left is not known.
+/// The maximal number of pieces visited in a cell. The rest is undecided.
 const MOST_PIECES: u32 = 1024;
 
-/// Pieces are halved down to this part of the ray's stay in the cell.
+/// The length of the shortest pieces, as a part of the ray's stay in the cell.
 const FINEST: f64 = 1.0 / (1u64 << 36) as f64;
 
-/// Pieces that wait: one for each halving, and for each side of each crossing.
+/// The maximal number of waiting pieces: one for each halving, and one for each side of each crossing.
 const MOST_WAITING: usize = 56;
 
 impl<'a> CutLine<'a> {
@@ -41,19 +41,20 @@ impl<'a> CutLine<'a> {
         [low, high]: [f64; 2],
     ) -> CutLine<'a> {
         let direction = line.ray.direction.map(|[high, low]| Ball::exactly(high).plus(Ball::exactly(low)));
-        // In the cell, time is counted from 0 to 1, so that what is far away takes no digits.
+        // In the cell, time runs from 0 to 1, so that distant starts cost no digits.
         let (begin, stay) = (Ball::exactly(low), Ball::exactly(high).minus(Ball::exactly(low)));
         let at = axes(|axis| Ball::exactly(line.ray.from[axis]).plus(direction[axis].times(begin)));
         let direction = direction.map(|c| c.times(stay));
         let mut own = [None; 3];
-        // (A ray that does not end in a cell has no length there that could be told.)
+        // (A ray that does not end in a cell has no finite length there.)
         for (to, &id) in own.iter_mut().zip(ids.iter()).filter(|_| (high - low).is_finite()) {
             *to = Figure::new(surfaces, id).map(|figure| figure.line(at, direction));
         }
         CutLine { surfaces: own, table, low, high }
     }
 
-    /// Shows the pieces of the ray in their order, until `visit` has seen enough.
+    /// Passes the pieces of the ray to `visit`, in their order, until `visit` returns that it has seen
+    /// enough.
     pub(super) fn walk(&self, mut visit: impl FnMut(Piece) -> bool) {
         let mut waiting = [(0.0, 0.0, 0u8); MOST_WAITING];
         waiting[0] = (0.0, 1.0, self.table);
@@ -92,9 +93,9 @@ impl<'a> CutLine<'a> {
         }
     }
 
-    /// Where to divide a piece whose table is not decided; `None` if no part of it would be. Next to
-    /// crossings that are known about, the pieces that they leave are decided at once, and halving takes
-    /// three dozen steps to each.
+    /// Returns the parameter at which to divide a piece whose table is undecided; `None` if no part of the
+    /// piece would be decided. Next to known crossings, the pieces between them are decided at once, whereas
+    /// halving takes three dozen steps to each.
     fn division(&self, table: u8, low: f64, high: f64) -> Option<f64> {
         let (mut least, mut middle) = (high, None);
         let lines = self.surfaces.iter().enumerate().filter(|&(i, _)| Head::needs(table, i));
@@ -108,12 +109,12 @@ impl<'a> CutLine<'a> {
         if least < high { Some(least) } else { middle }
     }
 
-    /// The times of a piece, rounded outward. The ends of the stay are met exactly.
+    /// The times of a piece, rounded outward. The ends of the stay are exact.
     pub(super) fn around(&self, low: f64, high: f64) -> [f64; 2] {
         [self.time(low, false), self.time(high, true)]
     }
 
-    /// The same rounded inward.
+    /// The times of a piece, rounded inward.
     pub(super) fn within(&self, low: f64, high: f64) -> [f64; 2] {
         [self.time(low, true), self.time(high, false)]
     }
@@ -129,7 +130,7 @@ impl<'a> CutLine<'a> {
         }
     }
 
-    /// The outward normal, against the ray, of a surface where the ray is at a time.
+    /// Returns the outward normal, against the ray, of a surface at the ray's place at a time.
     pub(super) fn normal(&self, line: &Line<'_>, surface: u8, t: f64) -> Option<[f64; 3]> {
         let figure = self.surfaces[usize::from(surface)].as_ref()?.figure();
         let point = axes(|axis| line.ray.from[axis] + t * line.ray.direction[axis][0]);

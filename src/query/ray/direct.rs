@@ -1,4 +1,4 @@
-//! Rays of solids that tell where a ray goes in and out.
+//! Rays of solids that compute a ray's entries and exits themselves.
 
 use super::line::{Line, Passage};
 use super::search::unit;
@@ -9,20 +9,20 @@ use crate::memory;
 use crate::solid::RayTrace;
 use alloc::vec::Vec;
 
-/// What a ray does for a while.
+/// A piece of a ray between two crossings.
 #[derive(Clone, Copy)]
 struct Piece {
     from: f64,
     to: f64,
-    /// Nothing if it may be inside or outside.
+    /// `None` if the piece may be inside or outside.
     is_inside: Option<bool>,
-    /// Whether it is proven to be inside at some time.
+    /// Whether the ray is proven to be inside at some time of the piece.
     is_met: bool,
-    /// The outward normal, and the number, of the surface by which it goes in from outside.
+    /// The outward normal, and the number, of the surface by which the ray enters from outside.
     entry: Option<([f64; 3], Option<u32>)>,
 }
 
-/// Calls `visit` with what a ray does, one piece after the other, until it returns `false`.
+/// Passes the pieces of a ray to `visit`, in order, until `visit` returns `false`.
 fn each_piece(trace: &RayTrace, mut visit: impl FnMut(Piece) -> bool) {
     let is_met = trace.begins_inside;
     let mut now = Piece { from: 0.0, to: 0.0, is_inside: Some(is_met), is_met, entry: None };
@@ -33,7 +33,7 @@ fn each_piece(trace: &RayTrace, mut visit: impl FnMut(Piece) -> bool) {
             to: crossing.t.upper,
             is_inside: None,
             is_met: crossing.is_met,
-            // What it leaves by, even if for no time, is not where it goes in.
+            // A surface by which the ray leaves, even for no time, is not an entry.
             entry: (now.is_inside == Some(false)).then_some((crossing.normal, crossing.surface)),
         };
         if !visit(now) || !visit(within) {
@@ -49,15 +49,15 @@ fn each_piece(trace: &RayTrace, mut visit: impl FnMut(Piece) -> bool) {
 /// The first places where a ray is stopped in the universe.
 #[derive(Default)]
 pub(super) struct Stops {
-    /// By what may be solid, and the least t of it.
+    /// The stop by the possible solid, at its least t.
     outer: Option<RayHit>,
-    /// By what is solid, and the least t of that.
+    /// The stop by the proven solid, at its least t.
     inner: Option<RayHit>,
 }
 
 impl Stops {
     pub(super) fn new(trace: &RayTrace, line: &Line<'_>) -> Stops {
-        // As a rule the ray is stopped well within the universe, or not at all.
+        // Usually the ray is stopped well within the universe, or not at all.
         if let Some(stay) = rough_stay(line) {
             let begins_within = stay[0] == Interval::exactly(0.0);
             let (stops, is_known) = Stops::within(trace, line, stay, begins_within.then_some([0.0; 3]));
@@ -69,8 +69,8 @@ impl Stops {
         Stops::within(trace, line, [entry.t, exit.t], Some(line.face(&entry))).0
     }
 
-    /// Where it is stopped during a stay between two times, each known as an interval, and whether narrower
-    /// ones would tell the same; `face` is the normal where it begins.
+    /// Returns the stops during a stay between two times, each known as an interval, and whether narrower
+    /// intervals would give the same result. `face` is the normal of the face where the stay begins.
     fn within(
         trace: &RayTrace,
         line: &Line<'_>,
@@ -114,7 +114,7 @@ impl Stops {
         (stops, is_known && !is_late)
     }
 
-    /// The answer to a query.
+    /// Returns the answer to a query.
     pub(super) fn hit(self, on: Obstacle) -> Option<RayHit> {
         let Stops { outer, inner } = self;
         let found = match on {
@@ -126,14 +126,14 @@ impl Stops {
         Some(RayHit { t: Interval::between(lower, upper), ..found })
     }
 
-    /// Whether the ray is surely stopped, and whether it may be.
+    /// Returns whether the ray is surely stopped, and whether it may be stopped.
     pub(super) fn are(&self) -> (bool, bool) {
         (self.inner.is_some(), self.outer.is_some())
     }
 }
 
-/// When a ray enters and leaves the universe, in intervals that are wider than they need be. Nothing of a ray
-/// that misses it, or that comes near to a face along which it runs.
+/// Returns the times at which a ray enters and leaves the universe, in rough intervals. `None` for a ray that
+/// misses the universe, or that comes near to a face along which it runs.
 fn rough_stay(line: &Line<'_>) -> Option<[Interval; 2]> {
     let (frame, ray) = (line.frame, &line.ray);
     let (mut entry, mut exit) = (Interval::exactly(0.0), Interval::exactly(ray.last));
@@ -148,7 +148,7 @@ fn rough_stay(line: &Line<'_>) -> Option<[Interval; 2]> {
             }
             continue;
         }
-        // More than all that is rounded here.
+        // A bound above all rounding errors here.
         let wrong = 1e-12 * magnitude / along.abs();
         let about = |plane: f64| {
             let t = (plane - from) / along;
@@ -162,7 +162,7 @@ fn rough_stay(line: &Line<'_>) -> Option<[Interval; 2]> {
     (entry.upper < exit.lower).then_some([entry, exit])
 }
 
-/// Whether nothing is known of a ray from when it enters the universe on.
+/// True if nothing is known of a ray from its entry into the universe on.
 pub(super) fn ends_before(trace: &RayTrace, line: &Line<'_>) -> bool {
     let is_after = |entry: Interval| trace.until > entry.upper;
     if trace.until == f64::INFINITY || rough_stay(line).is_some_and(|[entry, _]| is_after(entry)) {
@@ -171,19 +171,19 @@ pub(super) fn ends_before(trace: &RayTrace, line: &Line<'_>) -> bool {
     line.passage(Cell::ROOT).is_some_and(|Passage { entry, .. }| trace.until < entry.t.upper)
 }
 
-/// The finest cell of the universe where a ray is at a time, but for rounding.
+/// Returns the finest cell of the universe at the ray's place at a time, up to rounding.
 fn cell_at(line: &Line<'_>, t: f64) -> Cell {
     let frame = line.frame;
     let at = axes(|axis| {
         let [along, rest] = line.ray.direction[axis];
         let at = frame.scaled(axis, line.ray.from[axis] + t * along + t * rest);
-        // (What is no number lies at the lower end.)
+        // (NaN is placed at the lower end.)
         (at.max(0.0) as u32).min(frame.cells() - 1)
     });
     Cell { level: frame.depth(), at }
 }
 
-/// The intervals in which a ray is in the solid and in the universe.
+/// Returns the intervals in which a ray is in the solid and in the universe.
 pub(super) fn spans(trace: &RayTrace, line: &Line<'_>) -> Result<RaySpans, Error> {
     let mut spans = RaySpans { inner: Vec::new(), outer: Vec::new() };
     let Some(Passage { entry, exit }) = line.passage(Cell::ROOT) else { return Ok(spans) };
@@ -203,7 +203,7 @@ pub(super) fn spans(trace: &RayTrace, line: &Line<'_>) -> Result<RaySpans, Error
     added.map(|()| spans)
 }
 
-/// Adds a span, which as a rule goes on where the last one ended.
+/// Adds a span, which usually begins where the last one ended.
 fn add(spans: &mut Vec<Interval>, span: Option<Interval>) -> Result<(), Error> {
     match (span, spans.last_mut()) {
         (None, _) => Ok(()),

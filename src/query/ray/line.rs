@@ -5,7 +5,7 @@ use crate::lattice::exact::{Expansion, sign};
 use crate::lattice::{Cell, Frame, Interval};
 use core::cmp::Ordering;
 
-/// When a ray begins, ends or passes a lattice plane.
+/// The time at which a ray begins, ends or passes a lattice plane.
 #[derive(Clone, Copy)]
 pub(super) struct Moment {
     /// The tightest known interval around t.
@@ -22,7 +22,7 @@ impl Moment {
         Moment { t: Interval::exactly(t), plane: None }
     }
 
-    /// The axis of the plane that is passed.
+    /// The axis of the passed plane.
     pub(super) fn axis(&self) -> Option<usize> {
         self.plane.map(|(axis, _)| axis.into())
     }
@@ -49,7 +49,7 @@ pub(super) struct Line<'f> {
     pub(super) ray: Ray,
     /// The components of the direction, rounded outward.
     pub(super) direction: [Interval; 3],
-    /// The octants in this order are met front to back: k becomes k ^ `mirror`.
+    /// The mirror that orders octants front to back: k becomes k ^ `mirror`.
     pub(super) mirror: u8,
 }
 
@@ -60,7 +60,8 @@ impl<'f> Line<'f> {
         Line { frame, ray, direction, mirror }
     }
 
-    /// When the ray passes the finest lattice plane `plane` of an axis along which it moves.
+    /// Returns the time at which the ray passes the finest lattice plane `plane` of an axis along which it
+    /// moves.
     pub(super) fn passes(&self, axis: usize, plane: u32) -> Moment {
         let offset = self.frame.rounded_offset(axis, self.ray.from[axis], 2 * plane as i64);
         let direction = self.direction[axis];
@@ -82,7 +83,7 @@ impl<'f> Line<'f> {
         if direction > 0.0 { Stay::Between(lower, upper) } else { Stay::Between(upper, lower) }
     }
 
-    /// When the ray is in a closed cell, if ever.
+    /// Returns the time that the ray spends in a closed cell; `None` if it never meets the cell.
     pub(super) fn passage(&self, cell: Cell) -> Option<Passage> {
         let shift = self.frame.depth() - cell.level;
         let mut passage = Passage { entry: Moment::START, exit: Moment::exactly(self.ray.last) };
@@ -103,7 +104,7 @@ impl<'f> Line<'f> {
         self.order(&passage.entry, &passage.exit).is_le().then_some(passage)
     }
 
-    /// Which of two moments comes first.
+    /// Compares two moments exactly.
     pub(super) fn order(&self, a: &Moment, b: &Moment) -> Ordering {
         if a.t.upper < b.t.lower {
             Ordering::Less
@@ -133,7 +134,7 @@ impl<'f> Line<'f> {
         (Expansion::default().minus(&offset), Expansion::sum(self.ray.direction[axis]))
     }
 
-    /// The normal of the face by which the ray enters a cell; zero if it starts there.
+    /// Returns the normal of the face by which the ray enters a cell; zero if it starts there.
     pub(super) fn face(&self, entry: &Moment) -> [f64; 3] {
         let mut normal = [0.0; 3];
         if let Some(axis) = entry.axis() {

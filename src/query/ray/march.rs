@@ -1,4 +1,4 @@
-//! The cells of a stored octree along a ray, two levels a step.
+//! A march through the cells of a stored octree along a ray, two levels a step.
 
 use super::Ray;
 use super::course::{Clear, Course, Start};
@@ -9,15 +9,15 @@ use crate::octree::Tag;
 
 /// The first cells that stop a ray.
 pub(super) struct March {
-    /// The first that is not EMPTY, and about when the ray meets it.
+    /// The first cell that is not EMPTY, and the approximate time when the ray meets it.
     pub(super) outer: Option<(Met, f64)>,
-    /// The first that is FULL.
+    /// The first cell that is FULL.
     pub(super) inner: Option<Met>,
 }
 
 impl March {
-    /// Along a ray that nothing stops where it is `clear`: to the first FULL cell, or only to the first that
-    /// is not EMPTY. `None` if rounding errors may change what is met.
+    /// Follows a ray that nothing stops where it is `clear`, to the first FULL cell, or only to the first
+    /// cell that is not EMPTY. `None` if rounding errors may change the result.
     #[inline(always)]
     pub(super) fn run(
         way: &mut Way<'_, '_>,
@@ -63,14 +63,14 @@ impl March {
                 }
             }
             if tree.root == Tag::Branch {
-                // Nothing on the ray's further way through the octant, or through all of the element, may
-                // stop it.
+                // Skip the octant, or all of the element, if nothing on the ray's further path through it can
+                // stop the ray.
                 let ahead = course.ahead(place, shift);
                 let stops = if march.outer.is_none() { planes.lower | planes.upper } else { planes.lower };
                 let octant = 0xFF << (c & !7);
                 shift += (stops & ahead & octant == 0) as u32 + (stops & ahead == 0) as u32;
             }
-            // Out of it by the plane that is passed first.
+            // Leave the cell by the plane that is passed first.
             let (far, times) = course.leaves(at, shift);
             let [x, y, z, _] = times.to_array();
             let least_of_two = if x < y { x } else { y };

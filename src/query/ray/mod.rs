@@ -1,8 +1,8 @@
-//! Where does a ray meet a solid?
+//! The intersection of rays with solids.
 //!
-//! A solid is a closed set, and so are the unions of its FULL cells and of its FULL and PARTIAL cells. Where
-//! a ray enters the first, it is proven inside; before it enters the second, it is proven outside. So a ray
-//! that runs in a face of a cell, or touches an edge or a corner of it, meets that cell.
+//! A solid is a closed set, and so are the union of its FULL cells and the union of its FULL and PARTIAL
+//! cells. Where a ray enters the first union, it is proven inside. Before it enters the second, it is proven
+//! outside. A ray that runs in a face of a cell, or touches an edge or a corner, therefore meets that cell.
 
 mod beam;
 mod course;
@@ -26,31 +26,31 @@ pub(crate) use touch::TouchedCell;
 use crate::lattice::{Cell, Interval};
 use alloc::vec::Vec;
 
-/// Which cells stop a ray.
+/// The cells that stop a ray.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
 #[repr(u8)]
 pub enum Obstacle {
-    /// What is proven to be solid: FULL cells.
+    /// The proven solid: FULL cells.
     Full = 0,
-    /// What may be solid: FULL and PARTIAL cells.
+    /// The possible solid: FULL and PARTIAL cells.
     Upper = 1,
 }
 
-/// Where a ray meets a solid.
+/// The first intersection of a ray with a solid.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct RayHit {
-    /// The least t at which the ray is in the solid lies in this interval: before `lower` the ray is proven
-    /// outside, at `upper` inside. `upper` is ∞ if the ray is nowhere proven inside; then it may miss the
-    /// solid.
+    /// An interval that contains the least t at which the ray is in the solid: before `lower` the ray is
+    /// proven outside, at `upper` inside. `upper` is ∞ if the ray is nowhere proven inside; the ray may then
+    /// miss the solid.
     pub t: Interval,
-    /// The first cell that stopped the ray; the finest one at the place where it was stopped if the solid
-    /// answers rays itself.
+    /// The first cell that stopped the ray. If the solid answers rays itself, it is the finest cell at the
+    /// place where the ray was stopped.
     pub cell: Cell,
     /// The outward normal of the face by which the ray enters that cell, or of the surface where the solid
-    /// knows slabs. Its length is 1 but for rounding. Zero if the ray starts in the cell.
+    /// provides slabs. Its length is 1 up to rounding. Zero if the ray starts in the cell.
     pub normal: [f64; 3],
-    /// The number of the surface that stopped the ray, if the solid answers rays itself: of a mesh, the
-    /// triangle's.
+    /// The number of the surface that stopped the ray, if the solid answers rays itself; for a mesh, the
+    /// number of the triangle.
     pub surface: Option<u32>,
 }
 
@@ -58,8 +58,8 @@ pub struct RayHit {
 /// may be a single point, where a ray touches an edge or a corner of a cell.
 #[derive(Debug, Clone, PartialEq)]
 pub struct RaySpans {
-    /// Where the ray is proven inside, rounded inward.
+    /// The intervals where the ray is proven inside, rounded inward.
     pub inner: Vec<Interval>,
-    /// Where the ray is not proven outside, rounded outward. These intervals contain those of `inner`.
+    /// The intervals where the ray is not proven outside, rounded outward. They contain those of `inner`.
     pub outer: Vec<Interval>,
 }

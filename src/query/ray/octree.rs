@@ -20,10 +20,10 @@ use crate::solid::{Enclosure, OCTANTS, Verdict};
 use core::array;
 
 impl OctreeRef<'_> {
-    /// Where a ray first meets the octree's cells, and the surfaces that PARTIAL cells keep, whatever they
-    /// prove of the solid that the tree was made from; `None` if nothing stops it. What lies outside of the
-    /// universe does not count. At most 3 · 2^depth cells are looked at, about a dozen as a rule, whatever
-    /// the bytes.
+    /// Returns the first intersection of a ray with the octree's cells, and with the surfaces that PARTIAL
+    /// cells keep, whatever they prove of the solid that the tree was made from. `None` if nothing stops the
+    /// ray. The outside of the universe does not count. The search visits at most 3 · 2^depth cells, usually
+    /// about a dozen, whatever the bytes.
     pub fn cast_ray(&self, ray: &Ray, on: Obstacle) -> Option<RayHit> {
         match &self.cuts {
             None => cast_one(self, ray, on),
@@ -31,9 +31,9 @@ impl OctreeRef<'_> {
         }
     }
 
-    /// Casts many rays, `hits[i]` for `rays[i]`; the same answers as [`cast_ray`](Self::cast_ray), faster.
-    /// One thread. Rays that run side by side take the least time if they stand next to each other in the
-    /// list: 32 at a time share the search for the first cells that may stop any of them.
+    /// Casts many rays, `hits[i]` for `rays[i]`. The answers equal those of [`cast_ray`](Self::cast_ray), but
+    /// come faster. It uses one thread. Rays that run side by side take the least time if they stand next to
+    /// each other in the list: groups of 32 share the search for the first cells that may stop any of them.
     ///
     /// # Errors
     /// [`Error::Argument`] if the slices differ in length.
@@ -56,8 +56,9 @@ impl OctreeRef<'_> {
         }
     }
 
-    /// Where a ray is in the octree's cells, whatever they prove of the solid that the tree was made from.
-    /// What lies outside of the universe does not count. O(cells along the ray · depth).
+    /// Returns the intervals in which a ray is in the octree's cells, whatever they prove of the solid that
+    /// the tree was made from. The outside of the universe does not count. Complexity: O(cells along the ray
+    /// · depth).
     ///
     /// # Errors
     /// [`Error::OutOfMemory`].
@@ -73,15 +74,15 @@ impl OctreeRef<'_> {
     }
 }
 
-/// What is asked about rays.
+/// A query about rays.
 pub(super) trait Question: Copy {
     type Answer;
 
-    /// The answer for a ray that nothing stops where it is `clear`.
+    /// Returns the answer for a ray that nothing stops where it is `clear`.
     fn cast(self, way: &mut Way<'_, '_>, ray: &Ray, course: &Course, clear: Clear) -> Option<Self::Answer>;
 }
 
-/// The question of a tree whose PARTIAL cells keep nothing.
+/// The query for a tree whose PARTIAL cells keep no surfaces.
 impl Question for Obstacle {
     type Answer = RayHit;
 
@@ -101,19 +102,19 @@ fn of_march(on: Obstacle, march: &March, tree: &OctreeRef<'_>, ray: &Ray) -> Opt
     First::of(&Line::new(&tree.frame, *ray), outer, march.inner).hit(on)
 }
 
-/// The answer by the slow way, for rays on which rounding errors tell.
+/// Computes the answer exactly, for rays where rounding errors decide. This is slow.
 #[cold]
 pub(super) fn exactly(on: Obstacle, tree: &OctreeRef<'_>, ray: &Ray) -> Option<RayHit> {
-    // A stored tree's cells are split without fail.
+    // Splitting a stored tree's cells cannot fail.
     First::search(&mut Stored(tree), &Line::new(&tree.frame, *ray)).ok()?.hit(on)
 }
 
-/// The spans by the slow way.
+/// Computes the spans exactly. This is slow.
 pub(super) fn exact_spans(tree: &OctreeRef<'_>, line: &Line<'_>) -> Result<RaySpans, Error> {
     Stays::search(&mut Stored(tree), line)
 }
 
-/// The question of a tree with cuts.
+/// The query for a tree with cuts.
 #[derive(Clone, Copy)]
 struct ByCuts<'t, 'a> {
     cuts: &'t CutsRef<'a>,
@@ -135,7 +136,7 @@ impl Question for ByCuts<'_, '_> {
     }
 }
 
-/// Answers a question about many rays.
+/// Answers a query about many rays.
 pub(super) fn cast_all<Q: Question>(
     tree: &OctreeRef<'_>,
     rays: &[Ray],
@@ -149,12 +150,12 @@ pub(super) fn cast_all<Q: Question>(
     Ok(())
 }
 
-/// Answers a question about a ray.
+/// Answers a query about one ray.
 pub(super) fn cast_one<Q: Question>(tree: &OctreeRef<'_>, ray: &Ray, question: Q) -> Option<Q::Answer> {
     with_vectors(Cast { tree, ray, question })
 }
 
-/// The same of a tree with cuts, apart from what plain trees run.
+/// Answers a query about a tree with cuts, in code separate from that of plain trees.
 #[cold]
 #[inline(never)]
 fn cast_by_cuts(tree: &OctreeRef<'_>, ray: &Ray, question: ByCuts<'_, '_>) -> Option<RayHit> {
@@ -172,7 +173,7 @@ fn cast_all_by_cuts(
     cast_all(tree, rays, question, hits)
 }
 
-/// Finds where a ray is in a tree with cuts; `false` if rounding errors may change that.
+/// Finds the stays of a ray in a tree with cuts; `false` if rounding errors may change them.
 struct FindStays<'s, 't, 'a> {
     tree: &'t OctreeRef<'a>,
     cuts: &'t CutsRef<'a>,
@@ -239,10 +240,10 @@ impl<Q: Question> Hot for CastAll<'_, '_, Q> {
 /// A stored octree, whose cells are split as they are stored.
 struct Stored<'t, 'a>(&'t OctreeRef<'a>);
 
-/// Where a cell is described that is not decided.
+/// The place of an undecided cell's description.
 #[derive(Clone, Copy)]
 enum Described {
-    /// Element level, element, and the octant unless it is the element's own.
+    /// The element level, the element, and the octant unless it is the element's own cell.
     Planes(usize, usize, Option<u8>),
     /// The record of a PARTIAL cell.
     Record(usize),
@@ -266,7 +267,7 @@ impl Stored<'_, '_> {
     }
 }
 
-/// A PARTIAL cell with a record.
+/// Returns the verdict of a PARTIAL cell with a record.
 fn recorded(cuts: &CutsRef<'_>, record: usize) -> Verdict<Described> {
     match cuts.at(record) {
         CellCut::None => Verdict::Undecided,
@@ -322,12 +323,12 @@ impl Cells for Stored<'_, '_> {
 }
 
 impl Octree {
-    /// As [`OctreeRef::cast_ray`].
+    /// Returns the first intersection of a ray. See [`OctreeRef::cast_ray`] for the full contract.
     pub fn cast_ray(&self, ray: &Ray, on: Obstacle) -> Option<RayHit> {
         self.view().cast_ray(ray, on)
     }
 
-    /// As [`OctreeRef::cast_rays`].
+    /// Casts many rays. See [`OctreeRef::cast_rays`] for the full contract.
     ///
     /// # Errors
     /// [`Error::Argument`] if the slices differ in length.
@@ -335,7 +336,7 @@ impl Octree {
         self.view().cast_rays(rays, on, hits)
     }
 
-    /// As [`OctreeRef::ray_spans`].
+    /// Returns the spans of a ray. See [`OctreeRef::ray_spans`] for the full contract.
     ///
     /// # Errors
     /// [`Error::OutOfMemory`].

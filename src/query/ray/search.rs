@@ -11,45 +11,45 @@ use crate::memory;
 use crate::solid::{Enclosure, OCTANTS, Slab, SlabJoin, Verdict};
 use alloc::vec::Vec;
 
-/// Whatever has cells.
+/// A source of cells.
 pub(super) trait Cells {
-    /// What is remembered about a cell that can be split.
+    /// The stored data of a cell that can be split.
     type Part;
 
     fn root(&mut self) -> Result<Verdict<Self::Part>, Error>;
 
-    /// The children of a cell; `None` if it is not to be split.
+    /// Returns the children of a cell; `None` if the cell is not to be split.
     fn split(&mut self, cell: Cell, part: &Self::Part) -> Result<Option<[Verdict<Self::Part>; 8]>, Error>;
 
-    /// As [`Ask::enclosure`](crate::solid::Ask::enclosure).
+    /// Returns the enclosure of a cell, like [`Ask::enclosure`](crate::solid::Ask::enclosure).
     fn enclosure(&mut self, cell: Cell, part: &Self::Part) -> Result<Option<Enclosure>, Error>;
 
-    /// The table of surfaces that a cell keeps, along a ray between two times.
+    /// Returns the table of surfaces that a cell keeps, along a ray between two times.
     fn table(&self, _: &Self::Part, _: &Line<'_>, _: [f64; 2]) -> Option<CutLine<'_>> {
         None
     }
 
-    /// As [`Parts::mark`](crate::solid::Parts::mark).
+    /// Marks the memory of parts, like [`Parts::mark`](crate::solid::Parts::mark).
     fn mark(&self) -> usize;
 
-    /// As [`Parts::release`](crate::solid::Parts::release).
+    /// Releases the memory of parts, like [`Parts::release`](crate::solid::Parts::release).
     fn release(&mut self, mark: usize);
 }
 
-/// What a search makes of the cells that it meets.
+/// A receiver of the cells that a search meets.
 pub(super) trait Visitor {
-    /// Whether a cell may be left out.
+    /// Returns whether a cell may be skipped.
     fn skips(&self, passage: &Passage) -> bool;
 
-    /// Whether the cells behind a cell that was met may be left out.
+    /// Returns whether the cells behind a cell that was met may be skipped.
     fn ends(&self, passage: &Passage) -> bool;
 
-    /// A cell that is not EMPTY and not split further.
+    /// Takes in a cell that is not EMPTY and not split further.
     fn meet(&mut self, line: &Line<'_>, cell: Cell, passage: &Passage, known: Known<'_>)
     -> Result<(), Error>;
 }
 
-/// What is known of a cell.
+/// The knowledge about a cell.
 pub(super) enum Known<'a> {
     Full,
     /// PARTIAL, perhaps with slabs.
@@ -58,7 +58,7 @@ pub(super) enum Known<'a> {
     Table(&'a CutLine<'a>),
 }
 
-/// Shows all cells along a ray to a visitor, roughly front to back. The recursion is as deep as the frame.
+/// Passes all cells along a ray to a visitor, roughly front to back. The recursion is as deep as the frame.
 fn walk<C: Cells>(
     cells: &mut C,
     line: &Line<'_>,
@@ -101,15 +101,15 @@ fn walk<C: Cells>(
     }
 }
 
-/// A cell that a ray enters, and the lattice plane by which it does; none if it starts there.
+/// A cell that a ray enters, and the lattice plane by which it enters; `None` if it starts there.
 pub(super) type Met = (Cell, Option<(usize, u32)>);
 
 /// The first cells that stop a ray.
 #[derive(Default)]
 pub(super) struct First {
-    /// What may be solid, and the least t of it.
+    /// The possible solid with the least t.
     outer: Option<(f64, Cell, [f64; 3])>,
-    /// What is solid, and the least t of it.
+    /// The proven solid with the least t.
     inner: Option<(f64, Cell, [f64; 3])>,
 }
 
@@ -121,8 +121,7 @@ impl First {
         Ok(first)
     }
 
-    /// What is known of a ray by the first cells that it enters, each with the lattice plane by which it
-    /// does.
+    /// Builds the result from the first cells that a ray enters, each with the lattice plane of the entry.
     pub(super) fn of(line: &Line<'_>, outer: Option<Met>, inner: Option<Met>) -> First {
         let entry = |(cell, by): Met| {
             let moment = by.map_or(Moment::START, |(axis, plane)| line.passes(axis, plane));
@@ -136,25 +135,26 @@ impl First {
         }
     }
 
-    /// The answer to a query.
+    /// Returns the answer to a query.
     pub(super) fn hit(&self, on: Obstacle) -> Option<RayHit> {
         let (_, cell, normal) = match on {
             Obstacle::Full => self.inner?,
             Obstacle::Upper => self.outer?,
         };
         let upper = self.inner.map_or(f64::INFINITY, |(t, ..)| t);
-        // What is solid may be solid: a solid whose slabs contradict this is believed as to what is solid.
+        // The proven solid is also possible. If the slabs of a solid contradict this, the proven part is
+        // trusted.
         let lower = self.outer?.0.min(upper);
         Some(RayHit { t: Interval::between(lower, upper), cell, normal, surface: None })
     }
 
-    /// Whether the ray is surely stopped, and whether it may be.
+    /// Returns whether the ray is surely stopped, and whether it may be stopped.
     pub(super) fn stops(&self) -> (bool, bool) {
         (self.inner.is_some(), self.outer.is_some())
     }
 }
 
-/// Keeps the less of two, of equals the one that was there before.
+/// Keeps the lesser of two; among equals the earlier one.
 fn keep(kept: &mut Option<(f64, Cell, [f64; 3])>, t: f64, cell: Cell, normal: [f64; 3]) {
     if kept.is_none_or(|(before, ..)| t < before) {
         *kept = Some((t, cell, normal));
@@ -195,7 +195,7 @@ impl Visitor for First {
                 }
             }
             Known::Table(table) => {
-                // The normal is that of the surface by which the ray enters what may be solid.
+                // The normal belongs to the surface by which the ray enters the possible solid.
                 let mut normal = None;
                 table.walk(|piece| {
                     if piece.is_inside == Some(false) {
@@ -221,8 +221,8 @@ impl Visitor for First {
     }
 }
 
-/// A normal of length 1, but for rounding; zeros of zeros, which a triangle has that is thinner than
-/// rounding.
+/// Returns a normal of length 1, up to rounding. Zeros stay zeros; a triangle thinner than the rounding error
+/// has such a normal.
 pub(super) fn unit(normal: [f64; 3]) -> [f64; 3] {
     let largest = normal.iter().fold(0.0, |largest: f64, c| largest.max(c.abs()));
     if largest == 0.0 {
@@ -233,10 +233,10 @@ pub(super) fn unit(normal: [f64; 3]) -> [f64; 3] {
     scaled.map(|c| c / length)
 }
 
-/// A stay of a ray, and the slab with which it begins; none if the ray enters the cell there.
+/// A stay of a ray, and the slab with which it begins; `None` if the ray enters the cell there.
 type Bounded = (Passage, Option<usize>);
 
-/// What slabs say of a ray in a cell: when it may be in the solid, and when it is.
+/// The stays of a ray in a cell according to slabs: when it may be in the solid, and when it surely is.
 struct Enclosed {
     possible: [Option<Bounded>; 3],
     certain: [Option<Bounded>; 3],
@@ -251,7 +251,7 @@ struct Spell {
 }
 
 impl Spell {
-    /// The time in both.
+    /// The intersection of two spells.
     fn and(self, other: Spell) -> Spell {
         let slab = if other.from > self.from { other.slab } else { self.slab };
         Spell { from: self.from.max(other.from), to: self.to.min(other.to), slab }
@@ -283,16 +283,16 @@ impl Enclosed {
     }
 }
 
-/// The stay between two times in a cell. One that lasts from the cell's entry begins with it exactly, so that
-/// it goes on from the cell before.
+/// Returns the stay between two times in a cell. A stay that begins with the cell's entry gets exactly that
+/// moment, so that it continues the stay in the previous cell.
 fn possible_stay(passage: &Passage, from: f64, to: f64) -> Passage {
     let entry = if from <= passage.entry.t.lower { passage.entry } else { Moment::exactly(from) };
     let exit = if to >= passage.exit.t.upper { passage.exit } else { Moment::exactly(to) };
     Passage { entry, exit }
 }
 
-/// The same where the ray is surely in the cell. (Where surfaces agree at a single point only, they do not
-/// prove it to be inside.)
+/// Returns the same where the ray is surely in the cell. (Surfaces that agree only at a single point do not
+/// prove the ray to be inside.)
 fn certain_stay(passage: &Passage, from: f64, to: f64) -> Option<Passage> {
     let Passage { entry, exit } = passage;
     let late = if from > entry.t.lower { from.max(entry.t.upper) } else { from };
@@ -301,7 +301,7 @@ fn certain_stay(passage: &Passage, from: f64, to: f64) -> Option<Passage> {
     (stay.entry.t.upper < stay.exit.t.lower).then_some(stay)
 }
 
-/// Parts of a ray's stay in a cell, ascending, of which no two meet.
+/// Parts of a ray's stay in a cell, ascending. No two of them meet.
 #[derive(Default)]
 struct Spans(Vec<(f64, f64)>);
 
@@ -315,7 +315,7 @@ impl Spans {
     }
 }
 
-/// n · x along a ray: at + t · slope.
+/// The height n · x along a ray: at + t · slope.
 struct Height {
     at: Interval,
     slope: Interval,
@@ -336,7 +336,7 @@ impl Height {
         Height { at, slope, range: at.plus(slope.times(stay)) }
     }
 
-    /// When n · x = `bound`; `None` if the slope may be zero.
+    /// Returns the time at which n · x = `bound`; `None` if the slope may be zero.
     fn reaches(&self, bound: f64) -> Option<Interval> {
         let rest = Interval::exactly(bound).minus(self.at);
         if self.slope.lower > 0.0 {
@@ -348,7 +348,7 @@ impl Height {
         }
     }
 
-    /// Outside of this n · x > `bound`.
+    /// Returns a spell outside of which n · x > `bound`.
     fn perhaps_below(&self, bound: f64, slab: usize) -> Spell {
         match self.reaches(bound) {
             Some(t) if self.slope.lower > 0.0 => Spell { to: t.upper, ..ALWAYS },
@@ -358,7 +358,7 @@ impl Height {
         }
     }
 
-    /// Within this n · x < `bound`, but perhaps at its ends.
+    /// Returns a spell within which n · x < `bound`, except perhaps at its ends.
     fn surely_below(&self, bound: f64, slab: usize) -> Spell {
         match self.reaches(bound) {
             Some(t) if self.slope.lower > 0.0 => Spell { to: t.lower, ..ALWAYS },
@@ -387,7 +387,7 @@ impl Stays {
         stays.spans(line)
     }
 
-    /// The union of all stays that were met.
+    /// Returns the union of all stays that were met.
     pub(super) fn spans(self, line: &Line<'_>) -> Result<RaySpans, Error> {
         let inner = |[entry, exit]: [Moment; 2]| Interval::new(entry.t.upper, exit.t.lower);
         let outer = |[entry, exit]: [Moment; 2]| Interval::new(entry.t.lower, exit.t.upper);
@@ -425,7 +425,7 @@ impl Visitor for Stays {
                 possible.iter().flatten().try_for_each(|(stay, _)| add(line, &mut self.outer, stay))
             }
             Known::Table(table) => {
-                // Pieces that follow each other are one.
+                // Merge pieces that follow each other.
                 let (mut inner, mut outer) = (Spans::default(), Spans::default());
                 let mut added = Ok(());
                 table.walk(|piece| {
@@ -455,7 +455,7 @@ impl Visitor for Stays {
     }
 }
 
-/// Adds a stay. As a rule it goes on where the last one ended.
+/// Adds a stay, which usually begins where the last one ended.
 fn add(line: &Line<'_>, stays: &mut Vec<Passage>, next: &Passage) -> Result<(), Error> {
     match stays.last_mut() {
         Some(last) if goes_on(line, last, next) => extend(line, last, next),
@@ -464,7 +464,7 @@ fn add(line: &Line<'_>, stays: &mut Vec<Passage>, next: &Passage) -> Result<(), 
     Ok(())
 }
 
-/// Whether `next` begins in `last`.
+/// True if `next` begins in `last`.
 fn goes_on(line: &Line<'_>, last: &Passage, next: &Passage) -> bool {
     line.order(&last.entry, &next.entry).is_le() && line.order(&next.entry, &last.exit).is_le()
 }
@@ -475,7 +475,7 @@ fn extend(line: &Line<'_>, last: &mut Passage, next: &Passage) {
     }
 }
 
-/// The union of stays.
+/// Returns the union of stays.
 fn united(
     line: &Line<'_>,
     mut stays: Vec<Passage>,
@@ -491,10 +491,10 @@ fn united(
     }
     let mut spans: Vec<Interval> = memory::with_capacity(united.len())?;
     for Passage { entry, exit } in united {
-        // A stay that is shorter than the rounding of its ends is not proven.
+        // A stay shorter than the rounding of its ends is not proven.
         let Some(span) = rounded([entry, exit]) else { continue };
         match spans.last_mut() {
-            // Two ends that differ by less than a rounding.
+            // The two ends differ by less than a rounding.
             Some(last) if span.lower <= last.upper => *last = last.joined(span),
             _ => spans.push(span),
         }

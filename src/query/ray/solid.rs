@@ -16,7 +16,7 @@ use crate::walk::Proven;
 use crate::walk::split_one;
 use alloc::vec::Vec;
 
-/// Whether two points see each other past a solid.
+/// The verdict on a line of sight: whether two points see each other past a solid.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
 #[repr(u8)]
 pub enum Sight {
@@ -28,19 +28,19 @@ pub enum Sight {
     Undecided = 2,
 }
 
-/// Where rays first meet a solid, as far as cells of `frame` and the slabs of the finest of them tell: one
-/// entry a ray, `None` if nothing stops it. What lies outside of the universe does not count. A ray splits
-/// the PARTIAL cells that it passes up to the first FULL one: O(depth) splits across a surface, up to
-/// O(2^depth) along one. Each ray may split `control.max_splits` cells; cells that were not split count as
-/// PARTIAL. The answers are the same for any number of threads.
+/// Returns the first intersections of rays with a solid, as far as the cells of `frame` and the slabs of its
+/// finest cells determine them: one entry for each ray, `None` if nothing stops it. The outside of the
+/// universe does not count. A ray splits the PARTIAL cells that it passes up to the first FULL cell: O(depth)
+/// splits across a surface, up to O(2^depth) along one. Each ray may split `control.max_splits` cells; cells
+/// that were not split count as PARTIAL. The answers do not depend on the number of threads.
 ///
 /// A mesh answers each ray from a tree over its triangles, in microseconds and to the rounding of doubles,
-/// whatever the frame's depth is; the first question makes the tree ([`MeshSolid`](crate::MeshSolid)). A mesh
-/// with holes also looks at all edges of its holes. It asks its cells of rays that come very near to such an
-/// edge, and of all rays if there are more than 16 384 edges.
+/// whatever the frame's depth is. The first query builds the tree ([`MeshSolid`](crate::MeshSolid)). A mesh
+/// with holes also tests all edges of its holes. It uses cells for rays that come very near to such an edge,
+/// and for all rays if there are more than 16 384 edges.
 ///
 /// # Errors
-/// What the solid refuses; [`Error::OutOfMemory`], and [`Error::Cancelled`].
+/// The solid's own errors; [`Error::OutOfMemory`] and [`Error::Cancelled`].
 ///
 /// ```
 /// use leafless::{Control, Csg, Frame, Ray, cast_rays, query::Obstacle};
@@ -85,9 +85,10 @@ pub fn cast_rays<S: Solid>(
     Ok(hits)
 }
 
-/// Where a ray is in a solid, as far as cells of `frame` and the slabs of the finest of them tell. What lies
-/// outside of the universe does not count. The ray splits all PARTIAL cells that it passes,
-/// `control.max_splits` at the most; cells that were not split count as PARTIAL. One thread.
+/// Returns the intervals in which a ray is in a solid, as far as the cells of `frame` and the slabs of its
+/// finest cells determine them. The outside of the universe does not count. The ray splits all PARTIAL cells
+/// that it passes, at most `control.max_splits`; cells that were not split count as PARTIAL. It uses one
+/// thread.
 ///
 /// # Errors
 /// As [`cast_rays`].
@@ -110,12 +111,12 @@ pub fn ray_spans<S: Solid>(
     spans
 }
 
-/// Whether two points (model units) see each other past a solid, as far as cells of `frame` tell. If the
-/// solid may go on outside of the universe and an end lies there, the answer is not [`Sight::Clear`]. Costs
-/// as one ray of [`cast_rays`].
+/// Returns whether two points (model units) see each other past a solid, as far as the cells of `frame`
+/// determine it. If the solid may continue outside of the universe and an end lies there, the answer is not
+/// [`Sight::Clear`]. The cost is that of one ray of [`cast_rays`].
 ///
 /// # Errors
-/// [`Error::Argument`] as [`Ray::between`]; else as [`cast_rays`].
+/// [`Error::Argument`] as for [`Ray::between`]; the other errors as for [`cast_rays`].
 pub fn line_of_sight<S: Solid>(
     solid: &S,
     frame: &Frame,
@@ -132,7 +133,7 @@ pub fn line_of_sight<S: Solid>(
         Some(stops) => stops.are(),
         None => Asked::new(&mut worker, &job).first(&line)?.stops(),
     };
-    // (What lies around the universe may take long to find out.)
+    // (The state of the space around the universe may take long to compute.)
     let all_known = || {
         frame.cell_of(from).is_some() && frame.cell_of(to).is_some() || classifier.exterior() == Tag::Empty
     };
@@ -143,9 +144,9 @@ pub fn line_of_sight<S: Solid>(
     })
 }
 
-/// The traces of rays of a solid that tells them.
+/// The traces of rays, from a solid that computes them itself.
 struct Traces<P> {
-    /// The universe, unless nothing is told or all of it is decided.
+    /// The root's part; `None` if the solid computes no traces, or the whole universe is decided.
     root: Option<P>,
     trace: RayTrace,
 }
@@ -159,7 +160,7 @@ impl<P> Traces<P> {
         Ok(Traces { root, trace: RayTrace::UNKNOWN })
     }
 
-    /// The trace of a ray, if the solid tells it.
+    /// Returns the trace of a ray, if the solid computes it.
     fn find<W: Worker<Part = P>>(
         &mut self,
         worker: &mut W,
@@ -171,7 +172,7 @@ impl<P> Traces<P> {
         Ok(self.trace.is_known().then_some(&self.trace))
     }
 
-    /// What stops a ray in the universe, if the solid tells it.
+    /// Returns the stops of a ray in the universe, if the solid computes them.
     fn stops<W: Worker<Part = P>>(
         &mut self,
         worker: &mut W,
@@ -181,15 +182,15 @@ impl<P> Traces<P> {
         if !direct::ends_before(trace, line) {
             return Ok(Some(Stops::new(trace, line)));
         }
-        // It goes in outside of the universe, and may come out again.
+        // The ray enters the solid outside of the universe, and may leave it again.
         Ok(self.find(worker, &line.ray, false)?.map(|trace| Stops::new(trace, line)))
     }
 }
 
-/// Rays that one worker takes on.
+/// Number of rays in one worker's task.
 const CHUNK: usize = 1 << 8;
 
-/// A solid that one ray asks.
+/// A solid in the query of one ray.
 struct Asked<'w, W> {
     worker: &'w mut W,
     job: &'w Job<'w>,

@@ -1,4 +1,4 @@
-//! The first cells along rays for pictures, which need no bounds of the time at which they are met.
+//! The first cells along rays for pictures, which need no bounds of the times.
 
 use super::course::{Clear, Course};
 use super::march::March;
@@ -9,10 +9,10 @@ use crate::error::Error;
 use crate::lattice::Cell;
 use crate::octree::view::OctreeRef;
 
-/// Where a ray first meets a cell that is not EMPTY.
+/// The first cell along a ray that is not EMPTY.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(crate) struct TouchedCell {
-    /// When, but for rounding.
+    /// The time of the entry, up to rounding.
     pub(crate) t: f64,
     pub(crate) cell: Cell,
     /// The outward normal of the face by which the ray enters the cell. Zero if the ray starts in the cell.
@@ -20,12 +20,14 @@ pub(crate) struct TouchedCell {
 }
 
 impl OctreeRef<'_> {
-    /// The first cell that is not EMPTY along a ray, that of [`cast_ray`](Self::cast_ray).
+    /// Returns the first cell along a ray that is not EMPTY, the same as that of
+    /// [`cast_ray`](Self::cast_ray).
     pub(crate) fn touch(&self, ray: &Ray) -> Option<TouchedCell> {
         cast_one(self, ray, FirstCell)
     }
 
-    /// The same along many rays, as [`cast_rays`](Self::cast_rays): `touches[i]` for `rays[i]`.
+    /// Finds the first cells along many rays, `touches[i]` for `rays[i]`, like
+    /// [`cast_rays`](Self::cast_rays).
     pub(crate) fn touch_all(&self, rays: &[Ray], touches: &mut [Option<TouchedCell>]) -> Result<(), Error> {
         cast_all(self, rays, FirstCell, touches)
     }
@@ -76,7 +78,7 @@ mod tests {
             let frame = Frame::new([-1.0; 3], 2.0, depth).unwrap();
             let tree = build(&solid, &frame, Rule::Certified, &Control::threads(1)).unwrap();
             for (eye, at) in [([3.0, -4.0, 2.0], 0.0), ([0.0, 0.0, 5.0], 0.25), ([0.5, 0.25, 0.0], 0.0)] {
-                // Side by side, through lattice planes and beside them.
+                // Rays side by side, through lattice planes and beside them.
                 let rays: Vec<Ray> = (0..1000)
                     .map(|k| {
                         let [u, v] = [k % 32, k / 32].map(|i| f64::from(i) / 16.0 - 1.0 + at);

@@ -1,8 +1,8 @@
-//! The cells of a tree with cuts along a ray, found in doubles whose errors are bounded.
+//! The cells of a tree with cuts along a ray, found in doubles with bounded errors.
 //!
-//! A [`March`](super::march::March) ends at the first FULL cell, because nothing is known of a PARTIAL one. A
-//! trace looks into the PARTIAL cells on its way. A visitor gets the cells with exact times, and in the order
-//! of the exact search.
+//! A [`March`](super::march::March) ends at the first FULL cell and does not examine PARTIAL cells. A trace
+//! examines the PARTIAL cells on its path. A visitor gets the cells with exact times, and in the order of the
+//! exact search.
 
 use super::course::{Clear, Course, Start};
 use super::cut::CutLine;
@@ -19,11 +19,11 @@ pub(super) struct Trace<'l, 'f, 'a> {
     pub(super) cuts: &'l CutsRef<'a>,
     pub(super) line: &'l Line<'f>,
     pub(super) course: &'l Course,
-    /// Where nothing stops the ray.
+    /// The region where nothing stops the ray.
     pub(super) clear: Clear,
 }
 
-/// What a cell is that the ray is in.
+/// The kind of a cell on the ray.
 enum Found {
     Empty,
     Full,
@@ -31,9 +31,9 @@ enum Found {
 }
 
 impl Trace<'_, '_, '_> {
-    /// Shows the cells along the ray that are not EMPTY to a visitor, front to back. `false` if rounding
-    /// errors may change which cells the ray meets. The visitor has then seen some cells, and its answer is
-    /// worth nothing.
+    /// Passes the cells along the ray that are not EMPTY to a visitor, front to back. Returns `false` if
+    /// rounding errors may change the cells that the ray meets. The visitor has then seen some cells, and its
+    /// answer is invalid.
     #[inline(always)]
     pub(super) fn show(&self, way: &mut Way<'_, '_>, visitor: &mut impl Visitor) -> Result<bool, Error> {
         let Trace { line, course, .. } = *self;
@@ -48,12 +48,12 @@ impl Trace<'_, '_, '_> {
             Start::At(at, by) => (at, by),
             Start::Unsure => return Ok(false),
         };
-        // The moment at which the ray leaves the cell before, if it is known.
+        // The moment at which the ray leaves the previous cell, if known.
         let mut left = None;
         loop {
             let place = [0, 1, 2, 3].map(|axis| at[axis] ^ course.mirror[axis]);
             let (found, shift) = self.cell(way, place);
-            // Out of it by the plane that is passed first.
+            // Leave the cell by the plane that is passed first.
             let (far, times) = course.leaves(at, shift);
             let [x, y, z, _] = times.to_array();
             let least_of_two = if x < y { x } else { y };
@@ -100,8 +100,8 @@ impl Trace<'_, '_, '_> {
         }
     }
 
-    /// What the cell is that holds a finest one, and the edge of the cell as a power of two. Of EMPTY cells
-    /// the largest cube counts in which nothing may stop the ray any more.
+    /// Returns the kind of the cell that contains a finest cell, and the binary logarithm of the cell's edge.
+    /// For an EMPTY cell, it is the largest cube in which nothing further may stop the ray.
     #[inline(always)]
     fn cell(&self, way: &mut Way<'_, '_>, place: [u32; 4]) -> (Found, u32) {
         let (tag, shift, c) = way.to(place);
@@ -123,7 +123,7 @@ impl Trace<'_, '_, '_> {
         self.recorded(record, shift, place)
     }
 
-    /// The part of a PARTIAL cell, whose edge is 2^shift, that holds a finest cell.
+    /// Returns the part of a PARTIAL cell, whose edge is 2^shift, that contains a finest cell.
     #[inline(always)]
     fn recorded(&self, mut record: usize, mut shift: u32, place: [u32; 4]) -> (Found, u32) {
         loop {
@@ -138,7 +138,8 @@ impl Trace<'_, '_, '_> {
         }
     }
 
-    /// When the ray passes a plane of an axis, which is given as in the course.
+    /// Returns the moment at which the ray passes a plane of an axis. The plane is given in the course's
+    /// coordinates.
     #[inline(always)]
     fn passes(&self, axis: usize, plane: u32) -> Moment {
         let plane = if self.course.falls(axis) { self.line.frame.cells() - plane } else { plane };
@@ -192,7 +193,8 @@ mod tests {
             self.below(1 << 40) as f64 / (1u64 << 40) as f64
         }
 
-        /// From -1 to 1, as a rule one of few numbers, so that surfaces and planes of the lattice coincide.
+        /// A number from -1 to 1, usually one of few numbers, so that surfaces and planes of the lattice
+        /// coincide.
         fn number(&mut self) -> f64 {
             if self.below(3) == 0 { 2.0 * self.unit() - 1.0 } else { self.below(17) as f64 / 8.0 - 1.0 }
         }
@@ -203,7 +205,7 @@ mod tests {
     }
 
     fn primitive(random: &mut Random) -> Option<Csg> {
-        // Most sizes are eighths as most coordinates are, so that some rays are tangents.
+        // Most sizes are eighths, as most coordinates are, so that some rays are tangents.
         let size = (0.125 + random.number().abs()).min(1.0);
         let csg = match random.below(5) {
             0 => {
@@ -217,7 +219,7 @@ mod tests {
             _ => Csg::ball([0.0; 3], size),
         };
         let [x, y, z] = random.vector();
-        // Twice 3-4-5, around z and around x.
+        // Two rotations by the triangle 3-4-5, around z and around x.
         let turned = [[0.6, -0.64, 0.48, x], [0.8, 0.48, -0.36, y], [0.0, 0.6, 0.8, z]];
         let moved = [[1.0, 0.0, 0.0, x], [0.0, 1.0, 0.0, y], [0.0, 0.0, 1.0, z]];
         let map = if random.below(2) == 0 { moved } else { turned };
@@ -248,7 +250,7 @@ mod tests {
             .filter(|tree| tree.view().cuts().is_some())
     }
 
-    /// Rays through lattice planes, edges and corners, along axes and in faces, that begin anywhere.
+    /// Rays through lattice planes, edges and corners, along axes and in faces, with any start.
     fn ray(frame: &Frame, random: &mut Random) -> Option<Ray> {
         let from = match random.below(4) {
             // A corner of a cell.
@@ -274,12 +276,12 @@ mod tests {
         ray.ok()?.until(last).ok()
     }
 
-    /// What a trace shows.
+    /// The statistics of a trace.
     #[derive(Default)]
     struct Shown {
         tables: u32,
         pieces: u32,
-        /// Tables with a piece that is not known and longer than a crossing is.
+        /// The number of tables with an undecided piece that is longer than a crossing.
         open: u32,
     }
 
@@ -309,7 +311,7 @@ mod tests {
         }
     }
 
-    /// Shows a ray; whether rounding errors leave no doubt which cells it meets.
+    /// Traces a ray. Returns whether the cells are certain in spite of rounding errors.
     fn trace(tree: &Octree, ray: &Ray, shown: &mut Shown) -> bool {
         let view = tree.view();
         let (line, course) = (Line::new(view.frame(), *ray), Course::new(view.frame(), ray));
@@ -355,7 +357,7 @@ mod tests {
         );
         let Shown { tables, pieces, open } = shown;
         std::println!("{tables} tables, {pieces} pieces, {open} tables with long pieces that are not known");
-        // A crossing makes two pieces more, and of three surfaces there are up to six.
+        // A crossing makes two more pieces, and three surfaces have up to six crossings.
         assert!(pieces < 5 * tables && 50 * open < tables);
         assert!(full > 500 && upper > 1000 && spans > 500 && traced > 5000 && splits > 60);
     }

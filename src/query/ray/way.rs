@@ -1,11 +1,11 @@
-//! The way of a ray through the elements of a stored octree.
+//! The path of a ray through the elements of a stored octree.
 
 use crate::lattice::morton;
 use crate::octree::links::Step;
 use crate::octree::view::{MAX_ELEMENT_LEVELS, OctreeRef};
 use crate::octree::{Planes, Tag};
 
-/// The elements from the root down to a cell. What a cell has in common with the one before is not looked up
+/// The elements from the root down to a cell. The common part with the previous cell's path is not looked up
 /// again.
 pub(super) struct Way<'t, 'a> {
     pub(super) tree: &'t OctreeRef<'a>,
@@ -19,7 +19,7 @@ pub(super) struct Way<'t, 'a> {
 }
 
 impl<'t, 'a> Way<'t, 'a> {
-    /// To the root.
+    /// Starts at the root.
     #[inline(always)]
     pub(super) fn new(tree: &'t OctreeRef<'a>) -> Way<'t, 'a> {
         let planes = tree.entry(0).unwrap_or(Planes::uniform(Tag::Partial));
@@ -32,8 +32,8 @@ impl<'t, 'a> Way<'t, 'a> {
         self.elements[self.last]
     }
 
-    /// Goes down to the cell that holds a finest one: its tag, its edge as a power of two, and its place in
-    /// the last element.
+    /// Goes down to the cell that contains a finest cell. Returns the cell's tag, the binary logarithm of its
+    /// edge, and its place in the last element.
     #[inline(always)]
     pub(super) fn to(&mut self, place: [u32; 4]) -> (Tag, u32, u32) {
         let tree = self.tree;

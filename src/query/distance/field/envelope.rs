@@ -1,18 +1,19 @@
-//! From the distances of a line's cells across the line to those in the plane.
+//! The step from the distances across a line of cells to the distances in the plane.
 //!
-//! Along a line, cells of one side form runs. A cell that is √v away from the other side across the line puts
-//! a cell k places further no more than √(v + (2k − 1)²) away: the way goes to the plane between cells that
-//! lies before the first, and from there across. So a plane stands for the better of the two cells beside it,
-//! and a cell's square is its own, or the least of all v + d², with d its centre's distance from a plane. The
-//! cells beside the run lie on the other side, with v = 0. The least of these parabolas is found in linear
-//! time: one has the least value on one interval at most.
+//! Along a line, cells of one side form runs. Let a cell's distance from the other side across the line be
+//! √v. A cell k places further is then no more than √(v + (2k − 1)²) away: the path goes to the plane between
+//! cells in front of the first cell, and from there across. A plane therefore represents the better of the
+//! two cells beside it. A cell's square is its own, or the least of all v + d², where d is the distance of
+//! the cell's centre from a plane. The cells beside the run lie on the other side, with v = 0. The lower
+//! envelope of these parabolas is found in linear time: each parabola has the least value on at most one
+//! interval.
 
 use super::sides::{NONE, Signed};
 use crate::error::Error;
 use crate::memory;
 use alloc::vec::Vec;
 
-/// A plane by which cells of a run are near: before the cell `at` of the run.
+/// A plane in front of the cell `at` of a run, with its value v.
 #[derive(Clone, Copy)]
 struct Site {
     at: i32,
@@ -20,14 +21,14 @@ struct Site {
 }
 
 impl Site {
-    /// The square of the distance of a cell's centre.
+    /// The square of the distance of a cell's centre through this site.
     #[inline(always)]
     fn reach(&self, cell: i32) -> i32 {
         let half_cells = 2 * (cell - self.at) + 1;
         self.value + half_cells * half_cells
     }
 
-    /// Whether this site is nowhere better than both of one before and one behind it.
+    /// True if this site is nowhere better than both a site before it and a site behind it.
     #[inline(always)]
     fn is_hidden(&self, before: &Site, behind: &Site) -> bool {
         let (a, b) = (i64::from(self.at - before.at), i64::from(behind.at - self.at));
@@ -43,12 +44,12 @@ pub(super) struct Envelope {
 }
 
 impl Envelope {
-    /// For lines of at most so many cells.
+    /// Allocates the memory for lines of at most `longest` cells.
     pub(super) fn new(longest: usize) -> Result<Envelope, Error> {
         Ok(Envelope { sites: memory::with_capacity(longest + 1)? })
     }
 
-    /// What becomes of a line's squares: those in the plane, from `first` on, one for each of `found`.
+    /// Converts a line's squares to squares in the plane, from `first` on, one for each entry of `found`.
     pub(super) fn run(&mut self, line: &[Signed], first: usize, found: &mut [Signed]) {
         let end = first + found.len();
         let mut from = 0;
@@ -102,7 +103,7 @@ impl Envelope {
         }
     }
 
-    /// Takes in a site behind all others. There is room for it.
+    /// Adds a site behind all others. The memory suffices.
     #[inline(always)]
     fn add(&mut self, at: i32, value: i32) {
         if value == NONE {

@@ -11,8 +11,8 @@ use crate::octree::view::OctreeRef;
 use crate::octree::{Planes, Tag};
 use alloc::vec::Vec;
 
-/// Finest cells from `min` to before `max`. All coordinates are one more than the cells' own, so that a layer
-/// of the space around the universe has coordinates, too.
+/// The finest cells from `min` to before `max`. All coordinates are one more than the cells' own, so that one
+/// layer of the space around the universe has coordinates, too.
 #[derive(Clone, Copy, PartialEq, Debug)]
 pub(super) struct Range {
     pub(super) min: [u32; 3],
@@ -35,7 +35,7 @@ impl Range {
         }
     }
 
-    /// Blocks of this edge, or less at the upper sides.
+    /// Divides the range into blocks of this edge, or less at the upper sides.
     pub(super) fn blocks(self, edge: u32) -> impl Iterator<Item = Range> {
         let counts = self.size().map(|size| size.div_ceil(edge));
         let places = (0..counts[2])
@@ -47,10 +47,10 @@ impl Range {
     }
 }
 
-/// Which cells of a range belong to a set.
+/// A set of cells in a range.
 pub(super) struct Mask {
     pub(super) range: Range,
-    /// Words a row.
+    /// Number of words in a row.
     row: usize,
     bits: Vec<u64>,
 }
@@ -62,7 +62,7 @@ impl Mask {
         Ok(Mask { range, row, bits: memory::filled(x * y * row, 0)? })
     }
 
-    /// The set around the solid, and that in it unless they are the same.
+    /// Returns the set around the solid, and the set inside unless both are the same.
     pub(super) fn both(
         tree: &OctreeRef<'_>,
         range: Range,
@@ -93,7 +93,7 @@ impl Mask {
         ((y - self.range.min[1]) as usize * width as usize + (x - self.range.min[0]) as usize) * self.row
     }
 
-    /// Makes all cells of a range members, or none.
+    /// Makes all cells of a range members, or none of them.
     fn set(&mut self, cells: Range, member: bool) {
         let cells = cells.within(&self.range);
         if cells.cells() == 0 {
@@ -116,7 +116,7 @@ impl Mask {
         }
     }
 
-    /// Makes those of 4³ finest cells members whose bits are set; the first is at `at`.
+    /// Makes the cells of a 4³ brick members whose bits are set; the first cell is at `at`.
     fn add_brick(&mut self, at: [u32; 3], cells: u64) {
         let z = i64::from(at[2]) - i64::from(self.range.min[2]);
         let end = i64::from(self.range.max[2] - self.range.min[2]);
@@ -171,8 +171,8 @@ impl Fill<'_, '_> {
         self.masks.iter_mut().for_each(|mask| mask.set(cells, false));
     }
 
-    /// Takes in the part of element `index` of level `e` that lies in the range; `at` is its lowest cell. The
-    /// recursion is as deep as the tree has element levels, ten at the most.
+    /// Adds the part of element `index` of level `e` that lies in the range; `at` is the element's lowest
+    /// cell. The recursion is as deep as the tree has element levels, ten at the most.
     fn element(&mut self, e: usize, index: usize, at: [u32; 3]) -> Result<(), Error> {
         self.job.check()?;
         let levels = self.tree.levels();
@@ -189,7 +189,7 @@ impl Fill<'_, '_> {
         let range = self.masks[0].range;
         for axis in 0..3 {
             let first = range.min[axis].saturating_sub(at[axis]) >> shift;
-            // (A range that ends before the element was sorted out by its parent.)
+            // (The parent excludes a range that ends before the element.)
             let last = (range.max[axis].saturating_sub(at[axis] + 1) >> shift).min(3);
             real &= morton::slabs(axis, first, last);
         }

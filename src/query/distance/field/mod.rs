@@ -1,13 +1,13 @@
 //! The distances of all cells in a box.
 //!
-//! Two sets of cells bound the solid: the FULL cells from inside, the FULL and PARTIAL ones from outside. The
-//! distance to the boundary of the first is an upper bound of the signed distance to the solid's boundary,
-//! that to the second a lower bound. Both are exact Euclidean distances from the centres of cells to the
-//! nearest closed cell of the other side, found axis by axis (Felzenszwalb and Huttenlocher 2012; Meijster,
-//! Roerdink and Hesselink 2000).
+//! Two sets of cells bound the solid: the FULL cells from inside, the FULL and PARTIAL cells from outside.
+//! The distance to the boundary of the first set is an upper bound of the signed distance to the solid's
+//! boundary. The distance to the boundary of the second set is a lower bound. Both are exact Euclidean
+//! distances from the centres of cells to the nearest closed cell of the other side, found axis by axis
+//! (Felzenszwalb and Huttenlocher 2012; Meijster, Roerdink and Hesselink 2000).
 //!
-//! Lengths are integers: a half cell is the unit, and the centres of cells a row apart by k lie 2k − 1 from
-//! each other's faces.
+//! Lengths are integers in half cells. For two cells of a row that are k places apart, the distance from the
+//! centre of one to the nearest face of the other is 2k − 1.
 
 mod envelope;
 mod mask;
@@ -27,40 +27,45 @@ use mask::{Mask, Range};
 use rounding::Scale;
 use slab::{DEEP, Slab};
 
-/// Blocks along the box's longest edge at whose centres the distance is asked for first.
+/// The number of blocks along the box's longest edge. The distances at their centres are computed first.
 const BLOCKS: u32 = 16;
 
-/// So many times as many cells as the box has are looked at all together, at the most. Where more were
-/// needed, each cell of the box asks for itself, which costs about as much as so many cells do.
+/// The maximal ratio of jointly processed cells to the cells of the box. If more cells were needed, the
+/// distance of each cell of the box is computed by itself, which costs about as much as this many cells.
 const MOST: u64 = 64;
 
-/// A longer row is not looked at: squares of distances would not fit.
+/// The maximal length of a row: the squares of distances in longer rows would overflow.
 const LONGEST: u32 = 13_000;
 
 impl OctreeRef<'_> {
-    /// The signed distances of the finest cells in a box from the boundary of the solid:
-    /// `field[(z·ny + y)·nx + x]` for the cell min + (x, y, z), where nx, ny, nz = max − min. `max` is the
+    /// Computes the signed distances of the finest cells in a box from the boundary of the solid. The entry
+    /// of the cell min + (x, y, z) is `field[(z·ny + y)·nx + x]`, where nx, ny, nz = max − min. `max` is the
     /// first cell beyond the box on each axis.
     ///
     /// The entry [lower, upper] (model units) contains the signed distance of the cell's *centre* from the
     /// boundary of any solid that the tree's cells and its exterior describe: positive outside, negative
-    /// inside. The field is that of the whole solid, also of what lies outside of the box. For a cell that is
-    /// EMPTY, lower is the distance from the nearest closed cell that is FULL or PARTIAL, and upper from the
-    /// nearest that is FULL; for a FULL cell, they are minus the distances from the nearest EMPTY cell, and
-    /// from the nearest that is EMPTY or PARTIAL. A PARTIAL one takes the first of the second pair and the
-    /// second of the first. These distances are exact but for one rounding, outward, to single precision.
-    /// They are ∞ where there is no such cell. What is outside of the universe counts as cells with the
-    /// exterior's tag.
+    /// inside. The field describes the whole solid, including the parts outside of the box.
     ///
-    /// The time is linear in the cells of the box and a margin around it as wide as the largest distance.
-    /// Memory beside `field` is a quarter of a byte for each of these, and for each thread some 140 bytes for
-    /// each cell of a slice across z. Where the margin were too wide, as for a small box far away from the
-    /// solid, each cell asks for itself, as by [`distance`](Self::distance). The bits are the same for any
-    /// number of threads.
+    /// - For an EMPTY cell, lower is the distance from the nearest closed cell that is FULL or PARTIAL. Upper
+    ///   is the distance from the nearest FULL cell.
+    /// - For a FULL cell, lower is minus the distance from the nearest EMPTY cell. Upper is minus the
+    ///   distance from the nearest cell that is EMPTY or PARTIAL.
+    /// - For a PARTIAL cell, lower is minus the distance from the nearest EMPTY cell. Upper is the distance
+    ///   from the nearest FULL cell.
+    ///
+    /// These distances are exact but for one rounding, outward, to single precision. They are ∞ where there
+    /// is no such cell. The space outside of the universe counts as cells with the exterior's tag.
+    ///
+    /// The time is linear in the cells of the box and a margin around it as wide as the largest distance. In
+    /// addition to `field`, the memory is a quarter of a byte for each of these cells, and for each thread
+    /// about 140 bytes for each cell of a slice across z. If the margin were too wide, as for a small box far
+    /// away from the solid, the distance of each cell is computed by itself, as by
+    /// [`distance`](Self::distance). The result is bitwise the same for any number of threads.
     ///
     /// # Errors
     /// [`Error::Argument`] if min > max on an axis, if `max` lies outside of the universe, or if `field` has
-    /// not one entry a cell; [`Error::OutOfMemory`], and [`Error::Cancelled`]: `field` then holds anything.
+    /// not one entry for each cell. [`Error::OutOfMemory`] and [`Error::Cancelled`]: the contents of `field`
+    /// are then unspecified.
     ///
     /// ```
     /// use leafless::{Control, Csg, Frame, Rule, build};
@@ -138,7 +143,7 @@ impl OctreeRef<'_> {
         Ok(())
     }
 
-    /// The range in which every cell of `wanted` has the nearest cell of each kind, if there is one.
+    /// Returns a range in which every cell of `wanted` has its nearest cell of each kind, if there is one.
     fn range_around(&self, wanted: Range) -> Result<Range, Error> {
         let all = Range { min: [0; 3], max: [self.frame.cells() + 2; 3] };
         let longest = wanted.size().into_iter().max().unwrap_or(0);
@@ -153,7 +158,8 @@ impl OctreeRef<'_> {
             let farthest =
                 [outer, inner, not_inner, not_outer].into_iter().filter(|&square| square != NOWHERE).max();
             let Some(farthest) = farthest else { continue };
-            // From the block's middle, and from there to the centres of its cells: in half cells, rounded up.
+            // The reach from the block's middle, plus the distance from there to the centres of the block's
+            // cells: in half cells, rounded up.
             let half_diagonal = size.iter().map(|&edge| u64::from(edge).pow(2)).sum::<u64>().isqrt() + 1;
             let reach =
                 u64::try_from(place.in_half_cells(farthest).isqrt()).unwrap_or(u64::MAX).saturating_add(2);
@@ -166,7 +172,7 @@ impl OctreeRef<'_> {
         Ok(seen.within(&all))
     }
 
-    /// The entry of one cell.
+    /// Computes the entry of a single cell.
     fn entry_alone(&self, at: [u32; 3], scale: &Scale) -> Result<[f32; 2], Error> {
         let place = Place::between_cells(&self.frame, at.map(|a| 2 * i64::from(a) + 1));
         let square = |square: Square| (square != NOWHERE).then(|| place.in_half_cells(square) as u64);
@@ -181,7 +187,7 @@ impl OctreeRef<'_> {
 }
 
 impl Octree {
-    /// As [`OctreeRef::distance_field`].
+    /// Computes the distances of the cells in a box. See [`OctreeRef::distance_field`] for the full contract.
     ///
     /// # Errors
     /// As [`OctreeRef::distance_field`].
@@ -196,7 +202,8 @@ impl Octree {
     }
 }
 
-/// Whether cells of a tag belong to the set around the solid, and to that in it.
+/// Returns whether cells of a tag belong to the set around the solid, and whether they belong to the set
+/// inside.
 fn sets(tag: Tag) -> [bool; 2] {
     [tag != Tag::Empty, tag == Tag::Full]
 }

@@ -3,7 +3,7 @@
 use crate::lattice::Frame;
 use crate::lattice::exact::{product_down, product_up, sqrt};
 
-/// From squares of distances in half cells to model units.
+/// The conversion of squares of distances in half cells to model units.
 pub(super) struct Scale {
     half: f64,
 }
@@ -13,7 +13,7 @@ impl Scale {
         Scale { half: 0.5 * frame.cell_size() }
     }
 
-    /// The largest single not above the root; `None` is the square of ∞.
+    /// Returns the largest single not above the root; `None` is the square of ∞.
     #[inline(always)]
     pub(super) fn down(&self, square: Option<u64>) -> f32 {
         let Some(square) = square else { return f32::INFINITY };
@@ -26,7 +26,7 @@ impl Scale {
         }
     }
 
-    /// The smallest single not below the root.
+    /// Returns the smallest single not below the root.
     #[inline(always)]
     pub(super) fn up(&self, square: Option<u64>) -> f32 {
         let Some(square) = square else { return f32::INFINITY };
@@ -39,10 +39,11 @@ impl Scale {
         }
     }
 
-    /// Whether `near` lies below the number next to which `distance` is; `None` if rounding errors tell.
+    /// Returns whether `near` lies below the exact number approximated by `distance`; `None` if rounding
+    /// errors decide.
     #[inline(always)]
     fn beside(&self, near: f32, distance: f64) -> Option<bool> {
-        /// Twice what a root and a product may be off by.
+        /// Twice the maximal error of a root and a product.
         const ERROR: f64 = 4.0 * f64::EPSILON;
         let near = f64::from(near);
         if near < distance * (1.0 - ERROR) {
@@ -56,7 +57,7 @@ impl Scale {
 
     #[cold]
     fn exactly(&self, square: u64, up: bool) -> f32 {
-        // Squares of distances are below 2^45, so that roots which are integers come out as such.
+        // Squares of distances are below 2^45, so that integer roots are exact.
         let root = sqrt(square as f64);
         let is_exact = root * root == square as f64;
         let (lower, upper) = if is_exact { (root, root) } else { (root.next_down(), root.next_up()) };

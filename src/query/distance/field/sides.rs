@@ -1,12 +1,13 @@
-//! How far the cells of a row are from the other side, along the row.
+//! The distances along a row between its cells and the other side.
 
-/// Half cells to the square; a sign tells the side. Members of the set have negative ones.
+/// A square in half cells. The sign is the side: members of the set have negative values.
 pub(super) type Signed = i32;
 
-/// There is nothing on the other side.
+/// The other side is empty.
 pub(super) const NONE: Signed = i32::MAX;
 
-/// The first place from `from` on, below `end`, at which a row's bit differs from `side` (all ones or zeros).
+/// Returns the first place from `from` on, below `end`, at which a row's bit differs from `side` (all ones or
+/// zeros).
 fn next(row: &[u64], side: u64, from: usize, end: usize) -> Option<usize> {
     let mut word = from / 64;
     let mut differs = (row.get(word)? ^ side) & (!0 << (from % 64));
@@ -18,7 +19,7 @@ fn next(row: &[u64], side: u64, from: usize, end: usize) -> Option<usize> {
     (found < end).then_some(found)
 }
 
-/// The last place before `before` at which a row's bit differs from `side`.
+/// Returns the last place before `before` at which a row's bit differs from `side`.
 fn last(row: &[u64], side: u64, before: usize) -> Option<usize> {
     let below = before % 64;
     let mut word = before / 64;
@@ -30,8 +31,8 @@ fn last(row: &[u64], side: u64, before: usize) -> Option<usize> {
     Some(64 * word + 63 - differs.leading_zeros() as usize)
 }
 
-/// The signed squares of the distances of a row's cells from `first` on, of which there are `signed.len()`,
-/// from the nearest one of the row's `length` cells on the other side.
+/// Computes the signed squares of the distances of `signed.len()` cells of a row, from `first` on, from the
+/// nearest of the row's `length` cells on the other side.
 pub(super) fn along(row: &[u64], length: usize, first: usize, signed: &mut [Signed]) {
     let end = first + signed.len();
     let side_at = |place: usize| 0u64.wrapping_sub(row[place / 64] >> (place % 64) & 1);

@@ -1,4 +1,4 @@
-//! Some slices of the field, across z.
+//! Successive slices of the field, across z.
 
 use super::envelope::Envelope;
 use super::mask::{Mask, Range};
@@ -10,22 +10,22 @@ use crate::lattice::axes;
 use crate::memory;
 use alloc::vec::Vec;
 
-/// Slices that are done together: the squares of one column fill a line of the cache.
+/// The number of slices processed together: the squares of one column fill a cache line.
 pub(super) const DEEP: usize = 16;
 
-/// Some slices of the field.
+/// Successive slices of the field.
 pub(super) struct Slab<'s> {
     pub(super) wanted: Range,
     /// The first slice.
     pub(super) first: u32,
-    /// How many there are, at most [`DEEP`].
+    /// The number of slices, at most [`DEEP`].
     pub(super) deep: usize,
     pub(super) scale: &'s Scale,
     pub(super) job: &'s Job<'s>,
 }
 
 impl Slab<'_> {
-    /// Fills its part of the field, from the sets around the solid and in it.
+    /// Fills the slab's part of the field, from the sets around the solid and inside.
     pub(super) fn fill(
         &self,
         (outer, inner): &(Mask, Option<Mask>),
@@ -49,7 +49,7 @@ impl Slab<'_> {
         }
     }
 
-    /// The squares of the distances from the other side of a set: along z, then y, then x.
+    /// Computes the squares of the distances from the other side of a set: along z, then y, then x.
     fn squares(
         &self,
         mask: &Mask,
@@ -65,7 +65,7 @@ impl Slab<'_> {
         let mut envelope = Envelope::new(longest)?;
         let mut line: Vec<Signed> = memory::filled(longest, 0)?;
         let mut result: Vec<Signed> = memory::filled(nx.max(ny), 0)?;
-        // Columns along y of one x, each with its cells along z; then the same of all x, for the wanted y.
+        // Columns along y for one x, each with its cells along z; then the same for all x, for the wanted y.
         let mut column: Vec<[Signed; DEEP]> = memory::filled(height, [0; DEEP])?;
         let mut flat: Vec<[Signed; DEEP]> = memory::filled(ny, [0; DEEP])?;
         let mut plane: Vec<[Signed; DEEP]> = memory::filled(width * ny, [0; DEEP])?;
