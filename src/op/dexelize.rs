@@ -26,7 +26,7 @@ use alloc::vec::Vec;
 use core::ops::Range;
 use once_cell::race::OnceBox;
 
-/// From this number of rays on, it pays to find the solid's bounding box first.
+/// From this number of rays on, it pays to search first for the part of the box where the solid lies.
 const MANY: u64 = 1 << 22;
 /// The number of rows of rays in a tile.
 const ROWS: u32 = 32;
