@@ -101,7 +101,7 @@ pub fn dexelize<S: Solid>(
         return Err(Error::Argument { name: "rule", problem });
     }
     if options.directions == [false; 3] {
-        return Err(Error::Argument { name: "directions", problem: "must be one at least" });
+        return Err(Error::Argument { name: "directions", problem: "at least one is needed" });
     }
     let extent = extent(solid.bounds(), frame);
     match options.format.ends {

@@ -82,7 +82,7 @@ impl Camera {
             (min, max) = (min.min(DVec3::from(*point)), max.max(DVec3::from(*point)));
         }
         if points.is_empty() {
-            return Err(Error::Argument { name: "points", problem: "must be one at least" });
+            return Err(Error::Argument { name: "points", problem: "at least one is needed" });
         }
         let (sin, cos) = libm::sincos(azimuth.to_radians());
         let (rise, flat) = libm::sincos(elevation.to_radians());

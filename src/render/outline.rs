@@ -51,7 +51,7 @@ impl Outline {
         if self.width > WIDEST {
             return Err(Error::Argument {
                 name: "width",
-                problem: "of the edges of a surface must be at most 8",
+                problem: "must be at most 8 for the edges of a surface",
             });
         }
         if !(0.0..=180.0).contains(&self.crease) {

@@ -120,7 +120,7 @@ pub fn marching_cubes_in(
     {
         return Err(Error::Argument {
             name: "cell",
-            problem: "must be one of the frame, with 4³ finest cells at least",
+            problem: "must belong to the frame and contain at least 4³ finest cells",
         });
     }
     resolved(tree, resolve, control, |tree, partial, control| {

@@ -157,7 +157,7 @@ fn both(one: Tag, other: Tag) -> Result<Tag, Error> {
 }
 
 fn contradiction() -> Error {
-    let problem = "are not of one solid: one says FULL where another one says EMPTY";
+    let problem = "do not describe one solid: one says FULL where another one says EMPTY";
     Error::Argument { name: "trees", problem }
 }
 

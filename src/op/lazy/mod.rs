@@ -135,7 +135,7 @@ impl<S: Solid> LazyOctree<S> {
         let Some(fingerprint) = solid.fingerprint() else {
             return Err(Error::Argument {
                 name: "solid",
-                problem: "has no fingerprint to know it by; new begins without",
+                problem: "has no fingerprint, which resuming needs; LazyOctree::new needs none",
             });
         };
         if octree.metadata().get(SOURCE) != Some(&fingerprint.to_string()) {

@@ -47,7 +47,7 @@ const HALVINGS: usize = 80;
 
 /// The error for a host program's function, whose gradient is unknown.
 pub(super) const UNKNOWN: Error =
-    Error::Argument { name: "solid", problem: "must consist of surfaces that are known" };
+    Error::Argument { name: "solid", problem: "must consist of surfaces with known functions" };
 
 pub(super) fn dot(a: [f64; 3], b: [f64; 3]) -> f64 {
     a[0] * b[0] + a[1] * b[1] + a[2] * b[2]

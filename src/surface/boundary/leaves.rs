@@ -58,7 +58,7 @@ const UNKNOWN_CELLS: u32 = 1 << 16;
 /// The error if a mesh or a host program's function bounds a part of the solid.
 const MIXED: Error = Error::Argument {
     name: "solid",
-    problem: "is bounded by more than surfaces that are known; a contour or dual contouring takes any solid",
+    problem: "is bounded by something other than known surfaces; a contour or dual contouring takes any solid",
 };
 
 /// The greatest number of surfaces in a simple cell.
