@@ -127,7 +127,7 @@ pub fn union_of(trees: &[OctreeRef<'_>], control: &Control<'_>) -> Result<Octree
 /// The intersection of one or more trees. Order, cost and surfaces as for [`union_of`].
 ///
 /// # Errors
-/// As [`union_of`].
+/// [`Error::Argument`] if there is no tree; otherwise as [`union`].
 pub fn intersection_of(trees: &[OctreeRef<'_>], control: &Control<'_>) -> Result<Octree, Error> {
     if keep_surfaces(trees) {
         return with_surfaces(trees, |_| false, Combination::All { flip: false }, control);
@@ -141,7 +141,7 @@ pub fn intersection_of(trees: &[OctreeRef<'_>], control: &Control<'_>) -> Result
 /// This is the way to cut a part by many tools.
 ///
 /// # Errors
-/// As [`union_of`].
+/// [`Error::Argument`] if there is no tree; otherwise as [`union`].
 ///
 /// ```
 /// use leafless::op::difference_of;
@@ -179,7 +179,7 @@ pub fn difference_of(trees: &[OctreeRef<'_>], control: &Control<'_>) -> Result<O
 /// surfaces as for [`union_of`].
 ///
 /// # Errors
-/// As [`union_of`].
+/// [`Error::Argument`] if there is no tree; otherwise as [`union`].
 pub fn xor_of(trees: &[OctreeRef<'_>], control: &Control<'_>) -> Result<Octree, Error> {
     if keep_surfaces(trees) {
         return with_surfaces(trees, |_| false, Combination::Odd, control);

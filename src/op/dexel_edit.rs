@@ -16,7 +16,7 @@ impl DexelEditor {
     /// stores.
     ///
     /// # Errors
-    /// As [`dexelize`], before anything changes, and as [`unite`](Self::unite).
+    /// The errors of [`dexelize`], before anything changes, and of [`unite`](Self::unite).
     pub fn unite_solid<S: Solid>(&mut self, solid: &S, control: &Control<'_>) -> Result<DexelChange, Error> {
         self.with_dexels_of(solid, control, Self::unite)
     }
@@ -39,7 +39,7 @@ impl DexelEditor {
     /// ```
     ///
     /// # Errors
-    /// As [`dexelize`], before anything changes, and as [`unite`](Self::unite).
+    /// The errors of [`dexelize`], before anything changes, and of [`unite`](Self::unite).
     pub fn subtract_solid<S: Solid>(
         &mut self,
         solid: &S,
@@ -52,7 +52,7 @@ impl DexelEditor {
     /// those of [`dexelize`] with [`Rule::Sampled`], and carry the data that the editor stores.
     ///
     /// # Errors
-    /// As [`dexelize`], before anything changes, and as [`unite`](Self::unite).
+    /// The errors of [`dexelize`], before anything changes, and of [`unite`](Self::unite).
     pub fn intersect_solid<S: Solid>(
         &mut self,
         solid: &S,
@@ -65,7 +65,7 @@ impl DexelEditor {
     /// [`dexelize`] with [`Rule::Sampled`], and carry the data that the editor stores.
     ///
     /// # Errors
-    /// As [`dexelize`], before anything changes, and as [`xor`](Self::xor).
+    /// The errors of [`dexelize`], before anything changes, and of [`xor`](Self::xor).
     pub fn xor_solid<S: Solid>(&mut self, solid: &S, control: &Control<'_>) -> Result<DexelChange, Error> {
         self.with_dexels_of(solid, control, Self::xor)
     }

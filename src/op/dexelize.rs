@@ -80,7 +80,8 @@ impl Default for DexelOptions {
 /// [`Error::Argument`] if no direction is requested, or for [`Rule::Certified`], because intervals cannot be
 /// undecided; [`Error::NotSampled`] if the solid cannot decide points ([`Rule::Inner`] and [`Rule::Outer`]
 /// need no points); [`Error::Limit`] for 2^32 rays or intervals in one direction; [`Error::TooLarge`] if the
-/// rays alone take more than `control.max_bytes`; and as [`build`](crate::build).
+/// rays alone take more than `control.max_bytes`; the errors of the solid ([`Error::FrameMismatch`] for
+/// stored trees, [`Error::Damaged`] for unverified ones); and cancellation or an exceeded limit of `control`.
 ///
 /// ```
 /// use leafless::{Control, Csg, Frame, dexelize, op::DexelOptions};

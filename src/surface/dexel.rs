@@ -68,7 +68,7 @@ pub struct DexelSurfaceReport {
 /// ```
 ///
 /// # Errors
-/// As [`dexelize`] and [`dual_contouring_dexels`].
+/// As [`dexelize`] and [`marching_cubes_dexels`].
 pub fn dual_contouring_solid<S: Solid>(
     solid: &S,
     frame: &Frame,

@@ -59,10 +59,11 @@ pub enum VertexPlacement {
 /// The result is the same for any number of threads.
 ///
 /// # Errors
-/// [`Error::Argument`] if the depth of the frame is 20, which leaves no further level, or as
-/// [`marching_cubes`](crate::marching_cubes); [`Error::NotSampled`] if the solid cannot decide points;
-/// [`Error::FrameMismatch`] for stored octrees, which have samples of their own; and as
-/// [`build`](crate::build).
+/// [`Error::Argument`] if the depth of the frame is 20, which leaves no further level, or if the frame is so
+/// far from the origin that doubles cannot distinguish its corners; [`Error::NotSampled`] if the solid cannot
+/// decide points; [`Error::FrameMismatch`] for stored octrees, which have samples of their own; the other
+/// errors of the solid; [`MeshError::TooMany`](crate::error::MeshError::TooMany) for more than 2^32 − 1
+/// vertices or triangles; [`Error::OutOfMemory`]; and cancellation or an exceeded limit of `control`.
 ///
 /// ```
 /// use leafless::{Control, Csg, Frame, surface::{VertexPlacement, marching_cubes_solid}};

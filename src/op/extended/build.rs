@@ -94,9 +94,10 @@ impl SurfaceOptions {
 /// Transactions on Graphics 9 (2), 1990, for curved surfaces and with exact signs.
 ///
 /// # Errors
-/// As [`build`](crate::build); [`Error::Argument`] if the tolerance is not a positive number;
-/// [`Error::Limit`] if an exact number of a surface is the sum of more than seven doubles, or a surface lies
-/// under more than 64 placements.
+/// The errors of the solid ([`Error::FrameMismatch`] for stored trees, [`Error::Damaged`] for unverified
+/// ones); [`Error::Argument`] if the tolerance is not a positive number; [`Error::Limit`] if an exact number
+/// of a surface is the sum of more than seven doubles, or a surface lies under more than 64 placements; and
+/// cancellation or an exceeded limit of `control`.
 ///
 /// ```
 /// use leafless::{Control, Csg, Frame, build_extended, measure, SurfaceOptions};
