@@ -43,7 +43,7 @@ pub fn join(trees: &[OctreeRef<'_>], control: &Control<'_>) -> Result<Octree, Er
 /// let (frame, control) = (Frame::new([-1.0; 3], 2.0, 7)?, Control::default());
 /// let ball = build(&Csg::ball([0.1, 0.0, 0.0], 0.75)?, &frame, Rule::Certified, &control)?;
 /// let top = shard(ball.view(), Shard::Top { level: 1 }, &control)?;
-/// // Without the other seven octants the volume is known less well, and is no less true.
+/// // Without the other seven octants the bounds of the volume are wider, and still true.
 /// let cell = top.view().open_cells(1)?[0];
 /// let one = shard(ball.view(), Shard::Below(cell), &control)?;
 /// let most = join(&[*top.view(), *one.view()], &control)?.statistics().volume();

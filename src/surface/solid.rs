@@ -45,8 +45,8 @@ pub enum VertexPlacement {
     Crossing,
 }
 
-/// Extracts the surface of a solid by marching cubes, sampled at the corners of the cells of `frame`: 2^depth +
-/// 1 corners per axis.
+/// Extracts the surface of a solid by marching cubes. The samples are the corners of the cells of `frame`,
+/// 2^depth + 1 per axis.
 ///
 /// The mesh is closed and oriented as that of [`marching_cubes`](crate::marching_cubes). The part of the
 /// solid outside the frame's universe is cut off. There the vertices lie on the boundary of the universe with

@@ -14,7 +14,8 @@ const ALIKE: f64 = 0.7;
 /// The greatest curvature in a cell of a surface that may touch another one there.
 const CURVED: f64 = 0.6;
 
-/// The greatest eigenvalue magnitude that counts as 0 up to rounding, for a form with eigenvalues up to about 1.
+/// The greatest eigenvalue that counts as 0 because of rounding, for a form with eigenvalues of about 1 or
+/// less.
 const NOTHING: f64 = 1e-13;
 
 /// The greatest uncertainty of a function.
