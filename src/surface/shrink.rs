@@ -27,9 +27,9 @@ use alloc::vec::Vec;
 ///
 /// All triangles in one plane become one region with straight edges from corner to corner, and each region is
 /// cut into triangles without new vertices. Neighbouring regions have the same edges between them, so the
-/// mesh has no cracks. It is closed and balanced like that of `smc`, with the same volume and area, and it is
-/// a 2-manifold where that mesh is one. Triangles may be long and thin. Vertices are centres of cells, sorted
-/// by z, y and x; triangles are sorted by their planes.
+/// mesh has no cracks. It is closed and balanced like that of simple marching cubes, with the same volume and
+/// area, and it is a 2-manifold where that mesh is one. Triangles may be long and thin. Vertices are centres
+/// of cells, sorted by z, y and x; triangles are sorted by their planes.
 ///
 /// Cells in one plane are merged first, from the bottom of an octree up (see [`published_shrink`]). The
 /// triangles of merged cells do not fit together where cells of several sizes meet. So the outlines of all
