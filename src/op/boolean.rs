@@ -1,8 +1,8 @@
 //! The set algebra of stored octrees.
 //!
-//! On one lattice the Booleans are exact: word logic on 64 cells at a time where the operands overlap, runs
-//! of whole subtrees copied where only one of them is cut. Everything reduces to the intersection of two
-//! trees, each possibly complemented on the fly, and the symmetric difference:
+//! On one lattice the Booleans are exact. Where the operands overlap, they are combined by word logic on 64
+//! cells at a time. Where only one of them is cut, whole subtrees are copied as runs. Everything reduces to
+//! the symmetric difference and to the intersection of two trees, each possibly complemented on the fly:
 //!
 //! ```text
 //! A ∪ B = ¬(¬A ∩ ¬B)     A ∖ B = A ∩ ¬B     ¬A = ¬(A ∩ everything)
@@ -11,7 +11,7 @@
 //! PARTIAL cells follow Kleene's logic, so the bounds stay bounds. Operands may be mapped files with
 //! dictionaries; they are read where they lie.
 //!
-//! Trees of which one keeps surfaces are combined in `extended`, and the result keeps surfaces.
+//! If one of the trees keeps surfaces, `extended` combines them, and the result keeps surfaces.
 
 use super::extended::{self, Combination};
 use crate::control::{Control, Job, WHOLE};
@@ -27,18 +27,19 @@ use core::ops::Range;
 
 /// The points that lie in `a`, in `b`, or in both.
 ///
-/// The operands must lie on the same frame. Time is linear in the cells where both are cut, plus the memory
-/// traffic of what is copied from one of them; the result of two trees without cuts is never larger than both
-/// together. The result has no metadata; [`Metadata::common`](crate::Metadata::common) tells which of the
-/// operands' hold of it.
+/// The operands must lie on the same frame. Time is linear in the cells where both operands are cut, plus the
+/// memory traffic of the subtrees that are copied from one of them. If neither tree has cuts, the result is
+/// never larger than both together. The result has no metadata; [`Metadata::common`](crate::Metadata::common)
+/// returns the metadata of the operands that also holds for the result.
 ///
 /// If an operand keeps surfaces, the result keeps surfaces: see [*Set operations*](Octree#set-operations),
 /// which also says why `max_bytes` should be set. More than two operands are combined fastest by
 /// [`union_of`].
 ///
 /// # Errors
-/// [`Error::FrameMismatch`]; [`Error::Damaged`] if an unverified operand turns out damaged; [`Error::Limit`]
-/// if the exact map of a surface's placements is too long; and what `control` asks for.
+/// [`Error::FrameMismatch`]; [`Error::Damaged`] if an unverified operand turns out to be damaged;
+/// [`Error::Limit`] if the exact map of a surface's placements is too long; and cancellation or an exceeded
+/// limit of `control`.
 ///
 /// ```
 /// use leafless::{Control, Csg, Frame, Rule, build, difference, union};
@@ -69,7 +70,7 @@ pub fn union(a: &OctreeRef<'_>, b: &OctreeRef<'_>, control: &Control<'_>) -> Res
     combine(Kernel { operands: [Operand::not(a), Operand::not(b)], op: Op::And, flip: true }, control)
 }
 
-/// The points that `a` and `b` have in common. Like [`union`] in all else.
+/// The points that lie in both `a` and `b`. Frames, cost and surfaces as for [`union`].
 ///
 /// # Errors
 /// As [`union`].
@@ -77,7 +78,7 @@ pub fn intersection(a: &OctreeRef<'_>, b: &OctreeRef<'_>, control: &Control<'_>)
     combine(Kernel { operands: [Operand::of(a), Operand::of(b)], op: Op::And, flip: false }, control)
 }
 
-/// `a` without `b`. Like [`union`] in all else.
+/// The points of `a` that do not lie in `b`. Frames, cost and surfaces as for [`union`].
 ///
 /// # Errors
 /// As [`union`].
@@ -85,7 +86,7 @@ pub fn difference(a: &OctreeRef<'_>, b: &OctreeRef<'_>, control: &Control<'_>) -
     combine(Kernel { operands: [Operand::of(a), Operand::not(b)], op: Op::And, flip: false }, control)
 }
 
-/// The points of just one of `a` and `b`. Like [`union`] in all else.
+/// The points that lie in exactly one of `a` and `b`. Frames, cost and surfaces as for [`union`].
 ///
 /// # Errors
 /// As [`union`].
@@ -93,8 +94,8 @@ pub fn xor(a: &OctreeRef<'_>, b: &OctreeRef<'_>, control: &Control<'_>) -> Resul
     combine(Kernel { operands: [Operand::of(a), Operand::of(b)], op: Op::Xor, flip: false }, control)
 }
 
-/// Everything but `a`, inside of its universe and out. One pass over the arrays. A tree that keeps surfaces
-/// keeps them all. The complement of the complement is the tree, byte for byte.
+/// The points that do not lie in `a`, inside and outside of its universe. One pass over the arrays. If `a`
+/// keeps surfaces, the result keeps all of them. The complement of the complement is the tree, byte for byte.
 ///
 /// # Errors
 /// As [`union`].
@@ -106,16 +107,16 @@ pub fn complement(a: &OctreeRef<'_>, control: &Control<'_>) -> Result<Octree, Er
     combine(Kernel { operands: [Operand::of(a), Operand::of(all.view())], op: Op::And, flip: true }, control)
 }
 
-/// The union of any number of trees, at least one. The order of the trees does not show in the result.
+/// The union of one or more trees. The result does not depend on the order of the trees.
 ///
-/// Trees without cuts are combined two by two; limits of `control` concern each of these steps. If a tree
-/// keeps surfaces, all trees are walked at once: nothing is copied that another tree changes, and no
-/// intermediate result exists. So a batch of tools costs what the tools cost, where one operation a tool
-/// copies the part once a tool. A cell may be split more often on one way than on the other, so that a batch
-/// and single operations agree as sets, and not always byte for byte.
+/// Trees without cuts are combined in pairs; the limits of `control` apply to each of these steps. If a tree
+/// keeps surfaces, all trees are walked at once: a cell that another tree changes is not copied, and no
+/// intermediate result exists. So a batch of tools costs only the tools, whereas one operation per tool would
+/// copy the part once per tool. A batch may split a cell more often than single operations do, or less often,
+/// so the results agree as sets, but not always byte for byte.
 ///
 /// # Errors
-/// [`Error::Argument`] if there is no tree; else as [`union`].
+/// [`Error::Argument`] if there is no tree; otherwise as [`union`].
 pub fn union_of(trees: &[OctreeRef<'_>], control: &Control<'_>) -> Result<Octree, Error> {
     if keep_surfaces(trees) {
         return with_surfaces(trees, |_| true, Combination::All { flip: true }, control);
@@ -123,10 +124,10 @@ pub fn union_of(trees: &[OctreeRef<'_>], control: &Control<'_>) -> Result<Octree
     reduce(trees, union, control)
 }
 
-/// The intersection of any number of trees, at least one. Like [`union_of`] in all else.
+/// The intersection of one or more trees. Order, cost and surfaces as for [`union_of`].
 ///
 /// # Errors
-/// As [`union_of`].
+/// [`Error::Argument`] if there is no tree; otherwise as [`union`].
 pub fn intersection_of(trees: &[OctreeRef<'_>], control: &Control<'_>) -> Result<Octree, Error> {
     if keep_surfaces(trees) {
         return with_surfaces(trees, |_| false, Combination::All { flip: false }, control);
@@ -134,13 +135,13 @@ pub fn intersection_of(trees: &[OctreeRef<'_>], control: &Control<'_>) -> Result
     reduce(trees, intersection, control)
 }
 
-/// The points of the first of the trees, at least one, that lie in none of the others. Like [`union_of`] in
-/// all else.
+/// The points of the first tree that lie in none of the others. There must be at least one tree. Cost and
+/// surfaces as for [`union_of`].
 ///
 /// This is the way to cut a part by many tools.
 ///
 /// # Errors
-/// As [`union_of`].
+/// [`Error::Argument`] if there is no tree; otherwise as [`union`].
 ///
 /// ```
 /// use leafless::op::difference_of;
@@ -174,10 +175,11 @@ pub fn difference_of(trees: &[OctreeRef<'_>], control: &Control<'_>) -> Result<O
     }
 }
 
-/// The points that lie in an odd number of the trees, at least one. Like [`union_of`] in all else.
+/// The points that lie in an odd number of the trees. There must be at least one tree. Order, cost and
+/// surfaces as for [`union_of`].
 ///
 /// # Errors
-/// As [`union_of`].
+/// [`Error::Argument`] if there is no tree; otherwise as [`union`].
 pub fn xor_of(trees: &[OctreeRef<'_>], control: &Control<'_>) -> Result<Octree, Error> {
     if keep_surfaces(trees) {
         return with_surfaces(trees, |_| false, Combination::Odd, control);
@@ -185,12 +187,12 @@ pub fn xor_of(trees: &[OctreeRef<'_>], control: &Control<'_>) -> Result<Octree, 
     reduce(trees, xor, control)
 }
 
-/// Whether a tree keeps surfaces.
+/// Returns whether a tree keeps surfaces.
 fn keep_surfaces(trees: &[OctreeRef<'_>]) -> bool {
     trees.iter().any(|tree| tree.cuts.is_some())
 }
 
-/// All trees at once; of those whose place says so the complement is meant.
+/// Combines all trees at once. For the places where `complement` says so, the complement of the tree is used.
 fn with_surfaces(
     trees: &[OctreeRef<'_>],
     not: impl Fn(usize) -> bool,
@@ -223,7 +225,7 @@ fn reduce(trees: &[OctreeRef<'_>], op: Binary, control: &Control<'_>) -> Result<
         many => {
             // Neighbours first, so that the intermediate trees stay small; the recursion is log₂ n deep.
             let (left, right) = many.split_at(many.len().div_ceil(2));
-            // Each half has its share of the operands. (Of one tree nothing needs to be made.)
+            // Each half has its share of the operands. (A single tree needs no work.)
             let share = LAST * left.len() as f64 / many.len() as f64;
             let left = control.share([0.0, share], |control| reduce(left, op, control))?;
             let right = control.share([share, LAST], |control| reduce(right, op, control))?;
@@ -232,7 +234,7 @@ fn reduce(trees: &[OctreeRef<'_>], op: Binary, control: &Control<'_>) -> Result<
     }
 }
 
-/// Where the last step of many begins in the progress.
+/// The progress fraction at which the last step of a combination of many trees begins.
 const LAST: f64 = 0.8;
 
 #[derive(Clone, Copy, PartialEq, Eq)]
@@ -247,7 +249,7 @@ struct Operand<'a> {
     flip: bool,
 }
 
-/// A cell of an operand: described by an element, or all of one tag (as the tree has it, before any flip).
+/// A cell of an operand: an element, or a cell of one tag (as stored in the tree, before any flip).
 #[derive(Clone, Copy)]
 enum Source {
     Element(usize),
@@ -286,7 +288,7 @@ impl<'a> Operand<'a> {
         Ok(planes.complement_if(self.flip))
     }
 
-    /// The source of cell `c` of level `e`, whose (flipped) tags are `planes` in its parent `source`.
+    /// Returns the source of cell `c` of level `e`, whose (flipped) tags are `planes` in its parent `source`.
     #[inline(always)]
     fn child(
         &self,
@@ -312,21 +314,21 @@ struct Kernel<'a> {
     flip: bool,
 }
 
-/// Where a traversal stands: what of the operands it has passed, and where its results go.
+/// The state of a traversal: the passed part of each operand, and the writer of the results.
 struct Walk<'w, 'j> {
     windows: [Windows; 2],
     writer: &'w mut Writer<'j>,
 }
 
-/// What is next to be done below an element.
+/// The next step below an element.
 enum Step {
-    /// Neighbouring subtrees of operand `of` are taken over as they are, or complemented.
+    /// Copies neighbouring subtrees of operand `of`, complemented if `flip`.
     Copy { of: usize, flip: bool, parent: usize, range: Range<usize> },
-    /// Both operands are combined in this cell.
+    /// Combines both operands in this cell.
     Visit(u32, [Source; 2]),
 }
 
-/// A visit as a loop that ranks children.
+/// A visit written as a loop that ranks children.
 struct Visit<'v, 'a, 'w, 'j> {
     kernel: &'v Kernel<'a>,
     e: usize,
@@ -335,9 +337,9 @@ struct Visit<'v, 'a, 'w, 'j> {
     parallel: bool,
 }
 
-/// Entries of both operands from which threads pay: below, joining what they wrote takes longer than they
-/// save. (Measured on a solid and the same turned by 0.002: 1.8 million entries lose a third, 7 million gain
-/// 1.4 times.)
+/// Entries of both operands from which threads pay. With fewer entries, joining the threads' outputs takes
+/// longer than the threads save. (Measured on a solid and the same solid turned by 0.002: 1.8 million entries
+/// lose a third, 7 million gain 1.4 times.)
 const WORTH_THREADS: u64 = 1 << 21;
 
 fn combine(kernel: Kernel<'_>, control: &Control<'_>) -> Result<Octree, Error> {
@@ -365,8 +367,8 @@ fn combine_above(entries: u64, kernel: Kernel<'_>, control: &Control<'_>) -> Res
         let mut writer = Writer::new(&job, a.frame().depth(), binary);
         let most = (count(a) + count(b)).saturating_mul(size_of::<Planes>() as u64);
         if control.max_bytes.is_none_or(|limit| most <= limit) {
-            // The result is never larger than both operands, so one thread can write each level in one piece.
-            // Where that much cannot be reserved, it is written in several.
+            // The result is never larger than both operands together, so one thread can write each level in
+            // one piece. If that much memory cannot be reserved, the level is written in several pieces.
             for e in 0..a.levels() {
                 let most = |tree: &OctreeRef<'_>| tree.starts[e + 1].saturating_sub(tree.starts[e]);
                 let _ = writer.reserve(e, most(a).saturating_add(most(b)).min(1 << 26), !parallel);
@@ -400,14 +402,14 @@ impl Kernel<'_> {
         match self.op {
             Op::And => a.intersection(b),
             Op::Xor => {
-                // PARTIAL xor anything is PARTIAL, also where the words cannot say so.
+                // PARTIAL xor anything is PARTIAL, also where the word operation cannot express it.
                 let (words, clash) = (a.xor(b), a.clash(b));
                 Planes { lower: words.lower & !clash, upper: words.upper | clash }
             }
         }
     }
 
-    /// What the cells of the result prove, from what those of the (flipped) operands do.
+    /// The proof of the result's cells, from the proofs of the (flipped) operands' cells.
     fn proof(&self, [a, b]: [Proof; 2]) -> Proof {
         let proof = match self.op {
             Op::And => a.and(b),
@@ -416,8 +418,8 @@ impl Kernel<'_> {
         if self.flip { proof.complement() } else { proof }
     }
 
-    /// The operands' (flipped) tags in the cells of two sources, those of the result, and the cells below
-    /// which the result has to be found.
+    /// Returns the operands' (flipped) tags in the cells of two sources, the result's tags, and the cells
+    /// whose result has to be computed below.
     #[inline(always)]
     fn meet(&self, sources: [Source; 2]) -> Result<([Planes; 2], Planes, u64), Damage> {
         let planes = [self.operands[0].planes(sources[0])?, self.operands[1].planes(sources[1])?];
@@ -426,8 +428,8 @@ impl Kernel<'_> {
         Ok((planes, words.complement_if(self.flip), words.branch() | clash))
     }
 
-    /// Takes the first of the `open` cells, which lie on level `e`, and those behind it that are copied with
-    /// it.
+    /// Takes the first of the `open` cells, which lie on level `e`, and the following cells that are copied
+    /// with it.
     #[inline(always)]
     fn step(
         &self,
@@ -441,7 +443,7 @@ impl Kernel<'_> {
         for of in [0, 1] {
             let (other, branch) = (planes[1 - of], planes[of].branch());
             let full = other.full() >> c & 1 != 0;
-            // Where the other operand is decided, this one's subtree is the result.
+            // Where the other operand is decided, this operand's subtree is the result.
             let decided = if full || self.op == Op::And { other.full() } else { other.empty() };
             let lone = rest & branch & decided;
             if lone >> c & 1 != 0
@@ -463,7 +465,7 @@ impl Kernel<'_> {
         Ok(Step::Visit(c, [a, self.operands[1].child(wb, sources[1], planes[1], c, e)?]))
     }
 
-    /// Does what is next on level `e`; tells what a visited cell comes to.
+    /// Does the next step on level `e`; returns the tag of a visited cell.
     #[inline(always)]
     fn go(
         &self,
@@ -510,8 +512,8 @@ impl Kernel<'_> {
         Damage::BrickBranch { brick: brick.unwrap_or(0) as u64 }
     }
 
-    /// The steps below an element of the first two levels as independent tasks, their outputs appended in
-    /// order.
+    /// Runs the steps below an element of the first two levels as independent tasks, and appends their
+    /// outputs in order.
     fn visit_parallel(
         &self,
         e: usize,
@@ -559,7 +561,7 @@ impl Kernel<'_> {
         Ok(())
     }
 
-    /// Reports cells on level `e` as done: progress is counted in those below the root.
+    /// Reports cells on level `e` as done. Progress is counted in the cells below the root.
     #[inline(always)]
     fn advance(&self, e: usize, cells: u32, writer: &Writer<'_>) {
         if e == 1 {
@@ -611,8 +613,8 @@ mod tests {
     use alloc::vec;
     use alloc::vec::Vec;
 
-    /// A tree of depth 6 whose root is cut in all 64 cells, each cut in its first; `link` says where the
-    /// element of a cell finds its brick.
+    /// A tree of depth 6 whose root is cut in all 64 cells, each cut in its first cell; `link` gives the
+    /// brick link of a cell's element.
     fn with_tree<R>(base: u64, link: impl Fn(u16) -> u16, ask: impl FnOnce(&OctreeRef<'_>) -> R) -> R {
         let mut planes = vec![Planes { lower: 1, upper: 0 }; 65];
         planes[0] = Planes::uniform(Tag::Branch);
@@ -636,7 +638,8 @@ mod tests {
         })
     }
 
-    /// Every operation with an operand that leaves each cell of the root alone, by one thread and by several.
+    /// The results of every operation with an operand that leaves each cell of the root alone, with one
+    /// thread and with several.
     fn results(tree: &OctreeRef<'_>) -> Vec<Result<Octree, Error>> {
         let whole = |tag| Octree::uniform(*tree.frame(), tag, tag).unwrap();
         let mut results = Vec::new();
@@ -666,8 +669,8 @@ mod tests {
         );
     }
 
-    /// Bricks of the result, none if the damage was found. (Of a run that is copied whole only the ends are
-    /// looked at, so that not all damage is.)
+    /// The number of bricks of the result; none if the damage was found. (For a run that is copied whole only
+    /// the ends are checked, so not all damage is found.)
     fn copied(result: &Result<Octree, Error>) -> u64 {
         match result {
             Ok(tree) => tree.view().brick_count(),

@@ -1,4 +1,4 @@
-//! From any solid to an octree.
+//! Building an octree from any solid.
 
 use super::rule::Rule;
 use crate::control::{Control, Job, WHOLE};
@@ -16,15 +16,15 @@ use crate::walk;
 use crate::walk::Gathered;
 use alloc::vec::Vec;
 
-/// Builds the octree of `solid` to the depth of `frame`, its undecided finest cells resolved by `rule`.
+/// Builds the octree of `solid` to the depth of `frame`, and resolves its undecided finest cells by `rule`.
 ///
-/// The result is canonical, and the same bit for bit for any number of threads. Time and memory are linear
-/// in the nodes that are visited.
+/// The result is canonical, and the same bit for bit for any number of threads. Time and memory are linear in
+/// the number of visited nodes.
 ///
 /// # Errors
-/// What the solid refuses ([`Error::FrameMismatch`] for stored trees, [`Error::Damaged`] for unverified
-/// ones), [`Error::NotSampled`] under [`Rule::Sampled`] if the solid cannot decide points, and what `control`
-/// asks for.
+/// The errors of the solid ([`Error::FrameMismatch`] for stored trees, [`Error::Damaged`] for unverified
+/// ones), [`Error::NotSampled`] under [`Rule::Sampled`] if the solid cannot decide points, and cancellation
+/// or an exceeded limit of `control`.
 ///
 /// ```
 /// use leafless::{Control, Csg, Frame, Rule, build};
@@ -39,15 +39,15 @@ pub fn build<S: Solid>(solid: &S, frame: &Frame, rule: Rule, control: &Control<'
     build_on(&solid.on(frame, control)?, rule, control)
 }
 
-/// Builds the cells of a [`Shard`] of what [`build`] makes: of all others nothing is known, whatever the
-/// rule. Time and memory are linear in the nodes that are visited, which are those of the shard and the way
-/// to it.
+/// Builds the cells of a [`Shard`] of the octree that [`build`] returns. All other cells are unknown
+/// (PARTIAL), whatever the rule. Time and memory are linear in the number of visited nodes: those of the
+/// shard and of the path to it.
 ///
-/// [`join`](super::join) makes of the top and of the shards of all cells that it leaves open the octree that
-/// [`build`] makes, byte for byte.
+/// [`join`](super::join) combines the top shard and the shards of all cells that the top leaves open. The
+/// result is the octree that [`build`] returns, byte for byte.
 ///
 /// # Errors
-/// As [`build`]; [`Error::Argument`] if the frame does not have the shard's cells.
+/// As [`build`]; [`Error::Argument`] if the frame does not contain the shard's cells.
 ///
 /// ```
 /// use leafless::op::join;
@@ -76,7 +76,7 @@ pub fn build_shard<S: Solid>(
     build_cells(&solid.on(frame, control)?, rule, Some(shard), control)
 }
 
-/// As [`build`], of a solid that is on its frame already.
+/// [`build`] for a solid that has already been put on its frame.
 pub(crate) fn build_on<C: Classifier>(
     classifier: &C,
     rule: Rule,
@@ -95,7 +95,7 @@ fn build_cells<C: Classifier>(
     job.check()?;
     let frame = *classifier.frame();
     let mut hand = Hand::new(classifier)?;
-    // Shallow trees are made faster than threads, unless it is somebody else who takes the time.
+    // A shallow tree is built faster than threads are started, unless a host program does the work.
     let worth = element_levels(frame.depth()) > 3 || hand.worker.likes_many();
     control.run(worth, |parallel| {
         let levels = element_levels(frame.depth());
@@ -118,13 +118,14 @@ fn build_cells<C: Classifier>(
     })
 }
 
-/// The tree with its PARTIAL cells resolved: EMPTY under [`Rule::Inner`], FULL under [`Rule::Outer`]. Of a
-/// tree that keeps surfaces it is not known which cells are meant: [`plain`](super::plain) takes a depth, and
-/// [`without_cuts`](OctreeRef::without_cuts) leaves the cells that there are.
+/// Returns the tree with its PARTIAL cells resolved: EMPTY under [`Rule::Inner`], FULL under [`Rule::Outer`].
+/// A tree that keeps surfaces is refused, because it is unclear which cells are meant:
+/// [`plain`](super::plain) takes a depth, and [`without_cuts`](OctreeRef::without_cuts) leaves the cells as
+/// they are.
 ///
 /// # Errors
-/// [`Error::NotSampled`] under [`Rule::Sampled`] if a cell is PARTIAL, because a stored tree knows no more
-/// about it; [`Error::Argument`] if the tree keeps surfaces; and what `control` asks for.
+/// [`Error::NotSampled`] under [`Rule::Sampled`] if a cell is PARTIAL, because a stored tree has no samples;
+/// [`Error::Argument`] if the tree keeps surfaces; and cancellation or an exceeded limit of `control`.
 pub fn resolve(tree: &OctreeRef<'_>, rule: Rule, control: &Control<'_>) -> Result<Octree, Error> {
     if tree.cuts.is_some() {
         let problem = "keeps surfaces: take the plain tree to a depth, or the tree without its cuts";
@@ -133,8 +134,8 @@ pub fn resolve(tree: &OctreeRef<'_>, rule: Rule, control: &Control<'_>) -> Resul
     build(tree, tree.frame(), rule, control)
 }
 
-/// The same tree with its bricks encoded as a file would have them, through a dictionary where that is
-/// shorter. Queries and Booleans work on it as on any other.
+/// Returns the same tree with its bricks encoded as in a file: through a dictionary where that is shorter.
+/// Queries and Booleans accept it like any other tree.
 ///
 /// # Errors
 /// [`Error::OutOfMemory`], or [`Error::Damaged`] if a brick cannot be read.
@@ -146,21 +147,21 @@ struct Builder<'a, C> {
     classifier: &'a C,
     frame: Frame,
     rule: Rule,
-    /// The cells that are wanted, unless all are.
+    /// The wanted cells; `None` for all cells.
     shard: Option<Shard>,
     levels: usize,
     #[cfg_attr(not(feature = "parallel"), allow(dead_code))]
     parallel: bool,
 }
 
-/// The parts of a classifier's cells.
+/// The part type of a classifier.
 type Part<C> = <<C as Classifier>::Worker as Parts>::Part;
 
-/// What one thread needs: a worker, a stack of parts, a block.
+/// The state of one thread: a worker, a stack of parts, a block.
 struct Hand<C: Classifier> {
     worker: C::Worker,
     parts: Vec<(u8, Part<C>)>,
-    /// Made when a cell is first small enough for it.
+    /// Allocated when a cell is first small enough for a block.
     block: Option<Block>,
 }
 
@@ -171,7 +172,7 @@ impl<C: Classifier> Hand<C> {
 }
 
 impl<C: Classifier> Builder<'_, C> {
-    /// Writes the subtree of a PARTIAL cell, which element level `e` describes; returns its tag.
+    /// Writes the subtree of a PARTIAL cell as elements from level `e` on; returns its tag.
     fn cell(
         &self,
         e: usize,
@@ -210,7 +211,7 @@ impl<C: Classifier> Builder<'_, C> {
         } else {
             self.children(e, cell, planes, first, hand, writer)?
         };
-        // The rule concerns what the solid leaves undecided, not what the shard does not know.
+        // The rule resolves cells that the solid leaves undecided, not cells that the shard does not know.
         planes.upper |= !known;
         let tag = writer.put(e, planes)?;
         hand.parts.truncate(first);
@@ -218,18 +219,18 @@ impl<C: Classifier> Builder<'_, C> {
         Ok(tag)
     }
 
-    /// Whether everything in a cell is wanted.
+    /// Returns whether all descendants of a cell are wanted.
     fn has_all_in(&self, cell: Cell) -> bool {
         self.shard.is_none_or(|shard| shard.has_all_in(cell))
     }
 
-    /// The cells of an element that a shard knows, of which some are wanted.
+    /// The cells of an element that a shard knows. Some cells of the element are wanted.
     fn known(&self, shard: &Shard, e: usize, cell: Cell, planes: Planes, parts: &[(u8, Part<C>)]) -> u64 {
         let cells = self.at(e, cell, 0).level;
         let last = shard.last(self.frame.depth());
         let goes_on = parts.iter().fold(0u64, |mask, &(c, _)| mask | 1 << c);
         if cells == last + 1 {
-            // Octants are the last cells, and were split to find out what they are.
+            // The octants are the last cells. They were split only to find their tags.
             let [empty, full, partial] = planes.octants();
             let goes_on =
                 (0..64).step_by(8).filter(|o| goes_on >> o & 0xFF != 0).fold(0, |mask, o| mask | 1 << o);
@@ -241,11 +242,11 @@ impl<C: Classifier> Builder<'_, C> {
         if cells == last && last < self.frame.depth() { known & !goes_on } else { known }
     }
 
-    /// The cells of an element: two levels of the solid, or one for a root that starts half-way.
+    /// Splits the cells of an element: two levels of the solid, or one level for a root that starts half-way.
     fn split(&self, e: usize, cell: Cell, part: &Part<C>, hand: &mut Hand<C>) -> Result<Planes, Error> {
         if e > 0 || !starts_half_way(self.frame.depth()) {
             let planes = hand.worker.split64(cell, part, &mut hand.parts)?;
-            // Nothing is a branch yet; a solid that says so is not believed.
+            // No cell is a branch yet, so branch tags from a solid are ignored.
             return Ok(Planes { lower: planes.full(), upper: planes.lower | planes.upper });
         }
         let mut planes = Planes::uniform(Tag::Empty);
@@ -258,7 +259,7 @@ impl<C: Classifier> Builder<'_, C> {
         Ok(planes)
     }
 
-    /// The cell `c` of the element of level `e` at `cube`.
+    /// Returns cell `c` of the element of level `e` at `cell`.
     fn at(&self, e: usize, cell: Cell, c: u8) -> Cell {
         if e == 0 && starts_half_way(self.frame.depth()) {
             return cell.child(c);
@@ -268,17 +269,17 @@ impl<C: Classifier> Builder<'_, C> {
         Cell { level: cell.level + 2, at: [cx + x, cy + y, cz + z] }
     }
 
-    /// Cells that an element of level `e` has in the universe.
+    /// The number of cells that an element of level `e` has in the universe.
     fn cells(&self, e: usize) -> usize {
         if e == 0 && starts_half_way(self.frame.depth()) { 8 } else { 64 }
     }
 
-    /// What one cell of an element of level 0 or 1 counts for in the progress.
+    /// The progress units of one cell of an element of level 0 or 1.
     fn weight(&self, e: usize) -> usize {
         WHOLE / self.cells(0) / if e == 0 { 1 } else { 64 }
     }
 
-    /// Progress of a subtree that ends before the cells of level 1, which otherwise report.
+    /// Reports the progress of a subtree that ends above the cells of level 1, which otherwise report.
     fn progress(&self, e: usize, writer: &Writer<'_>) {
         match e {
             0 => writer.job().advance(WHOLE),
@@ -287,7 +288,7 @@ impl<C: Classifier> Builder<'_, C> {
         }
     }
 
-    /// Descends into the parts from `first` on, and resolves what cannot be split.
+    /// Descends into the parts from `first` on, and resolves cells that cannot be split.
     fn children(
         &self,
         e: usize,
@@ -322,7 +323,7 @@ impl<C: Classifier> Builder<'_, C> {
         let mut run: Option<Run> = None;
         for i in first..hand.parts.len() {
             let (c, part) = hand.parts[i].clone();
-            // Stored subtrees are copied, neighbours together.
+            // Stored subtrees are copied, neighbouring ones together.
             let child = self.at(e, cell, c);
             if let Some(subtree) = self.stored(e + 1, &part, &hand.worker).filter(|_| self.has_all_in(child))
             {
@@ -381,7 +382,7 @@ impl<C: Classifier> Builder<'_, C> {
         done.into_iter().map(|(c, tag, subtree)| writer.append(subtree).map(|()| (c, tag))).collect()
     }
 
-    /// Resolves finest cells: those with a part may be sampled.
+    /// Resolves finest cells. Cells with a part may be sampled.
     fn resolve_finest(
         &self,
         planes: Planes,
@@ -400,7 +401,7 @@ impl<C: Classifier> Builder<'_, C> {
             let inside = hand.worker.sample64(cell, parts)?.ok_or(Error::NotSampled)?;
             return Ok(Planes::binary(planes.full() | inside & planes.partial()));
         }
-        // The only element is a root that starts half-way: its cells are children.
+        // The only element is a root that starts half-way, so its cells are children.
         let mut result = planes;
         for i in first..hand.parts.len() {
             let (c, part) = hand.parts[i].clone();
@@ -411,7 +412,7 @@ impl<C: Classifier> Builder<'_, C> {
         Ok(result)
     }
 
-    /// Writes the subtree of a PARTIAL cell of which the solid is asked level by level.
+    /// Writes the subtree of a PARTIAL cell by evaluating the solid level by level.
     fn gathered(
         &self,
         e: usize,
@@ -420,7 +421,7 @@ impl<C: Classifier> Builder<'_, C> {
         hand: &mut Hand<C>,
         writer: &mut Writer<'_>,
     ) -> Result<Tag, Error> {
-        // Below the root threads have cells of their own.
+        // Below the root the threads already have cells of their own.
         let threads = if self.parallel && e == 0 { parallel::threads() } else { 1 };
         let (centres, job) = (self.rule == Rule::Sampled, writer.job());
         let asked = (cell, part.clone());
@@ -436,7 +437,7 @@ impl<C: Classifier> Builder<'_, C> {
         builder.cell(e, cell, &0, &mut Hand::new(&&known)?, writer)
     }
 
-    /// The stored subtree of a PARTIAL cell that element level `e` describes, if it can be copied as it is.
+    /// Returns the stored subtree of a PARTIAL cell of element level `e`, if it can be copied as it is.
     fn stored<'w>(&self, e: usize, part: &Part<C>, worker: &'w C::Worker) -> Option<Subtree<'w>> {
         let subtree = worker.subtree(part)?;
         let good = subtree.level == e
@@ -445,7 +446,7 @@ impl<C: Classifier> Builder<'_, C> {
         good.then_some(subtree)
     }
 
-    /// Whether a subtree comes next to those of a run.
+    /// Returns whether a subtree directly follows the subtrees of a run.
     fn goes_on(&self, run: &Run, next: &Subtree<'_>, hand: &Hand<C>) -> bool {
         self.stored(run.level, &hand.parts[run.first].1, &hand.worker).is_some_and(|first| {
             let same = core::ptr::eq(first.tree.planes.as_ptr(), next.tree.planes.as_ptr());
@@ -463,7 +464,7 @@ impl<C: Classifier> Builder<'_, C> {
     }
 }
 
-/// Drops the parts from `first` on of cells that are not known.
+/// Drops the parts from `first` on whose cells are not known.
 fn drop_unknown<P>(parts: &mut Vec<(u8, P)>, first: usize, known: u64) {
     let mut place = 0;
     parts.retain(|&(c, _)| {
@@ -472,16 +473,16 @@ fn drop_unknown<P>(parts: &mut Vec<(u8, P)>, first: usize, known: u64) {
     });
 }
 
-/// Neighbouring stored subtrees that are copied together: the place of the first one's part, their element
-/// level.
+/// A run of neighbouring stored subtrees that are copied together: the index of the first one's part, their
+/// element level and their number.
 struct Run {
     first: usize,
     level: usize,
     count: usize,
 }
 
-/// Copies `count` neighbouring subtrees of a stored octree, all links of which were checked when it was put
-/// on the frame.
+/// Copies `count` neighbouring subtrees of a stored octree. All its links were checked when the octree was
+/// put on the frame.
 fn copy(first: &Subtree<'_>, count: usize, writer: &mut Writer<'_>) -> Result<(), Error> {
     let &Subtree { tree, level, index, flip } = first;
     writer.copy(tree, &mut Windows::new(tree), index, level, index..index + count, flip)

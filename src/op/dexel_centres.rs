@@ -1,4 +1,4 @@
-//! Octrees of tri-dexel models, by the centres of cells.
+//! Octrees of tri-dexel models, by cell centres.
 
 use super::build::build_on;
 use super::rule::Rule;
@@ -10,20 +10,22 @@ use crate::octree::block::BLOCK_LEVELS;
 use crate::octree::{Block, Octree, Proof, Tag};
 use crate::solid::{Classifier, FreeParts, OneByOne, Question, Verdict, WholeQuestion, Worker};
 
-/// The octree of a tri-dexel model by the centres of its cells: a finest cell is FULL if its centre lies
-/// inside, and EMPTY if it does not.
+/// Builds the octree of a tri-dexel model from the centres of its cells. A finest cell is FULL if its centre
+/// lies inside, and EMPTY otherwise.
 ///
-/// Where the directions of the model disagree, as those of arrays from elsewhere may, the highest axis that
-/// has rays decides, as in [`TriDexelRef::contains_cell`]. A model without rays gives an EMPTY octree.
+/// Where the directions of the model disagree (arrays from elsewhere may disagree), the highest axis that has
+/// rays decides, as in [`TriDexelRef::contains_cell`]. A model without rays gives an EMPTY octree.
 ///
-/// The result is canonical and binary. Around the universe it is EMPTY. Its cells prove nothing of the solid
-/// that the rays came from ([`Proof`]), as those of [`Rule::Sampled`](crate::Rule::Sampled).
+/// The result is canonical and binary. The space around the universe is EMPTY. As with
+/// [`Rule::Sampled`](crate::Rule::Sampled), the cells prove nothing about the solid from which the rays came
+/// ([`Proof`]).
 ///
-/// O(rays + intervals + octree), with rays of the windows, of which empty ones cost next to nothing. A block
-/// of 64³ cells in which no centre lies inside costs nothing. The same for any number of threads.
+/// O(rays + intervals + octree). The rays are those of the windows; empty rays cost next to nothing. A block
+/// of 64³ cells in which no centre lies inside costs nothing. The result is the same for any number of
+/// threads.
 ///
 /// # Errors
-/// [`Error::OutOfMemory`], and what `control` asks for.
+/// [`Error::OutOfMemory`], and cancellation or an exceeded limit of `control`.
 ///
 /// ```
 /// use leafless::{Control, Frame, TriDexel, dexel::{Dexel, DexelEnd, DexelFormat}, op::octree_from_dexels};
@@ -44,16 +46,16 @@ pub fn octree_from_dexels(model: &TriDexelRef<'_>, control: &Control<'_>) -> Res
     build_on(&Centres { model: *model, occupied: occupied.as_ref() }, Rule::Sampled, control)
 }
 
-/// A model that says which centres lie inside, and nothing else.
+/// A model as a solid that decides cell centres only.
 #[derive(Clone, Copy)]
 struct Centres<'a> {
     model: TriDexelRef<'a>,
-    /// Where any centre lies inside, if the lattice has blocks.
+    /// The places where a centre lies inside, if the lattice has blocks.
     occupied: Option<&'a Occupied>,
 }
 
 impl Centres<'_> {
-    /// What is known of a cell before its centres are looked at.
+    /// The verdict on a cell before its centres are tested.
     fn verdict(&self, cell: Cell) -> Verdict<()> {
         match self.occupied {
             Some(occupied) if !occupied.meets(cell.level, cell.at) => Verdict::Empty,

@@ -1,4 +1,4 @@
-//! Solids that are joined to tri-dexel models in place.
+//! In-place set operations of tri-dexel models and solids.
 
 use super::dexelize::{DexelOptions, dexelize};
 use super::rule::Rule;
@@ -7,22 +7,23 @@ use crate::dexel::{DexelChange, DexelEditor, TriDexel, TriDexelRef};
 use crate::error::Error;
 use crate::solid::Solid;
 
-/// The share of the work that dexelisation takes.
+/// The share of the work that dexelising takes.
 const SHARE: f64 = 0.9;
 
 impl DexelEditor {
-    /// Adds a solid. Only rays that cross the solid's bounding box are looked at, as far as the solid tells
-    /// one. Its intervals are those of [`dexelize`] with [`Rule::Sampled`], and carry what the editor stores.
+    /// Adds a solid. If the solid provides a bounding box, only the rays that cross the box are visited. The
+    /// solid's intervals are those of [`dexelize`] with [`Rule::Sampled`], and carry the data that the editor
+    /// stores.
     ///
     /// # Errors
-    /// As [`dexelize`], before anything changes, and as [`unite`](Self::unite).
+    /// The errors of [`dexelize`], before anything changes, and of [`unite`](Self::unite).
     pub fn unite_solid<S: Solid>(&mut self, solid: &S, control: &Control<'_>) -> Result<DexelChange, Error> {
         self.with_dexels_of(solid, control, Self::unite)
     }
 
-    /// Takes a solid away: one step of a tool. Only rays that cross the solid's bounding box are looked at,
-    /// as far as the solid tells one. Its intervals are those of [`dexelize`] with [`Rule::Sampled`], and
-    /// carry what the editor stores.
+    /// Subtracts a solid: one step of a tool. If the solid provides a bounding box, only the rays that cross
+    /// the box are visited. The solid's intervals are those of [`dexelize`] with [`Rule::Sampled`], and carry
+    /// the data that the editor stores.
     ///
     /// ```
     /// use leafless::{Control, Csg, Frame, dexelize, dexel::DexelEditor, op::DexelOptions};
@@ -38,7 +39,7 @@ impl DexelEditor {
     /// ```
     ///
     /// # Errors
-    /// As [`dexelize`], before anything changes, and as [`unite`](Self::unite).
+    /// The errors of [`dexelize`], before anything changes, and of [`unite`](Self::unite).
     pub fn subtract_solid<S: Solid>(
         &mut self,
         solid: &S,
@@ -47,11 +48,11 @@ impl DexelEditor {
         self.with_dexels_of(solid, control, Self::subtract)
     }
 
-    /// Keeps only the points that lie in a solid, too. O(rays of the lattice). The solid's intervals are
-    /// those of [`dexelize`] with [`Rule::Sampled`], and carry what the editor stores.
+    /// Keeps only the points that also lie in a solid. O(rays of the lattice). The solid's intervals are
+    /// those of [`dexelize`] with [`Rule::Sampled`], and carry the data that the editor stores.
     ///
     /// # Errors
-    /// As [`dexelize`], before anything changes, and as [`unite`](Self::unite).
+    /// The errors of [`dexelize`], before anything changes, and of [`unite`](Self::unite).
     pub fn intersect_solid<S: Solid>(
         &mut self,
         solid: &S,
@@ -60,16 +61,16 @@ impl DexelEditor {
         self.with_dexels_of(solid, control, Self::intersect)
     }
 
-    /// Takes away what lies in both, and adds the rest of a solid. Its intervals are those of [`dexelize`]
-    /// with [`Rule::Sampled`], and carry what the editor stores.
+    /// Keeps the points that lie in exactly one of the model and a solid. The solid's intervals are those of
+    /// [`dexelize`] with [`Rule::Sampled`], and carry the data that the editor stores.
     ///
     /// # Errors
-    /// As [`dexelize`], before anything changes, and as [`xor`](Self::xor).
+    /// The errors of [`dexelize`], before anything changes, and of [`xor`](Self::xor).
     pub fn xor_solid<S: Solid>(&mut self, solid: &S, control: &Control<'_>) -> Result<DexelChange, Error> {
         self.with_dexels_of(solid, control, Self::xor)
     }
 
-    /// Changes the editor by the tri-dexel model of a solid that fits it.
+    /// Changes the editor by the tri-dexel model of a solid, made with matching directions and format.
     fn with_dexels_of<S: Solid>(
         &mut self,
         solid: &S,

@@ -1,4 +1,4 @@
-//! Octrees of tri-dexel models, by the ends of intervals.
+//! Octrees of tri-dexel models, by interval ends.
 
 use super::build::build_on;
 use super::rule::Rule;
@@ -9,25 +9,27 @@ use crate::lattice::{Cell, Frame, axes};
 use crate::octree::{Octree, Proof, Tag};
 use crate::solid::{Classifier, FreeParts, OneByOne, Question, Verdict, WholeQuestion, Worker};
 
-/// The octree of a tri-dexel model by the ends of its intervals: a finest cell is FULL if all rays through it
-/// are inside all the way, EMPTY if all are outside all the way, and PARTIAL if an end lies in it or the
-/// directions disagree. An end that lies just in a face between two cells lies in neither.
+/// Builds the octree of a tri-dexel model from the ends of its intervals. A finest cell is FULL if all rays
+/// through it are inside along the whole cell, EMPTY if all are outside along the whole cell, and PARTIAL if
+/// an end lies in the cell or the directions disagree. An end that lies exactly in a face between two cells
+/// lies in neither cell.
 ///
-/// **What that proves.** A decided cell agrees with every ray through it, as far as the model stores their
-/// ends: along the rays nothing is rounded to cells, and what is thinner than a cell is undecided where a ray
-/// meets it, not lost. **What it does not prove.** A cell has one ray of a direction, through its middle. A
-/// surface may cut off its corners, and what lies between the rays is seen by none; so the cells prove
-/// nothing of the solid that the rays came from ([`Proof`]), and the volumes of FULL and of PARTIAL cells are
-/// no proven bounds. Where the surface is smooth and the cells are small, the true volume lies between them
-/// as a rule.
+/// **What the cells prove.** A decided cell agrees with every ray through it, as far as the model stores the
+/// ends of the ray. Along the rays nothing is rounded to cells: a feature thinner than a cell is undecided
+/// where a ray meets it, not lost. **What they do not prove.** A cell has one ray of each direction, through
+/// its middle. A surface may cut off the corners of a cell, and no ray sees what lies between the rays. So
+/// the cells prove nothing about the solid from which the rays came ([`Proof`]), and the volumes of the FULL
+/// and of the PARTIAL cells are no proven bounds. Where the surface is smooth and the cells are small, the
+/// true volume usually lies between these volumes.
 ///
-/// The result is canonical. Around the universe it is EMPTY. A model without rays gives an EMPTY octree.
+/// The result is canonical. The space around the universe is EMPTY. A model without rays gives an EMPTY
+/// octree.
 ///
-/// O(depth · rays of the lattice · log intervals of a ray), with as many rays as cells on the faces of the
-/// universe. The same for any number of threads.
+/// O(depth · rays of the lattice · log intervals of a ray). The lattice has one ray for each cell on the
+/// faces of the universe. The result is the same for any number of threads.
 ///
 /// # Errors
-/// [`Error::OutOfMemory`], and what `control` asks for.
+/// [`Error::OutOfMemory`], and cancellation or an exceeded limit of `control`.
 ///
 /// ```
 /// use leafless::op::octree_from_dexel_ends;
@@ -50,7 +52,7 @@ pub fn octree_from_dexel_ends(model: &TriDexelRef<'_>, control: &Control<'_>) ->
     build_on(&Ends { model: *model }, Rule::Certified, control)
 }
 
-/// A model that says which cells hold ends.
+/// A model as a solid that decides which cells contain ends.
 #[derive(Clone, Copy)]
 struct Ends<'a> {
     model: TriDexelRef<'a>,

@@ -1,9 +1,9 @@
-//! From any solid to a tri-dexel model.
+//! Building a tri-dexel model from any solid.
 //!
-//! Rays are made in tiles, each with a descent of its own through the cells that it crosses. A solid that
-//! knows rays ([`Question::Chords`](crate::solid::Question::Chords)) answers for large cells at once: meshes
-//! by scan conversion, expressions of half-spaces by roots. Of others the finest cells are sampled, and
-//! between two centres on different sides the crossing is narrowed down by finer cells and their slabs.
+//! Rays are made in tiles. Each tile has a descent of its own through the cells that it crosses. A solid that
+//! computes rays ([`Question::Chords`](crate::solid::Question::Chords)) answers for large cells at once:
+//! meshes by scan conversion, expressions of half-spaces by roots. For other solids the finest cells are
+//! sampled. Between two centres on different sides, finer cells and their slabs narrow down the crossing.
 
 use super::rule::Rule;
 use crate::control::{Control, Job, WHOLE};
@@ -26,59 +26,62 @@ use alloc::vec::Vec;
 use core::ops::Range;
 use once_cell::race::OnceBox;
 
-/// As many rays are worth a look at where the solid lies.
+/// From this number of rays on, it pays to search first for the part of the box where the solid lies.
 const MANY: u64 = 1 << 22;
-/// Rows of rays of a tile.
+/// The number of rows of rays in a tile.
 const ROWS: u32 = 32;
 
-/// What a tri-dexel model is to be like.
+/// The directions, interval format and rule of a tri-dexel model.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct DexelOptions {
-    /// Along which axes rays run: x, y, z; one at least.
+    /// The axes along which rays run (x, y, z); at least one.
     pub directions: [bool; 3],
-    /// What of intervals is stored.
+    /// The data that is stored for each interval.
     pub format: DexelFormat,
-    /// [`Rule::Sampled`]: intervals are those of the solid on each ray. [`Rule::Inner`] and [`Rule::Outer`]: those of its FULL
-    /// cells, and of all that are not EMPTY.
+    /// [`Rule::Sampled`]: the intervals of the solid on each ray. [`Rule::Inner`]: the intervals of its FULL
+    /// cells. [`Rule::Outer`]: the intervals of all cells that are not EMPTY.
     pub rule: Rule,
 }
 
 impl Default for DexelOptions {
-    /// All three directions of fixed-point ends that carry nothing, sampled.
+    /// All three directions, fixed-point ends without attached data, sampled.
     fn default() -> DexelOptions {
         DexelOptions { directions: [true; 3], format: DexelFormat::default(), rule: Rule::Sampled }
     }
 }
 
-/// Makes a tri-dexel model of a solid on the lattice of a frame.
+/// Builds a tri-dexel model of a solid on the lattice of a frame.
 ///
-/// A ray runs through the centres of finest cells, in thought shifted by (ε, ε², ε³), so that it meets no
-/// edge and no face of the solid at its side; it has an end where it crosses the surface. An end says of the
-/// centres beside it just what the solid does, so that the model has the samples of [`build`](crate::build)
-/// with [`Rule::Sampled`]; apart from that it is off by at most 2^-31 of the universe's edge, or 2^-36 with
-/// [`DexelEnds::Double`]. Intervals shorter than this vanish.
+/// A ray runs through the centres of finest cells, shifted in thought by (ε, ε², ε³), so that it meets no
+/// edge of the solid and grazes no face. The ray has an end where it crosses the surface. An end agrees with
+/// the solid at the centres beside it, so the model has the samples of [`build`](crate::build) with
+/// [`Rule::Sampled`]. Apart from that, the error of an end is at most 2^-31 of the universe's edge, or 2^-36
+/// with [`DexelEnds::Double`]. Intervals shorter than this vanish.
 ///
-/// So it is with closed meshes, under any fill rule, with half-spaces (planes, quadrics, powers, tori) and
-/// expressions of them, and with stored octrees. Around the holes of open meshes, too, every crossing of a
-/// triangle is an end if it changes the side; where the solid is bounded by no triangle, it has an end
-/// between two centres on different sides, where the winding number passes one half. Of other solids
-/// (expressions with other solids as operands, transforms, functions of a host, volumes) cells and samples
-/// are asked. Ends between centres on different sides are narrowed down by cells to a depth of 20. So are
-/// ends between a face of the universe and the centre next to it, if the centre lies inside and the ray does
-/// not where it meets the face. Walls between two neighbouring centres on one side are not seen. With a frame
-/// of depth 20 ends of such solids lie in the planes between cells. Surfaces at ends are numbers of triangles
-/// and of half-spaces, the latter in the order of the expression written out.
+/// This holds for closed meshes under any fill rule, for half-spaces (planes, quadrics, powers, tori), for
+/// expressions of these, and for stored octrees. Around the holes of open meshes, too, every crossing of a
+/// triangle that changes the side is an end. Where no triangle bounds the solid, there is an end between two
+/// centres on different sides, where the winding number passes one half. Other solids (expressions with other
+/// solids as operands, transforms, functions of a host, volumes) are evaluated by cells and samples. Ends
+/// between centres on different sides are narrowed down by cells to a depth of 20. An end between a face of
+/// the universe and the centre next to it is narrowed down in the same way, if the centre lies inside and the
+/// point where the ray meets the face does not. Walls between two neighbouring centres on one side are not
+/// seen. With a frame of depth 20 the ends of such solids lie in the planes between cells. The surfaces at
+/// ends are the numbers of triangles and of half-spaces. Half-spaces are numbered in the order of the
+/// written-out expression.
 ///
 /// (The method is that of Gao, Zhang and Hou 2007 for polygons, with exact decisions at edges and vertices.)
 ///
-/// O(rays + crossings), and the descent to where the solid knows rays. Each end that an open mesh has without
-/// a triangle takes some sums over the edges of all holes. The same for any number of threads.
+/// O(rays + crossings), plus the descent to the cells where the solid computes rays. Each end of an open mesh
+/// without a triangle takes some sums over the edges of all holes. The result is the same for any number of
+/// threads.
 ///
 /// # Errors
-/// [`Error::Argument`] if no direction is asked for, or for [`Rule::Certified`], as intervals cannot be
-/// undecided; [`Error::NotSampled`] if the solid cannot decide points ([`Rule::Inner`] and [`Rule::Outer`] do
-/// without that); [`Error::Limit`] for 2^32 rays or intervals in one direction, and [`Error::TooLarge`] where
-/// the rays alone take more than `control.max_bytes`; and as [`build`](crate::build).
+/// [`Error::Argument`] if no direction is requested, or for [`Rule::Certified`], because intervals cannot be
+/// undecided; [`Error::NotSampled`] if the solid cannot decide points ([`Rule::Inner`] and [`Rule::Outer`]
+/// need no points); [`Error::Limit`] for 2^32 rays or intervals in one direction; [`Error::TooLarge`] if the
+/// rays alone take more than `control.max_bytes`; the errors of the solid ([`Error::FrameMismatch`] for
+/// stored trees, [`Error::Damaged`] for unverified ones); and cancellation or an exceeded limit of `control`.
 ///
 /// ```
 /// use leafless::{Control, Csg, Frame, dexelize, op::DexelOptions};
@@ -99,7 +102,7 @@ pub fn dexelize<S: Solid>(
         return Err(Error::Argument { name: "rule", problem });
     }
     if options.directions == [false; 3] {
-        return Err(Error::Argument { name: "directions", problem: "must be one at least" });
+        return Err(Error::Argument { name: "directions", problem: "at least one is needed" });
     }
     let extent = extent(solid.bounds(), frame);
     match options.format.ends {
@@ -108,23 +111,23 @@ pub fn dexelize<S: Solid>(
     }
 }
 
-/// The cells of each axis whose centres may lie within bounds.
+/// The range of cells on each axis whose centres may lie within bounds.
 fn extent(bounds: Option<Bounds>, frame: &Frame) -> [Range<u32>; 3] {
     let all = 0..frame.cells();
     let Some(bounds) = bounds else { return [all.clone(), all.clone(), all] };
     axes(|axis| {
-        // A cell more than needed, for what is rounded.
+        // One cell more than needed, because of rounding.
         let cells = f64::from(frame.cells());
         let low = frame.scaled(axis, bounds.min[axis]) - 1.0;
         let high = frame.scaled(axis, bounds.max[axis]) + 2.0;
-        // (What is not a number is no bound.)
+        // (NaN is no bound.)
         let low = if low > 0.0 { low.min(cells) as u32 } else { 0 };
         let high = if high < cells { high.max(0.0) as u32 } else { frame.cells() };
         low.min(high)..high
     })
 }
 
-/// Rays through the cells of an extent, in all directions that are asked for.
+/// The number of rays through the cells of an extent, in all requested directions.
 fn rays(extent: &[Range<u32>; 3], options: &DexelOptions) -> u64 {
     let count = |axis: usize| Window::of(OTHERS[axis].map(|axis| extent[axis].clone())).count();
     (0..3).filter(|&axis| options.directions[axis]).map(count).sum()
@@ -150,7 +153,7 @@ fn model<T: Solid, S: Form>(
     } else {
         extent
     };
-    // Each ray has the number of its first interval.
+    // Each ray stores the number of its first interval.
     control.afford("the rays", rays(&extent, options).saturating_mul(size_of::<u32>() as u64))?;
     let window = |axis: usize| Window::of(OTHERS[axis].map(|axis| extent[axis].clone()));
     let worth = rays(&extent, options) > 1 << 14;
@@ -177,36 +180,36 @@ fn model<T: Solid, S: Form>(
     })
 }
 
-/// The rays of one direction, in tiles of some rows.
+/// The rays of one direction, in tiles of several rows.
 struct Tiles<'a, S: Solid> {
     solid: &'a S,
     classifier: &'a S::Classifier,
-    /// The same on the finest lattice, once somebody needs it.
+    /// The solid on the finest lattice, created when it is first needed.
     finest: &'a OnceBox<S::Classifier>,
     frame: Frame,
     axis: usize,
     window: Window,
     options: &'a DexelOptions,
     job: &'a Job<'a>,
-    /// What all of them count for in the progress.
+    /// The progress units of all tiles together.
     parts: usize,
 }
 
-/// What one thread needs.
+/// The state of one thread.
 struct Hand<S: Solid> {
     worker: WorkerOf<S>,
     beam: Beam,
     scratch: Scratch,
-    /// The finest cells that were sampled: the ray's number and the cell's place on it.
+    /// The sampled finest cells: the number of the ray and the place of the cell on it.
     sampled: Vec<(u32, u32)>,
-    /// On the finest lattice: made when it is first needed.
+    /// On the finest lattice; created when it is first needed.
     trail: Option<Trail<WorkerOf<S>>>,
 }
 
 impl<T: Solid> Tiles<'_, T> {
     fn pieces<S: Form>(&self, parallel: bool) -> Result<Vec<Piece<S>>, Error> {
         let rows = self.window.range(1);
-        // Tiles begin where blocks of cells do.
+        // Tiles begin at the same rows as blocks of cells.
         let first = rows.start / ROWS;
         let count = rows.end.div_ceil(ROWS).saturating_sub(first);
         let each_tile = self.parts.checked_div(count as usize).unwrap_or(0);
@@ -273,14 +276,14 @@ impl<T: Solid> Tiles<'_, T> {
         self.job.spend(0, bytes)
     }
 
-    /// What of a cell lies in the tile: rays, and the cell's span along them.
+    /// The part of a cell that lies in the tile: rays, and the cell's span along them.
     fn shadow(&self, window: &Window, cell: Cell) -> (Window, Range<u32>) {
         let shift = self.frame.depth() - cell.level;
         let range = |axis: usize| cell.at[axis] << shift..(cell.at[axis] + 1) << shift;
         (Window::of(OTHERS[self.axis].map(range)).intersection(window), range(self.axis))
     }
 
-    /// Adds the intervals in a cell. The recursion is as deep as the frame, 20 levels at the most.
+    /// Adds the intervals in a cell. The recursion is as deep as the frame, at most 20 levels.
     fn cell(&self, hand: &mut Hand<T>, cell: Cell, verdict: Verdict<PartOf<T>>) -> Result<(), Error> {
         if matches!(verdict, Verdict::Empty) {
             return Ok(());
@@ -319,7 +322,7 @@ impl<T: Solid> Tiles<'_, T> {
         }
     }
 
-    /// A finest cell that is not decided.
+    /// Adds the intervals of an undecided finest cell.
     fn finest(
         &self,
         hand: &mut Hand<T>,
@@ -341,8 +344,8 @@ impl<T: Solid> Tiles<'_, T> {
         }
     }
 
-    /// Moves the ends at sampled cells from the planes between cells, and from the universe's faces, to where
-    /// the surface is.
+    /// Moves the ends at sampled cells from the planes between cells, and from the universe's faces, to the
+    /// surface.
     fn refine(&self, hand: &mut Hand<T>) -> Result<(), Error> {
         let depth = self.frame.depth();
         if depth >= MAX_DEPTH {
@@ -364,7 +367,7 @@ impl<T: Solid> Tiles<'_, T> {
                 let [column, row] = window.ray(chord.ray as usize);
                 let mut lower = [0; 3];
                 (lower[u], lower[v]) = (2 * column as i32 + 1, 2 * row as i32 + 1);
-                // From centre to centre; at a face from the face to the first centre.
+                // Search from centre to centre; at a face, from the face to the first centre.
                 let first = (2 * plane as i32 - 1).max(0);
                 let last = (2 * plane as i32 + 1).min(2 * cells as i32);
                 lower[self.axis] = first;
@@ -390,14 +393,14 @@ impl<T: Solid> Tiles<'_, T> {
     }
 
     fn trail(&self) -> Result<Trail<WorkerOf<T>>, Error> {
-        // (This runs on one of several threads.)
+        // (This code runs on one of several threads.)
         let control = Control { threads: 1, progress: None, ..*self.job.control() };
         let find = || self.solid.on(&self.frame.with_depth(MAX_DEPTH)?, &control).map(Box::new);
         Trail::new(self.finest.get_or_try_init(find)?.worker()?)
     }
 }
 
-/// Adds whole spans.
+/// Adds spans that cover the whole cell.
 fn fill(beam: &mut Beam, rays: Window, span: Range<u32>) -> Result<(), Error> {
     let [start, end] = [span.start, span.end].map(BeamEnd::between);
     for v in rays.range(1) {

@@ -1,5 +1,5 @@
-//! What makes octrees: building from a solid, splitting on demand, the set algebra of stored trees, and
-//! tri-dexel models.
+//! Octrees and tri-dexel models from solids: building, splitting on demand, and the set algebra of stored
+//! trees.
 
 mod boolean;
 mod build;

@@ -1,10 +1,10 @@
-//! How what is undecided is resolved when a tree is built.
+//! Rules for resolving undecided cells when a tree is built.
 
 use crate::error::Error;
 use crate::octree::block::Cells;
 use crate::octree::{Block, Planes, Proof};
 
-/// How PARTIAL cells of the finest level are resolved when a tree is built.
+/// A rule for resolving the PARTIAL cells of the finest level when a tree is built.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Default)]
 pub enum Rule {
     /// Not at all: the tree holds the certified bounds.
@@ -19,22 +19,22 @@ pub enum Rule {
 }
 
 impl Rule {
-    /// Whether nothing is left undecided.
+    /// Returns whether no cell is left undecided.
     pub fn is_binary(self) -> bool {
         self != Rule::Certified
     }
 
-    /// What the cells prove of a solid of whose verdicts `source` says the same.
+    /// The proof of the resolved cells, if `source` is the proof of the solid's verdicts.
     pub fn proof(self, source: Proof) -> Proof {
         let full = source.full && matches!(self, Rule::Certified | Rule::Inner);
         let empty = source.empty && matches!(self, Rule::Certified | Rule::Outer);
         Proof::new(full, empty).moved(source.displacement())
     }
 
-    /// Cells of which nothing more is known.
+    /// Resolves cells without samples.
     ///
     /// # Errors
-    /// [`Error::NotSampled`] if their centres are asked for.
+    /// [`Error::NotSampled`] if the rule needs their centres.
     pub(super) fn resolved(self, planes: Planes) -> Result<Planes, Error> {
         match self {
             Rule::Certified => Ok(planes),
@@ -45,12 +45,12 @@ impl Rule {
         }
     }
 
-    /// A block for which is asked what the rule needs.
+    /// Allocates a block with the planes that the rule needs.
     pub(super) fn block(self) -> Result<Block, Error> {
         Block::new(self != Rule::Sampled, self == Rule::Sampled)
     }
 
-    /// The cells of such a block.
+    /// The resolved cells of such a block.
     pub(super) fn cells(self, block: &Block) -> Cells<'_> {
         let planes = match self {
             Rule::Certified => block.planes(),

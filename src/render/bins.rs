@@ -1,4 +1,4 @@
-//! Which things may be seen in which tile.
+//! Assignment of things to the tiles in which they may be visible.
 
 use super::mapped::mapped;
 use super::tile::{TILE, Tile};
@@ -7,29 +7,30 @@ use crate::error::Error;
 use crate::memory;
 use alloc::vec::Vec;
 
-/// First column, first row, last column and last row of tiles; the first column lies beyond the last one if
-/// there are none.
+/// The first column, first row, last column and last row of tiles. If there are none, the first column lies
+/// beyond the last one.
 type Span = [u16; 4];
 
 const NOWHERE: Span = [1, 0, 0, 0];
 
-/// What may be seen in more tiles than this is not listed for each of them, so that the lists stay short.
+/// A thing that may be visible in more tiles than this is not listed for each of them, so that the lists stay
+/// short.
 const MOST_TILES: usize = 64;
 
-/// Things that are numbered from 0, by the tiles in which they may be seen.
+/// Things that are numbered from 0, by the tiles in which they may be visible.
 pub struct Bins {
     columns: usize,
-    /// Where the list of each tile begins, and the end of the last one.
+    /// The start of each tile's list, and the end of the last one.
     starts: Vec<usize>,
     items: Vec<u32>,
-    /// What may be seen in many tiles.
+    /// The things that may be visible in many tiles.
     wide: Vec<(u32, Span)>,
 }
 
 impl Bins {
-    /// Sorts `count` things, at most 2^32, into the tiles of a picture of this size. `place` tells where a
-    /// thing is seen: the least x and y and the greatest ones, in pixels, which may be infinite. O(count +
-    /// tiles).
+    /// Sorts `count` things, at most 2^32, into the tiles of a picture of this size. `place` returns the
+    /// place of a thing in the picture: the least x and y and the greatest ones, in pixels; these may be
+    /// infinite. O(count + tiles).
     pub fn new(
         size: [u32; 2],
         count: usize,
@@ -62,7 +63,7 @@ impl Bins {
         Ok(Bins { columns: tiles[0], starts, items, wide })
     }
 
-    /// What may be seen in a tile, ascending.
+    /// Returns the things that may be visible in a tile, in ascending order.
     pub fn of(&self, tile: &Tile<'_>) -> Result<Vec<u32>, Error> {
         let [column, row] = tile.first.map(|first| first / TILE);
         let at = row as usize * self.columns + column as usize;
@@ -81,9 +82,9 @@ impl Bins {
     }
 }
 
-/// The tiles of a part of a picture. What is not a number may be anywhere.
+/// The tiles of a part of a picture. A NaN bound may be anywhere.
 fn span([left, top, right, bottom]: [f64; 4], size: [u32; 2]) -> Span {
-    // Rounding moves nothing by as much as this.
+    // Rounding moves nothing by this much.
     const MARGIN: f64 = 1e-3;
     let [width, height] = size.map(f64::from);
     if right + MARGIN < 0.0 || bottom + MARGIN < 0.0 || left - MARGIN > width || top - MARGIN > height {

@@ -1,4 +1,4 @@
-//! From where a picture is taken.
+//! Cameras and views.
 
 use super::light::Lamps;
 use crate::error::Error;
@@ -6,16 +6,18 @@ use crate::lattice::Frame;
 use crate::lattice::valid::numbers;
 use glam::DVec3;
 
-/// How a camera shows what is farther away.
+/// The projection of a camera.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum Lens {
-    /// Smaller. The field of view in degrees, from the lower to the upper edge of the picture: above 0, below 180.
+    /// A perspective: distant things look smaller. The field of view in degrees, from the lower to the upper
+    /// edge of the picture: above 0, below 180.
     Perspective(f64),
-    /// As large as what is near. The height of what is seen, in model units.
+    /// A parallel projection: distant things look as large as near ones. The height of the visible part, in
+    /// model units.
     Parallel(f64),
 }
 
-/// A point from which one looks into a direction, and what is up.
+/// A camera: an eye point, a direction of view, and an upward direction.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Camera {
     eye: DVec3,
@@ -25,18 +27,19 @@ pub struct Camera {
     lens: Lens,
 }
 
-/// Part of a fitted picture's width and height that is left free at each side.
+/// The part of a fitted picture's width and height that is left free on each side.
 const MARGIN: f64 = 0.04;
 
-/// Field of view of a fitted camera, in degrees, unless another one is asked for.
+/// The default field of view of a fitted camera, in degrees.
 pub const FIELD_OF_VIEW: f64 = 30.0;
 
 impl Camera {
-    /// A camera at `eye` that looks at the point `at`; `up`, of any length, is shown upward. Model units.
+    /// Creates a camera at `eye` that looks at the point `at`; `up`, of any length, is shown upward. Model
+    /// units.
     ///
     /// # Errors
-    /// [`Error::Argument`] if a number is not zero and not between 2^-256 and 2^256 in magnitude, if eye and
-    /// point are one, if `up` is zero or lies along the view, or if the lens is not as it must be.
+    /// [`Error::Argument`] if a number is not zero and not between 2^-256 and 2^256 in magnitude, if `eye`
+    /// and `at` are the same point, if `up` is zero or parallel to the view, or if the lens is invalid.
     pub fn new(eye: [f64; 3], at: [f64; 3], up: [f64; 3], lens: Lens) -> Result<Camera, Error> {
         let [eye, at, up] = [("eye", eye), ("at", at), ("up", up)].map(|(name, v)| vector(name, v));
         let (eye, at, up) = (eye?, at?, up?);
@@ -51,15 +54,15 @@ impl Camera {
         Ok(Camera::facing(eye, forward, right.normalize(), lens))
     }
 
-    /// A camera that shows all of some points (model units), one at least, in a picture of width : height =
-    /// `aspect`, as large as can be with a small margin. It looks at them from an azimuth and an elevation in
-    /// degrees: 0, 0 is from −y with x to the right and z upward, a positive azimuth from further right, a
-    /// positive elevation from further above. `field_of_view`: degrees, as in [`Lens::Perspective`]; `None`
-    /// for a parallel lens. O(points).
+    /// Creates a camera that shows one or more points (model units) in a picture of width : height =
+    /// `aspect`, as large as possible with a small margin. It looks at them from an azimuth and an elevation
+    /// in degrees: 0, 0 is from −y with x to the right and z upward; a positive azimuth is further to the
+    /// right, a positive elevation further above. `field_of_view`: degrees, as in [`Lens::Perspective`];
+    /// `None` for a parallel lens. O(points).
     ///
     /// # Errors
     /// [`Error::Argument`] if there is no point, a number is not zero and not between 2^-256 and 2^256 in
-    /// magnitude, the field of view not between 0 and 180, or the aspect not above 0.
+    /// magnitude, the field of view is not between 0 and 180, or the aspect is not above 0.
     pub fn fitted(
         points: &[[f64; 3]],
         [azimuth, elevation]: [f64; 2],
@@ -79,14 +82,14 @@ impl Camera {
             (min, max) = (min.min(DVec3::from(*point)), max.max(DVec3::from(*point)));
         }
         if points.is_empty() {
-            return Err(Error::Argument { name: "points", problem: "must be one at least" });
+            return Err(Error::Argument { name: "points", problem: "at least one is needed" });
         }
         let (sin, cos) = libm::sincos(azimuth.to_radians());
         let (rise, flat) = libm::sincos(elevation.to_radians());
         let right = DVec3::new(cos, sin, 0.0);
         let forward = DVec3::new(-sin * flat, cos * flat, -rise);
         let centre = 0.5 * min + 0.5 * max;
-        // A point has no size to be fitted.
+        // A single point has no size to fit.
         let size = (max - min).length().max(centre.length() * 1e-9).max(1e-60);
         let mut camera = Camera::facing(centre, forward, right, lens);
         let seen = |camera: &Camera| {
@@ -106,7 +109,7 @@ impl Camera {
             }
             Lens::Perspective(_) => {
                 // The eye lies where the wedges from left and right, and those from above and below, just
-                // hold all points.
+                // contain all points.
                 let [wide, high] = [(tangent * aspect, 0), (tangent, 1)].map(|(tangent, axis)| {
                     let sides = seen(&camera).fold([f64::NEG_INFINITY; 2], |sides, at| {
                         let (across, deep) = (at[axis] / tangent, at.z);
@@ -127,40 +130,40 @@ impl Camera {
         Camera { eye, right, up: right.cross(forward), forward, lens }
     }
 
-    /// Where the camera is.
+    /// The place of the eye.
     pub fn eye(&self) -> [f64; 3] {
         self.eye.to_array()
     }
 
-    /// The direction into which it looks; its length is 1.
+    /// The direction of view, of length 1.
     pub fn forward(&self) -> [f64; 3] {
         self.forward.to_array()
     }
 
-    /// The direction to the right of the picture; its length is 1.
+    /// The direction to the right of the picture, of length 1.
     pub fn right(&self) -> [f64; 3] {
         self.right.to_array()
     }
 
-    /// The direction upward in the picture; its length is 1.
+    /// The upward direction of the picture, of length 1.
     pub fn up(&self) -> [f64; 3] {
         self.up.to_array()
     }
 
-    /// How it shows what is farther away.
+    /// The projection of the camera.
     pub fn lens(&self) -> Lens {
         self.lens
     }
 
-    /// A point in the camera's own coordinates: to the right, upward, and away from the plane of the eye.
-    /// Model units.
+    /// Returns a point in the camera's own coordinates: to the right, upward, and away from the plane of the
+    /// eye. Model units.
     #[inline]
     pub(crate) fn seen(&self, point: DVec3) -> DVec3 {
         let from = point - self.eye;
         DVec3::new(from.dot(self.right), from.dot(self.up), from.dot(self.forward))
     }
 
-    /// Half of what is seen from the lower to the upper edge: a tangent, or model units.
+    /// Half the height of the visible part, from the lower to the upper edge: a tangent, or model units.
     pub(crate) fn half_height(&self) -> f64 {
         match self.lens {
             Lens::Perspective(degrees) => libm::tan(0.5 * degrees.to_radians()),
@@ -188,14 +191,14 @@ fn check(lens: Lens) -> Result<(), Error> {
     if good { Ok(()) } else { Err(Error::Argument { name: "lens", problem }) }
 }
 
-/// A camera and the size of its picture: where a pixel looks, and where a point is seen.
+/// A camera and the size of its picture. Maps pixels to lines of sight, and points to pixels.
 #[derive(Debug, Clone, Copy)]
 pub struct View {
     pub camera: Camera,
     pub lamps: Lamps,
     pub width: u32,
     pub height: u32,
-    /// Model units, or of a perspective tangents, to a pixel.
+    /// The size of a pixel: model units, or tangents for a perspective.
     pixel: f64,
 }
 
@@ -205,13 +208,14 @@ impl View {
         View { camera: *camera, lamps, width, height, pixel: 2.0 * camera.half_height() / f64::from(height) }
     }
 
-    /// Whether what is farther away is smaller.
+    /// Returns whether the projection is a perspective.
     pub fn is_perspective(&self) -> bool {
         matches!(self.camera.lens, Lens::Perspective(_))
     }
 
-    /// What is seen at a place of the picture, in pixels from its upper left corner: from where, and in which
-    /// direction. The direction is 1 long along the view, so that what is t times it away has the depth t.
+    /// Returns the line of sight at a place of the picture, in pixels from its upper left corner: its start
+    /// and its direction. The direction has length 1 along the view, so a point at t times the direction has
+    /// the depth t.
     #[inline]
     pub fn line(&self, x: f64, y: f64) -> (DVec3, DVec3) {
         let camera = &self.camera;
@@ -223,22 +227,22 @@ impl View {
         }
     }
 
-    /// Where a point in the camera's own coordinates is seen: place in pixels, and depth. Behind the eye of a
-    /// perspective it is nowhere (infinite, or mirrored).
+    /// Returns the place of a point in the picture, in pixels. The point is given in the camera's own
+    /// coordinates. A point behind the eye of a perspective has no place (infinite, or mirrored).
     #[inline]
     pub fn place(&self, seen: DVec3) -> [f64; 2] {
         let scale = if self.is_perspective() { 1.0 / (self.pixel * seen.z) } else { 1.0 / self.pixel };
         [0.5 * f64::from(self.width) + seen.x * scale, 0.5 * f64::from(self.height) - seen.y * scale]
     }
 
-    /// How near the universe of a frame comes to the eye, in model units: a sixteenth of its edge if the eye
-    /// is in it.
+    /// The distance of a frame's universe from the eye, in model units; at least a sixteenth of the
+    /// universe's edge.
     pub fn nearest(&self, frame: &Frame) -> f64 {
         let (eye, low) = (self.camera.eye, DVec3::from(frame.origin()));
         (eye.clamp(low, low + frame.edge()) - eye).length().max(frame.edge() / 16.0)
     }
 
-    /// Model units to a pixel at a depth.
+    /// The size of a pixel at a depth, in model units.
     pub fn pixel_at(&self, depth: f64) -> f64 {
         if self.is_perspective() { self.pixel * depth } else { self.pixel }
     }
@@ -288,8 +292,8 @@ mod tests {
                     }
                     let least = margins.iter().flatten().fold(1.0f64, |least, margin| least.min(*margin));
                     assert!(least > 0.0399, "{margins:?}");
-                    // Both sides of one axis are as near as they may be, unless a point would come too near
-                    // to the eye.
+                    // Both sides of one axis are as near as allowed, unless a point would come too near to
+                    // the eye.
                     let tight = |[low, high]: [f64; 2]| low < 0.0401 && high < 0.0401;
                     assert!(lens == Some(120.0) || margins.iter().any(|&sides| tight(sides)), "{margins:?}");
                 }

@@ -10,10 +10,10 @@ use crate::octree::OctreeRef;
 use crate::query::{Ray, TouchedCell};
 use alloc::vec::Vec;
 
-/// Samples of a block that rays are cast of at once: columns and rows.
+/// The columns and rows of samples in a block whose rays are cast together.
 const BLOCK: [usize; 2] = [8, 4];
 
-/// The lines of sight of a window and what they meet, block by block.
+/// The lines of sight of a window and the cells that they meet, block by block.
 pub struct Cast<'t, 'a> {
     tree: &'t OctreeRef<'a>,
     stage: Stage<'t>,
@@ -38,7 +38,7 @@ impl<'t, 'a> Cast<'t, 'a> {
         }
     }
 
-    /// What is met in the next block; `None` after the last one.
+    /// Returns the cells that the lines of sight of the next block meet; `None` after the last block.
     pub fn next<'s>(
         &'s mut self,
         window: &Window<'_>,

@@ -1,4 +1,4 @@
-//! What is cut away before a picture is taken.
+//! Clip planes that cut parts of the scene away.
 
 use crate::error::Error;
 use crate::lattice::Bounds;
@@ -8,25 +8,25 @@ use crate::memory;
 use alloc::vec::Vec;
 use glam::DVec3;
 
-/// Planes and a box: only what lies within all of them is shown.
+/// A set of clip planes. Only the part inside all of them is shown.
 #[derive(Debug, Clone, PartialEq, Default)]
 pub struct Clip {
-    /// Normals of length 1 that lead to what is kept, and offsets: n · p + d ≥ 0.
+    /// Unit normals that point to the kept side, and offsets: n · p + d ≥ 0.
     planes: Vec<(DVec3, f64)>,
 }
 
-/// The part of a line of sight that is shown.
+/// The visible part of a line of sight.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(crate) struct Shown {
-    /// Depths.
+    /// The depths at which the part begins and ends.
     pub from: f64,
     pub to: f64,
-    /// The outward normal of the plane by which it is entered; `None` if that is where one looks from.
+    /// The outward normal of the plane through which the line enters; `None` if the part begins at the eye.
     pub entry: Option<DVec3>,
 }
 
-/// Whether something at a depth is shown, between these depths. A face in a clip plane is, whatever rounding
-/// says.
+/// Returns whether something at a depth is shown between these depths. A face in a clip plane is shown,
+/// independently of rounding.
 #[inline]
 pub(crate) fn holds([from, to]: [f64; 2], depth: f64) -> bool {
     const ROUNDING: f64 = 1e-9;
@@ -34,12 +34,12 @@ pub(crate) fn holds([from, to]: [f64; 2], depth: f64) -> bool {
 }
 
 impl Clip {
-    /// Nothing is cut away.
+    /// Creates a clip that cuts nothing away.
     pub fn new() -> Clip {
         Clip::default()
     }
 
-    /// Keeps only points p with a x + b y + c z + d ≥ 0.
+    /// Keeps only the points p with a x + b y + c z + d ≥ 0.
     ///
     /// # Errors
     /// [`Error::Argument`] if a number is not zero and not between 2^-256 and 2^256 in magnitude, or if a, b
@@ -55,7 +55,7 @@ impl Clip {
         Ok(self)
     }
 
-    /// Keeps only what lies in a box.
+    /// Keeps only the part inside a box.
     ///
     /// # Errors
     /// [`Error::OutOfMemory`].
@@ -68,22 +68,22 @@ impl Clip {
         Ok(self)
     }
 
-    /// Whether nothing is cut away.
+    /// Returns whether nothing is cut away.
     pub fn is_empty(&self) -> bool {
         self.planes.is_empty()
     }
 
-    /// Normals that lead to what is kept, and offsets.
+    /// The unit normals that point to the kept side, and the offsets.
     pub(crate) fn planes(&self) -> &[(DVec3, f64)] {
         &self.planes
     }
 
-    /// Whether a point is shown.
+    /// Returns whether a point is shown.
     pub(crate) fn keeps(&self, point: DVec3) -> bool {
         self.planes.iter().all(|(normal, offset)| normal.dot(point) + offset >= 0.0)
     }
 
-    /// What is shown of the points from + t · along with t ≥ 0; `None` if that is nothing.
+    /// The visible part of the points from + t · along with t ≥ 0; `None` if there is none.
     #[inline]
     pub(crate) fn shown(&self, from: DVec3, along: DVec3) -> Option<Shown> {
         let mut shown = Shown { from: 0.0, to: f64::INFINITY, entry: None };

@@ -6,15 +6,15 @@ use super::stage::{Draw, Painter, Stage};
 use crate::error::Error;
 use alloc::boxed::Box;
 
-/// A layer that has its own clip planes, instead of the picture's: as surfaces that are cut away to show the
-/// volume behind them.
+/// A layer with clip planes of its own, instead of those of the picture. Use it, for example, to cut surfaces
+/// away and show the volume behind them.
 pub struct ClippedLayer<'a> {
     layer: &'a dyn Layer,
     clip: Clip,
 }
 
 impl<'a> ClippedLayer<'a> {
-    /// What lies of a layer within a clip.
+    /// Creates a layer that shows the part of `layer` within a clip.
     pub fn new(layer: &'a dyn Layer, clip: Clip) -> ClippedLayer<'a> {
         ClippedLayer { layer, clip }
     }

@@ -1,14 +1,14 @@
-//! Which samples a triangle covers, exactly.
+//! Exact tests of the samples that a triangle covers.
 //!
 //! A corner is a vector from the eye, and a sample is the vector d = (x, y, 1) of its line of sight. The line
 //! meets the triangle in front of the eye if d · (a × b), d · (b × c) and d · (c × a) have the sign of a · (b
-//! × c). No triangle has to be clipped at the plane of the eye for that. Under a parallel lens the corners
-//! are (x, y, 1), and all else is the same.
+//! × c). So no triangle has to be clipped at the plane of the eye. Under a parallel lens the corners are (x,
+//! y, 1), and everything else is the same.
 //!
-//! The signs are those of the exact determinants of the corners as they were rounded. So two triangles with a
-//! common edge never cover one sample both and never leave one out between them, however small they are. A
-//! sample on an edge counts as shifted by (ε, −ε²), to the right and downward: edges on the left and on top
-//! belong to a triangle.
+//! The signs are those of the exact determinants of the rounded corners. So two triangles with a common edge
+//! never both cover one sample, and never leave out a sample between them, however small they are. A sample
+//! on an edge counts as shifted by (ε, −ε²), to the right and downward: edges on the left and on top belong
+//! to a triangle.
 
 use crate::lattice::exact::{certain, sign, sign_of_products, sign_of_sum, two_product};
 use core::ops::Range;
@@ -20,18 +20,18 @@ struct EdgeFunction {
     b: DVec3,
     /// a × b, rounded.
     normal: DVec3,
-    /// Its value is off by no more than this, at any sample of the picture.
+    /// A bound of the error of the value, at any sample of the picture.
     error: f64,
 }
 
 impl EdgeFunction {
     /// `reach`: the greatest |x| and |y| of samples.
     fn new(a: DVec3, b: DVec3, reach: [f64; 2]) -> EdgeFunction {
-        // Not a × b itself, which loses digits if both lie far away and near each other.
+        // Not a × b itself, which loses digits if both are far away and close to each other.
         let along = b - a;
         let (left, right) = (a.yzx() * along.zxy(), a.zxy() * along.yzx());
         let size = (left.abs() + right.abs()).dot(DVec3::new(reach[0], reach[1], 1.0));
-        // At most eight roundings lie behind each product.
+        // Each product has at most eight roundings.
         let error = 16.0 * f64::EPSILON * size + f64::MIN_POSITIVE;
         EdgeFunction { a, b, normal: left - right, error }
     }
@@ -91,22 +91,23 @@ fn determinant_sign(a: DVec3, b: DVec3, c: DVec3) -> i32 {
 
 /// The samples that a triangle covers.
 pub struct Coverage {
-    /// Opposite to the corners 0, 1 and 2.
+    /// The edges opposite to the corners 0, 1 and 2.
     edges: [EdgeFunction; 3],
     /// 1 if the corners turn counter-clockwise as seen from the eye, −1 if clockwise.
     pub facing: i32,
 }
 
 impl Coverage {
-    /// The samples that a triangle with these corners covers, with |x| and |y| up to `reach`; `None` if it is
-    /// seen on edge.
+    /// The coverage of a triangle with these corners, for samples with |x| and |y| up to `reach`; `None` if
+    /// the triangle is seen edge-on.
     pub fn new([a, b, c]: [DVec3; 3], reach: [f64; 2]) -> Option<Coverage> {
         let facing = determinant_sign(a, b, c);
         let edges = [(b, c), (c, a), (a, b)].map(|(from, to)| EdgeFunction::new(from, to, reach));
         (facing != 0).then_some(Coverage { edges, facing })
     }
 
-    /// What each corner counts for at the sample (x, y), in all 1; `None` if the triangle does not cover it.
+    /// The weights of the corners at the sample (x, y), with a sum of 1; `None` if the triangle does not
+    /// cover the sample.
     #[inline(always)]
     pub fn weights(&self, x: f64, y: f64) -> Option<[f64; 3]> {
         let mut weights = [0.0; 3];
@@ -115,15 +116,15 @@ impl Coverage {
             if edge.sign(value, x, y) != self.facing {
                 return None;
             }
-            // The rounded value of a tiny one may have the other sign.
+            // The rounded value of a tiny triangle may have the other sign.
             *weight = (value * f64::from(self.facing)).max(0.0);
         }
         let sum = weights[0] + weights[1] + weights[2];
         Some(if sum > 0.0 { weights.map(|weight| weight / sum) } else { [1.0 / 3.0; 3] })
     }
 
-    /// A part of the columns with x = x₀ + i · step, 0 ≤ i < count, that holds all whose samples in the row y
-    /// are covered.
+    /// Returns a range of `columns`, with x = x₀ + i · step for column i, that contains all covered samples
+    /// in the row y.
     #[inline]
     pub fn columns(&self, y: f64, [x, step]: [f64; 2], columns: Range<usize>) -> Range<usize> {
         let (mut low, mut high) = (columns.start as f64, columns.end as f64);

@@ -1,4 +1,4 @@
-//! Where a mesh is smooth, and where it has edges.
+//! Smooth parts and edges of meshes.
 
 use super::mapped::mapped;
 use crate::control::Job;
@@ -8,14 +8,14 @@ use crate::mesh::{Edge, TriangleMesh, for_each_edge};
 use alloc::vec::Vec;
 use glam::{DVec3, Vec3};
 
-/// Triangles at a vertex beyond which their normals are not averaged. It bounds the work: each is compared
-/// with each.
+/// The greatest number of triangles at a vertex whose normals are averaged. It bounds the work, because each
+/// triangle is compared with each.
 const MOST_TRIANGLES: usize = 256;
 
-/// What is not steeper than this counts as plane, for the rounding: the cosine of a fiftieth of a degree.
+/// The cosine of the angle up to which a bend counts as plane because of rounding: a fiftieth of a degree.
 const PLANE: f64 = 1.0 - 1e-7;
 
-/// A vector of length 1, or zero. It neither overflows nor vanishes on the way.
+/// A unit vector, or zero. The computation neither overflows nor underflows.
 #[inline]
 fn unit(v: DVec3) -> DVec3 {
     moderate_unit(v).unwrap_or_else(|| {
@@ -24,7 +24,7 @@ fn unit(v: DVec3) -> DVec3 {
     })
 }
 
-/// A vector of length 1; `None` unless its square is far from the largest and the smallest numbers.
+/// A unit vector; `None` unless its square is far from the largest and the smallest numbers.
 #[inline]
 fn moderate_unit(v: DVec3) -> Option<DVec3> {
     let squared = v.length_squared();
@@ -35,7 +35,7 @@ fn corners(mesh: &TriangleMesh, triangle: [u32; 3]) -> [DVec3; 3] {
     triangle.map(|v| DVec3::from(mesh.vertices()[v as usize]))
 }
 
-/// The outward normals of the triangles, of length 1; zero if a triangle has no area.
+/// The outward unit normals of the triangles; zero for a triangle without area.
 pub fn normals(mesh: &TriangleMesh, job: &Job<'_>) -> Result<Vec<DVec3>, Error> {
     mapped(job, mesh.triangles().len(), |i| {
         let [a, b, c] = corners(mesh, mesh.triangles()[i]);
@@ -54,7 +54,7 @@ pub fn corner_normals(
     job: &Job<'_>,
 ) -> Result<Vec<[Vec3; 3]>, Error> {
     let least = libm::cos(crease.to_radians());
-    // Slot v + 1 counts first, then holds the place of the next triangle of vertex v, and at last the end of
+    // Slot v + 1 first counts, then holds the place of the next triangle of vertex v, and finally the end of
     // its list.
     let mut ends: Vec<usize> = memory::filled(mesh.vertices().len() + 2, 0)?;
     for &v in mesh.triangles().iter().flatten() {
@@ -109,9 +109,9 @@ pub fn features(
         let is_feature = match (edge.count(), two.next(), two.next()) {
             (2, Some(a), Some(b)) => {
                 let [a, b] = [a, b].map(|i| normals[i as usize]);
-                // Two triangles that run along the edge in one direction face opposite ways.
+                // Two triangles that use the edge in the same direction face opposite ways.
                 let cosine = if edge.excess() == 0 { a.dot(b) } else { -a.dot(b) };
-                // A triangle without area has no normal, and its neighbours are not known to bend.
+                // A triangle without area has no normal, so a bend at its edges is not known.
                 cosine < least && a != DVec3::ZERO && b != DVec3::ZERO
             }
             _ => true,
@@ -120,7 +120,7 @@ pub fn features(
     })
 }
 
-/// What `choose` makes of the edges of a mesh.
+/// Collects the results of `choose` for the edges of a mesh.
 pub fn edges<T>(
     mesh: &TriangleMesh,
     job: &Job<'_>,

@@ -1,8 +1,8 @@
-//! The triangles of a solid that is a mesh and nothing else.
+//! Drawing a solid that consists of a single mesh by its triangles.
 //!
-//! From outside, what is seen of a closed mesh is what is seen of its solid: the first triangle that a line
-//! of sight meets leads in, if it is met from the front, by every fill rule. So triangles are drawn, which
-//! takes less time than rays. Where one is seen from behind, the tile is drawn as any solid's.
+//! From outside, a closed mesh and its solid look the same: the first triangle that a line of sight meets
+//! leads into the solid under every fill rule, if it is met from the front. So triangles are drawn, which
+//! takes less time than rays. If one is seen from behind, the tile is drawn like that of any solid.
 
 use super::mesh::MeshLayer;
 use super::sight::Finish;
@@ -23,7 +23,7 @@ pub struct Facets<'a> {
     layer: MeshLayer<'a>,
 }
 
-/// The colour of what is seen from behind: none, which tells it from all else.
+/// The colour of back faces: transparent, which distinguishes them from everything else.
 const BEHIND: [u8; 4] = [0; 4];
 
 impl<'a> Facets<'a> {
@@ -31,8 +31,8 @@ impl<'a> Facets<'a> {
         Facets { mesh, layer: MeshLayer::new(mesh).colour(finish.colour).inside(BEHIND).crease(0.0) }
     }
 
-    /// Whether the triangles show what the solid does: the mesh is closed, lies in the universe and before
-    /// the eye, is opaque, and nothing of it is cut away.
+    /// Returns whether the triangles look like the solid: the mesh is closed, lies in the universe and in
+    /// front of the eye, is opaque, has no edges and no values to show, and nothing of it is cut away.
     pub fn show_the_solid(&self, skin: &Skin<'_>, frame: &Frame, stage: &Stage<'_>) -> Result<bool, Error> {
         let Finish { colour, edges, .. } = skin.finish;
         if skin.values.is_some() || edges.is_some() || colour[3] < 255 || !stage.clip.is_empty() {
@@ -40,7 +40,7 @@ impl<'a> Facets<'a> {
         }
         let ((low, high), universe) = (self.mesh.bounds(), Bounds::of(frame));
         let is_within = (0..3).all(|axis| {
-            // (A mesh with corners in a face of the universe may seem to reach beyond it.)
+            // (A mesh with corners in a face of the universe may seem to extend beyond it.)
             universe.min[axis] <= low[axis] && high[axis] <= universe.max[axis]
         });
         let corners = Bounds { min: low, max: high }.corners();
@@ -55,7 +55,8 @@ impl<'a> Facets<'a> {
         }
     }
 
-    /// What draws them, and where they do not tell what is seen, what `make` makes.
+    /// Returns the painter of the triangles. For tiles with back faces it uses the painter that `make`
+    /// creates.
     pub fn painter<'b, P: Painter + Send + 'b>(
         &'b self,
         stage: &Stage<'b>,
@@ -69,7 +70,7 @@ impl<'a> Facets<'a> {
 struct FacetPainter<'b, P, F> {
     facets: Box<dyn Painter + 'b>,
     make: F,
-    /// What draws any solid, once it is needed.
+    /// The painter of any solid, created when it is first needed.
     solid: OnceBox<P>,
 }
 

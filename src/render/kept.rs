@@ -1,4 +1,4 @@
-//! The cells that lines of sight next to each other meet, each of which is split once.
+//! A cache of the cells that neighbouring lines of sight meet, so that each is split once.
 
 use super::place_cache::Place;
 use crate::control::Control;
@@ -8,32 +8,33 @@ use crate::solid::{Verdict, Worker};
 use crate::walk::split_one;
 use hashbrown::HashMap;
 
-/// A worker, and the parts of all cells that it was asked for. A cache: when there are too many it forgets
-/// all of them.
+/// A worker and a cache of the parts of all visited cells. When the cache is full, everything in it is
+/// dropped.
 pub struct Kept<W: Worker> {
     worker: W,
     root: Verdict<W::Part>,
-    /// Height of the scratch memory before any split.
+    /// The height of the scratch memory before any split.
     mark: usize,
-    /// What the solid says of the children of cells.
+    /// The verdicts of the solid on the children of cells.
     splits: HashMap<Place, [Verdict<W::Part>; 8]>,
 }
 
-/// Most cells whose children are kept.
+/// The greatest number of cells whose children are kept.
 const MOST: usize = 1 << 15;
 
-/// Bytes of scratch memory after which all is forgotten.
+/// The bytes of scratch memory after which everything is dropped.
 const MOST_BYTES: usize = 1 << 25;
 
 impl<W: Worker> Kept<W> {
-    /// Asks the solid for the universe.
+    /// Evaluates the universe.
     pub fn new(mut worker: W) -> Result<Kept<W>, Error> {
         let root = worker.root()?;
         let mark = worker.mark();
         Ok(Kept { worker, root, mark, splits: HashMap::new() })
     }
 
-    /// What the solid says of a cell; of one in a cell that it does not split, what it says of that.
+    /// Returns the verdict of the solid on a cell. If the cell lies in a cell that the solid does not split,
+    /// returns the verdict on that cell.
     pub fn verdict(&mut self, cell: Cell, control: &Control<'_>) -> Result<Verdict<W::Part>, Error> {
         let (mut level, mut known) = self.nearest(cell);
         if level < cell.level && self.is_full() {
@@ -53,7 +54,7 @@ impl<W: Worker> Kept<W> {
         Ok(known)
     }
 
-    /// The deepest ancestor of which something is known, or the cell itself.
+    /// The deepest ancestor with a known verdict, or the cell itself.
     fn nearest(&self, cell: Cell) -> (u8, Verdict<W::Part>) {
         for level in (1..=cell.level).rev() {
             if let Some(split) = self.splits.get(&Place::from(cell.ancestor(level - 1))) {
@@ -67,7 +68,7 @@ impl<W: Worker> Kept<W> {
         self.splits.len() >= MOST || self.worker.scratch_bytes() >= MOST_BYTES
     }
 
-    /// Asks about a PARTIAL cell whose verdict was asked for last.
+    /// Evaluates a question about a PARTIAL cell, whose verdict must have been requested last.
     pub fn ask<R>(&mut self, question: impl FnOnce(&mut W) -> Result<R, Error>) -> Result<R, Error> {
         let mark = self.worker.mark();
         let answer = question(&mut self.worker);

@@ -11,7 +11,7 @@ use embedded_graphics::prelude::{Dimensions, DrawTarget, Drawable, Point, RgbCol
 use embedded_graphics::primitives::Rectangle;
 use embedded_graphics::text::{Baseline, Text};
 
-/// At which side of a picture a legend lies.
+/// The side of a picture on which a legend lies.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 pub enum LegendSide {
     /// In the middle of the right side, at most a third of the width.
@@ -27,21 +27,21 @@ pub type LegendBox = [u32; 4];
 /// The smallest picture that has room for a legend.
 const SMALLEST: [u32; 2] = [160, 120];
 
-/// Behind a legend the picture is mixed with white.
+/// The colour of the panel behind a legend, and its share (of 255) when it is mixed with the picture.
 const PANEL: [u8; 3] = [255; 3];
 const PANEL_SHARE: u32 = 220;
 
 const INK: Rgb888 = Rgb888::new(20, 20, 20);
 
-/// Longest labels and titles, in characters.
+/// The greatest length of labels and titles, in characters.
 const LONGEST: usize = 64;
 
-/// Draws a bar of the colours of the values in a range, with a title and numbers: 1, 2 or 5 times a power of
-/// ten apart. The legend is drawn on a light panel. It covers at most a third of the picture along one axis.
-/// Longer titles are cut.
+/// Draws a bar of the colours of the values in a range, with a title and numbers at intervals of 1, 2 or 5
+/// times a power of ten. The legend is drawn on a light panel. It covers at most a third of the picture along
+/// one axis. Titles that are too long are cut.
 ///
-/// Returns the box that it covers; `None` if the picture is smaller than 160 × 120 pixels, which has no
-/// legend.
+/// Returns the box that the legend covers; `None` if the picture is smaller than 160 × 120 pixels, because it
+/// then gets no legend.
 ///
 /// # Errors
 /// [`Error::Argument`] if the range is not two finite numbers in ascending order.
@@ -76,7 +76,7 @@ pub fn draw_colour_bar(
             canvas.text(title, [left, top + pad]);
             let bar_top = top + 2 * pad + line + line / 2;
             for y in 0..bar_height {
-                // The greatest value on top.
+                // The greatest value is on top.
                 let share = 1.0 - (f64::from(y) + 0.5) / f64::from(bar_height);
                 let shade = colour(low + (high - low) * share);
                 canvas.fill([left, bar_top + y, bar_width, 1], shade);
@@ -109,7 +109,7 @@ pub fn draw_colour_bar(
                 canvas.fill([bar_left + x, bar_top, 1, line], shade);
             }
             canvas.frame([bar_left, bar_top, bar_width, line]);
-            // Labels may be longer the closer they stand.
+            // More numbers may have longer labels, so search from the greatest number down.
             let most = (2..=(bar_width / canvas.width_of(3)).max(2)).rev().find(|&most| {
                 let ticks = Ticks::new(range, most);
                 let width = canvas.width_of(longest(&ticks).unwrap_or(0) + 2);
@@ -128,11 +128,11 @@ pub fn draw_colour_bar(
     Ok(Some(covered))
 }
 
-/// Draws a title, if it is not empty, and boxes of colours with their names, on a light panel. The legend
-/// covers at most a third of the picture along one axis. Names that find no room are left out, or cut.
+/// Draws a title, unless it is empty, and boxes of colours with their names, on a light panel. The legend
+/// covers at most a third of the picture along one axis. Names that do not fit are left out, or cut.
 ///
-/// Returns the box that it covers; `None` if the picture is smaller than 160 × 120 pixels, which has no
-/// legend, or if there is nothing to draw.
+/// Returns the box that the legend covers; `None` if the picture is smaller than 160 × 120 pixels, because it
+/// then gets no legend, or if there is nothing to draw.
 pub fn draw_names(
     picture: &mut Picture,
     title: &str,
@@ -154,8 +154,8 @@ pub fn draw_names(
         LegendSide::Right => (limit, canvas.size[1]),
         LegendSide::Bottom => (canvas.size[0], limit),
     };
-    // Where each entry lies in the panel: side by side below, one under another on the right. Those beyond
-    // its end are not visited.
+    // The place of each entry in the panel: side by side below, one under another on the right. Entries
+    // beyond its end are not visited.
     let place_all = |visit: Visit<'_>| {
         let [mut x, mut y] = [pad, pad + heading];
         for &(name, colour) in names {
@@ -190,14 +190,14 @@ pub fn draw_names(
     Some([left, top, width, height])
 }
 
-/// Draws a bar in the lower left corner that is as long as a round number of model units, with the number,
-/// and a note above it unless that is empty: on a light panel of at most half of the width and a third of the
-/// height. A picture of a plane that one looks at along its normal through a
+/// Draws a bar in the lower left corner whose length is a round number of model units, with the number, and a
+/// note above it unless the note is empty. The legend is drawn on a light panel of at most half the width and
+/// a third of the height. A picture of a plane that is seen along its normal through a
 /// [`Parallel`](super::Lens::Parallel) lens has one scale everywhere: its height in model units, divided by
-/// that in pixels.
+/// its height in pixels.
 ///
-/// Returns the box that it covers; `None` if the picture is smaller than 160 × 120 pixels, which has no
-/// legend.
+/// Returns the box that the legend covers; `None` if the picture is smaller than 160 × 120 pixels, because it
+/// then gets no legend.
 ///
 /// # Errors
 /// [`Error::Argument`] unless `units_per_pixel` lies between 1e-250 and 1e250.
@@ -235,15 +235,15 @@ pub fn draw_scale_bar(
     Ok(Some(covered))
 }
 
-/// The greatest number that is 1, 2 or 5 times a power of ten and not above a number: the factor, and the
-/// exponent.
+/// The greatest number that is 1, 2 or 5 times a power of ten and not above a given number: the factor, and
+/// the exponent.
 fn round_below(most: f64) -> (i64, i32) {
     let exponent = libm::floor(libm::log10(most)) as i32;
     let mut found = (1, exponent - 1);
     for (step, exponent) in
         [(5, exponent - 1), (1, exponent), (2, exponent), (5, exponent), (1, exponent + 1)]
     {
-        // (A number that is one but for rounding is one.)
+        // (A number that is round up to rounding errors counts as round.)
         if Ticks::value_of(step, exponent) <= most * (1.0 + 1e-9) {
             found = (step, exponent);
         }
@@ -251,35 +251,35 @@ fn round_below(most: f64) -> (i64, i32) {
     found
 }
 
-/// Is called with a name, its colour, and the place of its entry.
+/// A callback for a name, its colour, and the place of its entry.
 type Visit<'v> = &'v mut dyn FnMut(&str, [u8; 4], [u32; 2]);
 
 const INK_BYTES: [u8; 4] = [20, 20, 20, 255];
 
-/// Where a value lies in a range: 0 to 1.
+/// The place of a value in a range: 0 to 1.
 fn share_of(value: f64, [low, high]: [f64; 2]) -> f64 {
     if high > low { ((value - low) / (high - low)).clamp(0.0, 1.0) } else { 0.5 }
 }
 
-/// A picture to draw a legend on, or a part of it.
+/// A picture on which a legend is drawn, or a part of it.
 struct Canvas<'p> {
     picture: &'p mut Picture,
     size: [u32; 2],
     font: &'static MonoFont<'static>,
-    /// Pixels of the picture to one of the font.
+    /// The number of picture pixels per font pixel.
     scale: u32,
-    /// What may be changed: left, top, right and bottom.
+    /// The part that may be changed: left, top, right and bottom.
     within: [u32; 4],
 }
 
 impl<'p> Canvas<'p> {
-    /// Also how wide, on the right, or high, below, a legend may be.
+    /// Also returns the greatest width of a legend on the right, or the greatest height of one below.
     fn new(picture: &'p mut Picture, side: LegendSide) -> Option<(Canvas<'p>, u32)> {
         let size = [picture.width, picture.height];
         if size[0] < SMALLEST[0] || size[1] < SMALLEST[1] {
             return None;
         }
-        // Wide pictures that are not high have a smaller font, and high ones that are not wide too.
+        // Wide pictures that are not high have a smaller font, and so have high ones that are not wide.
         let (font, scale) = match size[1].min(size[0] * 3 / 4) {
             ..200 => (&FONT_5X8, 1),
             200..400 => (&FONT_6X10, 1),
@@ -311,18 +311,18 @@ impl<'p> Canvas<'p> {
         characters.min(LONGEST) as u32 * self.font.character_size.width * self.scale
     }
 
-    /// Makes a box light; what follows is drawn only there.
+    /// Lightens a box, and limits the following drawing to it.
     fn panel(&mut self, [left, top, width, height]: LegendBox) {
         self.within = [left, top, left + width, top + height];
         self.blend([left, top, width, height], PANEL, PANEL_SHARE);
     }
 
-    /// A box of a colour.
+    /// Fills a box with a colour.
     fn fill(&mut self, at: LegendBox, [r, g, b, opacity]: [u8; 4]) {
         self.blend(at, [r, g, b], opacity.into());
     }
 
-    /// A thin line around a box.
+    /// Draws a thin line around a box.
     fn frame(&mut self, [left, top, width, height]: LegendBox) {
         let thin = self.thin();
         let (right, bottom) = ((left + width).saturating_sub(thin), (top + height).saturating_sub(thin));
@@ -336,7 +336,7 @@ impl<'p> Canvas<'p> {
         }
     }
 
-    /// Mixes a colour into a box; 255 parts of it hide what was there.
+    /// Mixes a colour into a box; 255 parts of it hide the old colour.
     fn blend(&mut self, [left, top, width, height]: LegendBox, colour: [u8; 3], parts: u32) {
         let [from_x, from_y, to_x, to_y] = self.within;
         let columns = left.max(from_x)..left.saturating_add(width).min(to_x);
@@ -355,10 +355,10 @@ impl<'p> Canvas<'p> {
         }
     }
 
-    /// A line of text; the place is that of its upper left corner. What is too long is cut.
+    /// Draws a line of text from its upper left corner. Text that is too long is cut.
     fn text(&mut self, text: &str, [left, top]: [u32; 2]) {
         let end = text.char_indices().nth(LONGEST).map_or(text.len(), |(end, _)| end);
-        // Whole letters only.
+        // Only whole letters are drawn.
         let width = self.font.character_size.width * self.scale;
         let room = self.within[2].saturating_sub(left) / width.max(1);
         let end = text.char_indices().nth(room as usize).map_or(text.len(), |(cut, _)| cut).min(end);
@@ -371,7 +371,7 @@ impl<'p> Canvas<'p> {
     }
 }
 
-/// What draws letters on a canvas, each of their pixels as a square.
+/// A drawing target for letters on a canvas, with each of their pixels as a square.
 struct Pen<'c, 'p> {
     canvas: &'c mut Canvas<'p>,
     at: [u32; 2],
@@ -404,7 +404,7 @@ impl DrawTarget for Pen<'_, '_> {
 
 /// Round numbers in a range: the multiples of 1, 2 or 5 times a power of ten.
 struct Ticks {
-    /// The least and the greatest one, as multiples of 10^exponent, and how far apart they are.
+    /// The least and the greatest number, as multiples of 10^exponent, and the interval.
     first: i64,
     last: i64,
     step: i64,
@@ -412,13 +412,13 @@ struct Ticks {
 }
 
 impl Ticks {
-    /// At most `most` numbers in a range, at least 2. None if the range is so narrow, or so small, that its
-    /// numbers are not told apart.
+    /// At most `most` numbers in a range, at least 2. There are none if the range is so narrow, or so small,
+    /// that its numbers cannot be distinguished.
     fn new([low, high]: [f64; 2], most: u32) -> Ticks {
         let none = Ticks { first: 0, last: -1, step: 1, exponent: 0 };
         let extent = high - low;
         let reach = low.abs().max(high.abs());
-        // Beyond ±290 a power of ten is no ordinary double.
+        // Beyond ±290 a power of ten is not a normal double.
         if !(extent > reach * 1e-12 && extent > 1e-290 && reach < 1e290) {
             return none;
         }
@@ -426,7 +426,7 @@ impl Ticks {
         let candidates = (lowest..lowest + 3).flat_map(|exponent| [1, 2, 5].map(|step| (step, exponent)));
         for (step, exponent) in candidates {
             let unit = Ticks::value_of(step, exponent);
-            // A number that is a multiple but for rounding is one.
+            // A number that is a multiple up to rounding errors counts as one.
             let first = libm::ceil(low / unit - 1e-9) as i64;
             let last = libm::floor(high / unit + 1e-9) as i64;
             if last - first < i64::from(most) {
@@ -446,7 +446,7 @@ impl Ticks {
         if exponent < 0 { multiple as f64 / power } else { multiple as f64 * power }
     }
 
-    /// The numbers and what is written beside them.
+    /// The numbers and their labels.
     fn labels(&self) -> impl Iterator<Item = (f64, Label)> + '_ {
         (0..self.count() as i64).map(|i| {
             let multiple = self.first + i * self.step;
@@ -464,7 +464,7 @@ struct Label {
 impl Label {
     fn new(mut multiple: i64, mut exponent: i32) -> Label {
         let mut label = Label { bytes: [0; 32], count: 0 };
-        // Its memory is large enough for all that can come.
+        // The buffer is large enough for all possible labels.
         let _ = match exponent {
             _ if multiple == 0 => label.write_str("0"),
             -4..0 => {
@@ -520,7 +520,7 @@ mod tests {
         let mut picture = Picture::of_colours([400, 300], blank).unwrap();
         let covered = draw_scale_bar(&mut picture, 0.25, "30 x 20").unwrap().unwrap();
         assert!(covered[0] == 0 && covered[1] + covered[3] == 300 && covered[2] <= 200);
-        // A quarter of the width is 25 units; the bar is 20 long, or 80 pixels.
+        // A quarter of the width is 25 units; the bar is 20 units long, or 80 pixels.
         let is_ink = |pixel: &[u8; 4]| *pixel == INK_BYTES;
         let row = |y: usize| picture.colours()[400 * y..400 * y + 400].iter();
         let run = |y: usize| {
@@ -572,7 +572,7 @@ mod tests {
                     let read: f64 = label.as_str().parse().unwrap();
                     assert!((read - value).abs() <= 1e-12 * value.abs(), "{read} {value}");
                 }
-                // One more in between would not fit.
+                // One more number would not fit.
                 assert!(
                     most < 5 || ticks.count() as u32 * 5 + 5 >= 2 * most,
                     "{low} {high} {most} {}",

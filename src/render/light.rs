@@ -1,37 +1,37 @@
-//! Colours as light: linear, and multiplied by their opacity.
+//! Linear colours, premultiplied by their opacity.
 
 use core::ops::{Add, Mul};
 use glam::{DVec3, Vec4};
 
-/// Red, green, blue and opacity, 0 to 1. Colours are linear, and multiplied by the opacity.
+/// Red, green, blue and opacity, 0 to 1. The colours are linear, and premultiplied by the opacity.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
 pub struct Light(pub(super) Vec4);
 
 impl Light {
-    /// Nothing.
+    /// No light.
     pub const NONE: Light = Light(Vec4::ZERO);
 
-    /// A colour in sRGB and opacity, 0 to 255.
+    /// The light of an sRGB colour and an opacity, 0 to 255.
     pub fn of(rgba: [u8; 4]) -> Light {
         let [r, g, b] = [rgba[0], rgba[1], rgba[2]].map(linear);
         let a = f32::from(rgba[3]) / 255.0;
         Light(Vec4::new(r * a, g * a, b * a, a))
     }
 
-    /// This in front of that.
+    /// This light in front of another one.
     pub fn over(self, behind: Light) -> Light {
         Light(self.0 + behind.0 * (1.0 - self.0.w))
     }
 
-    /// As bright as this, as opaque as before.
+    /// The colour times a brightness, with the same opacity.
     pub fn lit(self, brightness: f32) -> Light {
         Light((self.0.truncate() * brightness).extend(self.0.w))
     }
 }
 
-/// A table by which light becomes bytes.
+/// A table that converts light to bytes.
 pub struct Tones {
-    /// The light from which on a byte is at least as large as its place here.
+    /// For each byte, the least light that becomes at least this byte.
     from: [f32; 256],
 }
 
@@ -46,7 +46,7 @@ impl Tones {
         Tones { from }
     }
 
-    /// sRGB and opacity, 0 to 255.
+    /// Converts light to sRGB and opacity, 0 to 255.
     pub fn rgba(&self, light: Light) -> [u8; 4] {
         let a = light.0.w;
         if a <= 0.0 {
@@ -107,30 +107,30 @@ fn linear_of(x: f32) -> f32 {
     if x <= 0.04045 { x / 12.92 } else { libm::powf((x + 0.055) / 1.055, 2.4) }
 }
 
-/// What lights a picture: a lamp on the upper left behind the camera, a weaker one on the right, and some
-/// light from everywhere, so that no side is black.
+/// The lights of a picture: a lamp on the upper left behind the camera, a weaker lamp on the right, and some
+/// ambient light, so that no side is black.
 #[derive(Debug, Clone, Copy)]
 pub struct Lamps {
-    /// Directions, of length 1, to the lamps.
+    /// The unit directions to the lamps.
     key: DVec3,
     fill: DVec3,
     up: DVec3,
 }
 
 impl Lamps {
-    /// Those of a camera with these directions.
+    /// The lamps of a camera with these directions.
     pub fn new(right: DVec3, up: DVec3, forward: DVec3) -> Lamps {
         let lamp = |x: f64, y: f64, z: f64| (right * x + up * y - forward * z).normalize();
         Lamps { key: lamp(-0.5, 0.7, 0.75), fill: lamp(0.8, 0.1, 0.6), up }
     }
 
-    /// How bright a matt surface is with an outward normal, of any length, that is seen in a direction. A
+    /// The brightness of a matt surface with an outward normal, of any length, that is seen in a direction. A
     /// surface that is seen from behind is lit as if it faced the camera.
     pub fn brightness(&self, normal: DVec3, along: DVec3) -> f32 {
         let normal = normal.normalize_or_zero();
         let normal = if normal.dot(along) > 0.0 { -normal } else { normal };
         let (key, fill) = (self.key.dot(normal).max(0.0), self.fill.dot(normal).max(0.0));
-        // What faces upward gets more of the light from everywhere.
+        // An upward-facing surface gets more of the ambient light.
         let sky = 0.5 + 0.5 * self.up.dot(normal);
         (0.05 + 0.09 * sky + 0.8 * key + 0.16 * fill) as f32
     }

@@ -14,14 +14,14 @@ use alloc::boxed::Box;
 use alloc::vec::Vec;
 use glam::DVec3;
 
-/// Widest lines, in pixels.
+/// The greatest width of lines, in pixels.
 const WIDEST: f64 = 256.0;
 
-/// Lines in space, drawn some pixels wide with round ends. A surface hides what lies behind it; a line on a
-/// surface is seen, because lines count as nearer than they are by their width and a pixel. Clip planes cut
-/// lines.
+/// A layer of lines in space, drawn some pixels wide with round ends. A surface hides the lines behind it. A
+/// line on a surface is visible, because lines count as nearer than they are by their width and a pixel. Clip
+/// planes cut lines.
 ///
-/// Making ready: O(lines + tiles). Drawing: O(samples that the lines cover).
+/// Preparing: O(lines + tiles). Drawing: O(samples that the lines cover).
 #[derive(Debug, Clone, PartialEq)]
 pub struct LinesLayer<'a> {
     lines: Cow<'a, [[[f64; 3]; 2]]>,
@@ -30,14 +30,15 @@ pub struct LinesLayer<'a> {
 }
 
 impl<'a> LinesLayer<'a> {
-    /// Lines between pairs of points (model units): black, one pixel wide. A line between equal points is a
-    /// dot.
+    /// Creates lines between pairs of points (model units): black, one pixel wide. A line between equal
+    /// points is a dot.
     pub fn new(lines: &'a [[[f64; 3]; 2]]) -> LinesLayer<'a> {
         LinesLayer { lines: Cow::Borrowed(lines), width: 1.0, colour: [0, 0, 0, 255] }
     }
 
-    /// The edges of cells. What several cells have in common is drawn once, also if the cells differ in size.
-    /// A cell that is none of the frame is left out. O(n log n); 24 bytes a cell and an edge, then 48 a line.
+    /// Creates lines along the edges of cells. An edge that several cells share is drawn once, even if the
+    /// cells differ in size. A cell that does not belong to the frame is left out. O(n log n); 24 bytes per
+    /// cell and edge, then 48 per line.
     ///
     /// # Errors
     /// [`Error::OutOfMemory`].
@@ -77,13 +78,13 @@ impl<'a> LinesLayer<'a> {
         Ok(LinesLayer { lines: Cow::Owned(lines), width: 1.0, colour: [0, 0, 0, 255] })
     }
 
-    /// The same with lines of this width, in pixels: above 0, at most 256.
+    /// Sets the width of the lines, in pixels: above 0, at most 256.
     #[must_use]
     pub fn width(self, width: f64) -> LinesLayer<'a> {
         LinesLayer { width, ..self }
     }
 
-    /// The same with lines of this colour: red, green, blue (sRGB) and opacity.
+    /// Sets the colour of the lines: red, green, blue (sRGB) and opacity.
     #[must_use]
     pub fn colour(self, colour: [u8; 4]) -> LinesLayer<'a> {
         LinesLayer { colour, ..self }
@@ -95,10 +96,10 @@ impl<'a> LinesLayer<'a> {
     }
 }
 
-/// The edge of a cell, or several that continue one another, in lattice planes.
+/// The edge of a cell, or several edges that continue one another, in lattice planes.
 #[derive(Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
 struct Edge {
-    /// On the two axes that follow its own.
+    /// The place on the two axes that follow the edge's own axis.
     beside: [u32; 2],
     from: u32,
     to: u32,
@@ -112,7 +113,7 @@ impl Edge {
     }
 }
 
-/// Refuses a width that no line has.
+/// Refuses an invalid line width.
 pub(super) fn check_width(width: f64) -> Result<(), Error> {
     let is_good = width > 0.0 && width <= WIDEST;
     if is_good {

@@ -1,4 +1,4 @@
-//! Lists that are made item by item, on the threads at hand.
+//! Building lists item by item in parallel.
 
 use crate::control::Job;
 use crate::error::Error;
@@ -6,13 +6,13 @@ use crate::memory;
 use crate::parallel;
 use alloc::vec::Vec;
 
-/// Items between two looks at whether the caller cancelled.
+/// The number of items between two checks for cancellation.
 const BLOCK: usize = 1 << 19;
 
-/// Fewer items are not worth starting threads.
+/// The number of items up to which threads do not pay.
 const WORTH: usize = 1 << 14;
 
-/// What `make` makes of 0, 1, 2 … `count` − 1.
+/// Returns the results of `make` for 0, 1, 2 … `count` − 1.
 pub fn mapped<T: Send>(
     job: &Job<'_>,
     count: usize,

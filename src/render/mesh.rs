@@ -18,27 +18,27 @@ use alloc::boxed::Box;
 use alloc::vec::Vec;
 use glam::{DVec2, DVec3, Vec3};
 
-/// Which edges of a mesh are drawn as lines.
+/// The edges of a mesh that are drawn as lines.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 pub enum MeshEdges {
-    /// None.
+    /// No edges.
     #[default]
     None,
-    /// Those at which the mesh ends, or where triangles meet at more than the crease angle.
+    /// The edges at which the mesh ends, or where triangles meet at more than the crease angle.
     Features,
-    /// Those of all triangles. The edges of triangles that are seen only a few pixels large are fainter, and
-    /// those of smaller ones not drawn: a fine mesh does not turn black.
+    /// The edges of all triangles. The edges of triangles that are only a few pixels large are fainter, and
+    /// those of smaller triangles are not drawn, so that a fine mesh does not turn black.
     All,
 }
 
-/// A triangle mesh: its faces are shaded and hide what lies behind them.
+/// A layer that shows a triangle mesh: shaded faces that hide everything behind them.
 ///
-/// A sample of the picture shows a triangle if its line of sight meets it. Which triangle that is, is decided
-/// exactly: on a closed mesh no sample is left out between two triangles, and none is counted twice. Faces
-/// that are seen from behind, as those inside of a mesh that is cut open, have a colour of their own.
+/// A sample of the picture shows a triangle if its line of sight meets the triangle. This decision is exact:
+/// on a closed mesh no sample is left out between two triangles, and none is counted twice. Faces that are
+/// seen from behind, such as the inside of a mesh that is cut open, have a colour of their own.
 ///
-/// Making ready: O(triangles + vertices + tiles), and some hundred bytes a triangle. Drawing: O(samples that
-/// the triangles cover).
+/// Preparing: O(triangles + vertices + tiles), and about a hundred bytes per triangle. Drawing: O(samples
+/// that the triangles cover).
 #[derive(Debug, Clone, Copy)]
 pub struct MeshLayer<'a> {
     mesh: &'a TriangleMesh,
@@ -51,15 +51,17 @@ pub struct MeshLayer<'a> {
     edge_colour: [u8; 4],
 }
 
-/// The edges of a triangle whose least height is seen as fewer pixels are not drawn; with the greater number
-/// they are drawn wholly. (In a triangle with two equal sides at a right angle, these have 2 and 8 pixels.)
+/// The least height of a triangle, in pixels: up to the first number its edges are not drawn, and from the
+/// second one on they are drawn fully. (In a right-angled triangle with two equal sides, these sides have
+/// about 2 and 8 pixels.)
 const FADE: [f64; 2] = [1.5, 5.5];
 
-/// What faces that are seen from behind are mixed with, unless they have a colour of their own: vermilion.
+/// The colour that is mixed into back faces, unless they have a colour of their own: vermilion.
 const INSIDE: [u8; 4] = [213, 94, 0, 255];
 
 impl<'a> MeshLayer<'a> {
-    /// A mesh in light grey, smooth where its triangles meet at less than 30 degrees, without edges.
+    /// Creates a layer of a mesh in light grey, smooth where its triangles meet at less than 30 degrees,
+    /// without edges.
     pub fn new(mesh: &'a TriangleMesh) -> MeshLayer<'a> {
         MeshLayer {
             mesh,
@@ -73,34 +75,33 @@ impl<'a> MeshLayer<'a> {
         }
     }
 
-    /// The same in another colour: red, green, blue (sRGB) and opacity. Through what is not opaque all faces
-    /// behind are seen.
+    /// Sets the colour: red, green, blue (sRGB) and opacity. Through a mesh that is not opaque, all faces
+    /// behind are visible.
     #[must_use]
     pub fn colour(self, colour: [u8; 4]) -> MeshLayer<'a> {
         MeshLayer { colour, ..self }
     }
 
-    /// The same with a colour for each triangle of the mesh.
+    /// Sets a colour for each triangle of the mesh.
     #[must_use]
     pub fn triangle_colours(self, colours: &'a [[u8; 4]]) -> MeshLayer<'a> {
         MeshLayer { colours: Some(colours), ..self }
     }
 
-    /// The same with another colour for faces that are seen from behind. By default it is the face's own
-    /// mixed with orange.
+    /// Sets the colour of back faces. By default it is the face's own colour mixed with vermilion.
     #[must_use]
     pub fn inside(self, colour: [u8; 4]) -> MeshLayer<'a> {
         MeshLayer { inside: Some(colour), ..self }
     }
 
-    /// The same, smooth where triangles meet at less than an angle in degrees, 0 to 180. With 0 every
+    /// Makes the mesh smooth where triangles meet at less than an angle in degrees, 0 to 180. With 0 every
     /// triangle is flat.
     #[must_use]
     pub fn crease(self, degrees: f64) -> MeshLayer<'a> {
         MeshLayer { crease: degrees, ..self }
     }
 
-    /// The same with edges drawn as lines of a width in pixels (above 0, at most 256) and a colour.
+    /// Draws edges as lines of a width in pixels (above 0, at most 256) and a colour.
     #[must_use]
     pub fn edges(self, edges: MeshEdges, width: f64, colour: [u8; 4]) -> MeshLayer<'a> {
         MeshLayer { edges, edge_width: width, edge_colour: colour, ..self }
@@ -109,8 +110,8 @@ impl<'a> MeshLayer<'a> {
 
 impl Draw for MeshLayer<'_> {
     /// # Errors
-    /// [`Error::Argument`] unless the crease angle is 0 to 180, the width of lines above 0 and at most 256,
-    /// and there are as many colours as triangles.
+    /// [`Error::Argument`] unless the crease angle is 0 to 180, the width of lines is above 0 and at most
+    /// 256, and there are as many colours as triangles.
     fn prepare<'a>(&'a self, stage: &Stage<'a>) -> Result<Box<dyn Painter + 'a>, Error> {
         let mesh = self.mesh;
         check_width(self.edge_width)?;
@@ -142,7 +143,7 @@ impl Draw for MeshLayer<'_> {
                 let opacities = mapped(stage.job, triangles.len(), |i| {
                     edge_opacity(view, triangles[i].map(|v| seen[v as usize]))
                 })?;
-                // Where a large triangle ends at a small one, its edge is seen.
+                // The edge between a large and a small triangle is visible.
                 crease::edges(mesh, stage.job, |edge| {
                     let opacity = edge.triangles().map(|i| opacities[i as usize]).fold(0.0, f32::max);
                     (opacity > 0.0).then_some(([edge.low, edge.high], opacity))
@@ -151,15 +152,15 @@ impl Draw for MeshLayer<'_> {
         };
         let lines = edges.into_iter().map(|(ends, opacity)| (ends.map(|v| vertex(v as usize)), opacity));
         let edges = Strokes::new(stage, lines, self.edge_width, Light::of(self.edge_colour))?;
-        // The coordinates of the outermost samples: x and y of a line of sight that is 1 long along the view.
+        // The coordinates of the outermost samples: x and y of a line of sight with length 1 along the view.
         let reach = [view.width, view.height].map(|side| 0.5 * f64::from(side) * view.pixel_at(1.0));
         let lights = lights(self.colour, self.inside);
         Ok(Box::new(Ready { layer: self, stage: *stage, seen, bins, normals, smooth, edges, reach, lights }))
     }
 }
 
-/// Where a triangle is seen: the least x and y and the greatest ones, in pixels. It may be infinite. `None`
-/// if the triangle lies behind the eye.
+/// The place of a triangle in the picture: the least x and y and the greatest ones, in pixels; these may be
+/// infinite. `None` if the triangle lies behind the eye.
 fn place(view: &View, corners: [DVec3; 3]) -> Option<[f64; 4]> {
     const NOWHERE: [f64; 4] = [f64::INFINITY, f64::INFINITY, f64::NEG_INFINITY, f64::NEG_INFINITY];
     let is_before = |corner: &DVec3| corner.z > 0.0;
@@ -176,7 +177,7 @@ fn place(view: &View, corners: [DVec3; 3]) -> Option<[f64; 4]> {
     }
     let mut hull = NOWHERE;
     let mut add = |[x, y]: [f64; 2]| {
-        // What is not a number may be anywhere.
+        // NaN may be anywhere.
         let anywhere = |x: f64| if x.is_nan() { [f64::NEG_INFINITY, f64::INFINITY] } else { [x; 2] };
         let (x, y) = (anywhere(x), anywhere(y));
         hull = [hull[0].min(x[0]), hull[1].min(y[0]), hull[2].max(x[1]), hull[3].max(y[1])];
@@ -191,8 +192,8 @@ fn place(view: &View, corners: [DVec3; 3]) -> Option<[f64; 4]> {
         }
         let next = corners[(i + 1) % 3];
         if is_before(&corner) != is_before(&next) {
-            // The edge leads to infinity, in the direction of its point in the plane of the eye. What is next
-            // to nothing may lie on either side.
+            // The edge leads to infinity, in the direction of its point in the plane of the eye. A nearly
+            // zero component may have either sign.
             let (a, b) = (corner * next.z, next * corner.z);
             let to = (b - a) * if is_before(&corner) { 1.0 } else { -1.0 };
             let most = 1e-12 * (a.abs() + b.abs());
@@ -207,7 +208,7 @@ fn place(view: &View, corners: [DVec3; 3]) -> Option<[f64; 4]> {
     Some(hull)
 }
 
-/// The opacity of the edges of a triangle, by the size in which it is seen: 0 to 1.
+/// The opacity of the edges of a triangle, by its size in the picture: 0 to 1.
 fn edge_opacity(view: &View, corners: [DVec3; 3]) -> f32 {
     if view.is_perspective() && corners.iter().any(|corner| corner.z <= 0.0) {
         return 1.0;
@@ -217,7 +218,7 @@ fn edge_opacity(view: &View, corners: [DVec3; 3]) -> f32 {
     // (A triangle that is seen as a point has no height.)
     let height = if longest > 0.0 { (b - a).perp_dot(c - a).abs() / longest } else { 0.0 };
     let opacity = (height - FADE[0]) / (FADE[1] - FADE[0]);
-    // What is no number is large.
+    // NaN counts as large.
     if opacity.is_nan() { 1.0 } else { opacity.clamp(0.0, 1.0) as f32 }
 }
 
@@ -229,20 +230,20 @@ struct Ready<'a> {
     seen: Vec<DVec3>,
     bins: Bins,
     normals: Vec<DVec3>,
-    /// Of the corners of each triangle, unless all are flat.
+    /// The normals at the corners of each triangle, unless all triangles are flat.
     smooth: Option<Vec<[Vec3; 3]>>,
     edges: Strokes,
     reach: [f64; 2],
-    /// Of faces seen from the front and from behind, unless each has a colour of its own.
+    /// The colours of front and back faces, unless each triangle has a colour of its own.
     lights: [Light; 2],
 }
 
-/// What all triangles of a tile need to know of its samples.
+/// The data of a tile's samples that all triangles need.
 struct Samples {
-    /// x and y of the lines of sight, which are 1 long along the view.
+    /// x and y of the lines of sight, with length 1 along the view.
     columns: Vec<f64>,
     rows: Vec<f64>,
-    /// The depths between which the lines of sight are shown; none if nothing is cut away.
+    /// The depths between which each line of sight is shown; empty if nothing is cut away.
     shown: Vec<[f64; 2]>,
 }
 
@@ -266,14 +267,14 @@ impl Samples {
         Ok(Samples { columns, rows, shown })
     }
 
-    /// Whether something at a depth is shown.
+    /// Returns whether something at a depth is shown.
     #[inline(always)]
     fn shows(&self, sample: usize, depth: f64) -> bool {
         self.shown.get(sample).is_none_or(|&shown| holds(shown, depth))
     }
 }
 
-/// No depth lies between these.
+/// An empty range of depths.
 const NOTHING: [f64; 2] = [f64::INFINITY, f64::NEG_INFINITY];
 
 impl Painter for Ready<'_> {
@@ -298,7 +299,7 @@ impl Ready<'_> {
         let view = self.stage.view;
         let corners = mesh.triangles()[i].map(|v| self.seen[v as usize]);
         let Some([left, top, right, bottom]) = place(view, corners) else { return Ok(()) };
-        // Rounding moves nothing by as much as this.
+        // Rounding moves nothing by this much.
         const MARGIN: f64 = 1e-3;
         let columns = tile.between(0, left - MARGIN, right + MARGIN);
         let rows = tile.between(1, top - MARGIN, bottom + MARGIN);
@@ -328,21 +329,21 @@ impl Ready<'_> {
     }
 
     fn brightness(&self, normal: DVec3) -> f32 {
-        // It faces the eye, whatever rounding says of one that is seen on edge.
+        // The triangle faces the eye, even if the rounded normal of an edge-on triangle says otherwise.
         self.stage.view.lamps.brightness(normal, -normal)
     }
 }
 
-/// The colours of a face seen from the front and from behind.
+/// The colours of front and back faces.
 fn lights(colour: [u8; 4], inside: Option<[u8; 4]>) -> [Light; 2] {
     let own = Light::of(colour);
     let mixed = || own * 0.5 + Light::of(INSIDE) * (0.5 * own.0.w);
     [own, inside.map_or_else(mixed, Light::of)]
 }
 
-/// What light comes from a triangle.
+/// The light that comes from a triangle.
 enum Shade<'a> {
-    /// The same from all of it.
+    /// The same light from all of it.
     Flat(Light),
     /// The colour, the normals at the corners, and the sign with which they face the eye.
     Smooth(Light, &'a [Vec3; 3], f64),
@@ -364,7 +365,7 @@ impl<'a> Shade<'a> {
             }
         }
         let normal = match mesh.normals[i] {
-            // A triangle without area is seen only by rounding.
+            // A triangle without area is only visible by rounding.
             DVec3::ZERO => -DVec3::from(mesh.stage.view.camera.forward()),
             normal => normal * facing,
         };
@@ -385,7 +386,7 @@ impl<'a> Shade<'a> {
                 let mean = |sum: DVec3, (normal, weight): (&Vec3, f64)| sum + normal.as_dvec3() * weight;
                 let normal = corners.iter().zip(weights).fold(DVec3::ZERO, mean) * *facing;
                 let (_, along) = tile.line(column, row);
-                // A mean normal near the outline may face away from the eye, which the surface does not.
+                // A mean normal near the outline may face away from the eye, although the surface does not.
                 let away = normal.dot(along).max(0.0) / along.length_squared();
                 colour.lit(mesh.brightness(normal - along * away))
             }

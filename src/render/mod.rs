@@ -1,8 +1,8 @@
-//! Pictures: what solids, meshes and volumes look like.
+//! Pictures of solids, meshes and volumes.
 //!
-//! A picture is made of [layers](Layer), each of which draws into small tiles: surfaces hide each other by
-//! their depth, and volumes are seen before, between and behind them. Tiles are independent of each other, so
-//! that a picture is the same for any number of threads.
+//! A picture consists of [layers](Layer), each of which draws into small tiles. Surfaces hide each other by
+//! their depth, and volumes are visible before, between and behind them. Tiles are independent of each other,
+//! so a picture is the same for any number of threads.
 
 mod bins;
 mod camera;
@@ -64,33 +64,34 @@ use picture::check_size;
 use stage::{Pass, Stage};
 use tile::{TILE, Tile};
 
-/// Most samples of a pixel along each axis.
+/// The greatest number of samples of a pixel along each axis.
 const MOST_GRID: u32 = 8;
 
-/// How a picture is taken.
+/// The settings of a picture.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Shot {
-    /// From where.
+    /// The camera.
     pub camera: Camera,
     /// Width and height in pixels, 1 to 16384 each.
     pub size: [u32; 2],
-    /// Samples of a pixel: 1, 4, 9, 16, 25, 36, 49 or 64, on a grid.
+    /// Samples per pixel: 1, 4, 9, 16, 25, 36, 49 or 64, on a grid.
     pub samples: u32,
-    /// What is cut away.
+    /// The clip planes.
     pub clip: Clip,
-    /// What is seen where nothing is: red, green, blue (sRGB) and opacity.
+    /// The background: red, green, blue (sRGB) and opacity.
     pub background: [u8; 4],
 }
 
 impl Shot {
-    /// A picture of this size with four samples a pixel, nothing cut away, on white.
+    /// Creates the settings of a picture of this size with four samples per pixel, without clip planes, on
+    /// white.
     pub fn new(camera: Camera, size: [u32; 2]) -> Shot {
         Shot { camera, size, samples: 4, clip: Clip::new(), background: [255; 4] }
     }
 
-    /// The line of sight of a place in the picture, in pixels from its upper left corner (the middle of the
-    /// first pixel is ½, ½): from where, and in which direction. What is seen there at the depth d is at from +
-    /// d · direction.
+    /// Returns the line of sight of a place in the picture, in pixels from its upper left corner (the middle
+    /// of the first pixel is ½, ½): its start and its direction. The point that is visible there at the depth
+    /// d is start + d · direction.
     ///
     /// ```
     /// use leafless::render::{Camera, Lens, Shot};
@@ -110,11 +111,11 @@ impl Shot {
     }
 }
 
-/// Takes a picture of layers. Surfaces hide what lies behind them, whichever layer it is of; of two at one
-/// depth the first layer's is seen. O(pixels · samples), and what each layer says.
+/// Draws a picture of layers. Surfaces hide the surfaces behind them, whichever layer they belong to. At
+/// equal depth the surface of the first layer is visible. O(pixels · samples), plus the cost of each layer.
 ///
 /// # Errors
-/// [`Error::Argument`] for a size or a number of samples that is not as it must be; what a layer reports;
+/// [`Error::Argument`] for an invalid size or number of samples; the errors of the layers;
 /// [`Error::OutOfMemory`], [`Error::Cancelled`].
 pub fn render(shot: &Shot, layers: &[&dyn Layer], control: &Control<'_>) -> Result<Picture, Error> {
     let grid = shot.grid()?;

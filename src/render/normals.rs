@@ -1,10 +1,10 @@
-//! Normals of surfaces of which only cells are known.
+//! Normals of surfaces that are only known by their cells.
 //!
-//! Cells of one size say little of a direction: a plane that rises by less than a cell over five of them
-//! looks level. So a plane is fitted to the surface about each block of 8³ cells, in a window of 24³, and the
-//! planes of the 27 blocks about a point are blended. Where the surface is not plane there, it is blocks of
-//! 4³ in windows of 12³; and where it is not plane there either, about edges and thin walls, the gradient of
-//! the occupancy over 5³ cells.
+//! Cells of one size say little about a direction: a plane that rises by less than a cell over five cells
+//! looks level. So a plane is fitted to the surface around each block of 8³ cells, in a window of 24³ cells,
+//! and the planes of the 27 blocks around a point are blended. Where the surface is not plane there, blocks
+//! of 4³ in windows of 12³ are used. Where it is not plane there either, near edges and thin walls, the
+//! gradient of the occupancy over 5³ cells is used.
 
 use super::occupancy::Occupancy;
 use super::place_cache::Places;
@@ -17,38 +17,38 @@ use crate::octree::view::OctreeRef;
 use crate::query::TouchedCell;
 use glam::{DVec3, Vec3A, Vec4};
 
-/// Normals of a stored octree. What was found out before is kept: most samples lie in the block of the one
-/// before.
+/// Normals of a stored octree. Results are cached, because most samples lie in the block of the previous
+/// sample.
 pub struct Normals<'a> {
     occupancy: Occupancy<'a>,
     sizes: [Blocks; 2],
 }
 
-/// What is known of blocks of one size.
+/// Results for blocks of one size.
 struct Blocks {
     planes: Places<Plane>,
     about: Places<About>,
 }
 
-/// The planes of the 27 blocks about a point that lies in the block in their middle.
+/// The planes of the 27 blocks around a point in the middle block.
 struct About {
-    /// Which blocks have a surface.
+    /// The blocks that have a surface, as bits.
     present: u32,
-    /// Normals times their confidences, and these.
+    /// Normals times their confidences, and the confidences.
     planes: [Vec4; 27],
 }
 
-/// Edges of blocks, large and small.
+/// The edges of large and of small blocks.
 const EDGES: [f64; 2] = [8.0, 4.0];
 
-/// How planes are fitted about large blocks and about small ones. (In small windows rounding to cells alone
-/// makes root mean squares of some 0.3.)
+/// The fitting of planes around large blocks and around small ones. (In small windows, rounding to cells
+/// alone makes root mean squares of about 0.3.)
 const FITTINGS: [Fitting; 2] = [
     Fitting { full: 128, edge: 4.0, plane: [0.25, 0.45] },
     Fitting { full: 16, edge: 2.0, plane: [0.45, 0.8] },
 ];
 
-/// Confidences below which planes do not say anything.
+/// The confidences below which planes are ignored.
 const LEAST: [f32; 2] = [0.7, 0.3];
 
 impl<'a> Normals<'a> {
@@ -57,8 +57,8 @@ impl<'a> Normals<'a> {
         Normals { occupancy: Occupancy::new(tree), sizes: [blocks(), blocks()] }
     }
 
-    /// The outward normal at a point of the surface, in cells from the universe's lower corner, that lies in
-    /// or on the finest cell `at`; of length 1, or zero if nothing is known.
+    /// Returns the outward unit normal at a point of the surface, or zero if nothing is known. The point is
+    /// given in cells from the universe's lower corner, and lies in or on the finest cell `at`.
     pub fn at(&mut self, point: DVec3, at: [u32; 3]) -> Result<DVec3, Error> {
         for size in [0, 1] {
             if let Some(normal) = self.blended(size, point)? {
@@ -68,7 +68,7 @@ impl<'a> Normals<'a> {
         self.gradient(at)
     }
 
-    /// The mean of the planes about a point.
+    /// The mean of the planes around a point.
     fn blended(&mut self, size: usize, point: DVec3) -> Result<Option<DVec3>, Error> {
         let place = point / EDGES[size];
         let middle = place.floor();
@@ -148,12 +148,12 @@ impl<'a> Normals<'a> {
                 }
             }
         }
-        // What cancels out has no direction.
+        // Contributions that cancel out have no direction.
         Ok(if sum.length() < LEAST_GRADIENT { DVec3::ZERO } else { sum.normalize() })
     }
 }
 
-/// Shorter sums are roundings of zero: a single cell makes one of 0.07 at least.
+/// Shorter sums are rounding errors of zero: a single cell makes a sum of at least 0.07.
 const LEAST_GRADIENT: f64 = 1e-6;
 
 /// exp(−r² / (2 · 1.5²)) for r² = 0 … 12.
@@ -163,8 +163,8 @@ const WEIGHTS: [f64; 13] = [
 ];
 
 impl About {
-    /// The sum of the planes by the weights of their blocks along each axis, and of the weights of those that
-    /// have one.
+    /// The sum of the planes, weighted by their blocks along each axis, and the sum of the weights of the
+    /// blocks that have a plane.
     #[inline]
     fn blended(&self, weights: [Vec3A; 3]) -> (Vec4, f32) {
         let mut of_blocks = [0.0; 27];
@@ -210,7 +210,7 @@ mod tests {
     use crate::op::{Rule, build};
     use crate::solid::Csg;
 
-    /// A block with a dome and a bore: plane, curved, and with edges.
+    /// A block with a dome and a bore: with plane and curved parts, and edges.
     fn part() -> Octree {
         let block = Csg::cuboid([-0.9, -0.9, -0.4], [0.9, 0.9, 0.4]).unwrap();
         let ball = Csg::ball([0.0, 0.0, 0.3], 0.8).unwrap();

@@ -1,4 +1,4 @@
-//! How full the parts of a stored octree are.
+//! The occupancy of the parts of a stored octree.
 
 use super::place_cache::Places;
 use crate::error::Error;
@@ -8,7 +8,7 @@ use crate::octree::links::Step;
 use crate::octree::view::OctreeRef;
 use crate::octree::{Planes, Tag};
 
-/// How full an octree is: two for each FULL cell, one for each PARTIAL one.
+/// The occupancy of an octree: two for each FULL cell, one for each PARTIAL one.
 pub struct Occupancy<'a> {
     tree: OctreeRef<'a>,
     /// Words along each axis of the universe. A word has 4³ cells.
@@ -20,13 +20,13 @@ pub struct Occupancy<'a> {
 /// 4³ words.
 struct Part {
     source: Source,
-    /// How full each word is, in Morton order.
+    /// The occupancy of each word, in Morton order.
     shares: [u8; 64],
 }
 
 #[derive(Clone, Copy)]
 enum Source {
-    /// All words are alike.
+    /// All words are equal.
     Alike(Planes),
     /// An element of the level above the bricks.
     Element(usize, Planes),
@@ -34,13 +34,13 @@ enum Source {
 
 impl<'a> Occupancy<'a> {
     pub fn new(tree: &OctreeRef<'a>) -> Occupancy<'a> {
-        // A picture shows what is FULL up to the universe's faces.
+        // A picture shows the FULL cells up to the universe's faces.
         let outside = Planes::uniform(Tag::Empty);
         let words = tree.frame().cells().div_ceil(4) as i32;
         Occupancy { tree: *tree, words, outside, parts: Places::new() }
     }
 
-    /// The tags of 4³ cells, counted in as many.
+    /// The tags of a word of 4³ cells; `at` is counted in words.
     pub fn word(&mut self, at: [i32; 3]) -> Result<Planes, Error> {
         if !self.is_inside(at) {
             return Ok(self.outside);
@@ -49,8 +49,8 @@ impl<'a> Occupancy<'a> {
         Ok(word_of(&self.tree, self.parts.item(part).source, index(at)))
     }
 
-    /// How full the octants of 3³ blocks are, each in one byte, eight octants to a block: of blocks of 4³
-    /// cells, or of 8³ if they are `large`. The block in the middle is `at`, counted in blocks.
+    /// The occupancy of the octants of 3³ blocks, each in one byte, eight octants to a block. The blocks have
+    /// 4³ cells, or 8³ if `large`. The middle block is `at`, counted in blocks.
     pub fn window(&mut self, at: [i32; 3], large: bool) -> Result<[u64; 27], Error> {
         // Blocks of a part along each axis: 2^shift.
         let shift = if large { 1 } else { 2 };
@@ -123,7 +123,7 @@ impl<'a> Occupancy<'a> {
         Part { source, shares }
     }
 
-    /// Descends to a part. Damage and what lies above the finest level count as uniform.
+    /// Descends to a part. Damaged parts and cells above the finest level count as uniform.
     fn source(&self, at: [u32; 3]) -> Source {
         let tree = &self.tree;
         if tree.root_tag() != Tag::Branch {
@@ -132,7 +132,7 @@ impl<'a> Occupancy<'a> {
         let (mut e, mut index) = (0, 0);
         loop {
             let planes = tree.entry(index).unwrap_or(Planes::uniform(Tag::Partial));
-            // Levels from here to that of the bricks.
+            // The number of levels from here to that of the bricks.
             match tree.levels() - 1 - e {
                 0 => return Source::Alike(planes),
                 1 => return Source::Element(index, planes),
@@ -171,7 +171,7 @@ fn set_bits(word: Planes) -> u8 {
     (word.upper.count_ones() + word.full().count_ones()) as u8
 }
 
-/// How many bits of each byte are set.
+/// The number of set bits in each byte.
 fn set_bits_by_byte(word: u64) -> u64 {
     let pairs = word - (word >> 1 & 0x5555_5555_5555_5555);
     let fours = (pairs & 0x3333_3333_3333_3333) + (pairs >> 2 & 0x3333_3333_3333_3333);
@@ -187,7 +187,7 @@ mod tests {
     use crate::op::{Rule, build};
     use crate::solid::Csg;
 
-    /// How full a cube of cells is, cell by cell.
+    /// The occupancy of a cube of cells, counted cell by cell.
     fn counted(tree: &Octree, low: [i32; 3], edge: i32) -> u8 {
         let cells = tree.frame().cells() as i32;
         let mut sum = 0;
@@ -197,7 +197,7 @@ mod tests {
                     let at = [x, y, z];
                     let is_inside = at.iter().all(|i| (0..cells).contains(i));
                     sum += match is_inside.then(|| tree.view().tag_at(at.map(|i| i as u32))) {
-                        // Whatever the exterior is.
+                        // For any exterior.
                         None => 0,
                         Some(Tag::Full) => 2,
                         Some(Tag::Empty) => 0,

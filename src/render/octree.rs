@@ -13,16 +13,17 @@ use crate::octree::OctreeRef;
 use alloc::boxed::Box;
 use glam::DVec3;
 
-/// The surface of a stored octree: the first cells that are not EMPTY along each line of sight.
+/// A layer that shows the surface of a stored octree: the first cells that are not EMPTY along each line of
+/// sight.
 ///
 /// An extended octree ([`build_extended`](crate::build_extended)) is shown as the solid that its cuts
 /// describe, like a [`SolidLayer`](crate::render::SolidLayer). With [`faces`](Finish::faces) its own cells
-/// are shown; take the tree of [`plain`](crate::op::plain) for smaller ones.
+/// are shown. Use the tree of [`plain`](crate::op::plain) for smaller cells.
 ///
 /// Normals are those of planes fitted to the surface in windows of 24³ cells, or of 12³ where it is not
-/// plane; where it is not plane there either, the gradient of the occupancy over 5³ cells, in which PARTIAL
-/// cells count half. What is cut open by a clip plane is shown flat. Through what is translucent other layers
-/// are seen, but nothing more of this one.
+/// plane. Where it is not plane there either, the normal is the gradient of the occupancy over 5³ cells, in
+/// which PARTIAL cells count half. A part that a clip plane cuts open is shown flat. Through a translucent
+/// surface other layers are visible, but nothing more of this layer.
 ///
 /// O(samples · cells along a line of sight).
 #[derive(Clone, Copy)]
@@ -38,14 +39,14 @@ impl core::fmt::Debug for OctreeLayer<'_> {
 }
 
 impl<'a> OctreeLayer<'a> {
-    /// The cells of an octree that are not EMPTY.
+    /// Creates a layer of the cells of an octree that are not EMPTY.
     pub fn new(tree: &OctreeRef<'a>, finish: Finish) -> OctreeLayer<'a> {
         OctreeLayer { tree: *tree, skin: Skin { finish, values: None } }
     }
 
-    /// The same in the colours of an attribute's values, as a channel has them: `colour` tells the colour of
-    /// a value, and of none. Values are those half a finest cell below the surface, where a solid's channel
-    /// has one.
+    /// Shows the colours of an attribute's values, for example those of a channel: `colour` returns the
+    /// colour of a value, and of a missing value. The value is taken half a finest cell below the surface,
+    /// where a solid's channel has one.
     #[must_use]
     pub fn values(self, attribute: &'a dyn Attribute, colour: Colouring<'a>) -> OctreeLayer<'a> {
         OctreeLayer { skin: Skin { values: Some((attribute, colour)), ..self.skin }, ..self }
@@ -88,5 +89,5 @@ impl Painter for OctreePainter<'_> {
     }
 }
 
-/// Cells over which normals turn at an edge.
+/// The number of cells over which normals turn at an edge.
 const BLUR: f64 = 6.0;

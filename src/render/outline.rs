@@ -1,8 +1,9 @@
-//! Edges of surfaces of which lines of sight are all that is known: silhouettes, and creases between faces.
+//! Edges of surfaces that are only known by lines of sight: silhouettes, and creases between faces.
 //!
-//! A sample lies on a silhouette if a sample near by shows nothing, or something that lies behind. It lies on
-//! a crease if the planes of the surface on both sides meet there. The sides are sought beyond what normals
-//! are blurred over: where a surface is known by its cells, its normals turn slowly at an edge.
+//! A sample lies on a silhouette if a nearby sample shows nothing, or a surface behind. It lies on a crease
+//! if the planes of the surface on both sides meet there. The sides are examined beyond the distance over
+//! which normals are blurred, because the normals of a surface that is known by its cells turn slowly at an
+//! edge.
 
 use super::light::Light;
 use super::lines::check_width;
@@ -15,14 +16,14 @@ use crate::memory;
 use alloc::vec::Vec;
 use glam::DVec3;
 
-/// The edges of a surface that are drawn as lines: silhouettes, and creases, at which faces meet.
+/// The style of edges that are drawn as lines: silhouettes, and creases, at which faces meet.
 ///
 /// Edges are found at the samples of the picture. A round edge counts as a crease if it turns within two
-/// pixels, or within six cells where only cells are known. Where these are larger than two pixels, only
+/// pixels, or within six cells where only cells are known. Where cells are larger than two pixels, only
 /// silhouettes are drawn.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Outline {
-    /// In pixels: above 0, at most 8.
+    /// The width in pixels: above 0, at most 8.
     pub width: f64,
     /// Red, green, blue (sRGB) and opacity.
     pub colour: [u8; 4],
@@ -37,11 +38,11 @@ impl Default for Outline {
     }
 }
 
-/// Widest outlines, in pixels.
+/// The greatest width of outlines, in pixels.
 const WIDEST: f64 = 8.0;
 
 impl Outline {
-    /// Refuses what is no outline.
+    /// Refuses an invalid outline.
     ///
     /// # Errors
     /// [`Error::Argument`] for a width or an angle out of range.
@@ -50,7 +51,7 @@ impl Outline {
         if self.width > WIDEST {
             return Err(Error::Argument {
                 name: "width",
-                problem: "of the edges of a surface must be at most 8",
+                problem: "must be at most 8 for the edges of a surface",
             });
         }
         if !(0.0..=180.0).contains(&self.crease) {
@@ -60,31 +61,32 @@ impl Outline {
     }
 }
 
-/// From an edge to where its sides are sought, in pixels: at least, and at most.
+/// The least and the greatest distance, in pixels, from an edge to the places where its sides are examined.
 const REACH: [f64; 2] = [2.0, 12.0];
 
-/// How much of the turn between two sides half as far from the edge must show. Of a round edge it is half.
+/// The part of the turn that two sides at half the distance from the edge must show. For a round edge it is
+/// half.
 const SUDDEN: f64 = 0.72;
 
-/// Pixels, or thirds of the blur, by which a surface may step without an edge.
+/// The step of a surface that does not count as an edge, in pixels, or in thirds of the blur.
 const STEP: f64 = 2.0;
 
-/// What is seen at a sample.
+/// The point of the surface at a sample.
 #[derive(Clone, Copy)]
 pub struct Point {
     pub place: DVec3,
-    /// Outward, of length 1.
+    /// The outward unit normal.
     pub normal: DVec3,
     pub depth: f64,
 }
 
-/// What is seen at the samples of a tile and about it.
+/// The points of the surface at the samples of a tile and around it.
 pub struct Field<'v> {
     pub window: Window<'v>,
     points: Vec<Option<Point>>,
     outline: Outline,
     blur: f64,
-    /// Offsets to the samples within half the width, columns and rows.
+    /// Offsets to the samples within half the width, as columns and rows.
     near: Vec<[i32; 2]>,
 }
 
@@ -92,14 +94,14 @@ impl<'v> Field<'v> {
     /// `blur`: the length over which normals turn at an edge.
     pub fn new(tile: &Window<'v>, outline: &Outline, blur: f64, frame: &Frame) -> Result<Field<'v>, Error> {
         let nearest = tile.view.nearest(frame);
-        // An eye in the universe may be as near to the surface as can be.
+        // An eye in the universe may be arbitrarily near to the surface.
         let is_inside = blur > 0.0 && nearest <= frame.edge() / 16.0;
         let reach =
             if is_inside { REACH[1] } else { (blur / tile.view.pixel_at(nearest)).clamp(REACH[0], REACH[1]) };
         let window = tile.widened(libm::ceil(reach.max(0.5 * outline.width)) as u32);
         let points = memory::filled(window.width() * window.height(), None)?;
         let half = 0.5 * outline.width * f64::from(tile.grid);
-        // (At least the samples beside it.)
+        // (At least the adjacent samples.)
         let most = libm::floor(half.max(1.0)) as i32;
         let mut near = memory::with_capacity(((2 * most + 1) * (2 * most + 1)) as usize)?;
         for y in -most..=most {
@@ -117,7 +119,7 @@ impl<'v> Field<'v> {
         self.points[sample] = Some(point);
     }
 
-    /// The sample of a tile that is a sample of the field.
+    /// The sample of a tile that corresponds to a sample of the field.
     pub fn sample_of_tile(&self, sample: usize, tile: &Window<'_>) -> Option<usize> {
         let [left, top] = self.corner(tile);
         let column =
@@ -126,7 +128,7 @@ impl<'v> Field<'v> {
         Some(row * tile.width() + column)
     }
 
-    /// Where the tile's first sample lies in the field.
+    /// The place of the tile's first sample in the field.
     fn corner(&self, tile: &Window<'_>) -> [usize; 2] {
         [0, 1].map(|k| ((tile.first[k] - self.window.first[k]) * tile.grid) as usize)
     }
@@ -155,7 +157,7 @@ impl<'v> Field<'v> {
         is_inside.then(|| self.points[row * self.window.width() + column].as_ref())?
     }
 
-    /// By how much a surface may step here.
+    /// The greatest step of the surface here without an edge.
     fn step(&self, here: &Point) -> f64 {
         STEP * self.window.view.pixel_at(here.depth).max(self.blur / 3.0)
     }
@@ -165,7 +167,7 @@ impl<'v> Field<'v> {
         let step = self.step(here);
         self.near.iter().any(|[x, y]| {
             let at = [column + x, row + y];
-            // What lies beyond the picture does not count.
+            // Samples beyond the picture do not count.
             let is_inside = (0..wide).contains(&at[0]) && (0..high).contains(&at[1]);
             is_inside
                 && self.point(at).is_none_or(|there| {
@@ -176,7 +178,7 @@ impl<'v> Field<'v> {
 
     fn is_crease(&self, at: [i32; 2], here: &Point) -> bool {
         let pixel = self.window.view.pixel_at(here.depth);
-        // Nearer than that normals only tell of single cells.
+        // At a smaller distance, normals only show single cells.
         if self.blur > REACH[1] * pixel {
             return false;
         }
@@ -186,7 +188,7 @@ impl<'v> Field<'v> {
             .any(|direction| self.turns(at, here, direction.map(|along| along * reach)))
     }
 
-    /// Whether the sides on both ends of a line through a sample meet at the sample.
+    /// Returns whether the sides at both ends of a line through a sample meet at the sample.
     fn turns(&self, at: [i32; 2], here: &Point, offset: [f64; 2]) -> bool {
         let place = |share: f64| [0, 1].map(|k| at[k] + libm::round(offset[k] * share) as i32);
         let all = [-1.0, -0.5, 0.5, 1.0].map(|share| self.point(place(share)));
@@ -195,15 +197,15 @@ impl<'v> Field<'v> {
         if turn < self.outline.crease.to_radians() || angle(before.normal, after.normal) < SUDDEN * turn {
             return false;
         }
-        // Both sides lead here: they are no surfaces one behind the other. (A surface that is seen from its
-        // side is long.)
+        // Both sides lead to this sample, so they are not surfaces one behind the other. (A surface that is
+        // seen from its side is long.)
         let (_, along) = self.window.line_at(at);
         let step = self.step(here) / (here.normal.dot(along).abs() / along.length()).max(0.1);
         if [first, last].iter().any(|side| (here.place - side.place).dot(side.normal).abs() > step) {
             return false;
         }
-        // By how much one side's plane lies behind the other's at a sample, in what is linear on the picture:
-        // depths, or under a perspective one over them.
+        // The distance of one side's plane behind the other's at a sample, in a quantity that is linear on
+        // the picture: depth, or one over the depth for a perspective.
         let is_perspective = self.window.view.is_perspective();
         let gap = |at: [i32; 2]| {
             let (from, along) = self.window.line_at(at);
@@ -222,7 +224,7 @@ impl<'v> Field<'v> {
 
 const DIAGONAL: f64 = core::f64::consts::FRAC_1_SQRT_2;
 
-/// In radians.
+/// The angle in radians.
 fn angle(a: DVec3, b: DVec3) -> f64 {
     libm::acos(a.dot(b).clamp(-1.0, 1.0))
 }

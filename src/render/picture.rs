@@ -4,7 +4,7 @@ use crate::error::Error;
 use crate::memory;
 use alloc::vec::Vec;
 
-/// Most pixels of a row, and most rows.
+/// The greatest number of pixels in a row, and of rows.
 const MOST_PIXELS: u32 = 1 << 14;
 
 /// A picture: a colour and a depth for each pixel, row by row from the upper left corner.
@@ -17,8 +17,8 @@ pub struct Picture {
 }
 
 impl Picture {
-    /// A picture of somebody else's colours, row by row from the upper left corner, without depths: to draw a
-    /// legend on it, or to write it.
+    /// Creates a picture from given colours, row by row from the upper left corner, without depths. Use it to
+    /// draw a legend on the picture, or to write it.
     ///
     /// # Errors
     /// [`Error::Argument`] unless the sides (width and height) are 1 to 16384 pixels and there is one colour
@@ -32,8 +32,8 @@ impl Picture {
         Ok(Picture { width, height, colours, depths })
     }
 
-    /// The same picture with depths, row by row from the upper left corner: of one that was taken apart, and
-    /// is put together again.
+    /// Sets the depths, row by row from the upper left corner. Use it to reassemble a picture that was taken
+    /// apart.
     ///
     /// # Errors
     /// [`Error::Argument`] unless there is one depth for each pixel.
@@ -44,34 +44,34 @@ impl Picture {
         Err(Error::Argument { name: "depths", problem: "must be one for each pixel" })
     }
 
-    /// Pixels of a row.
+    /// The number of pixels in a row.
     pub fn width(&self) -> u32 {
         self.width
     }
 
-    /// Rows.
+    /// The number of rows.
     pub fn height(&self) -> u32 {
         self.height
     }
 
-    /// Red, green, blue (sRGB) and opacity, 0 to 255; colours are not multiplied by the opacity.
+    /// Red, green, blue (sRGB) and opacity, 0 to 255; the colours are not multiplied by the opacity.
     pub fn colours(&self) -> &[[u8; 4]] {
         &self.colours
     }
 
-    /// The distance from the plane of the eye to what is nearest and opaque, in model units; ∞ where nothing
-    /// is.
+    /// The distance from the plane of the eye to the nearest opaque surface, in model units; ∞ where there is
+    /// none.
     pub fn depths(&self) -> &[f32] {
         &self.depths
     }
 
-    /// The colours as bytes, four a pixel.
+    /// The colours as bytes, four per pixel.
     pub fn bytes(&self) -> &[u8] {
         bytemuck::cast_slice(&self.colours)
     }
 }
 
-/// Refuses a width and a height that no picture has.
+/// Refuses an invalid width or height of a picture.
 pub(super) fn check_size(sides: [u32; 2]) -> Result<(), Error> {
     if sides.iter().all(|side| (1..=MOST_PIXELS).contains(side)) {
         Ok(())

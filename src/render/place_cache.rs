@@ -1,4 +1,4 @@
-//! What is known of places on a lattice.
+//! A cache of results for places on a lattice.
 
 use crate::error::Error;
 use crate::lattice::Cell;
@@ -6,11 +6,11 @@ use crate::memory;
 use alloc::vec::Vec;
 use hashbrown::HashMap;
 
-/// Items by their place. A cache: when there are too many it forgets all of them.
+/// Items by their place. When the cache is full, all items are dropped.
 pub struct Places<T> {
     indices: HashMap<Place, u32>,
     items: Vec<T>,
-    /// The place that was asked for last, and its item.
+    /// The place that was last looked up, and its item.
     last: Option<(Place, u32)>,
 }
 
@@ -18,7 +18,7 @@ pub struct Places<T> {
 #[derive(Clone, Copy, PartialEq, Eq, Hash)]
 pub struct Place(u64);
 
-/// Most items that are kept.
+/// The greatest number of items that are kept.
 const MOST: usize = 1 << 14;
 
 impl From<[i32; 3]> for Place {
@@ -31,7 +31,7 @@ impl From<[i32; 3]> for Place {
 }
 
 impl From<Cell> for Place {
-    /// A cell of any level: the first bit of each coordinate tells which one.
+    /// A cell of any level; the first set bit of each coordinate encodes the level.
     #[inline]
     fn from(cell: Cell) -> Place {
         let [x, y, z] = cell.at.map(|i| u64::from(i + (1 << cell.level)));
@@ -44,7 +44,7 @@ impl<T> Places<T> {
         Places { indices: HashMap::new(), items: Vec::new(), last: None }
     }
 
-    /// Where an item is kept; good until the next call of [`Places::keep`].
+    /// The index of an item; valid until the next call of [`Places::keep`].
     #[inline]
     pub fn find(&mut self, place: impl Into<Place>) -> Option<usize> {
         let place = place.into();
@@ -54,7 +54,7 @@ impl<T> Places<T> {
         self.last.map(|(_, index)| index as usize)
     }
 
-    /// Keeps what was not there, and says where.
+    /// Stores a new item, and returns its index.
     pub fn keep(&mut self, place: impl Into<Place>, item: T) -> Result<usize, Error> {
         if self.items.len() == MOST {
             self.indices.clear();
@@ -68,7 +68,7 @@ impl<T> Places<T> {
         Ok(index)
     }
 
-    /// What [`Places::find`] or [`Places::keep`] told the index of.
+    /// The item at an index that [`Places::find`] or [`Places::keep`] returned.
     #[inline]
     pub fn item(&self, index: usize) -> &T {
         &self.items[index]

@@ -2,42 +2,42 @@
 
 use glam::{DMat3, DVec3, Vec3, Vec3A};
 
-/// A plane through the surface about a block.
+/// A plane through the surface around a block.
 #[derive(Clone, Copy, Default, Debug, PartialEq)]
 pub struct Plane {
-    /// Outward; of length 1, or zero if there is no surface.
+    /// The outward unit normal, or zero if there is no surface.
     pub normal: Vec3,
     /// 1 if the surface is plane there, 0 if it is not.
     pub confidence: f32,
 }
 
-/// How planes are fitted in windows of one size.
+/// Parameters for fitting planes in windows of one size.
 pub struct Fitting {
-    /// How full an octant is at the most.
+    /// The greatest occupancy of an octant.
     pub full: u8,
-    /// Cells along the edge of an octant.
+    /// The number of cells along the edge of an octant.
     pub edge: f64,
-    /// Root mean squares of the distances from the plane, in cells, up to which a surface counts as plane,
-    /// and from which on not at all.
+    /// The root mean square of the distances from the plane, in cells, up to which a surface counts as plane,
+    /// and the one from which on it does not.
     pub plane: [f64; 2],
 }
 
 /// Octants along each axis of a window.
 const COARSE: usize = 6;
 
-/// Which part of what leads out must do so to one side: that below which a window has no plane, and that
-/// above which it has.
+/// The share of the outward steps that must lead to one side: below the first number a window has no plane,
+/// and above the second one it has.
 const AGREEMENT: [f64; 2] = [0.5, 0.8];
 
 /// The high bits of bytes.
 const HIGH: u64 = 0x8080_8080_8080_8080;
 
-/// Octants of a layer of a window that have a next one along x, and along y.
+/// The octants of a layer of a window that have a next one along x, and along y.
 const HAS_NEXT: [u64; 2] = [0o37_37_37_37_37_37, 0o77_77_77_77_77];
 
 impl Fitting {
-    /// The plane about the block in the middle of a window, of which is given how full the octants of its 3³
-    /// blocks are.
+    /// Fits the plane around the block in the middle of a window, given the occupancy of the octants of its
+    /// 3³ blocks.
     pub fn plane(&self, window: &[u64; 27]) -> Plane {
         // The high bit of each byte: at least half full.
         let bias = u64::from(0x80 - self.full / 2) * 0x0101_0101_0101_0101;
@@ -86,7 +86,7 @@ impl Fitting {
     fn through(&self, crossings: &[Crossings; 3]) -> Plane {
         let count: f64 = crossings.iter().map(|found| f64::from(found.count)).sum();
         let out = DVec3::from(crossings.map(|found| f64::from(found.out))).normalize_or_zero();
-        // Crossings of lines that run along the surface are no good.
+        // Crossings of lines parallel to the surface are unreliable.
         let weights = (out * out).to_array();
         let total: f64 = (0..3).map(|axis| weights[axis] * f64::from(crossings[axis].count)).sum();
         let is_known = count >= 3.0 && total > 1e-9;
@@ -119,7 +119,7 @@ impl Fitting {
             return Plane::default();
         }
         let flat = ((self.plane[1] - off) / (self.plane[1] - self.plane[0])).clamp(0.0, 1.0);
-        // Of a plate both sides are in the window, and only its rim would be left.
+        // A thin plate has both sides in the window. They cancel out, and only its rim would remain.
         let all = DVec3::from(crossings.map(|found| f64::from(found.all))).length();
         let agreement = DVec3::from(crossings.map(|found| f64::from(found.out))).length() / all;
         let confidence = flat * ((agreement - AGREEMENT[0]) / (AGREEMENT[1] - AGREEMENT[0])).clamp(0.0, 1.0);
@@ -128,8 +128,8 @@ impl Fitting {
     }
 }
 
-/// Where lines along one axis cross the surface: how many, and the sums of their places and of the products
-/// of these.
+/// Crossings of the surface by lines along one axis: their number, and the sums of their places and of the
+/// products of these.
 #[derive(Clone, Copy, Default)]
 struct Crossings {
     count: f32,
@@ -137,15 +137,15 @@ struct Crossings {
     squares: Vec3A,
     /// y z, z x, x y.
     products: Vec3A,
-    /// From inside to outside, added up.
+    /// The sum of the signed steps from inside to outside.
     out: f32,
-    /// The same whatever its sign.
+    /// The sum of the steps without their signs.
     all: f32,
 }
 
 impl Crossings {
-    /// A crossing between an octant and the next one along an axis, given how full both are; `half`: how much
-    /// is half full.
+    /// Adds a crossing between an octant and the next one along an axis, given the occupancy of both; `half`
+    /// is the occupancy of a half-full octant.
     #[inline(always)]
     fn add(&mut self, axis: usize, place: Vec3A, here: f32, next: f32, half: f32) {
         let mut at = place - 0.5 * (COARSE as f32 - 1.0);
@@ -165,7 +165,7 @@ mod tests {
 
     const FITTING: Fitting = Fitting { full: 128, edge: 4.0, plane: [0.25, 0.45] };
 
-    /// A window in which octants are as full as a function of their place in it says, from 0 to 1.
+    /// A window in which the occupancy of octants is a function of their place in it, from 0 to 1.
     fn window(full: u8, share: impl Fn(DVec3) -> f64) -> [u64; 27] {
         core::array::from_fn(|block| {
             let octants: [u8; 8] = core::array::from_fn(|octant| {
@@ -185,7 +185,7 @@ mod tests {
             let normal =
                 DVec3::new(libm::sin(turn), libm::cos(1.3 * turn), libm::sin(2.1 * turn + 1.0)).normalize();
             let height = libm::sin(0.7 * turn);
-            // An octant is as full as its middle is deep, over its width along the normal.
+            // The occupancy of an octant is the depth of its middle, over its width along the normal.
             let width = normal.abs().element_sum();
             let found = FITTING.plane(&window(128, |place| 0.5 - (normal.dot(place) - height) / width));
             let off = found.normal.as_dvec3().angle_between(normal).to_degrees();
@@ -211,11 +211,12 @@ mod tests {
 
     #[test]
     fn crossings_along_all_axes_count() {
-        // One octant that is solid has a crossing on each of its six faces; all weigh alike in the middle.
+        // A single solid octant has a crossing on each of its six faces; all have equal weights in the
+        // middle.
         for at in 0..216 {
             let place = DVec3::new((at % 6) as f64, (at / 6 % 6) as f64, (at / 36) as f64) - 2.5;
             let found = FITTING.plane(&window(128, |other| f64::from(u8::from(other == place))));
-            // What looks outward adds up to nothing, unless the window cuts some of it off.
+            // The outward steps cancel out, unless the window cuts some of them off.
             let cut = place.abs().cmpeq(DVec3::splat(2.5));
             assert_eq!(found == Plane::default(), !cut.any(), "{place} {found:?}");
         }

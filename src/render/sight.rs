@@ -1,4 +1,4 @@
-//! Lines of sight, and how what they meet is drawn.
+//! Lines of sight, and the light of the surfaces that they meet.
 
 use super::camera::View;
 use super::light::Light;
@@ -9,50 +9,52 @@ use crate::lattice::Bounds;
 use crate::query::Ray;
 use glam::DVec3;
 
-/// What surfaces look like.
+/// The appearance of surfaces.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Finish {
     /// The colour in full light: red, green, blue (sRGB) and opacity, 0 to 255.
     pub colour: [u8; 4],
-    /// The colour of what a clip plane cuts open.
+    /// The colour of parts that a clip plane cuts open.
     pub cut: [u8; 4],
-    /// Shows cells by their faces, instead of the surface that they stand for.
+    /// Shows cells by their faces, instead of the surface that they represent.
     pub faces: bool,
-    /// The edges that are drawn, if any are.
+    /// The edges that are drawn, if any.
     pub edges: Option<Outline>,
 }
 
 impl Default for Finish {
-    /// Opaque grey, orange where it is cut.
+    /// Opaque grey, orange on cuts.
     fn default() -> Finish {
         Finish { colour: [178, 187, 196, 255], cut: [213, 142, 74, 255], faces: false, edges: None }
     }
 }
 
-/// Part of the universe's edge by which a line of sight keeps away from clip planes and from the eye.
+/// The distance that a line of sight keeps from clip planes and from the eye, as a part of the universe's
+/// edge.
 const ASIDE: f64 = 1e-9;
 
-/// Roundings of its depth by which it does at least.
+/// The least such distance, in roundings of the line's depth.
 const ROUNDINGS: f64 = 4.0 * f64::EPSILON;
 
-/// Part of the universe's edge by which a line of sight begins before it enters the universe.
+/// The distance before the universe at which a line of sight begins, as a part of the universe's edge.
 const BEFORE: f64 = 1e-3;
 
 /// A line of sight that begins where it is shown.
 pub struct SightLine {
-    /// The sample of the window that it belongs to.
+    /// The sample of the window to which the line belongs.
     pub sample: usize,
     pub from: DVec3,
     pub along: DVec3,
-    /// The depth at which it begins, and the outward normal of the clip plane there.
+    /// The depth at which the line begins. If it begins at a clip plane, `entry` is the plane's outward
+    /// normal.
     pub start: f64,
-    /// Where it ends.
+    /// The length of the line, in units of its direction.
     length: f64,
     entry: Option<DVec3>,
 }
 
 impl SightLine {
-    /// That of a sample in a universe; `None` if nothing of it is shown.
+    /// The line of sight of a sample in a universe; `None` if nothing of it is shown.
     #[inline]
     pub fn new(
         stage: &Stage<'_>,
@@ -64,13 +66,13 @@ impl SightLine {
         let shown = stage.clip.shown(eye, along)?;
         let (low, high) = (DVec3::from(universe.min), DVec3::from(universe.max));
         let unit = (high.x - low.x) / along.length();
-        // Cells are closed: those beyond a clip plane that only touch it are not seen. An eye in a plane of
-        // the lattice would have all lines of sight begin on faces.
+        // Cells are closed: cells beyond a clip plane that only touch it must not be visible. With an eye in
+        // a plane of the lattice, all lines of sight would begin on faces.
         let aside = |depth: f64| (ASIDE * unit).max(ROUNDINGS * depth);
-        // Far from the universe a time would say little of a place in it.
+        // Far from the universe a time would be too inexact for a place in it.
         let enters = (0..3).fold(0.0f64, |enters, axis| {
             let planes = [low[axis], high[axis]].map(|plane| (plane - eye[axis]) / along[axis]);
-            // (A line along the planes says nothing.)
+            // (A line parallel to the planes does not cross them.)
             if along[axis] == 0.0 { enters } else { enters.max(planes[0].min(planes[1])) }
         });
         let start = (shown.from + aside(shown.from)).max(enters - BEFORE * unit);
@@ -82,41 +84,43 @@ impl SightLine {
         Some((sight, ray))
     }
 
-    /// The rest of it after t times its direction; `None` if that is nothing.
+    /// The rest of the line after t times its direction; `None` if nothing is left.
     #[inline]
     pub fn beyond(&self, t: f64) -> Option<Ray> {
-        // Components far below a rounding of the others only get in the way.
+        // Components far below a rounding of the others only disturb.
         let plain = self.along.to_array().map(|c| if c.abs() < 1e-60 { 0.0 } else { c });
         let from = (self.from + self.along * t).to_array().map(|c| if c.abs() < 1e-60 { 0.0 } else { c });
         Ray::new(from, plain).and_then(|ray| ray.until(self.length - t)).ok()
     }
 
-    /// After how many times its direction it ends.
+    /// The length of the line in units of its direction.
     pub fn length(&self) -> f64 {
         self.length
     }
 
-    /// Whether it begins in what it meets by such a face after t times its direction.
+    /// Returns whether the line begins inside the thing that it meets through this face after t times its
+    /// direction.
     pub fn begins_in(&self, t: f64, face: DVec3) -> bool {
         t == 0.0 && face == DVec3::ZERO
     }
 
-    /// The light of what it meets, given the outward normal there; `None` if it begins in it.
+    /// The light of the surface that the line meets, given the outward normal there; `None` if the line
+    /// begins inside.
     pub fn light(&self, finish: &Finish, view: &View, normal: Option<DVec3>) -> Light {
         let colour = if normal.is_some() { finish.colour } else { finish.cut };
         let facing = self.outward(normal);
-        // (What is perpendicular to the line of sight would face it or not as it is rounded.)
+        // (For a normal perpendicular to the line of sight, rounding would decide whether it faces the line.)
         let facing = if facing.dot(self.along) < 0.0 { facing } else { silhouette(facing, self.along) };
         Light::of(colour).lit(view.lamps.brightness(facing, -facing))
     }
 
-    /// A normal, or where it begins inside that of what cuts it open.
+    /// The normal, or, if the line begins inside, that of the plane that cuts the solid open.
     pub fn outward(&self, normal: Option<DVec3>) -> DVec3 {
         normal.or(self.entry).unwrap_or(-self.along)
     }
 }
 
-/// The normal nearest to one that seems to face away, though it is seen: that of a silhouette.
+/// The silhouette normal nearest to a normal that seems to face away, although its surface is visible.
 fn silhouette(normal: DVec3, along: DVec3) -> DVec3 {
     let across = normal - along * (normal.dot(along) / along.length_squared());
     across.try_normalize().unwrap_or(-along)

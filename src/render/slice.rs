@@ -19,27 +19,29 @@ use alloc::boxed::Box;
 use alloc::vec::Vec;
 use glam::DVec3;
 
-/// The colours of EMPTY, FULL and PARTIAL cells in a slice unless others are chosen: sky blue, hardly
-/// visible, blue and orange of the palette that Okabe and Ito made to be told apart by the colour-blind
-/// (*Color Universal Design*, 2002).
+/// The default colours of EMPTY, FULL and PARTIAL cells in a slice: sky blue (hardly visible), blue and
+/// orange of the palette that Okabe and Ito designed for colour-blind readers (*Color Universal Design*,
+/// 2002).
 pub const TAG_COLOURS: [[u8; 4]; 3] = [[86, 180, 233, 40], [0, 114, 178, 255], [230, 159, 0, 255]];
 
-/// A cell of fewer pixels has no outline; one of the greater number has all of it.
+/// The size of a cell in pixels: up to the first number it has no outline, and from the second one on its
+/// full outline.
 const FADING: [f64; 2] = [2.0, 5.0];
 
-/// A plane through a picture's scene.
+/// A plane through the scene of a picture.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct SlicePlane {
-    /// Its length is 1.
+    /// The unit normal.
     normal: DVec3,
     /// Minus n · p of its points p.
     offset: f64,
-    /// The axis that it is perpendicular to, if there is one, and where it crosses that.
+    /// The axis to which the plane is perpendicular, if there is one, and its coordinate on that axis.
     across: Option<(usize, f64)>,
 }
 
 impl SlicePlane {
-    /// The points p with `normal` · p + `offset` = 0 (model units times the normal's length).
+    /// Creates the plane of the points p with `normal` · p + `offset` = 0 (model units times the normal's
+    /// length).
     ///
     /// # Errors
     /// [`Error::Argument`] if a number is not zero and not between 2^-256 and 2^256 in magnitude, or if the
@@ -60,12 +62,12 @@ impl SlicePlane {
         Ok(SlicePlane { normal: vector / length, offset: offset / length, across })
     }
 
-    /// The plane across an axis (0 to 2 for x, y and z) at a coordinate (model units). Where it is a plane of
-    /// the lattice, the cells above it are those that are cut.
+    /// Creates the plane across an axis (0 to 2 for x, y and z) at a coordinate (model units). If it is a
+    /// plane of the lattice, it cuts the cells above it.
     ///
     /// # Errors
-    /// [`Error::Argument`] if the axis is none, or the coordinate not zero and not between 2^-256 and 2^256
-    /// in magnitude.
+    /// [`Error::Argument`] if the axis is invalid, or the coordinate is not zero and not between 2^-256 and
+    /// 2^256 in magnitude.
     pub fn across(axis: usize, coordinate: f64) -> Result<SlicePlane, Error> {
         if axis > 2 {
             return Err(Error::Argument { name: "axis", problem: "must be 0, 1 or 2" });
@@ -73,19 +75,20 @@ impl SlicePlane {
         SlicePlane::new(axes(|k| f64::from(u8::from(k == axis))), -coordinate)
     }
 
-    /// Where a line meets the plane: the depth and the point. `None` if it does not, or not before the eye.
+    /// The intersection of a line and the plane: the depth and the point. `None` if there is none in front of
+    /// the eye.
     fn meet(&self, from: DVec3, along: DVec3) -> Option<(f64, DVec3)> {
         let depth = -(self.normal.dot(from) + self.offset) / self.normal.dot(along);
         let is_seen = depth > 0.0 && depth.is_finite();
         let mut point = from + along * depth;
         if let Some((axis, coordinate)) = self.across {
-            // On a plane of the lattice rounding would choose between the cells on both sides.
+            // On a plane of the lattice, rounding would choose between the cells on both sides.
             point[axis] = coordinate;
         }
         is_seen.then_some((depth, point))
     }
 
-    /// By how much each coordinate changes from a pixel to the next one, in model units.
+    /// The change of each coordinate from a pixel to the next one, in model units.
     fn steps(&self, view: &View, along: DVec3, depth: f64) -> DVec3 {
         let camera = &view.camera;
         let pixel = view.pixel_at(depth);
@@ -97,12 +100,12 @@ impl SlicePlane {
     }
 }
 
-/// A plane section of a solid on a frame: each sample shows the tag of the cell in which the line of sight
-/// meets the plane, or the value of an attribute there, and the outlines of the cells that the plane cuts.
-/// Nothing is seen outside of the universe.
+/// A layer that shows a plane section of a solid on a frame. Each sample shows the tag of the cell in which
+/// the line of sight meets the plane, or the value of an attribute there, and the outlines of the cells that
+/// the plane cuts. Nothing is shown outside the universe.
 ///
-/// Drawing: for an octree O(samples) and O(depth) for each change of the cell; for other solids as many
-/// splits as these.
+/// Drawing an octree takes O(samples), plus O(depth) for each change of the cell; drawing another solid takes
+/// as many splits.
 pub struct SliceLayer<'a> {
     source: Box<dyn Source + 'a>,
     plane: SlicePlane,
@@ -118,12 +121,12 @@ impl core::fmt::Debug for SliceLayer<'_> {
 }
 
 impl<'a> SliceLayer<'a> {
-    /// A section of an octree in [`TAG_COLOURS`], with outlines of its cells.
+    /// Creates a section of an octree in [`TAG_COLOURS`], with outlines of its cells.
     pub fn new(tree: &OctreeRef<'a>, plane: SlicePlane) -> SliceLayer<'a> {
         SliceLayer::of_source(Box::new(*tree), plane)
     }
 
-    /// A section of a solid on a frame, whose cells are split down to its depth. Otherwise as
+    /// Creates a section of a solid on a frame, whose cells are split down to the frame's depth. Otherwise as
     /// [`new`](Self::new).
     pub fn of_solid<S: Solid>(solid: &'a S, frame: &Frame, plane: SlicePlane) -> SliceLayer<'a> {
         SliceLayer::of_source(Box::new(SolidOnFrame { solid, frame: *frame }), plane)
@@ -133,43 +136,43 @@ impl<'a> SliceLayer<'a> {
         SliceLayer { source, plane, colours: TAG_COLOURS, outlines: Some([40, 40, 40, 255]), values: None }
     }
 
-    /// The same with other colours for EMPTY, FULL and PARTIAL cells: red, green, blue (sRGB) and opacity.
+    /// Sets the colours of EMPTY, FULL and PARTIAL cells: red, green, blue (sRGB) and opacity.
     #[must_use]
     pub fn colours(self, colours: [[u8; 4]; 3]) -> SliceLayer<'a> {
         SliceLayer { colours, ..self }
     }
 
-    /// The same with outlines of this colour, or without any. The outline of a cell that is only a few pixels
-    /// large is fainter, and that of a smaller one not drawn.
+    /// Sets the colour of outlines, or removes them. The outline of a cell that is only a few pixels large is
+    /// fainter, and that of a smaller cell is not drawn.
     #[must_use]
     pub fn outlines(self, colour: Option<[u8; 4]>) -> SliceLayer<'a> {
         SliceLayer { outlines: colour, ..self }
     }
 
-    /// The same with the values of an attribute, as a channel is one, where cells are FULL or PARTIAL:
-    /// `colour` tells the colour of a value, and of none.
+    /// Shows the values of an attribute, for example a channel, where cells are FULL or PARTIAL: `colour`
+    /// returns the colour of a value, and of a missing value.
     #[must_use]
     pub fn values(self, attribute: &'a dyn Attribute, colour: Colouring<'a>) -> SliceLayer<'a> {
         SliceLayer { values: Some((attribute, colour)), ..self }
     }
 }
 
-/// What has cells, before it is put on its frame.
+/// A source of cells, before it is put on its frame.
 trait Source: Sync {
     fn frame(&self) -> &Frame;
 
     fn ready<'s>(&'s self, control: &Control<'_>) -> Result<Box<dyn Ready + 's>, Error>;
 }
 
-/// What has cells, on its frame.
+/// A source of cells, on its frame.
 trait Ready: Sync {
-    /// What one thread asks.
+    /// Returns a finder for one thread.
     fn finder<'r>(&'r self, control: &'r Control<'r>) -> Result<Box<dyn Finder + 'r>, Error>;
 }
 
-/// Who finds cells.
+/// A search for cells.
 trait Finder {
-    /// The unsplit cell in which a finest cell of the universe lies, and its tag.
+    /// Returns the unsplit cell that contains a finest cell of the universe, and its tag.
     fn find(&mut self, at: [u32; 3]) -> Result<(Cell, Tag), Error>;
 }
 
@@ -189,7 +192,7 @@ impl Ready for OctreeRef<'_> {
     }
 }
 
-/// A cursor that goes from a cell to the next one by way of what they have in common.
+/// A cursor that moves from a cell to the next one through their common ancestor.
 struct InTree<'t> {
     cursor: Cursor<'t>,
     depth: u8,
@@ -234,7 +237,7 @@ impl<C: Classifier> Ready for Classified<C> {
     }
 }
 
-/// The splits on the way to the last cell.
+/// The splits on the path to the last cell.
 struct InSolid<'r, W: Worker> {
     trail: Trail<W>,
     depth: u8,
@@ -271,9 +274,9 @@ struct Slice<'a> {
 struct Met {
     sample: usize,
     depth: f64,
-    /// How much of it the outline of its cell covers.
+    /// The part of the sample that the outline of its cell covers.
     outline: f32,
-    /// `None` if an attribute tells.
+    /// The light; `None` if an attribute determines it.
     light: Option<Light>,
 }
 
@@ -353,8 +356,8 @@ impl Slice<'_> {
         clip.is_empty() || clip.shown(from, along).is_some_and(|shown| holds([shown.from, shown.to], depth))
     }
 
-    /// How much the outline of a cell covers of a sample at a point: all if it is less than half a pixel
-    /// away, so that the outlines of two neighbours are a pixel wide together.
+    /// The part of a sample at a point that the outline of a cell covers: all of it if the outline is less
+    /// than half a pixel away, so that the outlines of two neighbours together are a pixel wide.
     fn outline(&self, along: DVec3, depth: f64, point: DVec3, cell: Cell) -> f32 {
         let frame = self.layer.source.frame();
         let steps = self.layer.plane.steps(self.stage.view, along, depth);
@@ -364,7 +367,7 @@ impl Slice<'_> {
         // In pixels.
         let (mut away, mut size) = (f64::INFINITY, f64::INFINITY);
         for axis in 0..3 {
-            // Along a face that lies in the plane no pixel leads away from it.
+            // Along a face that lies in the plane, no pixel leads away from the face.
             if steps[axis] <= 1e-9 * greatest {
                 continue;
             }

@@ -24,66 +24,66 @@ use crate::solid::{
 use alloc::boxed::Box;
 use glam::DVec3;
 
-/// The surface of any solid within a universe.
+/// A layer that shows the surface of any solid within a universe.
 ///
-/// The solid is split to cells as large as a pixel, 2^11 to an axis at the most. In an undecided cell a line
-/// of sight meets what the solid knows of it: a crossing, or the middle of its slabs, with their normals. Of
-/// cells of which nothing is known the surface and its normals are those of an
-/// [`OctreeLayer`](crate::render::OctreeLayer). Through what is translucent other layers are seen, but
-/// nothing more of this one.
+/// The solid is split to cells as large as a pixel, at most 2^11 along an axis. In an undecided cell, a line
+/// of sight meets the surface that the solid provides: a crossing, or the middle of its slabs, with their
+/// normals. In cells of which nothing is known, the surface and its normals are those of an
+/// [`OctreeLayer`](crate::render::OctreeLayer). Through a translucent surface other layers are visible, but
+/// nothing more of this layer.
 ///
-/// Where a solid tells where rays go, its cells are not split: lines of sight ask. A closed mesh does so, and
-/// in an expression in all cells in which nothing else is open. Of a solid that is a closed mesh and nothing
-/// else ([`Solid::sole_mesh`]) the triangles are drawn, each of them flat, where these show what the solid
-/// does.
+/// If a solid answers rays, its cells are not split, and lines of sight are evaluated as rays. A closed mesh
+/// answers rays, and an expression does in all cells in which only the mesh is open. For a solid that
+/// consists of a single closed mesh ([`Solid::sole_mesh`]), the triangles are drawn, each of them flat, where
+/// they look like the solid.
 ///
-/// O(cells of the surface), once; then O(samples · cells along a line of sight).
+/// O(cells of the surface) once; then O(samples · cells along a line of sight).
 pub struct SolidLayer<'a, S> {
     solid: &'a S,
     frame: Frame,
     skin: Skin<'a>,
     deepest: u8,
-    /// The triangles of a solid that is a mesh and nothing else.
+    /// The triangles of a solid that consists of a single mesh.
     facets: Option<Facets<'a>>,
 }
 
-/// Levels to which a solid is split at most.
+/// The greatest number of levels to which a solid is split.
 pub const DEEPEST: u8 = 11;
 
-/// Radians by which a boundary may turn in a cell whose slab gives the normal.
+/// The angle in radians by which a boundary may turn in a cell whose slab gives the normal.
 const CONE: f64 = 0.08 * core::f64::consts::PI / 180.0;
 
 impl<'a, S: Solid> SolidLayer<'a, S> {
-    /// What lies of a solid in the universe of a frame, whatever its depth. (A solid has no cells that
-    /// [`faces`](Finish::faces) could show.)
+    /// Creates a layer of the part of a solid in the universe of a frame, independently of the frame's depth.
+    /// (A solid has no cells that [`faces`](Finish::faces) could show.)
     pub fn new(solid: &'a S, frame: &Frame, finish: Finish) -> SolidLayer<'a, S> {
         let facets = solid.sole_mesh().map(|mesh| Facets::new(mesh, &finish));
         SolidLayer { solid, frame: *frame, skin: Skin { finish, values: None }, deepest: DEEPEST, facets }
     }
 
-    /// The same in the colours of an attribute's values: `colour` tells the colour of a value, and of none.
-    /// Values are those half a pixel below the surface.
+    /// Shows the colours of an attribute's values: `colour` returns the colour of a value, and of a missing
+    /// value. The value is taken half a pixel below the surface.
     #[must_use]
     pub fn values(self, attribute: &'a dyn Attribute, colour: Colouring<'a>) -> SolidLayer<'a, S> {
         SolidLayer { skin: Skin { values: Some((attribute, colour)), ..self.skin }, ..self }
     }
 
-    /// The same of larger cells: of the depth's, 1 to 11.
+    /// Limits the depth of cells, 1 to 11, so that cells may be larger.
     #[must_use]
     pub fn at_most(self, depth: u8) -> SolidLayer<'a, S> {
         SolidLayer { deepest: depth.clamp(1, DEEPEST), ..self }
     }
 }
 
-/// The frame whose cells are as large as a pixel where the universe is nearest, of no more levels than
-/// `deepest`.
+/// The frame whose cells are as large as a pixel where the universe is nearest, with at most `deepest`
+/// levels.
 fn pixelled(frame: &Frame, deepest: u8, stage: &Stage<'_>) -> Result<Frame, Error> {
     let pixel = stage.view.pixel_at(stage.view.nearest(frame));
     let fine = (1..deepest).find(|&depth| frame.edge() / f64::from(1u32 << depth) <= pixel);
     frame.with_depth(fine.unwrap_or(deepest))
 }
 
-/// What draws a solid within the universe of a frame, split to no more levels than `deepest`.
+/// Returns the painter of a solid within the universe of a frame, split to at most `deepest` levels.
 pub fn painter<'a, S: Solid>(
     solid: &S,
     frame: &Frame,
@@ -111,16 +111,16 @@ impl<S: Solid> Draw for SolidLayer<'_, S> {
     }
 }
 
-/// The parts of a classifier's cells.
+/// The part type of a classifier.
 type PartOf<C> = <<C as Classifier>::Worker as Parts>::Part;
 
 struct SolidPainter<'a, C> {
     skin: &'a Skin<'a>,
     stage: Stage<'a>,
     octree: Octree,
-    /// On the finest lattice.
+    /// The solid on the finest lattice.
     classifier: C,
-    /// Of which a solid that tells rays tells.
+    /// A ray to test whether the solid answers rays.
     probe: Ray,
 }
 
@@ -135,7 +135,7 @@ impl<'a, C: Classifier> SolidPainter<'a, C> {
         let frame = pixelled(frame, deepest, stage)?;
         let control = Control { progress: None, ..*stage.job.control() };
         let classifier = solid.on(&frame, &control)?;
-        // (Whether the universe is told of says nothing of its cells.)
+        // (An answer for the universe does not imply answers for its cells.)
         classifier.is_direct(Direct::Rays, &control)?;
         let octree = build_on(&Told(classifier), Rule::Certified, &control)?;
         let classifier = solid.on(&frame.with_depth(MAX_DEPTH)?, &control)?;
@@ -159,7 +159,7 @@ impl<C: Classifier> Painter for SolidPainter<'_, C> {
     }
 }
 
-/// What a tile needs.
+/// The state of a tile.
 struct Hand<'t, W: Worker> {
     kept: Kept<W>,
     normals: Normals<'t>,
@@ -167,27 +167,27 @@ struct Hand<'t, W: Worker> {
     trace: RayTrace,
 }
 
-/// What is known of the boundary in a cell.
+/// The knowledge about the boundary in a cell.
 enum Known {
-    /// Where rays go.
+    /// The solid answers rays.
     Told,
     Enclosed(Enclosure),
     Nothing,
 }
 
-/// What is known of a line of sight in a cell.
+/// The result for a line of sight in a cell.
 enum Met {
     /// It meets the surface.
     At(f64, DVec3),
-    /// It passes it by, though it comes near to a face with this normal.
+    /// It misses the surface, though it comes near to a face with this normal.
     Nowhere(DVec3),
-    /// Nothing.
+    /// Nothing is known.
     Unknown,
 }
 
 impl<C: Classifier> SolidPainter<'_, C> {
-    /// Where a line of sight meets the surface whose cells it first meets so, and the outward normal there;
-    /// `None` for the normal if it begins inside.
+    /// Returns the place where a line of sight meets the surface, from the first touched cell on, and the
+    /// outward normal there; `None` for the normal if the line begins inside.
     fn sees(
         &self,
         hand: &mut Hand<'_, C::Worker>,
@@ -198,18 +198,19 @@ impl<C: Classifier> SolidPainter<'_, C> {
         let far = DVec3::from(frame.origin()).abs().max_element() + frame.edge();
         let length = sight.along.length();
         let step = 1e-6 * frame.cell_size() / length;
-        // Past a face, whatever rounding says.
+        // Past a face, independently of rounding.
         let past = (1e-3 * step).max(4.0 * f64::EPSILON * far / length);
         let mut passed: Option<(f64, DVec3)> = None;
-        // A line meets no more cells than that, and may pass by the slabs of all of them.
+        // A line meets at most this number of cells, and may miss the slabs of all of them.
         for _ in 0..3u32 << frame.depth() {
             let (t, met) = (hit.t, DVec3::from(hit.normal));
             let begins = sight.begins_in(t, met);
-            // What goes on behind a cell begins in the next one, past its face.
+            // If the solid continues behind a cell, it begins in the next one, past its face.
             let face = if t > 0.0 && met == DVec3::ZERO { entry(frame, hit.cell, sight) } else { met };
             let at = hit.cell.first_at(frame.depth()).at;
             if octree.tag_at(at) != Tag::Partial {
-                // The face of a FULL cell is the surface, unless that was just passed by for a rounding.
+                // The face of a FULL cell is the surface, unless the line has just missed the surface by a
+                // rounding.
                 let near = passed.filter(|(end, normal)| t - end <= step && *normal != DVec3::ZERO);
                 return Ok(Some((t, (!begins).then_some(near.map_or(face, |(_, normal)| normal)))));
             }
@@ -229,7 +230,7 @@ impl<C: Classifier> SolidPainter<'_, C> {
                 }
                 Met::Nowhere(normal) => passed = Some((leaves, normal)),
             }
-            // On behind the cell, past its faces.
+            // Continue behind the cell, past its faces.
             let beyond = leaves + past;
             let Some(next) = sight.beyond(beyond).and_then(|ray| octree.touch(&ray)) else {
                 return Ok(None);
@@ -239,8 +240,8 @@ impl<C: Classifier> SolidPainter<'_, C> {
         Ok(None)
     }
 
-    /// Where a line of sight meets the surface in a cell of any size, which it crosses between two times and
-    /// enters by a face.
+    /// Returns the place where a line of sight meets the surface in a cell of any size. The line crosses the
+    /// cell between two times and enters through a face.
     fn within(
         &self,
         hand: &mut Hand<'_, C::Worker>,
@@ -277,7 +278,7 @@ impl<C: Classifier> SolidPainter<'_, C> {
         Ok(Met::Nowhere(last))
     }
 
-    /// Where a line of sight goes into the solid in a cell, if the solid tells that.
+    /// Returns the place where a line of sight enters the solid in a cell, if the solid answers rays.
     fn told(
         &self,
         hand: &mut Hand<'_, C::Worker>,
@@ -287,8 +288,8 @@ impl<C: Classifier> SolidPainter<'_, C> {
     ) -> Result<Option<Met>, Error> {
         let near = 1e-6 * self.octree.frame().cell_size() / sight.along.length();
         let enters = enters.max(0.0);
-        // As a rule the line of sight begins outside of what is met, whose first triangle is found soonest.
-        // What it went into before the cell may not count, so that it is asked for again from there.
+        // Usually the line of sight begins outside the solid, and the first triangle that it meets is found
+        // soonest. An entry before the cell may not count, so the second attempt begins at the cell.
         for start in [0.0, enters] {
             let Some(ray) = sight.beyond(start) else { return Ok(Some(Met::Nowhere(DVec3::ZERO))) };
             let trace = &mut hand.trace;
@@ -306,7 +307,8 @@ impl<C: Classifier> SolidPainter<'_, C> {
         Ok(None)
     }
 
-    /// Where a line of sight meets the surface in a finest cell that it crosses between two times.
+    /// Returns the place where a line of sight meets the surface in a finest cell that it crosses between two
+    /// times.
     fn met(
         &self,
         hand: &mut Hand<'_, C::Worker>,
@@ -350,7 +352,7 @@ impl<C: Classifier> SolidPainter<'_, C> {
         })
     }
 
-    /// What is known of the boundary in a cell.
+    /// Returns the knowledge about the boundary in a cell.
     fn known<'h>(&self, hand: &'h mut Hand<'_, C::Worker>, cell: Cell) -> Result<&'h Known, Error> {
         if let Some(found) = hand.enclosures.find(cell) {
             return Ok(hand.enclosures.item(found));
@@ -370,8 +372,8 @@ impl<C: Classifier> SolidPainter<'_, C> {
         Ok(hand.enclosures.item(kept))
     }
 
-    /// Where it meets the surface in a smaller cell about the place and the normal that were found, in which
-    /// the boundary turns less; `None` if nothing is known of that.
+    /// Returns the place where the line meets the surface in a smaller cell around the found place, in which
+    /// the boundary turns less; `None` if nothing is known there.
     fn closer(
         &self,
         hand: &mut Hand<'_, C::Worker>,
@@ -395,14 +397,14 @@ impl<C: Classifier> SolidPainter<'_, C> {
             let [enters, leaves] = stay(&finest, near, sight);
             return Ok(Some(match self.through(found, near, sight, [enters, leaves]) {
                 Met::At(s, normal) if s > enters => Met::At(s, normal),
-                // It meets the surface beside that cell.
+                // The line meets the surface beside that cell.
                 _ => Met::At(t, normal),
             }));
         }
         Ok(None)
     }
 
-    /// Where it first is below the middles of slabs.
+    /// Returns the place where the line first is below the middles of slabs.
     fn through(
         &self,
         enclosure: &Enclosure,
@@ -459,18 +461,18 @@ impl<C: Classifier> SolidPainter<'_, C> {
     }
 }
 
-/// When a ray is first inside.
+/// The first time at which a ray is inside.
 enum WayIn {
-    /// At a time, with the outward normal where it goes in; none if it is inside already.
+    /// At a time, with the outward normal at the entry; no normal if the ray is inside already.
     At(f64, Option<DVec3>),
     /// Never.
     Nowhere,
-    /// The trace ends before.
+    /// Unknown, because the trace ends before.
     Unknown,
 }
 
 impl WayIn {
-    /// At a time or later. What lies as near to it as `near` is as if it lay there.
+    /// The first entry at time `from` or later. A crossing within `near` of this time counts as lying there.
     fn new(trace: &RayTrace, from: f64, near: f64) -> WayIn {
         let mut is_inside = trace.begins_inside;
         for crossing in &trace.crossings {
@@ -492,7 +494,7 @@ impl WayIn {
     }
 }
 
-/// The outward normal of the face by which a line of sight enters a cell.
+/// The outward normal of the face through which a line of sight enters a cell.
 fn entry(frame: &Frame, cell: Cell, sight: &SightLine) -> DVec3 {
     let (low, edge) = corner_of(frame, cell);
     let axes = (0..3).filter(|&axis| sight.along[axis] != 0.0);
@@ -507,13 +509,14 @@ fn entry(frame: &Frame, cell: Cell, sight: &SightLine) -> DVec3 {
     normal
 }
 
-/// The lower corner and the edge of a cell, but for rounding.
+/// The lower corner and the edge of a cell, up to rounding.
 fn corner_of(frame: &Frame, cell: Cell) -> (DVec3, f64) {
     let edge = frame.edge() / f64::from(1u32 << cell.level);
     (DVec3::from(frame.origin()) + DVec3::from(cell.at.map(f64::from)) * edge, edge)
 }
 
-/// When a line of sight enters and leaves a cell; it passes it by if it leaves before it enters.
+/// The times at which a line of sight enters and leaves a cell. The line misses the cell if it leaves before
+/// it enters.
 fn stay(frame: &Frame, cell: Cell, sight: &SightLine) -> [f64; 2] {
     let (low, edge) = corner_of(frame, cell);
     let axes = (0..3).filter(|&axis| sight.along[axis] != 0.0);
@@ -534,8 +537,8 @@ mod tests {
     use crate::solid::Csg;
     use std::vec::Vec;
 
-    /// Angles in degrees between the normals that are seen of a ball and its own, and how far off the points
-    /// are.
+    /// Angles in degrees between the visible normals of a ball and its own, and the greatest distance of the
+    /// points.
     fn angles(depth: u8, use_slabs: bool, lens: Lens) -> (Vec<f64>, f64) {
         let centre = DVec3::new(0.013, -0.021, 0.017);
         let ball = Csg::ball(centre.to_array(), 0.8).unwrap();

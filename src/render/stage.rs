@@ -1,4 +1,4 @@
-//! What layers know of the picture, and what they do.
+//! The interface between layers and pictures.
 
 use super::camera::View;
 use super::clip::Clip;
@@ -10,7 +10,7 @@ use alloc::boxed::Box;
 /// Colours of values: red, green, blue (sRGB) and opacity.
 pub type Colouring<'a> = &'a (dyn Fn(Option<[f64; 4]>) -> [u8; 4] + Sync);
 
-/// What layers know of the picture.
+/// The data of a picture that layers use.
 #[derive(Clone, Copy)]
 pub struct Stage<'a> {
     pub(crate) view: &'a View,
@@ -18,12 +18,12 @@ pub struct Stage<'a> {
     pub(crate) job: &'a Job<'a>,
 }
 
-/// What a layer does.
+/// The drawing interface of a layer.
 pub trait Draw {
-    /// Makes ready what all tiles need.
+    /// Prepares the data that all tiles need.
     ///
     /// # Errors
-    /// The layer's own.
+    /// The errors of the layer.
     fn prepare<'a>(&'a self, stage: &Stage<'a>) -> Result<Box<dyn Painter + 'a>, Error>;
 }
 
@@ -32,30 +32,30 @@ pub trait Layer: Sync + Draw {}
 
 impl<T: Sync + Draw> Layer for T {}
 
-/// When a layer is drawn.
+/// The pass in which a layer is drawn.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Pass {
-    /// With the surfaces.
+    /// Drawn together with the surfaces.
     Surfaces,
-    /// Once all surfaces are there.
+    /// Drawn after all surfaces.
     Volumes,
 }
 
 /// A layer that is ready to draw.
 pub trait Painter: Sync {
-    /// When it draws.
+    /// Returns the pass in which the layer is drawn.
     fn pass(&self) -> Pass {
         Pass::Surfaces
     }
 
-    /// Draws what it shows of a tile.
+    /// Draws the layer's part of a tile.
     ///
     /// # Errors
-    /// The layer's own.
+    /// The errors of the layer.
     fn paint(&self, tile: &mut Tile<'_>) -> Result<(), Error>;
 }
 
-/// What an allocation that may fail makes of one.
+/// A fallible allocation returns a box of an array.
 impl<P: Painter> Painter for [P; 1] {
     fn pass(&self) -> Pass {
         self[0].pass()

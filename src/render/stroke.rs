@@ -10,30 +10,30 @@ use crate::memory;
 use alloc::vec::Vec;
 use glam::{DVec2, DVec3};
 
-/// The nearest part of a line that is drawn, as a part of its farthest depth: nearer ones are seen far beside
-/// the picture.
+/// The nearest part of a line that is drawn, as a part of its farthest depth. Nearer parts lie far beside the
+/// picture.
 const NEAREST: f64 = 1e-9;
 
-/// Samples count as shifted by this, in pixels: a line of a whole number of pixels that runs between samples
-/// covers that number, not one more.
+/// The shift of samples, in pixels. With it, a line whose width is a whole number of pixels and that runs
+/// between samples covers that number of pixels, not one more.
 const NUDGE: DVec2 = DVec2::new(1e-6, 2e-6);
 
-/// An end of a line: its place in pixels, and its depth or, under a perspective, one over its depth.
+/// An end of a line: its place in pixels, and its depth (or one over its depth under a perspective).
 #[derive(Clone, Copy)]
 struct End {
     place: DVec2,
     depth: f64,
 }
 
-/// A line as it is seen, and the part of the colour's opacity that it has.
+/// A line in the picture, and its part of the colour's opacity.
 #[derive(Clone, Copy)]
 struct Line {
     ends: [End; 2],
     opacity: f32,
 }
 
-/// Lines in space that are ready to be drawn. A line on a surface is seen, because it counts as nearer than
-/// it is by its width and a pixel.
+/// Lines in space that are ready to be drawn. A line on a surface is visible, because it counts as nearer
+/// than it is by its width and a pixel.
 pub struct Strokes {
     lines: Vec<Line>,
     bins: Bins,
@@ -43,8 +43,8 @@ pub struct Strokes {
 }
 
 impl Strokes {
-    /// Lines between points of model space, cut by the clip planes, with the parts of the opacity of `light`
-    /// that they have, 0 to 1. `width` in pixels. O(lines + tiles).
+    /// Prepares lines between points of model space, cut by the clip planes, each with its part of the
+    /// opacity of `light`, 0 to 1. `width` is in pixels. O(lines + tiles).
     pub fn new(
         stage: &Stage<'_>,
         lines: impl ExactSizeIterator<Item = ([DVec3; 2], f32)>,
@@ -68,7 +68,7 @@ impl Strokes {
             };
             seen.extend(ends.and_then(|ends| {
                 let near = near(ends);
-                // What is no number is seen nowhere.
+                // NaN is not visible.
                 let ends = cut_numbers(ends, ends.map(|end| end.z - near))?;
                 Some(Line { ends: ends.map(|end| End::new(view, end, near)), opacity })
             }));
@@ -83,8 +83,8 @@ impl Strokes {
         Ok(Strokes { lines: seen, bins, half_width, light })
     }
 
-    /// Draws what is seen in a tile. Where several of these lines overlap only the nearest is drawn, so that
-    /// translucent ones are no darker there.
+    /// Draws the lines in a tile. Where several of these lines overlap, only the nearest is drawn, so that
+    /// translucent lines are not darker there.
     pub fn paint(&self, tile: &mut Tile<'_>) -> Result<(), Error> {
         let lines = self.bins.of(tile)?;
         if lines.is_empty() || self.light.0.w <= 0.0 {
@@ -97,7 +97,7 @@ impl Strokes {
         let width = 1.0 + 2.0 * self.half_width;
         for (sample, (depth, opacity)) in nearest.into_iter().enumerate() {
             if depth < f64::INFINITY {
-                // No nearer than half way, for wide lines in the face of the eye.
+                // At least half the depth, for wide lines close to the eye.
                 let nearer = (depth - width * tile.view.pixel_at(depth)).max(0.5 * depth);
                 tile.put(sample, nearer, self.light * opacity)?;
             }
@@ -105,8 +105,7 @@ impl Strokes {
         Ok(())
     }
 
-    /// Brings the depth and the opacity of a line to the samples that it covers: those that lie within half
-    /// its width.
+    /// Updates the depth and the opacity at the samples that a line covers: those within half its width.
     fn reach(&self, tile: &Tile<'_>, line: Line, nearest: &mut [(f64, f32)]) {
         let [a, b] = line.ends;
         let along = b.place - a.place;
@@ -129,7 +128,7 @@ impl Strokes {
                 let depth = a.depth + (b.depth - a.depth) * part;
                 let depth = if tile.view.is_perspective() { 1.0 / depth } else { depth };
                 let nearest = &mut nearest[row * tile.width() + column];
-                // Of lines that meet at their ends the most opaque one is seen.
+                // If lines meet at their ends, the most opaque one is visible.
                 if depth < nearest.0 || depth == nearest.0 && line.opacity > nearest.1 {
                     *nearest = (depth, line.opacity);
                 }

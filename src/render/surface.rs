@@ -1,4 +1,4 @@
-//! Surfaces that lines of sight meet: drawn, with their edges.
+//! Surfaces that lines of sight meet, drawn with their edges.
 
 use super::cast::Cast;
 use super::light::Light;
@@ -12,22 +12,22 @@ use crate::octree::OctreeRef;
 use crate::query::TouchedCell;
 use glam::DVec3;
 
-/// What a surface looks like.
+/// The appearance of a surface.
 #[derive(Clone, Copy)]
 pub struct Skin<'a> {
     pub finish: Finish,
-    /// Values that are shown, and their colours.
+    /// The attribute whose values are shown, and the colours of the values.
     pub values: Option<(&'a dyn Attribute, Colouring<'a>)>,
 }
 
 impl Skin<'_> {
-    /// Refuses edges that nobody can draw.
+    /// Refuses invalid edges.
     pub fn check(&self) -> Result<(), Error> {
         self.finish.edges.map_or(Ok(()), |outline| outline.check())
     }
 
-    /// What it looks like at a point, given the outward normal, or the direction to who looks; values are
-    /// those `below` it.
+    /// The appearance at a point, given the outward normal, or the direction to the viewer. Values are taken
+    /// `below` under the surface.
     fn finish(&self, place: DVec3, outward: DVec3, below: f64) -> Result<Finish, Error> {
         let Some((attribute, colour)) = self.values else { return Ok(self.finish) };
         let shown = colour(attribute.value((place - below * outward.normalize_or_zero()).to_array())?);
@@ -35,16 +35,16 @@ impl Skin<'_> {
     }
 }
 
-/// What a line of sight meets.
+/// The point where a line of sight meets a surface.
 pub struct Seen {
-    /// After so many times its direction.
+    /// The distance in units of the line's direction.
     pub t: f64,
     /// The outward normal there; `None` if the line begins inside.
     pub normal: Option<DVec3>,
 }
 
-/// Draws what `see` makes of the cells of an octree that lines of sight meet. `blur`: the length over which
-/// normals change where the surface has an edge.
+/// Draws the surface that `see` finds in the cells of an octree that lines of sight meet. `blur`: the length
+/// over which normals change where the surface has an edge.
 pub fn paint(
     tile: &mut Tile<'_>,
     stage: &Stage<'_>,

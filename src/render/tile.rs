@@ -1,8 +1,8 @@
 //! A small part of a picture while it is drawn.
 //!
-//! Each pixel has k × k samples on a grid. A sample has the nearest opaque surface, the translucent ones
-//! before it, and what volumes before or between these let through. In the end all is put together from front
-//! to back.
+//! Each pixel has k × k samples on a grid. A sample has the nearest opaque surface, the translucent surfaces
+//! in front of it, and the volumes before or between these. At the end everything is composited from front to
+//! back.
 
 use super::camera::View;
 use super::light::Light;
@@ -11,14 +11,14 @@ use crate::error::Error;
 use crate::memory;
 use alloc::vec::Vec;
 
-/// Pixels of a tile along each axis.
+/// The number of pixels of a tile along each axis.
 pub const TILE: u32 = 32;
 
-/// What is seen at a sample: opaque.
+/// The opaque surface at a sample.
 #[derive(Debug, Clone, Copy)]
 pub struct Opaque {
     pub light: Light,
-    /// ∞ if nothing is.
+    /// The depth; ∞ if there is no surface.
     pub depth: f64,
 }
 
@@ -26,22 +26,22 @@ pub struct Opaque {
 #[derive(Debug, Clone, Copy)]
 pub struct Fragment {
     pub sample: u32,
-    /// The number with which it was drawn.
+    /// The number in the order of drawing.
     order: u32,
     pub depth: f64,
     pub light: Light,
 }
 
-/// The samples of some pixels, and what is seen at them.
+/// The samples of some pixels, and the surfaces and volumes at them.
 pub struct Tile<'v> {
     window: Window<'v>,
     /// Row by row.
     pub opaque: Vec<Opaque>,
-    /// By sample, and those of a sample by depth, once [`Tile::sort`] was called.
+    /// Sorted by sample and, for each sample, by depth, after [`Tile::sort`] was called.
     pub fragments: Vec<Fragment>,
-    /// What volumes show, in front of what is behind: their light, and how opaque they are.
+    /// The light and the opacity of volumes, in front of everything behind.
     pub volume: Vec<Light>,
-    /// How many fragments of each sample are in [`Tile::volume`] already.
+    /// The number of fragments of each sample that [`Tile::volume`] already contains.
     pub passed: Vec<u32>,
 }
 
@@ -66,7 +66,7 @@ impl<'v> Tile<'v> {
         })
     }
 
-    /// Draws a surface at a sample: hides what is farther away if it is opaque.
+    /// Draws a surface at a sample. An opaque surface hides everything farther away.
     #[inline]
     pub fn put(&mut self, sample: usize, depth: f64, light: Light) -> Result<(), Error> {
         let opaque = &mut self.opaque[sample];
@@ -81,8 +81,8 @@ impl<'v> Tile<'v> {
         memory::push(&mut self.fragments, Fragment { sample: sample as u32, order, depth, light })
     }
 
-    /// Puts the translucent surfaces in order; those of one depth stay in the order in which they were drawn.
-    /// Call it once all surfaces are drawn, before volumes are.
+    /// Sorts the translucent surfaces; those of one depth stay in the order in which they were drawn. Call it
+    /// after all surfaces are drawn, and before volumes are.
     pub fn sort(&mut self) {
         let opaque = &self.opaque;
         self.fragments.retain(|fragment| fragment.depth < opaque[fragment.sample as usize].depth);
@@ -100,7 +100,7 @@ impl<'v> Tile<'v> {
         &rest[..end]
     }
 
-    /// Puts the samples of each pixel together, row by row.
+    /// Composites the samples of each pixel, row by row.
     pub fn resolve(&self, background: Light, mut put: impl FnMut(Light, f64)) {
         let grid = self.grid as usize;
         let share = 1.0 / (grid * grid) as f32;

@@ -1,4 +1,4 @@
-//! Cells in which a solid tells where rays go: they need no further splits.
+//! Cells in which a solid answers rays: they need no further splits.
 
 use crate::control::Control;
 use crate::error::Error;
@@ -8,11 +8,11 @@ use crate::solid::forward::{forward_batch, forward_classifier, forward_parts};
 use crate::solid::{Batch, Classifier, Parts, Question, RayQuestion, RayTrace, Subtree, Verdict, Worker};
 use alloc::vec::Vec;
 
-/// Where a ray goes in and out, as a solid tells it of one of its PARTIAL cells: good within the cell, until
-/// its first way in.
+/// Traces a ray in one of a solid's PARTIAL cells. The trace is valid within the cell, up to its first entry
+/// into the solid.
 ///
-/// What is open alone in a cell answers for itself: an expression in which one mesh is open tells the mesh's
-/// way.
+/// If only one operand is open in a cell, it answers for the expression: an expression in which one mesh is
+/// open returns the trace of the mesh.
 pub fn ask<W: Worker>(
     worker: &mut W,
     cell: Cell,
@@ -24,9 +24,9 @@ pub fn ask<W: Worker>(
     worker.answer(cell, part, Question::Ray(RayQuestion { ray, is_first_enough: true, trace }))
 }
 
-/// A solid on a frame that leaves cells undecided in which it tells where rays go.
+/// A solid on a frame that leaves cells undecided in which it answers rays.
 ///
-/// A closed mesh tells that of all cells, and an expression of those in which no other operand is open.
+/// A closed mesh answers rays in all cells, and an expression in those in which no other operand is open.
 #[derive(Clone)]
 pub struct Told<C>(pub C);
 
@@ -41,7 +41,7 @@ impl<C: Classifier> Classifier for Told<C> {
     forward_classifier!(self => self.0);
 }
 
-/// A ray that meets nothing, of which a solid tells this at once.
+/// A ray that meets nothing, so that a solid answers it at once.
 pub fn probe(frame: &Frame) -> Result<Ray, Error> {
     Ray::new(frame.origin().map(|low| low - frame.edge()), [-1.0; 3])
 }

@@ -1,4 +1,4 @@
-//! Transfer functions: what the values of voxels look like.
+//! Transfer functions: colours and opacities of the values of voxels.
 
 use super::light::Light;
 use crate::error::Error;
@@ -11,22 +11,22 @@ use glam::DVec3;
 /// the colour.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Default)]
 pub enum ColourMap {
-    /// From dark violet by way of green to yellow (van der Walt and Smith).
+    /// From dark violet through green to yellow (van der Walt and Smith).
     #[default]
     Viridis,
-    /// From dark blue to yellow; the colour-blind see it as others do (Nuñez, Anderton and Renslow).
+    /// From dark blue to yellow; it looks the same to colour-blind readers (Nuñez, Anderton and Renslow).
     Cividis,
-    /// From black by way of red to light yellow (van der Walt and Smith).
+    /// From black through red to light yellow (van der Walt and Smith).
     Inferno,
-    /// From black by way of purple to near white (van der Walt and Smith).
+    /// From black through purple to near white (van der Walt and Smith).
     Magma,
-    /// From dark blue by way of red to yellow (van der Walt and Smith).
+    /// From dark blue through red to yellow (van der Walt and Smith).
     Plasma,
     /// From black to white.
     Grey,
 }
 
-/// Colours of a map.
+/// The number of colours of a map.
 const STEPS: usize = 256;
 
 impl ColourMap {
@@ -52,18 +52,18 @@ impl ColourMap {
         }
     }
 
-    /// The map with this name.
+    /// Returns the map with this name.
     ///
     /// # Errors
-    /// [`Error::Argument`] if no map has it.
+    /// [`Error::Argument`] if no map has this name.
     pub fn from_name(name: &str) -> Result<ColourMap, Error> {
         let problem = "must be viridis, cividis, inferno, magma, plasma or grey";
         let found = ColourMap::ALL.into_iter().find(|map| map.name() == name);
         found.ok_or(Error::Argument { name: "map", problem })
     }
 
-    /// The colour of a number: red, green and blue in sRGB. Numbers below 0 have the first colour, numbers
-    /// above 1 the last one; NaN has the first. A map has 256 colours, and the nearest one is taken.
+    /// Returns the colour of a number: red, green and blue in sRGB. Numbers below 0 have the first colour,
+    /// numbers above 1 the last one; NaN has the first. A map has 256 colours, and the nearest one is taken.
     pub fn colour(self, number: f64) -> [u8; 3] {
         self.step(step_of(number))
     }
@@ -92,12 +92,12 @@ fn step_of(number: f64) -> usize {
 ///
 /// A value of one number has the colour of a [`ColourMap`] over a range. A value of three or four numbers is
 /// a colour itself: red, green and blue in sRGB, 0 to 255, and an opacity, 0 to 255, that scales the transfer
-/// function's opacity. (Of a value of two numbers only the first counts.) Numbers beyond the ends of their
+/// function's opacity. (For a value of two numbers only the first counts.) Numbers beyond the ends of their
 /// range count as the end.
 ///
-/// Opacity holds for a length: if a path of that length absorbs the share α of the light, a path of length s
-/// lets (1 − α)^(s / length) through. So a picture does not depend on how finely a solid is divided into
-/// voxels.
+/// The opacity holds for a path of a given length. If such a path absorbs the share α of the light, a path of
+/// length s transmits (1 − α)^(s / length). So a picture does not depend on how finely a solid is divided
+/// into voxels.
 ///
 /// ```
 /// use leafless::render::{ColourMap, Transfer};
@@ -119,8 +119,8 @@ impl Transfer {
     /// The colour of voxels without a value: a neutral grey, in sRGB.
     pub const NEUTRAL: [u8; 3] = [160; 3];
 
-    /// A transfer function that maps the values from `range[0]` to `range[1]` to the colours of a map. The
-    /// opacity `alpha`, 0 to 1, holds for a path of `length` model units, whatever the value.
+    /// Creates a transfer function that maps the values from `range[0]` to `range[1]` to the colours of a
+    /// map. The opacity `alpha`, 0 to 1, holds for a path of `length` model units, for all values.
     ///
     /// # Errors
     /// [`Error::Argument`] if a number is not zero and not between 2^-256 and 2^256 in magnitude, if the
@@ -134,12 +134,11 @@ impl Transfer {
         Transfer { map, range, alpha: [alpha; 2], length }.ramp([alpha; 2])
     }
 
-    /// The same transfer function with an opacity that rises or falls linearly from `alpha[0]` at the low end
-    /// of the range to `alpha[1]` at the high end. Voxels without a value, and values that are colours, have
-    /// the opacity `alpha[1]`.
+    /// Sets an opacity that rises or falls linearly from `alpha[0]` at the low end of the range to `alpha[1]`
+    /// at the high end. Voxels without a value, and values that are colours, have the opacity `alpha[1]`.
     ///
     /// # Errors
-    /// [`Error::Argument`] if one of the two is not in [0, 1].
+    /// [`Error::Argument`] if one of the two numbers is not in [0, 1].
     pub fn ramp(self, alpha: [f64; 2]) -> Result<Transfer, Error> {
         if !alpha.iter().all(|alpha| (0.0..=1.0).contains(alpha)) {
             return Err(Error::Argument { name: "alpha", problem: "must be 0 to 1" });
@@ -162,13 +161,13 @@ impl Transfer {
         self.alpha
     }
 
-    /// The length of a path that has these opacities, in model units.
+    /// The length of a path with these opacities, in model units.
     pub fn length(&self) -> f64 {
         self.length
     }
 
-    /// The colour of a value: red, green and blue in sRGB. A value that is empty or has NaN among its numbers
-    /// is none.
+    /// Returns the colour of a value: red, green and blue in sRGB. An empty value, or one that contains NaN,
+    /// counts as missing.
     pub fn colour(&self, value: &[f64]) -> [u8; 3] {
         match *value {
             [r, g, b] | [r, g, b, _] if is_known(value) => [r, g, b].map(|x| step_of(x / 255.0) as u8),
@@ -177,15 +176,15 @@ impl Transfer {
         }
     }
 
-    /// The colour of a surface with a value of `components` numbers, opaque: [`NEUTRAL`](Self::NEUTRAL) where
-    /// there is none.
+    /// Returns the opaque colour of a surface with a value of `components` numbers:
+    /// [`NEUTRAL`](Self::NEUTRAL) for a missing value.
     pub fn opaque(&self, value: Option<[f64; 4]>, components: usize) -> [u8; 4] {
         let value = value.as_ref().map_or(&[][..], |value| &value[..components.min(4)]);
         let [r, g, b] = self.colour(value);
         [r, g, b, 255]
     }
 
-    /// The opacity, 0 to 1, of a path of `path` model units through a value.
+    /// Returns the opacity, 0 to 1, of a path of `path` model units through a value.
     pub fn opacity(&self, value: &[f64], path: f64) -> f64 {
         let path = path.max(0.0);
         if path == 0.0 { 0.0 } else { absorbed(depth_of(self.alpha_of(value)) * (path / self.length)) }
@@ -204,7 +203,7 @@ impl Transfer {
         }
     }
 
-    /// Where a value lies in the range: 0 to 1.
+    /// The place of a value in the range: 0 to 1.
     fn place(&self, value: f64) -> f64 {
         let [low, high] = self.range;
         ((value - low) / (high - low)).clamp(0.0, 1.0)
@@ -215,7 +214,7 @@ fn is_known(value: &[f64]) -> bool {
     !value.iter().any(|number| number.is_nan())
 }
 
-/// The optical depth of an opacity: minus the logarithm of what is let through; ∞ if that is nothing.
+/// The optical depth of an opacity: minus the logarithm of the transmitted share; ∞ if the share is 0.
 pub fn depth_of(opacity: f64) -> f64 {
     -libm::log1p(-opacity)
 }
@@ -231,10 +230,11 @@ pub fn absorbed(depth: f64) -> f64 {
     1.0 - libm::exp(-depth)
 }
 
-/// A transfer function that is ready to be asked for the values of many voxels.
+/// A transfer function prepared for the values of many voxels.
 pub struct Looks {
     transfer: Transfer,
-    /// Linear colours of the map, of the bytes in sRGB (each as one number thrice), and of what has no value.
+    /// The linear colours of the map, of the bytes in sRGB (each as one number thrice), and of missing
+    /// values.
     map: Vec<DVec3>,
     bytes: Vec<f64>,
     neutral: DVec3,

@@ -7,7 +7,7 @@ use glam::DVec3;
 #[derive(Debug, Clone, Copy)]
 pub struct Window<'v> {
     pub view: &'v View,
-    /// The first pixel, and how many.
+    /// The first pixel, and the number of pixels.
     pub first: [u32; 2],
     pub size: [u32; 2],
     /// Samples of a pixel along each axis.
@@ -15,7 +15,7 @@ pub struct Window<'v> {
 }
 
 impl<'v> Window<'v> {
-    /// The same with some pixels more on each side, as far as the picture goes.
+    /// The window with some more pixels on each side, up to the borders of the picture.
     pub fn widened(&self, pixels: u32) -> Window<'v> {
         let whole = [self.view.width, self.view.height];
         let first = self.first.map(|first| first.saturating_sub(pixels));
@@ -23,19 +23,19 @@ impl<'v> Window<'v> {
         Window { first, size: [end[0] - first[0], end[1] - first[1]], ..*self }
     }
 
-    /// Samples of a row.
+    /// The number of samples in a row.
     #[inline(always)]
     pub fn width(&self) -> usize {
         (self.size[0] * self.grid) as usize
     }
 
-    /// Rows of samples.
+    /// The number of rows of samples.
     #[inline(always)]
     pub fn height(&self) -> usize {
         (self.size[1] * self.grid) as usize
     }
 
-    /// Where the sample (column, row) of the tile lies in the picture, in pixels.
+    /// The place of the sample (column, row) of the tile in the picture, in pixels.
     #[inline(always)]
     pub fn place(&self, column: usize, row: usize) -> [f64; 2] {
         let step = 1.0 / f64::from(self.grid);
@@ -52,7 +52,7 @@ impl<'v> Window<'v> {
         let grid = f64::from(self.grid);
         let index = |x: f64| (x - f64::from(self.first[axis])) * grid - 0.5;
         let count = f64::from(self.size[axis] * self.grid);
-        // (What is not a number counts as far away.)
+        // (NaN counts as far away.)
         let first = libm::ceil(index(low)).max(0.0).min(count) as usize;
         let end = (libm::floor(index(high)) + 1.0).max(0.0).min(count) as usize;
         first..end.max(first)
@@ -65,7 +65,7 @@ impl<'v> Window<'v> {
         self.view.line(x, y)
     }
 
-    /// The same of a sample that may lie beside the window.
+    /// The line of sight of a sample that may lie beside the window.
     pub fn line_at(&self, [column, row]: [i32; 2]) -> (DVec3, DVec3) {
         let place = |axis: usize, sample: i32| {
             f64::from(self.first[axis]) + (f64::from(sample) + 0.5) / f64::from(self.grid)

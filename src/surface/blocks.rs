@@ -1,8 +1,8 @@
-//! The blocks of samples that a surface passes through.
+//! The blocks of samples that a surface crosses.
 //!
-//! One walk through the tree, which looks at every cell together with its seven neighbours towards +x, +y and
-//! +z, and leaves out where all eight are inside, or all outside. (Ju et al. 2002 walk so in dual
-//! contouring.) What is left are cells at the surface, so that the walk costs as much as there are.
+//! One walk through the tree visits every cell together with its seven neighbours towards +x, +y and +z, and
+//! skips the cells where all eight are inside, or all outside. (Ju et al. 2002 walk in this way in dual
+//! contouring.) Only cells at the surface remain, so the cost of the walk is linear in their number.
 
 use super::key::Key;
 use super::masks::{CORNER_AT, all, any, bits, configuration, corners};
@@ -16,17 +16,18 @@ use crate::memory;
 use crate::parallel::each;
 use alloc::vec::Vec;
 
-/// A block of 4³ samples with a dual cell that the surface passes through.
+/// A block of 4³ samples that contains the lowest sample of a dual cell which the surface crosses.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Block {
     pub key: Key,
-    /// The samples that lie inside.
+    /// The samples that lie inside, as bits.
     pub inside: u64,
-    /// Per axis the samples that differ from the next one along it: edges that the surface crosses.
+    /// For each axis, the samples that differ from the next sample along it: the edges that the surface
+    /// crosses.
     pub cut: [u64; 3],
-    /// The dual cells, by their lowest samples, whose samples differ.
+    /// The dual cells whose samples differ, by their lowest samples.
     pub mixed: u64,
-    /// Vertices and triangles before those of this block.
+    /// The numbers of vertices and triangles before those of this block.
     pub vertex: u32,
     pub triangle: u32,
 }
@@ -36,7 +37,7 @@ pub(super) struct Blocks {
     pub list: Vec<Block>,
     pub vertices: usize,
     pub triangles: usize,
-    /// Blocks per axis; positions of keys are biased by as many.
+    /// Blocks per axis; the positions of keys are biased by this number.
     pub bias: i32,
 }
 
@@ -48,17 +49,17 @@ struct Task {
     nodes: [Node; 8],
 }
 
-/// The part of the whole work that finding blocks counts for.
+/// The part of the whole work that finding the blocks takes.
 pub(super) const FINDING: usize = WHOLE / 4;
 
 impl Blocks {
-    /// Finds the blocks of a surface that takes `least` at the least. O(blocks), and what [`Samples::new`]
-    /// costs.
+    /// Finds the blocks of a surface whose least size is `least`. O(blocks), plus the cost of
+    /// [`Samples::new`].
     ///
     /// # Errors
-    /// [`Error::TooLarge`] and [`Error::Limit`] by the job's control, [`MeshError::TooMany`] for more
-    /// vertices or triangles than 32 bits can number, [`Error::Damaged`], [`Error::OutOfMemory`], and
-    /// [`Error::Cancelled`].
+    /// [`Error::TooLarge`] and [`Error::Limit`] by the limits of the job's control, [`MeshError::TooMany`]
+    /// for more vertices or triangles than 32 bits can number, [`Error::Damaged`], [`Error::OutOfMemory`],
+    /// and [`Error::Cancelled`].
     pub fn find(
         samples: &Samples<'_>,
         least: &Least,
@@ -71,7 +72,7 @@ impl Blocks {
         let mut blocks = Blocks { list, vertices: 0, triangles: 0, bias: samples.blocks() };
         let (mut vertices, mut triangles) = (0u64, 0u64);
         for block in &mut blocks.list {
-            // The walk has left the counts of each block here.
+            // The walk has stored the counts of each block here.
             let counts = (u64::from(block.vertex), u64::from(block.triangle));
             (block.vertex, block.triangle) = (vertices as u32, triangles as u32);
             (vertices, triangles) = (vertices + counts.0, triangles + counts.1);
@@ -84,17 +85,17 @@ impl Blocks {
     }
 }
 
-/// The lattice and what lies before it, cut into pieces that threads can take on.
+/// Cuts the lattice, and the border before it, into tasks for threads.
 fn tasks(samples: &Samples<'_>) -> Result<Vec<Task>, Error> {
     let mut tasks = memory::with_capacity(8)?;
     for place in 0..8usize {
-        // The first seven lie outside, and have the universe beside them.
+        // The first seven nodes lie outside, and the universe is their neighbour.
         let at = axes(|axis| (place >> axis & 1) as i32 - 1);
         let nodes = [0, 1, 2, 3, 4, 5, 6, 7]
             .map(|j| if place | j == 7 && place & j == 0 { samples.root() } else { Node::Void });
         tasks.push(Task { e: 0, key: place as Key, at, nodes });
     }
-    // Two levels down there are enough of them.
+    // Two levels down there are enough tasks.
     for e in 0..samples.levels().saturating_sub(1).min(2) {
         let mut finer = Vec::new();
         for task in &tasks {
@@ -127,7 +128,7 @@ fn run(samples: &Samples<'_>, tasks: &[Task], job: &Job<'_>, parallel: bool) -> 
     Ok(list)
 }
 
-/// Appends the blocks in a node. The recursion is ten levels deep at the most.
+/// Appends the blocks in a node. The recursion is at most ten levels deep.
 fn visit(samples: &Samples<'_>, task: &Task, job: &Job<'_>, list: &mut Vec<Block>) -> Result<(), Error> {
     if task.e + 1 == samples.levels() {
         return leaf(samples, task, list);
@@ -140,7 +141,7 @@ fn visit(samples: &Samples<'_>, task: &Task, job: &Job<'_>, list: &mut Vec<Block
     Ok(())
 }
 
-/// Hands out the cells of a node through which the surface may pass, with their neighbours.
+/// Passes on the cells of a node that the surface may cross, with their neighbours.
 #[inline(always)]
 fn split(
     samples: &Samples<'_>,
@@ -161,7 +162,7 @@ fn split(
     Ok(())
 }
 
-/// The cells of a node and of its neighbours.
+/// The sets of a node and of its neighbours.
 #[inline(always)]
 fn sets(samples: &Samples<'_>, task: &Task) -> Result<[super::samples::Sets; 8], Error> {
     let mut sets = [super::samples::Sets::VOID; 8];
@@ -171,7 +172,7 @@ fn sets(samples: &Samples<'_>, task: &Task) -> Result<[super::samples::Sets; 8],
     Ok(sets)
 }
 
-/// Appends a block.
+/// Appends a block of the finest level, if the surface crosses it.
 #[inline(always)]
 fn leaf(samples: &Samples<'_>, task: &Task, list: &mut Vec<Block>) -> Result<(), Error> {
     let words = corners(sets(samples, task)?.map(|sets| sets.solid));

@@ -1,10 +1,11 @@
-//! The octree of cells that the surface passes through, in which coplanar ones are merged: branch on need
-//! (Wilhelms and Van Gelder 1992), shrunk from the bottom up.
+//! The octree of cells that the surface crosses, with coplanar cells merged: branch on need (Wilhelms and Van
+//! Gelder 1992), shrunk from the bottom up.
 //!
-//! Eight cells of a node become one *super-cell* if the configurations of all that are there are coplanar, in
-//! one plane. A node that fails keeps the nodes above it from merging. The configuration of a super-cell
-//! follows from those of the cells: what a cell that is not there would have at its corner is what they have
-//! at the middle of the node, because the surface does not pass between the two.
+//! Eight cells of a node become one *super-cell* if the configurations of all existing cells are coplanar,
+//! and lie in one plane. A node that cannot be merged keeps the nodes above it from merging. The
+//! configuration of a super-cell follows from those of its cells: a missing cell would have the same side at
+//! its corner as the other cells have at the middle of the node, because the surface does not pass between
+//! the two points.
 
 use super::blocks::Blocks;
 use super::chunks;
@@ -18,31 +19,31 @@ use crate::error::Error;
 use crate::memory;
 use alloc::vec::Vec;
 
-/// A cell of the surface: 2^level dual cells long.
+/// A cell of the surface, 2^level dual cells long.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(super) struct Cell {
-    /// Where its lowest dual cell lies, interleaved as the keys of blocks, two levels further down.
+    /// The place of its lowest dual cell: interleaved as in the keys of blocks, two levels further down.
     key: Key,
-    /// The plane of all triangles in it.
+    /// The plane of all triangles in the cell.
     pub plane: Plane,
-    /// Which of its corners lie inside.
+    /// The corners that lie inside, as bits.
     pub configuration: u8,
     pub level: u8,
 }
 
 impl Cell {
-    /// Its lowest corner. `bias` is that of the blocks.
+    /// The lowest corner of the cell. `bias` is the bias of the blocks.
     pub fn corner(&self, bias: i32) -> [i32; 3] {
         key::position(self.key, 4 * bias)
     }
 }
 
-/// What may be merged.
+/// The condition for merging cells.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(super) enum Merge {
-    /// Cells in one plane, with one outer side.
+    /// The cells lie in one plane and have the same outer side.
     Sided,
-    /// Cells in one plane, as the published method has it.
+    /// The cells lie in one plane, as in the published method.
     Plane,
 }
 
@@ -55,10 +56,10 @@ impl Merge {
     }
 }
 
-/// Levels of cells in a block.
+/// The number of cell levels in a block.
 const OF_BLOCK: u32 = 2;
 
-/// The cells of a surface in Morton order, merged as far as they can be. O(dual cells of the surface).
+/// Returns the cells of a surface in Morton order, merged as far as possible. O(dual cells of the surface).
 ///
 /// # Errors
 /// [`Error::OutOfMemory`] and [`Error::Cancelled`].
@@ -92,14 +93,14 @@ pub(super) fn cells(
     found.iter().for_each(|part| all.extend_from_slice(part));
     drop(found);
     let mut cells = Vec::new();
-    // Blocks lie on both sides of the middle of the keys.
+    // Blocks lie on both sides of the middle of the key range.
     let levels = blocks.bias.ilog2() + 1 + OF_BLOCK;
     shrink(&all, OF_BLOCK, levels, merge, &mut cells)?;
     Ok(cells)
 }
 
-/// Appends the cells of a node of `level`, which are merged below the level `from` already. The recursion is
-/// as deep as levels lie between.
+/// Appends the cells of a node of `level`, whose cells are already merged up to the level `from`. The
+/// recursion is as deep as the number of levels between.
 fn shrink(cells: &[Cell], from: u32, level: u32, merge: Merge, output: &mut Vec<Cell>) -> Result<(), Error> {
     if level == from || cells.len() == 1 && u32::from(cells[0].level) == level {
         output.try_reserve(cells.len())?;
@@ -123,7 +124,7 @@ fn shrink(cells: &[Cell], from: u32, level: u32, merge: Merge, output: &mut Vec<
     Ok(())
 }
 
-/// The super-cell of cells in a node of this level.
+/// Returns the super-cell of the cells in a node of this level, if they can be merged.
 fn merged(cells: &[Cell], level: u32, merge: Merge) -> Option<Cell> {
     let first = cells.first()?;
     let fit = |cell: &Cell| u32::from(cell.level) + 1 == level && merge.fit(cell.plane, first.plane);
@@ -131,7 +132,7 @@ fn merged(cells: &[Cell], level: u32, merge: Merge) -> Option<Cell> {
         return None;
     }
     let child = |cell: &Cell| (cell.key >> (3 * (level - 1)) & 7) as u8;
-    // The middle of the node is the corner opposite to each cell's own.
+    // The middle of the node is the corner that is opposite to each cell's own corner.
     let middle = first.configuration >> (7 - child(first)) & 1;
     let mut configuration = if middle == 1 { 255 } else { 0 };
     for cell in cells {

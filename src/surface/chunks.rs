@@ -1,4 +1,4 @@
-//! Work on blocks, chunk by chunk, each writing to a place of its own.
+//! Parallel work on chunks of blocks, each writing to its own piece of the output.
 
 use crate::control::Job;
 use crate::error::Error;
@@ -7,14 +7,14 @@ use crate::parallel::each;
 use alloc::vec::Vec;
 use core::ops::Range;
 
-/// Blocks of a chunk.
+/// The number of blocks in a chunk.
 const CHUNK: usize = 1 << 10;
 
-/// Hands out `output` in pieces, one for each chunk of `blocks` blocks: `start(i)` is where that of block i
-/// begins. `work` fills each, and `weight` is what all of them count for in the progress.
+/// Splits `output` into pieces, one for each chunk of `blocks` blocks; the piece of block i begins at
+/// `start(i)`. `work` fills each piece. All pieces together count for `weight` in the progress.
 ///
 /// # Errors
-/// Those of `work`, and [`Error::Cancelled`].
+/// The errors of `work`, and [`Error::Cancelled`].
 pub(super) fn for_each<T: Send>(
     blocks: usize,
     output: &mut [T],
@@ -25,7 +25,7 @@ pub(super) fn for_each<T: Send>(
     work: impl Fn(Range<usize>, &mut [T]) -> Result<(), Error> + Sync,
 ) -> Result<(), Error> {
     let count = blocks.div_ceil(CHUNK);
-    // What is left of the weight by rounding.
+    // The remainder of the weight after division.
     job.advance(weight.checked_rem(count).unwrap_or(weight));
     let mut pieces: Vec<(Range<usize>, &mut [T])> = memory::with_capacity(count)?;
     let mut rest = output;
@@ -45,7 +45,8 @@ pub(super) fn for_each<T: Send>(
     each(parallel, pieces.into_iter(), done).map(drop)
 }
 
-/// What `work` makes of the chunks of `blocks` blocks; all of them count for `weight` in the progress.
+/// Returns the results of `work` for the chunks of `blocks` blocks; all chunks together count for `weight` in
+/// the progress.
 ///
 /// # Errors
 /// As [`for_each`].

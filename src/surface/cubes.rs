@@ -1,4 +1,4 @@
-//! Marching cubes: the surface through the edges between samples.
+//! Marching cubes: a surface through the edges between samples.
 
 use super::blocks::{Block, Blocks, FINDING};
 use super::chunks;
@@ -18,30 +18,30 @@ use crate::mesh::TriangleMesh;
 use crate::octree::OctreeRef;
 use alloc::vec::Vec;
 
-/// The surface of an octree by marching cubes: a closed mesh, with vertices half-way between the centres of
-/// finest cells of which one lies inside and the other outside.
+/// Extracts the surface of an octree by marching cubes. The surface is a closed mesh. Each vertex lies
+/// half-way between the centres of two finest cells, one inside and one outside.
 ///
-/// Everything outside of the universe counts as EMPTY, so that the mesh is closed. Every edge belongs to
-/// exactly two triangles, in opposite directions, also where cells touch in an edge or a corner: inside cells
-/// hang together by faces alone, outside ones by faces and edges. Triangles turn counter-clockwise as seen
-/// from outside. No triangle is degenerate, and no two vertices are equal. Vertices and triangles come in
-/// Morton order of the cells.
+/// Everything outside the universe counts as EMPTY, so that the mesh is closed. Every edge belongs to exactly
+/// two triangles, in opposite directions, even where cells touch in an edge or a corner: inside cells are
+/// connected by faces only, outside cells by faces and edges. Triangles turn counter-clockwise as seen from
+/// outside. No triangle is degenerate, and no two vertices are equal. Vertices and triangles are in Morton
+/// order of the cells.
 ///
-/// `resolve` says what PARTIAL cells count as; `None` will do for trees without any.
+/// `resolve` defines the side of PARTIAL cells; `None` suffices for trees without PARTIAL cells.
 ///
-/// The method is that of Lorensen and Cline (1987), with a table that is made by one rule for faces, so that
-/// cells always fit together.
+/// The method is that of Lorensen and Cline (1987). The table follows one rule for faces, so that
+/// neighbouring cells always fit together.
 ///
-/// O(elements of the tree + mesh). Beside the mesh it takes 56 bytes for each block of 4³ cells at the
-/// surface, which is below a fifth of the mesh for surfaces that are not all corners. The result is the same
-/// for any number of threads.
+/// O(elements of the tree + mesh). In addition to the mesh, 56 bytes are needed for each block of 4³ cells at
+/// the surface. This is less than a fifth of the mesh, unless the surface consists of corners only. The
+/// result is the same for any number of threads.
 ///
 /// # Errors
 /// [`Error::Argument`] if the tree has PARTIAL cells and `resolve` is `None`, or if the frame is so far from
-/// the origin that doubles cannot tell its cells apart;
+/// the origin that doubles cannot distinguish its cells;
 /// [`MeshError::TooMany`](crate::error::MeshError::TooMany) for more than 2^32 − 1 vertices or triangles;
-/// [`Error::Damaged`]; [`Error::OutOfMemory`]; [`Error::Cancelled`]; and with [`Resolve::Source`] what the
-/// solid refuses.
+/// [`Error::TooLarge`] or [`Error::Limit`] beyond the limits of `control`; [`Error::Damaged`];
+/// [`Error::OutOfMemory`]; [`Error::Cancelled`]; and with [`Resolve::Source`] the errors of the solid.
 ///
 /// ```
 /// use leafless::{Control, Csg, FillRule, Frame, Rule, build, marching_cubes};
@@ -60,11 +60,11 @@ pub fn marching_cubes(
     in_memory((Vec::new(), Vec::new()), tree, resolve, control)
 }
 
-/// The same as [`marching_cubes`] in the memory of a mesh that is no longer needed: for a part that changes
-/// and is drawn again and again. Memory is asked for only where the new mesh is larger.
+/// [`marching_cubes`] in the memory of a mesh that is no longer needed, for a part that changes and is drawn
+/// repeatedly. Memory is allocated only if the new mesh is larger.
 ///
 /// # Errors
-/// As [`marching_cubes`]; the memory is given back then.
+/// As [`marching_cubes`]; the memory of the old mesh is then released.
 ///
 /// ```
 /// use leafless::{Control, Csg, Frame, Rule, build, marching_cubes, surface::marching_cubes_reusing};
@@ -86,15 +86,15 @@ pub fn marching_cubes_reusing(
     in_memory(mesh.into_arrays(), tree, resolve, control)
 }
 
-/// The triangles that [`marching_cubes`] makes in one cell of the frame, and the vertices of these: those of
-/// the dual cells whose first sample lies there. The surfaces of all cells of a level are together that of
-/// the tree, each triangle once, and vertices at one place have the same coordinates to the bit. So a
-/// [sharded](crate::Shard) octree has its surface made cell by cell, each from its own shard and those of the
-/// up to seven neighbours towards +x, +y and +z: what lies further away does not matter.
+/// Extracts the triangles of [`marching_cubes`] in one cell of the frame, with their vertices: the triangles
+/// of the dual cells whose first sample lies in the cell. The surfaces of all cells of a level together are
+/// the surface of the tree, each triangle once. Vertices at one place have bit-identical coordinates. So the
+/// surface of a [sharded](crate::Shard) octree can be made cell by cell. Each cell needs its own shard and
+/// those of up to seven neighbours towards +x, +y and +z, and nothing further away.
 ///
 /// # Errors
-/// As [`marching_cubes`]; [`Error::Argument`] if the cell is none of the frame, or has less than 4³ finest
-/// cells.
+/// As [`marching_cubes`]; [`Error::Argument`] if the cell does not belong to the frame, or has less than 4³
+/// finest cells.
 ///
 /// ```
 /// use leafless::surface::{Resolve, marching_cubes_in};
@@ -120,7 +120,7 @@ pub fn marching_cubes_in(
     {
         return Err(Error::Argument {
             name: "cell",
-            problem: "must be one of the frame, with 4³ finest cells at least",
+            problem: "must belong to the frame and contain at least 4³ finest cells",
         });
     }
     resolved(tree, resolve, control, |tree, partial, control| {
@@ -134,7 +134,7 @@ pub fn marching_cubes_in(
             let triangles = triangles(Vec::new(), &blocks, &job, parallel)?;
             let shift = depth - BLOCK_LEVELS - cell.level;
             let is_inside = |block: &Block| {
-                // Dual cells before the first samples belong to the cells there.
+                // Dual cells before the first samples belong to the cells of the first samples.
                 let at = key::position(block.key, blocks.bias);
                 at.iter().zip(cell.at).all(|(&at, own)| at.max(0) as u32 >> shift == own)
             };
@@ -166,7 +166,7 @@ pub fn marching_cubes_in(
     })
 }
 
-/// Levels between a block and its samples.
+/// The number of levels between a block and its samples.
 const BLOCK_LEVELS: u8 = 2;
 
 fn in_memory(
@@ -189,7 +189,7 @@ fn in_memory(
     })
 }
 
-/// The vertices of a surface in the middles of cut edges, in the memory of a list.
+/// Places vertices in the middles of cut edges, in the memory of a list.
 pub(super) fn midpoints(
     memory: Vec<[f64; 3]>,
     blocks: &Blocks,
@@ -239,7 +239,7 @@ impl Hot for Midpoints<'_> {
     }
 }
 
-/// The triangles of a surface, in the memory of a list.
+/// Makes the triangles of a surface, in the memory of a list.
 pub(super) fn triangles(
     memory: Vec<[u32; 3]>,
     blocks: &Blocks,
@@ -281,14 +281,14 @@ impl Hot for Fill<'_> {
     }
 }
 
-/// A block and its neighbours: which edges are cut there, and where their vertices begin.
+/// A block and its neighbours: their cut edges, and the first vertices of these.
 pub(super) struct Around {
     inside: u64,
     cut: [[u64; 3]; 8],
     vertex: [[u32; 3]; 8],
 }
 
-/// Dual cells that have samples in node j.
+/// The dual cells that have samples in node j.
 pub(super) const AT_NODE: [u64; 8] = {
     let mut masks = [!0; 8];
     let mut i = 0;
@@ -303,7 +303,7 @@ pub(super) const AT_NODE: [u64; 8] = {
 };
 
 impl Around {
-    /// Block `i` of a list. Its neighbours with cut edges are in the list, too.
+    /// Collects block `i` of a list and its neighbours. Neighbours with cut edges are always in the list.
     #[inline(always)]
     pub fn of(list: &[Block], i: usize) -> Around {
         let block = &list[i];
@@ -322,7 +322,7 @@ impl Around {
         around
     }
 
-    /// The samples at the corners of dual cells that are mixed.
+    /// The samples at the corners of dual cells. Correct for mixed dual cells only.
     #[inline(always)]
     pub fn corners(&self) -> [u64; 8] {
         let cut = |j: usize, axis: usize| self.cut[j][axis];
@@ -335,7 +335,7 @@ impl Around {
         [first, at_x, at_y, at_xy, first ^ z, at_x ^ z_at_x, at_y ^ next(z, cut(2, 2), 1), at_xy ^ z_at_xy]
     }
 
-    /// The vertex on an edge of dual cell `c`.
+    /// Returns the number of the vertex on an edge of dual cell `c`.
     #[inline(always)]
     pub fn vertex(&self, c: u32, edge: u8) -> u32 {
         let lower = ENDS[edge as usize][0];

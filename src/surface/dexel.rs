@@ -23,39 +23,39 @@ use crate::walk::Edge;
 use alloc::vec::Vec;
 use core::sync::atomic::{AtomicBool, AtomicUsize, Ordering::Relaxed};
 
-/// How exactly a surface of a tri-dexel model follows its rays.
+/// A report on how exactly a surface of a tri-dexel model follows its rays.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 #[non_exhaustive]
 pub struct DexelSurfaceReport {
-    /// Edges between neighbouring centres of cells of which one lies inside: places where a ray crosses the
-    /// surface.
+    /// Edges between two neighbouring cell centres of which one lies inside: the places where a ray crosses
+    /// the surface.
     pub crossings: u64,
-    /// Crossings on edges that the ray crosses more than once: what is thinner than a cell is lost there.
+    /// Crossings on edges that the ray crosses more than once: a feature thinner than a cell is lost there.
     pub several: u64,
-    /// Crossings that were put in the middle of their edges, because the model has no rays along these.
+    /// Crossings that were put in the middle of their edges because the model has no rays along them.
     pub without_rays: u64,
-    /// Crossings that were put in the middle of their edges, because the ray along it does not leave the
+    /// Crossings that were put in the middle of their edges because the ray along the edge does not leave the
     /// solid there: the directions of the model disagree.
     pub disagreeing: u64,
-    /// Crossings of which no normal is known. (By dual contouring alone.)
+    /// Crossings without a known normal. (Dual contouring only.)
     pub without_normals: u64,
-    /// Vertices with no normal at any of their crossings, which are the mean of these. (By dual contouring
-    /// alone.)
+    /// Vertices whose crossings all have no normal; they lie at the mean of the crossings. (Dual contouring
+    /// only.)
     pub means: u64,
-    /// Vertices that would fit their planes better outside of their cells. (By dual contouring alone.)
+    /// Vertices that would fit their planes better outside their cells. (Dual contouring only.)
     pub clamped: u64,
-    /// Bodies that the mesh does not show at all. A body is a set of centres of cells that lie inside and
-    /// hang together, each with the next one along an axis. It vanishes if none of its crossings has a
-    /// triangle: its surface lies nearer to its centres than doubles can tell, so that its vertices lie at
-    /// these, and each of its triangles has two corners at one place.
+    /// Bodies that are missing in the mesh. A body is a connected set of inside cell centres, each adjacent
+    /// to the next along an axis. It is missing if none of its crossings has a triangle. Its surface then
+    /// lies nearer to its centres than doubles can express, so that its vertices lie at the centres, and each
+    /// of its triangles has two corners at one place.
     pub vanished: u64,
-    /// Intervals in all directions that hold no centre of a cell, those that touch counted as one: what is
-    /// thinner than the lattice there is no part of any body, and no crossing tells of it.
+    /// Intervals in all directions that contain no cell centre; touching intervals count as one. Such a
+    /// feature is thinner than the lattice, belongs to no body, and has no crossing.
     pub without_centres: u64,
 }
 
-/// The surface of a solid by dual contouring, with sharp edges and corners: [`dual_contouring_dexels`] of a
-/// tri-dexel model with normals, which is made of the solid on `frame` and dropped afterwards.
+/// Extracts the surface of a solid by dual contouring, with sharp edges and corners. A tri-dexel model with
+/// normals is made of the solid on `frame`, passed to [`dual_contouring_dexels`], and dropped.
 ///
 /// ```
 /// use leafless::{Control, Csg, Frame, surface::dual_contouring_solid};
@@ -68,7 +68,7 @@ pub struct DexelSurfaceReport {
 /// ```
 ///
 /// # Errors
-/// As [`dexelize`] and [`dual_contouring_dexels`].
+/// As [`dexelize`] and [`marching_cubes_dexels`].
 pub fn dual_contouring_solid<S: Solid>(
     solid: &S,
     frame: &Frame,
@@ -80,31 +80,33 @@ pub fn dual_contouring_solid<S: Solid>(
     control.share([0.6, 1.0], |control| dual_contouring_dexels(model.view(), control))
 }
 
-/// The surface of a tri-dexel model by marching cubes: a closed mesh, with vertices where rays cross the
-/// solid's surface.
+/// Extracts the surface of a tri-dexel model by marching cubes: a closed mesh, with vertices where rays cross
+/// the solid's surface.
 ///
-/// Samples are the centres of cells, as [`octree_from_dexels`](crate::op::octree_from_dexels) has them;
-/// everything outside of the universe is outside. On each edge between two neighbouring centres of which one
+/// The samples are the centres of cells, as in [`octree_from_dexels`](crate::op::octree_from_dexels);
+/// everything outside the universe is outside. On each edge between two neighbouring centres of which one
 /// lies inside, there is one vertex. It lies where the ray along this edge leaves the solid, nearest to the
-/// inside centre. The report counts edges that the ray crosses more often, and edges on which there is no
-/// such place: because the model has no rays in this direction, or because its directions disagree. There the
-/// vertex lies half-way.
+/// inside centre. The report counts edges that the ray crosses more than once, and edges without such a
+/// place: the model has no rays in this direction, or its directions disagree. On these edges the vertex lies
+/// half-way.
 ///
-/// The mesh is oriented as that of [`marching_cubes`](crate::marching_cubes). Vertices that lie at one place,
-/// which is a centre on the surface, are one vertex, and triangles without area are dropped: there more than
-/// two triangles may meet on an edge, in balance. Else every edge belongs to exactly two triangles. A body
-/// that loses all of its triangles so [is counted](DexelSurfaceReport::vanished), and so is what [holds no
-/// centre](DexelSurfaceReport::without_centres) and is not seen.
+/// The mesh is oriented as that of [`marching_cubes`](crate::marching_cubes). Vertices that coincide at a
+/// centre on the surface become one vertex, and triangles without area are dropped. At such places more than
+/// two triangles may meet on an edge, in balance. Everywhere else every edge belongs to exactly two
+/// triangles. A body that loses all its triangles in this way [is counted](DexelSurfaceReport::vanished). A
+/// feature that [contains no centre](DexelSurfaceReport::without_centres) is not in the mesh, and is also
+/// counted.
 ///
 /// Edges and corners of the solid are cut off by up to a cell; [`dual_contouring_dexels`] keeps them.
 ///
-/// O(rays + intervals + octree + mesh), with the octree of
+/// O(rays + intervals + octree + mesh), where the octree is that of
 /// [`octree_from_dexels`](crate::op::octree_from_dexels). The result is the same for any number of threads.
 ///
 /// # Errors
-/// [`Error::Argument`] if the frame is so far from the origin that doubles cannot tell its cells apart;
+/// [`Error::Argument`] if the frame is so far from the origin that doubles cannot distinguish its cells;
 /// [`MeshError::TooMany`](crate::error::MeshError::TooMany) for more than 2^32 − 1 vertices or triangles;
-/// [`Error::OutOfMemory`]; [`Error::Cancelled`].
+/// [`Error::TooLarge`] or [`Error::Limit`] beyond the limits of `control`; [`Error::OutOfMemory`];
+/// [`Error::Cancelled`].
 ///
 /// ```
 /// use leafless::{
@@ -165,30 +167,30 @@ pub fn marching_cubes_dexels(
     })
 }
 
-/// The surface of a tri-dexel model by dual contouring: a closed mesh that keeps the solid's edges and
-/// corners.
+/// Extracts the surface of a tri-dexel model by dual contouring: a closed mesh that keeps the solid's edges
+/// and corners.
 ///
-/// Samples are those of [`marching_cubes_dexels`], and the crossings are found as there. In each cube between
-/// eight centres the mesh has a vertex for each sheet of the surface. It lies where the planes at the sheet's
-/// crossings, with the normals that the model stores, fit best (their quadratic error function has its
-/// minimum), and never outside of the cube. On a smooth surface that is near the mean of the crossings, on an
-/// edge of the solid it is on the edge, and where three faces meet at the corner. Two faces that meet at less
-/// than about 11 degrees count as smooth. Crossings of which no normal is known count for the mean alone; so
-/// a model without normals gives a smooth mesh.
+/// Samples and crossings are those of [`marching_cubes_dexels`]. In each cube between eight centres the mesh
+/// has one vertex for each sheet of the surface. The vertex lies where it fits best the planes at the sheet's
+/// crossings, with the normals that the model stores (at the minimum of their quadratic error function), and
+/// never outside the cube. On a smooth surface this place is near the mean of the crossings; on an edge of
+/// the solid it lies on the edge; where three faces meet, it is the corner. Two faces that meet at less than
+/// about 11 degrees count as smooth. Crossings without a known normal contribute to the mean only, so a model
+/// without normals gives a smooth mesh.
 ///
-/// For each crossing there is a quadrilateral between the four cubes around, which is split by the diagonal
-/// that leads nearer to the crossing. (Ju, Losasso, Schaefer and Warren 2002; one vertex for each sheet after
-/// Nielson 2004 and Schaefer, Ju and Warren 2007.)
+/// Each crossing gives a quadrilateral between the four cubes around it, split by the diagonal that passes
+/// nearer to the crossing. (Ju, Losasso, Schaefer and Warren 2002; one vertex for each sheet after Nielson
+/// 2004 and Schaefer, Ju and Warren 2007.)
 ///
 /// The mesh is oriented as that of [`marching_cubes`](crate::marching_cubes). Every edge belongs to exactly
-/// two triangles, in opposite directions. For that there are some more vertices where two sheets come near
-/// each other: on a face between two cubes with two inside centres at the ends of a diagonal, if the sheets
-/// around both hang together in both cubes. Vertices that lie at one place, as on the common face of two
-/// cubes, are one vertex, and triangles without area are dropped: there more than two triangles may meet on
-/// an edge, in balance. Triangles may intersect. A body is not shown, and counted, as by
-/// [`marching_cubes_dexels`]; a body of one centre is else a cuboid around it.
+/// two triangles, in opposite directions. This needs some additional vertices where two sheets come near each
+/// other: on a face between two cubes that has two inside centres at the ends of a diagonal, if the sheets
+/// around both centres are connected in both cubes. Vertices at one place, as on the common face of two
+/// cubes, become one vertex, and triangles without area are dropped. At such places more than two triangles
+/// may meet on an edge, in balance. Triangles may intersect. Missing bodies are counted as by
+/// [`marching_cubes_dexels`]; any other body of one centre is a cuboid around the centre.
 ///
-/// Time as [`marching_cubes_dexels`]. The result is the same for any number of threads.
+/// Time as for [`marching_cubes_dexels`]. The result is the same for any number of threads.
 ///
 /// # Errors
 /// As [`marching_cubes_dexels`].
@@ -210,7 +212,7 @@ pub fn dual_contouring_dexels(
     })
 }
 
-/// What the rays of a model told of cut edges.
+/// The crossings that the rays of a model give for the cut edges.
 struct Told<'a> {
     model: &'a TriDexelRef<'a>,
     crossings: Vec<Hermite>,
@@ -227,7 +229,7 @@ impl Crossings for Told<'_> {
     }
 }
 
-/// What `extract` makes of the blocks of a model's samples.
+/// Passes the blocks of a model's samples to `extract` and returns its result.
 fn surface<R: Send>(
     model: &TriDexelRef<'_>,
     control: &Control<'_>,
@@ -246,7 +248,7 @@ fn surface<R: Send>(
     })
 }
 
-/// The rays of a model, asked for all cut edges.
+/// The rays of a model, evaluated for all cut edges.
 struct Rays<'a> {
     model: &'a TriDexelRef<'a>,
     blocks: &'a Blocks,
@@ -279,7 +281,7 @@ impl Counts {
 }
 
 impl Rays<'_> {
-    /// Hands each cut edge with its crossing to `put`, with its place in a list of all.
+    /// Passes each cut edge and its crossing to `put`, with its place in a list of all edges.
     fn for_each<T: Send>(
         &self,
         output: &mut [T],

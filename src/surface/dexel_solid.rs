@@ -10,13 +10,14 @@ use crate::octree::{Proof, Tag};
 use crate::solid::{Classifier, Fingerprint, MeshSolid, Motion, Solid, WholeQuestion};
 use alloc::sync::Arc;
 
-/// A tri-dexel model as a solid: the region inside of the surface that [`marching_cubes_dexels`] finds. Cheap
-/// to clone.
+/// A tri-dexel model as a solid: the region inside the surface that [`marching_cubes_dexels`] finds. Cheap to
+/// clone.
 ///
-/// It can be built on any frame, moved, queried, and taken into expressions. Its verdicts are exact about
-/// this surface. Of the solid that the model was made from they prove nothing, since rays see nothing of what
-/// lies between them: [`Classifier::proof`] says so, and measures and other certified queries then tell what
-/// is certain, which is little. [`as_truth`](DexelSolid::as_truth) takes the surface itself for the solid.
+/// The solid can be built on any frame, moved, queried, and used in expressions. Its verdicts are exact for
+/// this surface. They prove nothing about the solid from which the model was made, because no ray sees what
+/// lies between the rays. [`Classifier::proof`] returns this fact, and measures and other certified queries
+/// then return only what is certain, which is little. [`as_truth`](DexelSolid::as_truth) treats the surface
+/// itself as the solid.
 ///
 /// ```
 /// use leafless::{
@@ -49,30 +50,30 @@ pub struct DexelSolid {
 }
 
 impl DexelSolid {
-    /// The solid of a model. The surface is extracted once, here; the model is not kept.
+    /// Creates the solid of a model. The surface is extracted once, here; the model is not kept.
     ///
     /// # Errors
-    /// As [`marching_cubes_dexels`], and [`MeshError::Empty`](crate::error::MeshError::Empty) if no centre of
-    /// a cell lies inside.
+    /// As [`marching_cubes_dexels`], and [`MeshError::Empty`](crate::error::MeshError::Empty) if no cell
+    /// centre lies inside.
     pub fn new(model: &TriDexelRef<'_>, control: &Control<'_>) -> Result<DexelSolid, Error> {
         let (mesh, report) = marching_cubes_dexels(model, control)?;
         let surface = MeshSolid::new(mesh, FillRule::NonZero)?;
         Ok(DexelSolid { surface, report, proof: Proof::new(false, false) })
     }
 
-    /// The same solid, its surface taken for the truth: what it says is proven of the region inside of that
-    /// surface.
+    /// Returns the same solid with its surface as the truth: its verdicts are proven for the region inside
+    /// the surface.
     #[must_use]
     pub fn as_truth(&self) -> DexelSolid {
         DexelSolid { proof: Proof::CERTIFIED, ..self.clone() }
     }
 
-    /// The surface.
+    /// The surface as a mesh.
     pub fn mesh(&self) -> &Arc<TriangleMesh> {
         self.surface.mesh()
     }
 
-    /// How exactly the surface follows the rays of the model.
+    /// The report on how exactly the surface follows the rays of the model.
     pub fn report(&self) -> DexelSurfaceReport {
         self.report
     }
@@ -85,12 +86,12 @@ impl Solid for DexelSolid {
         Ok(DexelClassifier { surface: self.surface.on(frame, control)?, proof: self.proof })
     }
 
-    /// Known if the surface is the truth.
+    /// The bounding box; known only if the surface is the truth.
     fn bounds(&self) -> Option<Bounds> {
         if self.proof.empty { self.surface.bounds() } else { None }
     }
 
-    /// Of the surface.
+    /// The fingerprint of the surface.
     fn fingerprint(&self) -> Option<Fingerprint> {
         self.surface.fingerprint()
     }
@@ -116,7 +117,7 @@ pub struct DexelClassifier {
 }
 
 impl Classifier for DexelClassifier {
-    // The cells are those of the surface; only what they prove differs.
+    // The cells are those of the surface; only their proof differs.
     type Worker = <<MeshSolid as Solid>::Classifier as Classifier>::Worker;
 
     fn frame(&self) -> &Frame {

@@ -1,14 +1,15 @@
 //! Dual contouring: a vertex in each cube between eight samples, where the planes at its crossings meet.
 //!
-//! Whoever has samples and, for each cut edge, a crossing with a normal gets a mesh here: rays, expressions,
-//! meshes. Cubes are numbered block by block, in the order of their lowest samples; vertices loop by loop of
-//! each cube. The quadrilateral of a cut edge belongs to the lowest of the four cubes around the edge, in
-//! which the edge is the last one along its axis.
+//! This module makes a mesh from samples and, for each cut edge, a crossing with a normal. Rays, expressions
+//! and meshes provide such data. Cubes are numbered block by block, in the order of their lowest samples;
+//! vertices are numbered loop by loop in each cube. The quadrilateral of a cut edge belongs to the lowest of
+//! the four cubes around the edge. In that cube the edge is the last one along its axis.
 //!
-//! **Joints.** The sides of quadrilaterals lead from cube to cube. Where a face has two segments, and in both
-//! cubes beside it these belong to one loop each, two sides have the same ends, and four triangles would meet
-//! on them. Each of the two then gets a vertex of its own on the face, in the middle of its segment: a joint.
-//! So exactly two triangles meet on every edge. Joints are numbered behind all other vertices.
+//! **Joints.** The sides of quadrilaterals lead from cube to cube. Suppose that a face has two segments, and
+//! that in each of its two cubes both segments belong to one loop. Then two sides have the same ends, and
+//! four triangles would meet on them. To avoid this, each of the two sides gets a vertex of its own on the
+//! face, in the middle of its segment: a joint. So exactly two triangles meet on every edge. Joints are
+//! numbered after all other vertices.
 
 use super::blocks::{Block, Blocks, FINDING};
 use super::chunks;
@@ -31,7 +32,7 @@ use crate::mesh::TriangleMesh;
 use alloc::vec::Vec;
 use core::sync::atomic::{AtomicBool, AtomicUsize, Ordering::Relaxed};
 
-/// What vertices were like.
+/// Counts of exceptional vertices and bodies.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct DualCounts {
     /// Vertices without a plane.
@@ -42,18 +43,18 @@ pub(super) struct DualCounts {
     pub vanished: u64,
 }
 
-/// Diagonals whose distances from the crossing differ by less than this part of a cell are alike.
+/// Two diagonals count as equal if their distances from the crossing differ by less than this part of a cell.
 const ALIKE: f64 = 1.0 / (1 << 20) as f64;
 
-/// Where cut edges are crossed. Edges have the numbers of the vertices of marching cubes.
+/// The crossings of the cut edges. Edges have the numbers of the vertices of marching cubes.
 pub(super) trait Crossings: Sync {
     fn at(&self, edge: u32) -> Hermite;
 
-    /// How many bodies have no triangle, if `covered` says of each edge whether it has one.
+    /// Returns the number of bodies without a triangle; `covered` says for each edge whether it has one.
     fn vanished(&self, blocks: &Blocks, covered: &[bool]) -> Result<u64, Error>;
 }
 
-/// The mesh of crossings.
+/// Makes the mesh of the crossings.
 ///
 /// # Errors
 /// [`MeshError::TooMany`], [`Error::OutOfMemory`], [`Error::Cancelled`].
@@ -125,10 +126,10 @@ pub(super) fn extract(
     Ok((mesh, DualCounts { means, clamped, vanished: bodies }))
 }
 
-/// A cube between eight samples that the surface passes through.
+/// A cube between eight samples that the surface crosses.
 #[derive(Debug, Clone, Copy, Default)]
 struct Cube {
-    /// Its first vertex.
+    /// The number of its first vertex.
     vertex: u32,
     configuration: u8,
 }
@@ -140,11 +141,11 @@ struct CubesOfBlock {
     cube: u32,
     triangle: u32,
     joint: u32,
-    /// Per axis the cubes with joints at their upper faces.
+    /// For each axis, the cubes with joints at their upper faces.
     jointed: [u64; 3],
 }
 
-/// All cubes that the surface passes through.
+/// All cubes that the surface crosses.
 struct Cubes {
     list: Vec<CubesOfBlock>,
     cubes: Vec<Cube>,
@@ -252,7 +253,7 @@ impl Cubes {
         Ok(())
     }
 
-    /// How many sides of the quadrilaterals of a block have joints.
+    /// The number of sides of a block's quadrilaterals that have joints.
     fn sides_with_joints(&self, blocks: &Blocks, i: usize) -> u64 {
         let (mut count, nodes) = (0, nodes(&blocks.list, i));
         for (c, cube) in bits(blocks.list[i].mixed).zip(self.at(i)) {
@@ -282,7 +283,7 @@ impl Cubes {
         Some(own.joint + 2 * (before + rank(own.jointed[axis], inner.into())))
     }
 
-    /// The cube one step further than cube `c` along the axes of `step`, and its block.
+    /// Returns the cube one step further than cube `c` along the axes of `step`, and its block.
     #[inline(always)]
     fn beside(&self, blocks: &Blocks, nodes: &[Option<usize>; 8], c: u32, step: usize) -> (usize, Cube) {
         let (node, inner) = CORNER_AT[c as usize][step];
@@ -291,7 +292,7 @@ impl Cubes {
         (i, self.at(i)[before as usize])
     }
 
-    /// The cubes of a block from the first on.
+    /// The cubes of a block and all later ones.
     fn at(&self, i: usize) -> &[Cube] {
         &self.cubes[self.list[i].cube as usize..]
     }
@@ -303,29 +304,29 @@ impl Cubes {
 }
 
 impl Cube {
-    /// Whether the last edge along an axis begins inside, if it is cut.
+    /// Returns whether the last edge along an axis begins inside; `None` if the edge is not cut.
     #[inline(always)]
     fn last_edge(&self, axis: usize) -> Option<bool> {
         let [low, high] = ENDS[4 * axis + 3].map(|corner| self.configuration >> corner & 1);
         (low != high).then_some(low == 1)
     }
 
-    /// Whether one loop has two segments in a face: −x, +x, −y, +y, −z, +z.
+    /// Returns whether one loop has two segments in a face: −x, +x, −y, +y, −z, +z.
     #[inline(always)]
     fn meets_twice(&self, face: usize) -> bool {
         LOOPS[self.configuration as usize].twice >> face & 1 != 0
     }
 }
 
-/// The sides of the quadrilaterals along an axis, in cyclic order: the step to the lower one of the cubes,
-/// and the axis along which the other one lies.
+/// The sides of the quadrilaterals along an axis, in cyclic order: the step to the lower one of the two
+/// cubes, and the axis along which the other cube lies.
 #[inline(always)]
 fn sides(axis: usize) -> [(usize, usize); 4] {
     let (u, v) = ((axis + 1) % 3, (axis + 2) % 3);
     [(0, u), (1 << u, v), (1 << v, u), (0, v)]
 }
 
-/// The blocks in which cubes beside those of block `i` lie.
+/// The blocks that contain the neighbours of block `i`'s cubes.
 fn nodes(list: &[Block], i: usize) -> [Option<usize>; 8] {
     let block = &list[i];
     let wanted = (1..7).fold(0, |wanted, j| wanted | u64::from(block.mixed & AT_NODE[j] != 0) << j);
@@ -338,11 +339,11 @@ struct Dual<'a> {
     cubes: &'a Cubes,
 }
 
-/// What the vertices of a block were like.
+/// Counts for the vertices of a block.
 struct Found {
     means: usize,
     clamped: usize,
-    /// Whether all lie at different places, and inside of their cubes.
+    /// Whether all vertices are distinct, and lie inside their cubes.
     is_welded: bool,
 }
 
@@ -394,7 +395,7 @@ impl Dual<'_> {
         found
     }
 
-    /// Places the joints of a block. The answer is whether they surely lie at places of their own.
+    /// Places the joints of a block. Returns whether all joints certainly lie at distinct places.
     fn joints<'p>(
         &self,
         i: usize,
@@ -415,7 +416,8 @@ impl Dual<'_> {
                 let lower = axes(|axis| f64::from(4 * at[axis] + inner[axis] as i32) + 0.5);
                 let [b, t] = OTHERS[axis];
                 for which in 0..2u8 {
-                    // The inside corner that the segment cuts off: the two are ends of a diagonal.
+                    // The inside corner that the segment cuts off. The two inside corners are the ends of a
+                    // diagonal.
                     let face = 1 << axis | which << b;
                     let corner = face | (!configuration >> face & 1) << t;
                     let mut point = lower;
@@ -444,7 +446,7 @@ impl Dual<'_> {
         is_welded
     }
 
-    /// Makes the triangles of a block, each with the number of the crossing that it belongs to.
+    /// Makes the triangles of a block, each with the number of its crossing.
     fn quads(
         &self,
         i: usize,
@@ -464,7 +466,7 @@ impl Dual<'_> {
                 let mut quad = [0, u, u | v, v].map(|step| self.vertex(&nodes, c, axis, step));
                 let mut joints = sides(axis).map(|side| {
                     let first = self.cubes.joint(self.blocks, &nodes, c, side)?;
-                    // Which of the two segments ends at this edge: that around its inside end.
+                    // The number of the segment that ends at this edge: the segment around its inside end.
                     let b = OTHERS[side.1][0];
                     let which = if b == axis { !starts_inside } else { side.0 >> b & 1 == 0 };
                     Some(self.cubes.vertices as u32 + first + u32::from(which))
@@ -494,8 +496,8 @@ impl Dual<'_> {
         }
     }
 
-    /// The vertex of the last edge of cube `c` along an axis in the cube that lies one step further along the
-    /// axes of `step`.
+    /// Returns the vertex that belongs to the last edge of cube `c` along an axis. It lies in the cube one
+    /// step further along the axes of `step`.
     #[inline(always)]
     fn vertex(&self, nodes: &[Option<usize>; 8], c: u32, axis: usize, step: usize) -> u32 {
         let (_, cube) = self.cubes.beside(self.blocks, nodes, c, step);
@@ -504,8 +506,8 @@ impl Dual<'_> {
         cube.vertex + u32::from(LOOPS[cube.configuration as usize].of_edge[edge])
     }
 
-    /// Whether the diagonal of a quadrilateral between its second and fourth corner is better than the other
-    /// one: whether its triangles meet the edge nearer to the crossing, or it is shorter.
+    /// Returns whether the diagonal of a quadrilateral between its second and fourth corner is better than
+    /// the other one: its triangles meet the edge nearer to the crossing, or the diagonal is shorter.
     fn turns(&self, axis: usize, crossing: [f64; 3], corners: [[f64; 3]; 4]) -> bool {
         let (u, v) = ((axis + 1) % 3, (axis + 2) % 3);
         let cell = self.lattice.cell();
@@ -522,7 +524,8 @@ impl Dual<'_> {
     }
 }
 
-/// Hands out a triangle with joints on its first and its second side. No new edge joins two of its corners.
+/// Passes on a triangle with joints on its first and its second side. No new edge joins two corners of the
+/// triangle.
 #[inline(always)]
 fn split([p, q, r]: [u32; 3], joints: [Option<u32>; 2], put: &mut impl FnMut([u32; 3])) {
     match joints {
@@ -543,11 +546,11 @@ fn split([p, q, r]: [u32; 3], joints: [Option<u32>; 2], put: &mut impl FnMut([u3
     }
 }
 
-/// How high above the origin the triangles of a quadrilateral with the diagonal from its first to its third
-/// corner lie. Its corners lie around the origin, as seen from above.
+/// The height above the origin of a quadrilateral that is split by the diagonal from its first to its third
+/// corner. Its corners surround the origin, as seen from above.
 fn height([p, q, r, s]: [[f64; 3]; 4]) -> Option<f64> {
     let cross = |a: [f64; 3], b: [f64; 3]| a[0] * b[1] - a[1] * b[0];
-    // On the left of the diagonal lies the last corner.
+    // The last corner lies on the left of the diagonal.
     let [a, b, c] = if cross(p, r) > 0.0 { [p, r, s] } else { [p, q, r] };
     let weights = [cross(b, c), cross(c, a), cross(a, b)];
     let sum = weights[0] + weights[1] + weights[2];

@@ -1,12 +1,13 @@
-//! Where cut edges are crossed, and the normals there (Hermite data), and how rays of a tri-dexel model tell.
+//! Crossings of cut edges with their normals (Hermite data), and crossings from the rays of a tri-dexel
+//! model.
 
 use crate::dexel::{OTHERS, Place, RowsRef, Span, TriDexelRef, decoded, with_rows};
 use crate::walk::Edge;
 
-/// Where a cut edge between two samples is crossed.
+/// The crossing of a cut edge between two samples.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
 pub(super) struct Hermite {
-    /// How far behind the lower sample, of the distance between both.
+    /// The distance behind the lower sample, as a fraction of the distance between both samples.
     pub t: f64,
     /// The outward unit normal; all zero if it is not known.
     pub normal: [f32; 3],
@@ -20,24 +21,24 @@ impl Hermite {
     }
 }
 
-/// What a ray says of a cut edge.
+/// The result of evaluating the ray along a cut edge.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(super) enum Said {
-    /// There is no ray along it.
+    /// The model has no ray along the edge.
     NoRays,
     /// The ray does not leave the solid on the way from the inside sample to the outside one.
     Nothing,
-    /// It does at this place (finest cells from the universe's lower face).
+    /// The ray leaves the solid at this place (in finest cells from the universe's lower face).
     At {
         place: f64,
         normal: Option<[f64; 3]>,
-        /// Whether it crosses the surface elsewhere on the edge, too.
+        /// Whether the ray also crosses the surface elsewhere on the edge.
         several: bool,
     },
 }
 
-/// What a model says of an edge between two centres of cells, one of which lies inside. Of the places where
-/// the ray leaves the solid it is the nearest to the inside sample.
+/// Evaluates a model on an edge between two cell centres, one of which lies inside. If the ray leaves the
+/// solid at several places, the one nearest to the inside sample is returned.
 pub(super) fn said(model: &TriDexelRef<'_>, edge: &Edge) -> Said {
     match &model.rays[edge.axis] {
         None => Said::NoRays,
@@ -46,7 +47,7 @@ pub(super) fn said(model: &TriDexelRef<'_>, edge: &Edge) -> Said {
 }
 
 fn on_ray<S: Span>(rows: &RowsRef<'_, S>, edge: &Edge, depth: u8) -> Said {
-    // (What lies before the universe is no ray.)
+    // (There are no rays before the universe.)
     let ray = OTHERS[edge.axis].map(|axis| edge.lower[axis] as u32);
     let gap = (edge.lower[edge.axis] + 1) as u32;
     let range = rows.ray(ray);
@@ -58,7 +59,7 @@ fn on_ray<S: Span>(rows: &RowsRef<'_, S>, edge: &Edge, depth: u8) -> Said {
         if start.gap(depth) > gap {
             break;
         }
-        // Where intervals of two materials touch there is no surface.
+        // Where intervals of two materials touch, there is no surface.
         if start.gap(depth) == gap && !(i > 0 && spans[i - 1].ends()[1] >= start) {
             count += 1;
             if !edge.starts_inside {

@@ -1,15 +1,16 @@
-//! Blocks of 4³ samples by one number, which ascends in Morton order.
+//! Keys of blocks of 4³ samples: numbers that ascend in Morton order.
 
 use super::masks::bits;
 
-/// Where a block lies: the bits of its three coordinates, interleaved. Coordinates are biased, because blocks
-/// lie before the universe, too: there are the dual cells between its first samples and what is around it.
+/// The place of a block: the bits of its three coordinates, interleaved. Coordinates are biased, because some
+/// blocks lie before the universe: they contain the dual cells between the first samples and the
+/// surroundings.
 pub(super) type Key = u64;
 
 /// The bits of x.
 const X: u64 = 0x1249_2492_4924_9249;
 
-/// The key of a block `bias` blocks further.
+/// Returns the key of a block. `bias` is added to its coordinates.
 #[cfg(test)]
 pub(super) fn of(at: [i32; 3], bias: i32) -> Key {
     let spread = |v: i32| {
@@ -19,7 +20,7 @@ pub(super) fn of(at: [i32; 3], bias: i32) -> Key {
     spread(at[0]) | spread(at[1]) << 1 | spread(at[2]) << 2
 }
 
-/// Where the block of a key lies.
+/// Returns the place of the block with a key.
 #[inline(always)]
 pub(super) fn position(key: Key, bias: i32) -> [i32; 3] {
     // Each step halves the gaps between the bits of one coordinate.
@@ -35,7 +36,7 @@ pub(super) fn position(key: Key, bias: i32) -> [i32; 3] {
     [compact(key), compact(key >> 1), compact(key >> 2)]
 }
 
-/// The key of node j of the block.
+/// Returns the key of node j of the block.
 #[inline(always)]
 pub(super) fn node(key: Key, j: usize) -> Key {
     let mut result = key;
@@ -49,8 +50,8 @@ pub(super) fn node(key: Key, j: usize) -> Key {
     result
 }
 
-/// The first place from `from` on in a list that ascends whose key is at least `key`. O(log of how far that
-/// is).
+/// Returns the first place from `from` on in an ascending list whose key is at least `key`. O(log of the
+/// distance to that place).
 #[inline(always)]
 pub(super) fn seek<T>(list: &[T], from: usize, key: Key, key_of: impl Fn(&T) -> Key) -> usize {
     let rest = list.get(from..).unwrap_or_default();
@@ -62,8 +63,8 @@ pub(super) fn seek<T>(list: &[T], from: usize, key: Key, key_of: impl Fn(&T) -> 
     from + low + rest[low.min(high)..high].partition_point(|item| key_of(item) < key)
 }
 
-/// The places of the nodes 1 to 7 of the block at place `own` of a list; `None` for those that are not in it.
-/// Only those in `wanted` (bit j: node j) are sought.
+/// Returns the places of the nodes 1 to 7 of the block at place `own` of a list; `None` for nodes that are
+/// not in the list. Only the nodes in `wanted` (bit j: node j) are searched for.
 #[inline(always)]
 pub(super) fn find_nodes<T>(
     list: &[T],

@@ -2,18 +2,18 @@
 //!
 //! In a dual cell the segments on its faces form loops, each of which bounds one disc
 //! ([`table`](super::table)). The dual surface has one vertex for each loop, so that sheets that pass through
-//! one cell stay apart. (Nielson 2004; Schaefer, Ju and Warren 2007.)
+//! one cell stay separate. (Nielson 2004; Schaefer, Ju and Warren 2007.)
 
 use super::table::{ENDS, NONE, successors};
 
 /// The loops of a configuration.
 #[derive(Clone, Copy)]
 pub(super) struct Loops {
-    /// How many there are.
+    /// The number of loops.
     pub count: u8,
-    /// For each edge of the cube the loop that runs through it; [`u8::MAX`] for edges that are not cut.
+    /// The loop through each edge of the cube; [`u8::MAX`] for edges that are not cut.
     pub of_edge: [u8; 12],
-    /// Faces in which one loop has two segments: −x, +x, −y, +y, −z, +z as bits.
+    /// The faces in which one loop has two segments: −x, +x, −y, +y, −z, +z as bits.
     pub twice: u8,
 }
 
@@ -45,7 +45,7 @@ const fn loops(configuration: usize) -> Loops {
     }
     let mut face = 0;
     while face < 6 {
-        // Two segments lie in a face of which all four edges are cut.
+        // A face has two segments if all its four edges are cut.
         let (first, mut is_twice, mut edge) = (edges_of(face)[0], true, 0);
         while edge < 4 {
             let of = loops.of_edge[edges_of(face)[edge]];
@@ -78,7 +78,7 @@ mod tests {
     use super::super::table::MARCHING_CUBES;
     use super::*;
 
-    /// The triangles of marching cubes hang together by edges exactly within loops.
+    /// The triangles of marching cubes are connected by edges exactly within loops.
     #[test]
     fn loops_bound_the_discs_of_the_table() {
         for (configuration, loops) in LOOPS.iter().enumerate() {
@@ -97,8 +97,8 @@ mod tests {
             assert_eq!(list.len(), edges - 2 * usize::from(loops.count), "{configuration}");
         }
         assert_eq!(LOOPS.iter().map(|loops| loops.count).max(), Some(4));
-        // Two inside corners of the lower face that are joined by way of the upper one; and all but two
-        // opposite ones.
+        // The only such configurations: two inside corners of the lower face that are joined through the
+        // upper face; and all corners except two opposite ones.
         assert_eq!((LOOPS[0b1011_1001].count, LOOPS[0b1011_1001].twice), (1, 1 << 4));
         assert!(LOOPS.iter().all(|loops| loops.twice == 0 || loops.count < 3));
     }

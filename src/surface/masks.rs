@@ -1,26 +1,26 @@
-//! Samples of 4³ blocks as words, and what lies beside them.
+//! Samples of 4³ blocks as words, and shifts to neighbouring samples.
 //!
-//! The eight *nodes* of a block are the block itself and its neighbours towards +x, +y and +z: node j is j &
-//! 1 blocks further along x, j >> 1 & 1 along y, j >> 2 along z. A dual cell belongs to the block of its
+//! The eight *nodes* of a block are the block itself and its neighbours towards +x, +y and +z: node j lies j
+//! & 1 blocks further along x, j >> 1 & 1 along y, j >> 2 along z. A dual cell belongs to the block of its
 //! lowest sample.
 
 use crate::lattice::morton::{self, SLAB};
 
-/// The cells of a block for which the cell one place further along `axis` is set; `beyond` is the block
-/// there.
+/// The cells of a block for which the cell one place further along `axis` is set; `beyond` is the
+/// neighbouring block there.
 #[inline(always)]
 pub(super) const fn next(own: u64, beyond: u64, axis: usize) -> u64 {
-    // The first slab of the block beyond is what the last slab of this one has beside it.
+    // The first slab of the block beyond adjoins the last slab of this block.
     morton::shifted(own, axis, false) | (beyond & SLAB[axis][0]) << (9 << axis)
 }
 
-/// For each corner of dual cells the samples there: bit c of word j is corner j of dual cell c.
+/// The samples at each corner of the dual cells: bit c of word j is corner j of dual cell c.
 #[inline(always)]
 pub(super) fn corners(nodes: [u64; 8]) -> [u64; 8] {
     let mut words = nodes;
     for axis in 0..3 {
-        // The corners that are further along this axis, from those nodes; corners and nodes before this axis
-        // and after it stay apart.
+        // Corners that are further along this axis come from the nodes that are further along it. Corners and
+        // nodes on the axes before and after this one stay separate.
         for j in 0..8 {
             if j >> axis & 1 == 0 {
                 words[j | 1 << axis] = next(words[j], words[j | 1 << axis], axis);
@@ -36,7 +36,7 @@ pub(super) fn all(words: &[u64; 8]) -> u64 {
     words.iter().fold(!0, |all, word| all & word)
 }
 
-/// The cells that are set in a word.
+/// The cells that are set in at least one word.
 #[inline(always)]
 pub(super) fn any(words: &[u64; 8]) -> u64 {
     words.iter().fold(0, |any, word| any | word)
@@ -48,7 +48,7 @@ pub(super) fn configuration(corners: &[u64; 8], c: u32) -> usize {
     (0..8).fold(0, |configuration, j| configuration | ((corners[j] >> c & 1) as usize) << j)
 }
 
-/// `CORNER_AT[c][j]`: the node that has corner j of dual cell c, and the corner's number in it.
+/// `CORNER_AT[c][j]`: the node that contains corner j of dual cell c, and the corner's number in that node.
 pub(super) const CORNER_AT: [[(u8, u8); 8]; 64] = {
     let mut table = [[(0, 0); 8]; 64];
     let mut i = 0;
@@ -68,7 +68,7 @@ pub(super) const CORNER_AT: [[(u8, u8); 8]; 64] = {
     table
 };
 
-/// The numbers of the set bits, ascending.
+/// The numbers of the set bits, in ascending order.
 #[inline(always)]
 pub(super) fn bits(mut word: u64) -> impl Iterator<Item = u32> {
     core::iter::from_fn(move || {
@@ -80,7 +80,7 @@ pub(super) fn bits(mut word: u64) -> impl Iterator<Item = u32> {
     })
 }
 
-/// The bits before bit `c`.
+/// The number of set bits before bit `c`.
 #[inline(always)]
 pub(super) fn rank(word: u64, c: u32) -> u32 {
     (word & ((1 << c) - 1)).count_ones()

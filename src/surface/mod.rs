@@ -1,29 +1,29 @@
 //! Surfaces: closed triangle meshes of solids.
 //!
 //! A surface separates *samples* that lie inside from those that lie outside. The samples of an octree are
-//! its finest cells, at their centres. Around the universe everything is outside.
+//! the centres of its finest cells. Everything around the universe is outside.
 //!
-//! All methods share one walk, which finds the blocks of 4³ samples that the surface passes through, with
-//! their samples as 64-bit words; so extraction costs as much as there is surface. The vertices of a block
-//! have consecutive numbers, and the number of one is found by counting bits. Everything is counted before
-//! memory is asked for.
+//! All methods share one walk. It finds the blocks of 4³ samples that the surface crosses, with their samples
+//! as 64-bit words, so the cost of extraction is proportional to the size of the surface. The vertices of a
+//! block have consecutive numbers, and the number of a vertex is found by counting bits. Everything is
+//! counted before memory is allocated.
 //!
 //! From the bottom up, each file uses only files named before it: `table` (marching cubes, cell by cell),
-//! `masks` (blocks as words), `key` (the order of blocks), `samples` (an octree as samples), `size` (what is
-//! known of a surface beforehand), `blocks` (the walk), `lattice` (where samples lie), `chunks` (threads),
+//! `masks` (blocks as words), `key` (the order of blocks), `samples` (an octree as samples), `size` (lower
+//! bounds of a surface's size), `blocks` (the walk), `lattice` (the places of samples), `chunks` (threads),
 //! `resolve` (undecided cells), `cubes` (marching cubes), `snapped` and `simple` (simple marching cubes),
-//! `plane`, `points`, `bon` (coplanar cells merged), `outline` (regions), `sweep` (their triangles),
-//! `published` (cells of several sizes as they are), `shrink` (coplanar shrink), `weld` (vertices at one
-//! place), `solid` (any solid), `volume` (samples of a field), `loops` (the sheets in a cube), `qef` (the
-//! point that fits planes best), `hermite` (crossings with normals, and how rays tell them), `vanished`
-//! (bodies without triangles), `dual` (dual contouring), `nets` (surface nets), `dexel` (tri-dexel models),
-//! `dexel_solid` (these as solids).
+//! `plane`, `points`, `bon` (merging coplanar cells), `outline` (regions), `sweep` (their triangles),
+//! `published` (cells of several sizes without mending), `shrink` (coplanar shrink), `weld` (merging equal
+//! vertices), `solid` (any solid), `volume` (samples of a field), `loops` (the sheets in a cube), `qef` (the
+//! point that fits planes best), `hermite` (crossings with normals, also from rays), `vanished` (bodies
+//! without triangles), `dual` (dual contouring), `nets` (surface nets), `dexel` (tri-dexel models),
+//! `dexel_solid` (tri-dexel models as solids).
 //!
-//! `boundary` goes another way: where a solid knows its surfaces, these are cut to the pieces that bound it,
-//! and nothing is sampled. `contour` is dual contouring with cells of several sizes, of any solid. `simplify`
-//! takes vertices out of meshes.
+//! `boundary` takes another approach: if a solid provides its surfaces, they are cut to the pieces that bound
+//! it, and nothing is sampled. `contour` is dual contouring with cells of several sizes, for any solid.
+//! `simplify` removes vertices from meshes.
 //!
-//! Solids that are no octrees are sampled at the corners of the lattice, as an octree whose cells have these
+//! Solids that are not octrees are sampled at the corners of the lattice, as an octree whose cells have these
 //! corners as centres.
 
 mod blocks;

@@ -1,4 +1,4 @@
-//! Surface nets: a vertex in each cube between eight samples, in the middle of what is known there.
+//! Surface nets: a vertex in each cube between eight samples, at the mean of its crossings.
 
 use super::blocks::{Blocks, FINDING};
 use super::dual::{self, Crossings};
@@ -12,27 +12,27 @@ use crate::error::Error;
 use crate::mesh::TriangleMesh;
 use crate::octree::OctreeRef;
 
-/// The surface of an octree by surface nets: a closed mesh with a vertex in each cube between eight centres
-/// of finest cells that do not all lie on one side, at the mean of the middles of the cube's edges that the
-/// surface crosses.
+/// Extracts the surface of an octree by surface nets: a closed mesh. Each cube between eight centres of
+/// finest cells that do not all lie on one side has a vertex. The vertex lies at the mean of the middles of
+/// the cube's edges that the surface crosses.
 ///
-/// Beside marching cubes, steps of the cells are smoothed by half a cell, and triangles are about as many and
-/// better shaped: there is a quadrilateral for each crossed edge, split along its shorter diagonal. Vertices
-/// are within half a cell of where marching cubes puts them. It is the plain form of dual contouring, for
-/// octrees that know neither surfaces nor normals.
+/// Compared with marching cubes, steps of the cells are smoothed by half a cell, and the triangles are about
+/// as many and better shaped: each crossed edge has one quadrilateral, split along its shorter diagonal.
+/// Vertices lie within half a cell of those of marching cubes. The method is the plain form of dual
+/// contouring, for octrees that store neither surfaces nor normals.
 ///
-/// The mesh is closed, also where the solid reaches the universe's boundary: everything outside of it counts
-/// as EMPTY. Exactly two triangles meet in each edge, and the triangles around each vertex are one fan: a
-/// cube through which several sheets of the surface pass has a vertex for each, and where two sheets come
-/// near each other there are some more vertices. Triangles turn counter-clockwise as seen from outside, and
-/// may intersect where sheets come near each other. `resolve` says what PARTIAL cells count as; `None` will
-/// do for trees without any.
+/// The mesh is closed, also where the solid reaches the universe's boundary, because everything outside the
+/// universe counts as EMPTY. Exactly two triangles meet in each edge, and the triangles around each vertex
+/// form one fan: a cube through which several sheets of the surface pass has a vertex for each sheet, and
+/// there are some additional vertices where two sheets come near each other. Triangles turn counter-clockwise
+/// as seen from outside, and may intersect where sheets come near each other. `resolve` defines the side of
+/// PARTIAL cells; `None` suffices for trees without PARTIAL cells.
 ///
 /// (Gibson, *Constrained elastic surface nets*, 1998, without its relaxation; one vertex for each sheet after
 /// Nielson, *Dual marching cubes*, 2004, and Schaefer, Ju and Warren, *Manifold dual contouring*, 2007.)
 ///
-/// O(elements of the tree + mesh). Beside the mesh it takes 56 bytes for each block of 4³ cells at the
-/// surface, and 8 for each vertex. The result is the same for any number of threads.
+/// O(elements of the tree + mesh). In addition to the mesh, 56 bytes are needed for each block of 4³ cells at
+/// the surface, and 8 for each vertex. The result is the same for any number of threads.
 ///
 /// # Errors
 /// As [`marching_cubes`](crate::marching_cubes).
@@ -73,7 +73,7 @@ impl Crossings for Middles {
     }
 
     fn vanished(&self, _: &Blocks, _: &[bool]) -> Result<u64, Error> {
-        // Vertices lie inside of their cubes.
+        // No body vanishes, because vertices lie inside their cubes.
         Ok(0)
     }
 }

@@ -1,11 +1,12 @@
 //! The outlines of plane regions of a surface.
 //!
-//! A *region* is all of a surface that lies in one plane, with one outer side. Its outline is what remains of
-//! the edges of all triangles in it if those that are run along in both directions are taken away. Outlines
-//! are found without triangles: a cell has the outlines of what lies in it, and so has a super-cell.
+//! A *region* is the part of a surface that lies in one plane, with one outer side. Its outline consists of
+//! the edges of all its triangles, without the edges that are used in both directions. Outlines are found
+//! without triangles: a cell has the outlines of the surface in it, and so has a super-cell.
 //!
-//! A vertex of outlines is a *corner* unless all edges at it lie in one line. What lies between corners is
-//! straight in all outlines that pass there. So each can go without it, and they still fit together.
+//! A vertex of outlines is a *corner* unless all edges at it lie in one line. Between two corners, all
+//! outlines that pass there are straight. So each outline can omit the other vertices, and the outlines still
+//! fit together.
 
 use super::bon::Cell;
 use super::chunks;
@@ -21,12 +22,12 @@ use crate::parallel;
 use alloc::vec::Vec;
 use hashbrown::HashMap;
 
-/// A step along the outline of a region, by the sample where it is lower. Sorted, steps there and back are
-/// beside each other.
+/// A step along the outline of a region, stored at the lower of its two samples. In a sorted list, steps in
+/// opposite directions are neighbours.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
 struct Side {
     at: u64,
-    /// Its direction, the region's plane, and whether it is run along backwards.
+    /// The step's direction, the region's plane, and whether the step goes backwards.
     rest: u64,
 }
 
@@ -52,18 +53,18 @@ impl Side {
         self.rest & 1 != 0
     }
 
-    /// The same step, whichever way it is run along.
+    /// The step without its sense.
     fn both(self) -> (u64, u64) {
         (self.at, self.rest >> 1)
     }
 
-    /// The samples at its ends, the lower first.
+    /// The samples at the ends of the step, the lower one first.
     fn ends(self) -> [u64; 2] {
         [self.at, self.at + Step::stride(self.direction())]
     }
 }
 
-/// An edge of a region between two corners, which lies to the left of it.
+/// An edge of a region between two corners. The region lies to the left of the edge.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
 pub(super) struct Edge {
     pub plane: u64,
@@ -80,8 +81,8 @@ pub(super) struct Outlines {
 }
 
 impl Outlines {
-    /// The outlines of what lies in cells. O(n log n) for n, the cells that are not merged and what merged
-    /// ones have on their faces.
+    /// Finds the outlines of the surface in cells. O(n log n), where n counts the cells that are not merged
+    /// and the steps on the faces of merged cells.
     ///
     /// # Errors
     /// [`MeshError::TooMany`](crate::error::MeshError::TooMany), [`Error::OutOfMemory`] and
@@ -95,7 +96,7 @@ impl Outlines {
         parallel: bool,
     ) -> Result<Outlines, Error> {
         let of_configuration = outlines(table);
-        // Most cancel each other near by.
+        // Most steps cancel each other nearby.
         let found = chunks::map(cells.len(), weight / 2, job, parallel, |range| {
             let mut sides = Vec::new();
             for cell in &cells[range] {
@@ -124,7 +125,7 @@ impl Outlines {
     }
 }
 
-/// Takes pairs of steps there and back away from a sorted list.
+/// Removes pairs of opposite steps from a sorted list.
 fn cancel(sides: &mut Vec<Side>) {
     let mut kept = 0;
     let mut i = 0;
@@ -181,7 +182,7 @@ fn edges(
                 if side.is_back() { (side.at + stride, stride.wrapping_neg()) } else { (side.at, stride) };
             let Some(&from_number) = numbers.get(&from) else { continue };
             let mut at = from.wrapping_add(stride);
-            // An outline that goes straight on from a corner ends at another one.
+            // An outline that goes straight on from a corner ends at another corner.
             let to = loop {
                 match numbers.get(&at) {
                     Some(&number) => break number,
@@ -202,14 +203,14 @@ fn edges(
 #[derive(Clone, Copy)]
 struct OfCell {
     count: usize,
-    /// From a corner of the cell to another one, in the plane of a region.
+    /// Sides from one corner of the cell to another, in the plane of a region.
     sides: [([i32; 3], [i32; 3], Plane); 3 * MOST],
 }
 
 impl OfCell {
     const NONE: OfCell = OfCell { count: 0, sides: [([0; 3], [0; 3], Plane::NONE); 3 * MOST] };
 
-    /// The sum of triangles. Edges that are run along in both directions in one plane are taken away.
+    /// The outlines of the given triangles. Edges that are used in both directions in one plane are removed.
     fn of(triangles: impl Iterator<Item = (Plane, [[i32; 3]; 3])>) -> OfCell {
         let mut sum = OfCell::NONE;
         for (plane, [p, q, r]) in triangles {
@@ -256,14 +257,14 @@ fn outlines(table: &Snapped) -> [OfCell; 256] {
     outlines
 }
 
-/// Appends the outline of a super-cell: that of the polygon in which its plane cuts it.
+/// Appends the outline of a super-cell: the polygon in which its plane cuts the cell.
 fn append_super_cell(cell: &Cell, corner: [i32; 3], sides: &mut Vec<Side>) -> Result<(), Error> {
     let triangles = super_triangles(cell, corner).map(|triangle| (cell.plane, triangle));
     OfCell::of(triangles).append([0; 3], sides)
 }
 
-/// The triangles of a super-cell: those of marching cubes, with the vertices where the plane cuts the cell's
-/// edges. Those without area are left out.
+/// The triangles of a super-cell: those of marching cubes, with vertices where the plane cuts the cell's
+/// edges. Triangles without area are left out.
 pub(super) fn super_triangles(cell: &Cell, corner: [i32; 3]) -> impl Iterator<Item = [[i32; 3]; 3]> + use<> {
     let triangles: &'static Triangles = &MARCHING_CUBES[cell.configuration as usize];
     let (plane, size) = (cell.plane, 1 << cell.level);
@@ -271,7 +272,7 @@ pub(super) fn super_triangles(cell: &Cell, corner: [i32; 3]) -> impl Iterator<It
         triangle.map(|edge| {
             let (axis, lower) = (edge as usize / 4, plane::corner(ENDS[edge as usize][0].into()));
             let mut point = axes(|axis| corner[axis] + size * lower[axis]);
-            // A cut edge leads through the plane.
+            // A cut edge crosses the plane.
             point[axis] = plane.above(axis, point).unwrap_or(point[axis]);
             point
         })

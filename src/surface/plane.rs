@@ -1,4 +1,4 @@
-//! Planes of the lattice, and the configurations that one of them makes.
+//! Planes of the lattice, and the configurations that a plane makes.
 //!
 //! Every triangle of simple marching cubes lies in a plane n·x = d, x in samples, where the components of n
 //! are −1, 0 and 1, and d is an integer. There are 26 such normals, 13 up to sign.
@@ -9,7 +9,7 @@ use crate::lattice::axes;
 /// A plane with its outer side. Planes ascend by their normals, then by their offsets.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
 pub(super) struct Plane {
-    /// The components of the normal plus one, as a number of base 3, x first; 13 for none.
+    /// The components of the normal plus one, as a number in base 3, x first; 13 for no plane.
     normal: u8,
     offset: i32,
 }
@@ -39,7 +39,7 @@ impl Plane {
         Plane { normal: self.normal, offset }
     }
 
-    /// The same for both sides of a plane.
+    /// The same plane with a canonical side: equal for both sides of a plane.
     pub fn without_side(self) -> Plane {
         match self.normal {
             0..13 => Plane { normal: 26 - self.normal, offset: -self.offset },
@@ -47,15 +47,16 @@ impl Plane {
         }
     }
 
-    /// The coordinate on `axis` of the plane's point above `point`; `None` if the plane runs along the axis.
+    /// The coordinate on `axis` of the plane's point above `point`; `None` if the plane is parallel to the
+    /// axis.
     pub fn above(self, axis: usize, point: [i32; 3]) -> Option<i32> {
         let normal = self.normal();
         let rest = (0..3).filter(|&other| other != axis).map(|other| normal[other] * point[other]);
-        // The component is its own inverse.
+        // The component is ±1, so it is its own inverse.
         (normal[axis] != 0).then(|| (self.offset - rest.sum::<i32>()) * normal[axis])
     }
 
-    /// The plane as one number; greater planes have greater ones.
+    /// The plane as one number. Greater planes have greater numbers.
     pub fn code(self) -> u64 {
         u64::from(self.normal) << 32 | u64::from((self.offset as u32) ^ 1 << 31)
     }
@@ -80,8 +81,8 @@ pub(super) const fn corner(c: u32) -> [i32; 3] {
     [(c & 1) as i32, (c >> 1 & 1) as i32, (c >> 2 & 1) as i32]
 }
 
-/// For each configuration the plane that it is one side of: the inside corners are those with n·x < d. 54
-/// configurations have one.
+/// For each configuration the plane of which it is one side: the inside corners are those with n·x < d. 54
+/// configurations have such a plane.
 static HALF_SPACES: [Plane; 256] = {
     let mut table = [Plane::NONE; 256];
     let mut normal = 0;
@@ -107,9 +108,9 @@ static HALF_SPACES: [Plane; 256] = {
     table
 };
 
-/// The plane in which all triangles of a *coplanar configuration* lie, and no plane for others. Of a coplanar
-/// configuration the inside corners are those on one side of the plane; it has no triangle if it meets the
-/// plane in a corner or an edge only.
+/// The plane that contains all triangles of a *coplanar configuration*; no plane for others. The inside
+/// corners of a coplanar configuration are those on one side of the plane. The configuration has no triangle
+/// if it meets the plane in a corner or an edge only.
 pub(super) fn of_configuration(configuration: usize, snap: Snap) -> Plane {
     let plane = HALF_SPACES[configuration & 255];
     match snap {
@@ -130,7 +131,8 @@ mod tests {
     use super::super::snapped::{FAT, THIN};
     use super::*;
 
-    /// 54 configurations, each with its inside corners on one side, and all of its triangles in its plane.
+    /// There are 54 configurations, each with its inside corners on one side, and all its triangles in its
+    /// plane.
     #[test]
     fn coplanar_configurations() {
         let mut count = 0;

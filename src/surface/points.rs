@@ -1,12 +1,12 @@
-//! Samples by one number, and the steps between samples beside each other.
+//! Numbers of samples, and steps between neighbouring samples.
 
 /// Bits of a coordinate.
 const BITS: u32 = 21;
-/// Coordinates from −1 on become positive.
+/// Added to coordinates, so that −1 becomes non-negative.
 const BIAS: i32 = 1;
 
-/// The number of a sample: z, y and x plus one, 21 bits each. Numbers differ by as much as their samples lie
-/// apart, wherever those lie.
+/// The number of a sample: z, y and x plus one, 21 bits each. The difference of two numbers depends only on
+/// the difference of the samples.
 pub(super) fn code(at: [i32; 3]) -> u64 {
     let [x, y, z] = at.map(|a| (a + BIAS) as u64);
     z << (2 * BITS) | y << BITS | x
@@ -17,7 +17,7 @@ pub(super) fn position(code: u64) -> [i32; 3] {
     [0, 1, 2].map(|axis| (code >> (axis * BITS) & ((1 << BITS) - 1)) as i32 - BIAS)
 }
 
-/// A step to a sample beside, along an axis or a diagonal: the directions up to sign are 0 to 12.
+/// A step to a neighbouring sample, along an axis or a diagonal. The directions up to sign are 0 to 12.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(super) struct Step {
     pub direction: u8,
@@ -31,7 +31,7 @@ impl Step {
         Step { direction: (number.unsigned_abs() - 1) as u8, is_back: number < 0 }
     }
 
-    /// By how much the step changes the number of a sample, forwards.
+    /// The amount by which a forward step changes the number of a sample.
     pub fn stride(direction: u8) -> u64 {
         let n = i32::from(direction) + 14;
         let by = [n % 3 - 1, n / 3 % 3 - 1, n / 9 - 1].map(i64::from);

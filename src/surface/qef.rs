@@ -1,48 +1,48 @@
 //! The point that fits planes best: the minimum of a quadratic error function in a unit cube.
 //!
-//! Each plane is given by a point and a unit normal; the error of a place is the sum of the squares of its
+//! Each plane is given by a point and a unit normal. The error of a place is the sum of the squares of its
 //! distances from all planes. (Ju, Losasso, Schaefer and Warren, *Dual contouring of Hermite data*, 2002.) On
-//! a smooth surface the planes nearly coincide, and the minimum is found only across them: the eigenvectors
-//! of the normals' matrix with small eigenvalues are left out, and along these the place is that of the
-//! points' mean.
+//! a smooth surface the planes nearly coincide, and the minimum is well-defined only across them. So
+//! eigenvectors of the normals' matrix with small eigenvalues are ignored; in their directions the result is
+//! the mean of the points.
 
 use crate::lattice::axes;
 use crate::lattice::exact::sqrt;
 
-/// Eigenvalues below this part of the greatest one say nothing. Two planes of equal weight meet at an edge if
+/// Eigenvalues below this part of the greatest one are ignored. Two planes of equal weight meet at an edge if
 /// their normals differ by more than 11.5 degrees.
 const LEAST: f64 = 0.01;
 
-/// How much stays of an eigenvalue that says nothing, as part of the greatest one, where the minimum lies
-/// outside of the cube: of places that fit the planes alike the one nearest to the mean is taken.
+/// The value that replaces an ignored eigenvalue, as part of the greatest one, if the minimum lies outside
+/// the cube. Among places that fit the planes equally well, the one nearest to the mean is then taken.
 const STAY: f64 = 1e-4;
 
-/// Planes of which a point is wanted.
+/// Planes whose best-fitting point is wanted.
 #[derive(Debug, Clone, Copy, Default)]
 pub(super) struct Qef {
     /// The sum of n nᵀ: xx, xy, xz, yy, yz, zz.
     matrix: [f64; 6],
     /// The sum of n (n · p).
     right: [f64; 3],
-    /// The sum of all points, and how many there are.
+    /// The sum and the number of all points.
     sum: [f64; 3],
     points: u32,
     planes: u32,
 }
 
-/// The best place.
+/// The best-fitting point.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(super) struct Minimum {
-    /// Where it is, in the unit cube.
+    /// Its place in the unit cube.
     pub at: [f64; 3],
-    /// Whether a better one lies outside of the cube.
+    /// Whether a better place lies outside the cube.
     pub clamped: bool,
-    /// Whether there was no plane, so that it is the points' mean.
+    /// Whether there was no plane, so that the place is the points' mean.
     pub is_mean: bool,
 }
 
 impl Qef {
-    /// Adds a point of the unit cube, and the plane through it with a unit normal if that is known.
+    /// Adds a point of the unit cube, and the plane through it if its unit normal is known.
     #[inline]
     pub fn add(&mut self, point: [f64; 3], normal: Option<[f64; 3]>) {
         for axis in 0..3 {
@@ -62,7 +62,7 @@ impl Qef {
         }
     }
 
-    /// The place in the unit cube that fits best. Without points it is the cube's middle.
+    /// Returns the best place in the unit cube. Without points it is the middle of the cube.
     pub fn solve(&self) -> Minimum {
         if self.points == 0 {
             return Minimum { at: [0.5; 3], clamped: false, is_mean: true };
@@ -73,7 +73,7 @@ impl Qef {
         }
         let (values, vectors) = eigen(self.matrix);
         let greatest = values.iter().fold(0.0, |most: f64, &value| most.max(value));
-        // The gradient at the mean.
+        // The negative half-gradient at the mean.
         let product = multiplied(&self.matrix, mean);
         let rest = axes(|i| self.right[i] - product[i]);
         let mut best = mean;
@@ -104,8 +104,9 @@ impl Qef {
     }
 }
 
-/// The place in the unit cube at which (x − best)ᵀ M (x − best) is least. M is positive definite, so that
-/// there is one: on the inside of a face, of an edge, or at a corner, where the rest is solved for.
+/// Returns the place in the unit cube that minimises (x − best)ᵀ M (x − best). M is positive definite, so
+/// there is exactly one minimum: in the interior of a face, of an edge, or at a corner. The free coordinates
+/// are solved for.
 fn in_cube(matrix: &[f64; 6], best: [f64; 3]) -> [f64; 3] {
     let m = full(matrix);
     let (mut least, mut at) = (f64::INFINITY, best.map(|c| if c > 0.5 { 1.0 } else { 0.0 }));
@@ -124,7 +125,7 @@ fn in_cube(matrix: &[f64; 6], best: [f64; 3]) -> [f64; 3] {
                 state => place[axis] = f64::from(state) - best[axis],
             }
         }
-        // What the fixed axes do to the free ones.
+        // The influence of the fixed axes on the free ones.
         let pull = |row: usize| -> f64 {
             (0..3).filter(|&axis| states[axis] != 2).map(|axis| -m[row][axis] * place[axis]).sum()
         };
@@ -147,7 +148,8 @@ fn in_cube(matrix: &[f64; 6], best: [f64; 3]) -> [f64; 3] {
         for (&axis, &value) in free[..count].iter().zip(&solved) {
             place[axis] = value;
         }
-        // (Rounding may leave the cube by a last place, and combinations that are not the best one by more.)
+        // (By rounding, a place may leave the cube by a last digit; combinations that are not the best may
+        // leave it by more.)
         let candidate = axes(|axis| match states[axis] {
             2 => (best[axis] + place[axis]).clamp(0.0, 1.0),
             state => f64::from(state),
@@ -178,7 +180,7 @@ pub(super) fn eigen(matrix: [f64; 6]) -> ([f64; 3], [[f64; 3]; 3]) {
     let mut m = full(&matrix);
     // Rows are the vectors.
     let mut vectors = [[1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]];
-    // It converges quadratically: five sweeps leave nothing.
+    // The iteration converges quadratically: five sweeps leave no remainder.
     for _ in 0..8 {
         if m[0][1] == 0.0 && m[0][2] == 0.0 && m[1][2] == 0.0 {
             break;
@@ -264,7 +266,7 @@ mod tests {
             let mut qef = Qef::default();
             for normal in normals {
                 for _ in 0..2 {
-                    // A point of the plane.
+                    // A point in the plane.
                     let other = [0.0; 3].map(|_: f64| random.unit());
                     let off = dot(normal, axes(|i| other[i] - corner[i]));
                     qef.add(axes(|i| other[i] - off * normal[i]), Some(normal));
@@ -293,7 +295,7 @@ mod tests {
         qef.add([1.0, 0.75, 0.5], Some([0.0, 1.0, 0.0]));
         let found = qef.solve().at;
         assert!((found[0] - 0.25).abs() + (found[1] - 0.75).abs() + (found[2] - 0.5).abs() < 1e-14);
-        // Points without planes count for the mean alone.
+        // Points without planes contribute to the mean only.
         let mut qef = Qef::default();
         qef.add([1.0, 0.0, 0.0], None);
         qef.add([0.0, 0.5, 0.0], None);
@@ -302,7 +304,7 @@ mod tests {
         assert!((qef.solve().at[2] - 0.75).abs() < 1e-14);
     }
 
-    /// What is found in the cube is not worse than any of many other places, by the same function.
+    /// The result in the cube is at least as good as many other places, by the same function.
     #[test]
     fn outside_minima_come_to_the_best_place_of_the_cube() {
         let mut random = Random(3);

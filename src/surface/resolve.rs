@@ -1,4 +1,4 @@
-//! What undecided cells count as.
+//! Sides for undecided cells.
 
 use crate::control::Control;
 use crate::error::Error;
@@ -6,24 +6,24 @@ use crate::octree::OctreeRef;
 use crate::op::{Rule, build};
 use crate::solid::AnySolid;
 
-/// On which side of the surface the samples of PARTIAL cells lie, which have no sign of their own.
+/// The side of the surface on which the samples of PARTIAL cells lie, which have no sign of their own.
 #[derive(Clone, Copy)]
 pub enum Resolve<'s> {
-    /// Outside: the surface is that of the FULL cells, of what is surely solid.
+    /// Outside: the surface bounds the FULL cells, the part that is certainly solid.
     Inner,
-    /// Inside: the surface is that of the FULL and PARTIAL cells, of what is possibly solid.
+    /// Inside: the surface bounds the FULL and PARTIAL cells, the part that is possibly solid.
     Outer,
-    /// Where the solid says that the octree was made from: each cell's centre decides, as under
+    /// On the side that the octree's source solid returns: each cell's centre decides, as under
     /// [`Rule::Sampled`](crate::Rule::Sampled). The solid is built anew on the octree's frame.
     Source(&'s AnySolid),
 }
 
-/// What `extract` makes of a tree and of whether its PARTIAL cells count as inside. If a source decides, the
-/// tree is the one that is built of it, in the first half of the work.
+/// Passes a tree to `extract`, and whether its PARTIAL cells count as inside. If a source solid decides, the
+/// tree is built from it in the first half of the work.
 ///
 /// # Errors
-/// [`Error::Argument`] if the tree has PARTIAL cells and nothing is chosen; those of `extract`, and of
-/// building.
+/// [`Error::Argument`] if the tree has PARTIAL cells and nothing is chosen; and the errors of `extract` and
+/// of building.
 pub(super) fn resolved<T>(
     tree: &OctreeRef<'_>,
     resolve: Option<Resolve<'_>>,

@@ -1,26 +1,26 @@
-//! The samples of an octree: which of its finest cells lie inside.
+//! The samples of an octree: its finest cells, inside or outside.
 
 use crate::error::{Damage, Error};
 use crate::lattice::morton;
 use crate::octree::{OctreeRef, Tag};
 
-/// A cell of the 64-ary tree that elements form.
+/// A cell of the 64-ary tree of elements.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(super) enum Node {
-    /// No sample in it lies inside.
+    /// No sample in the node lies inside.
     Void,
-    /// All samples in it do.
+    /// All samples in the node lie inside.
     Solid,
     /// An element or a brick.
     At(usize),
 }
 
-/// Which of 64 cells are wholly inside, and which wholly outside.
+/// The sets of cells, among 64, that are wholly inside or wholly outside.
 #[derive(Clone, Copy)]
 pub(super) struct Sets {
     pub solid: u64,
     pub void: u64,
-    /// The cells in which an element lies, with its parent.
+    /// The cells that contain an element, with its parent.
     branch: u64,
     parent: usize,
     /// Cells that are inside, but reach beyond the end of the samples.
@@ -32,24 +32,25 @@ impl Sets {
     const SOLID: Sets = Sets { solid: !0, void: 0, branch: 0, parent: 0, long: 0 };
 }
 
-/// The samples of an octree. Its lattice is the smallest of 4^levels cells per axis; there is nothing around
-/// the universe.
+/// The samples of an octree. The lattice has 4^levels cells per axis, the smallest such number that suffices.
+/// Everything around the universe is outside.
 #[derive(Clone, Copy)]
 pub(super) struct Samples<'a> {
     tree: OctreeRef<'a>,
     /// Whether PARTIAL cells count as inside.
     partial: bool,
-    /// Samples per axis; what lies beyond counts as outside.
+    /// Samples per axis; everything beyond counts as outside.
     end: u32,
 }
 
 impl<'a> Samples<'a> {
-    /// The finest cells of a tree as samples, the first `end` on each axis.
+    /// The finest cells of a tree as samples, limited to the first `end` on each axis.
     ///
     /// # Errors
-    /// [`Error::Damaged`] if links of the tree are.
+    /// [`Error::Damaged`] if links of the tree are damaged.
     pub fn new(tree: &OctreeRef<'a>, partial: bool, end: u32) -> Result<Samples<'a>, Error> {
-        // Elements are met beside others, too. With sound links each is met as often as it has neighbours.
+        // Elements are also visited as neighbours. With sound links each is visited as often as it has
+        // neighbours.
         tree.ensure_links()?;
         Ok(Samples { tree: *tree, partial, end: end.min(tree.frame().cells()) })
     }
@@ -59,7 +60,7 @@ impl<'a> Samples<'a> {
         &self.tree
     }
 
-    /// Whether PARTIAL cells count as inside.
+    /// Returns whether PARTIAL cells count as inside.
     pub fn counts_partial(&self) -> bool {
         self.partial
     }
@@ -79,7 +80,7 @@ impl<'a> Samples<'a> {
         1 << (2 * (self.levels() - 1))
     }
 
-    /// All of the lattice.
+    /// The root of the lattice.
     pub fn root(&self) -> Node {
         match self.tree.root_tag() {
             Tag::Empty => Node::Void,
@@ -90,7 +91,7 @@ impl<'a> Samples<'a> {
         }
     }
 
-    /// The cells in a node of element level `e`, at this place in nodes of that level.
+    /// Returns the sets of a node of element level `e` at this place, measured in nodes of that level.
     #[inline(always)]
     pub fn sets(&self, e: usize, node: Node, at: [i32; 3]) -> Result<Sets, Error> {
         let mut sets = match node {
@@ -116,7 +117,7 @@ impl<'a> Samples<'a> {
         Ok(sets)
     }
 
-    /// Cuts off what lies beyond the end.
+    /// Cuts off the cells beyond the end.
     #[cold]
     fn cut(&self, sets: &mut Sets, last: [i64; 3], size: i64) {
         let end = i64::from(self.end);
@@ -134,7 +135,7 @@ impl<'a> Samples<'a> {
         sets.void |= beyond;
     }
 
-    /// What lies in cell `c` of a node whose cells are `sets`.
+    /// Returns the content of cell `c` of a node whose cells are `sets`.
     #[inline(always)]
     pub fn child(&self, sets: &Sets, c: u32) -> Result<Node, Error> {
         if sets.void >> c & 1 != 0 {

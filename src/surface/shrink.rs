@@ -1,4 +1,4 @@
-//! Coplanar shrink: simple marching cubes with one region where many triangles lie in one plane.
+//! Coplanar shrink: simple marching cubes with one region instead of many triangles in one plane.
 
 use super::blocks::{Blocks, FINDING};
 use super::bon::{Cell, Merge, cells};
@@ -21,26 +21,26 @@ use crate::mesh::TriangleMesh;
 use crate::octree::OctreeRef;
 use alloc::vec::Vec;
 
-/// The surface of an octree by simple marching cubes, *shrunk*: the same surface as that of
-/// [`simple_marching_cubes`](crate::surface::simple_marching_cubes) with far fewer triangles where it has
-/// plane parts. A block of cells has 44, however large it is.
+/// Extracts the surface of an octree by simple marching cubes, *shrunk*. It is the surface of
+/// [`simple_marching_cubes`](crate::surface::simple_marching_cubes) with far fewer triangles in its plane
+/// parts. A block of cells has 44 triangles, however large it is.
 ///
-/// All that lies in one plane becomes one region with straight edges, from corner to corner, and each region
-/// is cut into triangles without new vertices. Regions beside each other have the same edges between them. So
-/// the mesh has no cracks: it is closed and balanced as that of `smc`, with the same volume and area, and a
-/// 2-manifold where that is one. Triangles may be long and thin. Vertices are centres of cells, and come in
-/// the order of their z, y and x; triangles in that of their planes.
+/// All triangles in one plane become one region with straight edges from corner to corner, and each region is
+/// cut into triangles without new vertices. Neighbouring regions have the same edges between them, so the
+/// mesh has no cracks. It is closed and balanced like that of simple marching cubes, with the same volume and
+/// area, and it is a 2-manifold where that mesh is one. Triangles may be long and thin. Vertices are centres
+/// of cells, sorted by z, y and x; triangles are sorted by their planes.
 ///
-/// Cells in one plane are merged first, from the bottom of an octree up (see [`published_shrink`]). In place
-/// of the triangles of merged cells, which do not fit together where cells of several sizes meet, the
-/// outlines of all cells are added up; what is left bounds the regions.
+/// Cells in one plane are merged first, from the bottom of an octree up (see [`published_shrink`]). The
+/// triangles of merged cells do not fit together where cells of several sizes meet. So the outlines of all
+/// cells are added up instead; the remaining edges bound the regions.
 ///
-/// Everything outside of the universe counts as EMPTY. `resolve` is as in
+/// Everything outside the universe counts as EMPTY. `resolve` is as in
 /// [`marching_cubes`](crate::marching_cubes).
 ///
-/// O(n log n + n w) for n cells at the surface of which at most w lie along a line in a plane region. Beside
-/// the mesh it takes up to 200 bytes for each cell at a curved surface. The result is the same for any number
-/// of threads.
+/// O(n log n + n w) for n cells at the surface, of which at most w lie along a line in a plane region. In
+/// addition to the mesh, up to 200 bytes are needed for each cell at a curved surface. The result is the same
+/// for any number of threads.
 ///
 /// # Errors
 /// As [`marching_cubes`](crate::marching_cubes).
@@ -64,17 +64,18 @@ pub fn coplanar_shrink(
     of_octree(tree, Form::Closed, snap, resolve, control)
 }
 
-/// The surface of an octree by coplanar shrink in its published form. It is here to compare with, since **it
-/// has cracks**: [`coplanar_shrink`](crate::surface::coplanar_shrink) has not, and fewer triangles.
+/// Extracts the surface of an octree by coplanar shrink in its published form. This function exists for
+/// comparison, because **its mesh has cracks**. The mesh of
+/// [`coplanar_shrink`](crate::surface::coplanar_shrink) has no cracks, and fewer triangles.
 ///
 /// The dual cells at the surface lie in an octree that branches on need. From the bottom up, the cells of a
-/// node become one if all of them have a *coplanar configuration*, one of the 54 that a plane with one of 13
-/// normals makes, and all lie in the same plane. A merged cell has the triangles of marching cubes, with
-/// vertices where the plane cuts its edges; others have those of
+/// node become one if all of them have a *coplanar configuration* (one of the 54 that a plane with one of 13
+/// normals makes), and all lie in the same plane. A merged cell has the triangles of marching cubes, with
+/// vertices where the plane cuts its edges; other cells have the triangles of
 /// [`simple_marching_cubes`](crate::surface::simple_marching_cubes). Where cells of several sizes meet, the
-/// smaller ones have vertices on the edges of the larger ones' triangles, and the mesh is open there.
+/// smaller cells have vertices on the edges of the larger cells' triangles, and the mesh is open there.
 ///
-/// The method is that of <https://github.com/chnhideyoshi/OctreeBaseSimplifiedMarchingCubes>, which has
+/// The method is that of <https://github.com/chnhideyoshi/OctreeBaseSimplifiedMarchingCubes>, which places
 /// vertices at the outer samples ([`Snap::Fat`]).
 ///
 /// # Errors
@@ -88,14 +89,14 @@ pub fn published_shrink(
     of_octree(tree, Form::Published, snap, resolve, control)
 }
 
-/// Which form of the method.
+/// A form of the method.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(super) enum Form {
     Closed,
     Published,
 }
 
-/// The surface of an octree.
+/// Extracts the surface of an octree.
 fn of_octree(
     tree: &OctreeRef<'_>,
     form: Form,
@@ -108,7 +109,7 @@ fn of_octree(
     })
 }
 
-/// The surface of samples.
+/// Extracts the surface of samples.
 pub(super) fn extract(
     samples: &Samples<'_>,
     lattice: &Lattice,
@@ -141,7 +142,7 @@ pub(super) fn extract(
     })
 }
 
-/// The samples that are vertices, and the triangles, of regions with outlines that fit together.
+/// Makes regions with outlines that fit together: the samples that are vertices, and the triangles.
 fn closed(
     cells: &[Cell],
     bias: i32,
@@ -180,7 +181,7 @@ fn triangulate(
     triangles: &mut Vec<[u32; 3]>,
 ) -> Result<(), Error> {
     let Some(first) = region.first() else { return Ok(()) };
-    // The region as seen from outside, along an axis that the plane does not contain.
+    // The region is seen from outside, along an axis that the plane does not contain.
     let normal = Plane::from_code(first.plane).normal();
     let axis = (0..3).find(|&axis| normal[axis] != 0).unwrap_or(0);
     let (mut u, mut v) = ((axis + 1) % 3, (axis + 2) % 3);

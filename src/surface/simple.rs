@@ -21,14 +21,14 @@ use crate::octree::OctreeRef;
 use alloc::vec::Vec;
 use core::ops::Range;
 
-/// Where simple marching cubes puts its vertices.
+/// The end of an edge at which simple marching cubes puts a vertex.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
 pub enum Snap {
-    /// At the outer end of each edge between an inside and an outside sample: the mesh contains the centres
-    /// of all inside cells.
+    /// The outer end of each edge between an inside and an outside sample: the mesh contains the centres of
+    /// all inside cells.
     Fat,
-    /// At the inner end: the mesh has the centres of inside cells as vertices. What is one cell thick has no
-    /// thickness then, and what is one cell long and wide, too, is nothing.
+    /// The inner end: the vertices of the mesh are centres of inside cells. A part that is one cell thick
+    /// then has no thickness, and a part that is one cell long, wide and thick vanishes.
     Thin,
 }
 
@@ -41,22 +41,21 @@ impl Snap {
     }
 }
 
-/// The surface of an octree by simple marching cubes: marching cubes with each vertex moved to one end of its
-/// edge, so that all vertices are centres of finest cells, and triangles without area dropped. All normals
-/// have one of 13 directions up to sign, with components −1, 0 and 1.
+/// Extracts the surface of an octree by simple marching cubes. Each vertex of marching cubes is moved to one
+/// end of its edge, so that all vertices are centres of finest cells, and triangles without area are dropped.
+/// All normals have one of 13 directions up to sign, with components −1, 0 and 1.
 ///
-/// The mesh is closed and *balanced*: every edge is run along as often in one direction as in the other. It
-/// is no 2-manifold where sheets touch: where inside cells meet in an edge or a corner only, where a gap
-/// between them is one cell wide ([`Snap::Fat`]), or where they are one cell thick ([`Snap::Thin`]); there
-/// four triangles or more meet on an edge, and two may lie on each other, facing opposite ways. Vertices that
-/// are samples of the same cell are one. All vertices are used. Vertices and triangles come in Morton order
-/// of the cells.
+/// The mesh is closed and *balanced*: every edge is used as often in one direction as in the other. It is not
+/// a 2-manifold where sheets touch: where inside cells meet in an edge or a corner only, where a gap between
+/// them is one cell wide ([`Snap::Fat`]), or where they are one cell thick ([`Snap::Thin`]). There four or
+/// more triangles meet on an edge, and two may coincide with opposite orientations. Vertices at the centre of
+/// one cell are one vertex. All vertices are used. Vertices and triangles are in Morton order of the cells.
 ///
-/// Everything outside of the universe counts as EMPTY. `resolve` is as in
+/// Everything outside the universe counts as EMPTY. `resolve` is as in
 /// [`marching_cubes`](crate::marching_cubes).
 ///
-/// O(elements of the tree + mesh). Beside the mesh it takes up to 128 bytes for each block of 4³ cells at the
-/// surface. The result is the same for any number of threads.
+/// O(elements of the tree + mesh). In addition to the mesh, up to 128 bytes are needed for each block of 4³
+/// cells at the surface. The result is the same for any number of threads.
 ///
 /// # Errors
 /// As [`marching_cubes`](crate::marching_cubes).
@@ -84,7 +83,7 @@ pub fn simple_marching_cubes(
     })
 }
 
-/// The surface of samples.
+/// Extracts the surface of samples.
 pub(super) fn extract(
     samples: &Samples<'_>,
     lattice: &Lattice,
@@ -108,11 +107,11 @@ pub(super) fn extract(
 struct Place {
     key: Key,
     used: u64,
-    /// Vertices before those of this block.
+    /// The number of vertices before those of this block.
     vertex: u32,
 }
 
-/// The samples that are vertices; blocks learn how many triangles are before theirs.
+/// Returns the samples that are vertices, and stores in each block the number of triangles before it.
 fn places(blocks: &mut Blocks, table: &Snapped, job: &Job<'_>, parallel: bool) -> Result<Vec<Place>, Error> {
     let list = &blocks.list;
     let weight = WHOLE - FINDING - 2 * ((WHOLE - FINDING) / 3);
@@ -138,7 +137,7 @@ fn places(blocks: &mut Blocks, table: &Snapped, job: &Job<'_>, parallel: bool) -
     Ok(places)
 }
 
-/// Makes places with the same key one.
+/// Merges places with the same key.
 fn merge(places: &mut Vec<Place>) {
     places.sort_unstable_by_key(|place| place.key);
     places.dedup_by(|next, first| {
@@ -150,7 +149,7 @@ fn merge(places: &mut Vec<Place>) {
     });
 }
 
-/// The samples that blocks of a range use, and their counts of triangles.
+/// The samples that the blocks of a range use, and the blocks' counts of triangles.
 struct Used<'a> {
     list: &'a [Block],
     range: Range<usize>,

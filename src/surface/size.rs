@@ -1,36 +1,36 @@
-//! How large a surface is, known before it is made.
+//! Lower bounds of a surface's size, known before extraction.
 
 use super::samples::Samples;
 use crate::control::Control;
 use crate::error::{Error, MeshError};
 use crate::octree::{CellFilter, OctreeRef, Tag};
 
-/// What a surface takes at the least for each edge between two neighbouring samples of which one lies inside.
+/// The least memory and vertices of a surface per edge between neighbouring samples of which one lies inside.
 pub(super) struct Least {
-    /// Bytes.
+    /// Bytes per edge.
     pub bytes: u64,
-    /// So many of these edges have one vertex.
+    /// The greatest number of these edges per vertex.
     pub edges_a_vertex: u64,
 }
 
 impl Least {
     /// Marching cubes: a vertex for each edge. A closed surface around one sample has six vertices and eight
-    /// triangles, and no closed surface has fewer triangles for its vertices.
+    /// triangles, and no closed surface has fewer triangles per vertex.
     pub const CUBES: Least = Least { bytes: 24 + 4 * 12 / 3, edges_a_vertex: 1 };
-    /// Surface nets: two triangles for each edge, and a vertex for twelve edges at most, each of which is one
-    /// in four cubes.
+    /// Surface nets: two triangles for each edge, and a vertex for at most twelve edges, each of which
+    /// belongs to four cubes.
     pub const NETS: Least = Least { bytes: 24 + 24 / 3, edges_a_vertex: 3 };
-    /// Vertices at samples, of which each is the end of six edges at most.
+    /// Vertices at samples: each sample is the end of at most six edges.
     pub const SAMPLES: Least = Least { bytes: 4, edges_a_vertex: 6 };
     /// Few triangles for many edges: only blocks count.
     pub const REGIONS: Least = Least { bytes: 0, edges_a_vertex: u64::MAX };
 }
 
-/// Refuses a surface that is known to be larger than the caller allows, or than numbers of vertices reach.
-/// `block` is what a block of samples takes, which has 192 edges at the most.
+/// Refuses a surface that is certainly larger than the caller allows, or has more vertices than 32 bits can
+/// number. `block` is the size of a block of samples, which has at most 192 edges.
 ///
-/// O(elements of the tree). Edges are counted only where the cells alone, each with all of its faces, could
-/// have too many.
+/// O(elements of the tree). Edges are counted only if the cells, each with all its faces, could have too many
+/// edges.
 pub(super) fn afford(
     samples: &Samples<'_>,
     least: &Least,
@@ -50,22 +50,22 @@ pub(super) fn afford(
     if too_many(edges) { Err(MeshError::TooMany.into()) } else { Ok(()) }
 }
 
-/// As many edges as could be cut: if each face of each cell that is inside were a part of the surface.
+/// An upper bound of the cut edges: every face of every inside cell counts as a part of the surface.
 fn most_edges(tree: &OctreeRef<'_>, partial: bool) -> u64 {
-    // (What a mapped file says of its levels may be wrong.)
+    // (The level counts of a mapped file may be wrong.)
     let counts = tree.count_levels();
     let depth = u32::from(tree.frame().depth());
     counts.iter().zip(0..=depth).fold(0u64, |sum, (count, level)| {
         let cells = count.full.saturating_add(if partial { count.partial } else { 0 });
-        // A face has 4^19 edges at the most in a tree of depth 19, and 4^20 in one of depth 20.
+        // A face has at most 4^19 edges in a tree of depth 19, and 4^20 in one of depth 20.
         sum.saturating_add(cells.saturating_mul(6 << (2 * (depth - level))))
     })
 }
 
-/// How many edges between neighbouring samples are cut, of those in the box of the first `end` samples on
-/// each axis. No fewer are, counting those to what lies beyond the box.
+/// The number of cut edges between neighbouring samples in the box of the first `end` samples on each axis.
+/// The number including the edges that leave the box is at least as large.
 fn cut_edges(tree: &OctreeRef<'_>, partial: bool, end: u32) -> u64 {
-    // Around the universe everything is outside.
+    // Everything around the universe is outside.
     let tree = OctreeRef { exterior: Tag::Empty, ..*tree };
     let tags: &[Tag] = if partial { &[Tag::Full, Tag::Partial] } else { &[Tag::Full] };
     let depth = tree.frame().depth();
@@ -111,7 +111,7 @@ mod tests {
                     if end == u32::MAX {
                         assert_eq!(edges, blocks.vertices as u64);
                     }
-                    // What it takes at the least is not more than it takes.
+                    // The lower bound does not exceed the actual size.
                     assert!(blocks.triangles >= blocks.vertices * 4 / 3);
                 }
             }

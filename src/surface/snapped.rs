@@ -1,17 +1,17 @@
 //! The tables of simple marching cubes, made from that of marching cubes when the library is compiled.
 //!
-//! Each vertex on a cut edge moves to one end of the edge, always the outer or always the inner one.
-//! Triangles whose corners then coincide are dropped. All others have one of 13 directions of normals up to
-//! sign, with components −1, 0 and 1: so it is with any three corners of a cube.
+//! Each vertex on a cut edge moves to one end of the edge, either always the outer or always the inner one.
+//! Triangles whose corners then coincide are dropped. All other triangles have one of 13 directions of
+//! normals up to sign, with components −1, 0 and 1, because this holds for any three corners of a cube.
 
 use super::table::{ENDS, TABLE, Triangles};
 
-/// One table of simple marching cubes.
+/// A table of simple marching cubes.
 pub(super) struct Snapped {
-    /// The triangles of each configuration, their corners being corners of the cube; counter-clockwise as
+    /// The triangles of each configuration, with corners of the cube as their corners; counter-clockwise as
     /// seen from outside.
     pub triangles: [Triangles; 256],
-    /// The corners that these use, as bits.
+    /// The corners that the triangles use, as bits.
     pub used: [u8; 256],
 }
 

@@ -1,4 +1,4 @@
-//! Surfaces of any solid, which is sampled at the corners of the lattice.
+//! Surfaces of any solid, sampled at the corners of the lattice.
 
 use super::blocks::{Block, Blocks};
 use super::chunks;
@@ -24,44 +24,46 @@ use alloc::vec::Vec;
 use core::ops::Range;
 use core::sync::atomic::{AtomicBool, Ordering::Relaxed};
 
-/// Where marching cubes puts a vertex on an edge between an inside and an outside sample.
+/// The place of a marching-cubes vertex on an edge between an inside and an outside sample.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Default)]
 pub enum VertexPlacement {
-    /// Half-way. The mesh has steps, and is as far from the surface as half a cell.
+    /// Half-way. The mesh has steps, and deviates from the surface by up to half a cell.
     #[default]
     Midpoint,
-    /// Where the edge crosses the solid's surface. If it does so several times, at one of them.
+    /// The point where the edge crosses the solid's surface; if there are several crossings, one of them.
     ///
-    /// The solid is asked for the crossing ([`Question::Crossing`](crate::solid::Question::Crossing)). If it
-    /// cannot tell, cells along the edge are split, down to the depth of 20, and their verdicts and slabs
-    /// narrow down where the crossing is. With slabs, as half-spaces, CSG and meshes know them, it is found
-    /// to rounding in a few steps; without, to a finest cell of depth 20 or somewhat more.
+    /// The solid is queried for the crossing ([`Question::Crossing`](crate::solid::Question::Crossing)). If
+    /// the solid cannot compute it, cells along the edge are split, down to the depth of 20, and their
+    /// verdicts and slabs narrow down the crossing. With slabs, as half-spaces, CSG and meshes provide them,
+    /// the crossing is found to rounding in a few steps. Without slabs it is found to about a finest cell of
+    /// depth 20 or somewhat more.
     ///
-    /// Vertices that then lie at one place, which is a sample, are one vertex, and triangles without area are
-    /// dropped. Faces that lie in planes of the lattice come out exactly there; edges between them are cut
+    /// Vertices that then coincide at a sample become one vertex, and triangles without area are dropped.
+    /// Faces that lie in planes of the lattice are reproduced exactly; an edge between two such faces is cut
     /// off by one cell where samples on both faces lie outside. Where the solid has no thickness at a sample,
     /// the mesh is closed and balanced, but more than two triangles may meet on an edge.
     Crossing,
 }
 
-/// The surface of a solid by marching cubes, sampled at the corners of the cells of `frame`: 2^depth + 1 to
-/// an axis.
+/// Extracts the surface of a solid by marching cubes. The samples are the corners of the cells of `frame`,
+/// 2^depth + 1 per axis.
 ///
-/// The mesh is closed and oriented as that of [`marching_cubes`](crate::marching_cubes). What the solid has
-/// outside of the frame's universe is cut off. There vertices lie on the boundary of the universe with
-/// [`VertexPlacement::Crossing`], else half a cell beyond it. A corner on the solid's surface is decided by
-/// the shift by (ε, ε², ε³) that all samples share.
+/// The mesh is closed and oriented as that of [`marching_cubes`](crate::marching_cubes). The part of the
+/// solid outside the frame's universe is cut off. There the vertices lie on the boundary of the universe with
+/// [`VertexPlacement::Crossing`], otherwise half a cell beyond it. A corner on the solid's surface is decided
+/// by the shift by (ε, ε², ε³) that all samples share.
 ///
 /// The solid is built on a frame of twice the edge and one more level, whose cells have the corners as
-/// centres. So the time is that of [`build`](crate::build) with [`Rule::Sampled`](crate::Rule::Sampled), and
-/// for crossings some splits a vertex. (A solid that goes on beyond the universe is sampled there, too.) The
-/// result is the same for any number of threads.
+/// centres. So the time is that of [`build`](crate::build) with [`Rule::Sampled`](crate::Rule::Sampled), plus
+/// some splits per vertex for crossings. (A solid that extends beyond the universe is also sampled there.)
+/// The result is the same for any number of threads.
 ///
 /// # Errors
-/// [`Error::Argument`] if the depth of the frame is 20, which leaves no level, or as
-/// [`marching_cubes`](crate::marching_cubes); [`Error::NotSampled`] if the solid cannot decide points;
-/// [`Error::FrameMismatch`] for stored octrees, which have samples of their own; and as
-/// [`build`](crate::build).
+/// [`Error::Argument`] if the depth of the frame is 20, which leaves no further level, or if the frame is so
+/// far from the origin that doubles cannot distinguish its corners; [`Error::NotSampled`] if the solid cannot
+/// decide points; [`Error::FrameMismatch`] for stored octrees, which have samples of their own; the other
+/// errors of the solid; [`MeshError::TooMany`](crate::error::MeshError::TooMany) for more than 2^32 − 1
+/// vertices or triangles; [`Error::OutOfMemory`]; and cancellation or an exceeded limit of `control`.
 ///
 /// ```
 /// use leafless::{Control, Csg, Frame, surface::{VertexPlacement, marching_cubes_solid}};
@@ -106,8 +108,8 @@ pub fn marching_cubes_solid<S: Solid>(
     })
 }
 
-/// The surface of a solid by simple marching cubes, sampled as by [`marching_cubes_solid`]: its vertices are
-/// corners of the lattice, or of cells beside the universe. Else as
+/// Extracts the surface of a solid by simple marching cubes, sampled as by [`marching_cubes_solid`]. Its
+/// vertices are corners of the lattice, or of cells beside the universe. In all other respects it is as
 /// [`simple_marching_cubes`](crate::surface::simple_marching_cubes).
 ///
 /// # Errors
@@ -122,8 +124,8 @@ pub fn simple_marching_cubes_solid<S: Solid>(
     control.share([0.5, 1.0], |control| simple::extract(&corners.samples()?, &corners.lattice, snap, control))
 }
 
-/// The surface of a solid by coplanar shrink, sampled as by [`marching_cubes_solid`]. Else as
-/// [`coplanar_shrink`](crate::surface::coplanar_shrink).
+/// Extracts the surface of a solid by coplanar shrink, sampled as by [`marching_cubes_solid`]. In all other
+/// respects it is as [`coplanar_shrink`](crate::surface::coplanar_shrink).
 ///
 /// # Errors
 /// As [`marching_cubes_solid`].
@@ -136,8 +138,9 @@ pub fn coplanar_shrink_solid<S: Solid>(
     shrunk(solid, frame, Form::Closed, snap, control)
 }
 
-/// The surface of a solid by the published form of coplanar shrink, which has cracks, sampled as by
-/// [`marching_cubes_solid`]. Else as [`published_shrink`](crate::surface::published_shrink).
+/// Extracts the surface of a solid by the published form of coplanar shrink, which has cracks, sampled as by
+/// [`marching_cubes_solid`]. In all other respects it is as
+/// [`published_shrink`](crate::surface::published_shrink).
 ///
 /// # Errors
 /// As [`marching_cubes_solid`].
@@ -163,9 +166,9 @@ fn shrunk<S: Solid>(
     })
 }
 
-/// Which corners of a lattice lie inside a solid.
+/// The corners of a lattice, inside or outside a solid.
 struct Corners {
-    /// Its cells have the corners as centres.
+    /// A tree whose cells have the corners as centres.
     tree: Octree,
     /// Corners per axis.
     count: u32,
@@ -177,7 +180,7 @@ impl Corners {
         if frame.depth() >= MAX_DEPTH {
             return Err(Error::Argument { name: "frame", problem: "must have a depth of at most 19" });
         }
-        // The corners of a frame that doubles resolve can be told, but for rounding.
+        // If doubles resolve the cells of the frame, they also resolve its corners, up to rounding.
         Lattice::new(frame)?;
         let origin = frame.origin().map(|o| o - 0.5 * frame.cell_size());
         let frame_of_corners = Frame::new(origin, 2.0 * frame.edge(), frame.depth() + 1)?;
@@ -201,7 +204,7 @@ struct Crossings<'a, C> {
 }
 
 impl<C: Classifier> Crossings<'_, C> {
-    /// Moves all vertices. The answer is whether they still lie at different places.
+    /// Moves all vertices. Returns whether they still are distinct.
     fn find(&self, vertices: &mut [[f64; 3]], job: &Job<'_>, parallel: bool) -> Result<bool, Error> {
         let list = &self.blocks.list;
         let start = |i: usize| list[i].vertex as usize;

@@ -1,10 +1,10 @@
-//! Triangles of a plane region with any holes, by a sweep over its vertices (Hertel and Mehlhorn 1983).
+//! Triangulation of a plane region with any holes, by a sweep over its vertices (Hertel and Mehlhorn 1983).
 //!
-//! The sweep goes from the left to the right, and upwards where vertices lie above each other. It meets each
-//! *span* of the region between a lower and an upper edge. What is left of the sweep in a span has its
-//! triangles already, up to a *chain* of vertices from the lower edge to the upper one, which nowhere turns
-//! so that a triangle could be cut off. At a vertex all triangles are cut off that it can see along the
-//! chain. All vertices are integers, so that every decision is exact.
+//! The sweep goes from left to right, and upwards where vertices lie above each other. It meets each *span*
+//! of the region between a lower and an upper edge. The part of a span to the left of the sweep is already
+//! cut into triangles, up to a *chain* of vertices from the lower edge to the upper one. The chain never
+//! turns so that a triangle could be cut off. At each vertex, all triangles that it can see along the chain
+//! are cut off. All vertices are integers, so every decision is exact.
 
 use crate::error::Error;
 use crate::memory;
@@ -14,23 +14,23 @@ use core::ops::Range;
 /// A vertex: its place in the plane, and its number in the mesh.
 pub(super) type Vertex = ([i32; 2], u32);
 
-/// Room for the work on one region after the other.
+/// Buffers for triangulating one region after another.
 #[derive(Default)]
 pub(super) struct Sweep {
     points: Vec<Vertex>,
     edges: Vec<Edge>,
     spans: Vec<Span>,
-    /// Spans that take the place of others.
+    /// Spans that replace others.
     new: Vec<Span>,
     links: Vec<Link>,
 }
 
-/// An edge by the places of its ends in the list of points: from the left to the right.
+/// An edge by the places of its ends in the list of points, from left to right.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 struct Edge {
     left: u32,
     right: u32,
-    /// Whether the region lies above.
+    /// Whether the region lies above the edge.
     is_lower: bool,
 }
 
@@ -42,12 +42,12 @@ struct Link {
     above: u32,
 }
 
-/// What lies between two edges on the sweep.
+/// The region between two edges on the sweep line.
 #[derive(Debug, Clone, Copy)]
 struct Span {
     lower: Edge,
     upper: Edge,
-    /// The chain from its lower to its upper end, and the last vertex of all in it.
+    /// The lower and the upper end of the chain, and its last vertex in sweep order.
     bottom: u32,
     top: u32,
     last: u32,
@@ -55,11 +55,11 @@ struct Span {
 
 impl Sweep {
     /// Appends the triangles of a region to a list: counter-clockwise, without new vertices, none without
-    /// area. The region is given by its directed edges, and lies to the left of each. Edges meet in common
-    /// ends only, and no two join the same vertices. Vertices may have any even number of edges.
+    /// area. The region is given by its directed edges, and lies to the left of each edge. Edges meet in
+    /// common ends only, and no two edges join the same vertices. A vertex may have any even number of edges.
     ///
-    /// O(n log n + n w) for n edges, of which the sweep meets w at most at one place; the second part is that
-    /// of moving some bytes.
+    /// O(n log n + n w) for n edges, of which the sweep meets at most w at one place; the second part is the
+    /// cost of moving some bytes.
     ///
     /// # Errors
     /// [`Error::OutOfMemory`].
@@ -104,9 +104,9 @@ impl Sweep {
         Ok(())
     }
 
-    /// Goes past a vertex, at which these edges begin, from the lowest to the highest.
+    /// Moves the sweep past a vertex. The given edges begin at it, sorted from the lowest to the highest.
     fn event(&mut self, v: u32, mut begin: Range<usize>, triangles: &mut Vec<[u32; 3]>) -> Result<(), Error> {
-        // The spans that the vertex lies in, or that end at it.
+        // The spans that contain the vertex, or end at it.
         let is_above = |edge: &Edge| edge.right != v && area(&self.points, [edge.left, edge.right, v]) > 0;
         let first = self.spans.partition_point(|span| is_above(&span.upper));
         let meets = |span: &&Span| span.lower.right == v || is_above(&span.lower);
@@ -149,7 +149,7 @@ impl Sweep {
         Ok(())
     }
 
-    /// Appends a vertex at the upper end of a span's chain, and cuts off what it sees.
+    /// Appends a vertex at the upper end of a span's chain, and cuts off the triangles that it sees.
     fn rise(&mut self, span: Span, v: u32, triangles: &mut Vec<[u32; 3]>) -> Result<Span, Error> {
         let mut top = span.top;
         while top != span.bottom {
@@ -164,7 +164,7 @@ impl Sweep {
         Ok(Span { top: link, last: link, ..span })
     }
 
-    /// Appends a vertex at the lower end.
+    /// Appends a vertex at the lower end of a span's chain, and cuts off the triangles that it sees.
     fn sink(&mut self, span: Span, v: u32, triangles: &mut Vec<[u32; 3]>) -> Result<Span, Error> {
         let mut bottom = span.bottom;
         while bottom != span.top {
@@ -179,7 +179,7 @@ impl Sweep {
         Ok(Span { bottom: link, last: link, ..span })
     }
 
-    /// Ends a span at a vertex, which sees all of its chain.
+    /// Ends a span at a vertex, which sees the whole chain.
     fn close(&mut self, span: Span, v: u32, triangles: &mut Vec<[u32; 3]>) -> Result<(), Error> {
         let mut link = span.bottom;
         while link != span.top {
@@ -190,7 +190,7 @@ impl Sweep {
         Ok(())
     }
 
-    /// Cuts a chain in two at its last vertex, which is seen from everywhere between the edges.
+    /// Cuts a chain in two at its last vertex, which is visible from everywhere between the edges.
     fn split(&mut self, span: Span) -> Result<[Span; 2], Error> {
         let Link { point, above, .. } = self.links[span.last as usize];
         let copy = push(&mut self.links, point)?;
@@ -203,7 +203,8 @@ impl Sweep {
         Ok([Span { top: span.last, ..span }, Span { bottom: copy, top, ..span }])
     }
 
-    /// The span of two whose chains end and begin with the same vertex.
+    /// Joins two spans. The chain of the lower span ends with the vertex that begins the chain of the upper
+    /// span.
     fn join(&mut self, lower: Span, upper: Span) -> Span {
         let top = if upper.top == upper.bottom {
             lower.top
@@ -230,7 +231,7 @@ impl Sweep {
     }
 }
 
-/// Appends a link that is connected to none.
+/// Appends a link without neighbours.
 fn push(links: &mut Vec<Link>, point: u32) -> Result<u32, Error> {
     memory::push(links, Link { point, below: 0, above: 0 })?;
     Ok(links.len() as u32 - 1)

@@ -1,35 +1,35 @@
 //! The marching-cubes table, computed when the library is compiled.
 //!
-//! A *dual cell* is a cube between eight samples. Its *configuration* is the byte of which corners lie
-//! inside. The surface crosses those edges of the cube, the *cut* edges, of which one end lies inside; there
-//! it has a vertex.
+//! A *dual cell* is a cube between eight samples. Its *configuration* is a byte with one bit for each corner
+//! that lies inside. The surface crosses the *cut* edges of the cube: the edges with one end inside. Each cut
+//! edge has a vertex.
 //!
 //! **One rule for faces.** On each face of the cube, every run of inside corners is cut off by one segment.
 //! So two inside corners at the ends of a face's diagonal are separated there, and the two outside corners
-//! are joined. The rule looks at nothing but the face, so that both cells at a face see the same segments.
-//! (Lorensen and Cline 1987 turned fifteen cases and their complements about, and left holes between them:
-//! Dürst 1988.)
+//! are joined. The rule depends on the face only, so that both cells at a face have the same segments.
+//! (Lorensen and Cline 1987 rotated fifteen cases and their complements, and left holes between them: Dürst
+//! 1988.)
 //!
 //! **Loops.** Each cut edge begins one segment and ends one. The segments form loops, and each loop bounds
-//! one disc. So inside samples hang together by faces of voxels (6-connected), outside ones by faces and
-//! edges (18-connected). That is the pair (6, 18): Lachaud and Montanvert, *Continuous analogs of digital
+//! one disc. So inside samples are connected by faces of voxels (6-connected), outside samples by faces and
+//! edges (18-connected). This is the pair (6, 18): Lachaud and Montanvert, *Continuous analogs of digital
 //! boundaries*, 2000. The face rule alone also allows the pair (6, 26): then two outside corners at the ends
 //! of a body diagonal, in a cube whose other corners lie inside, are joined by a tunnel. Walls of two voxels
-//! across a body diagonal would be full of tunnels, so there are none.
+//! across a body diagonal would be full of tunnels, so this table has no tunnels.
 //!
-//! **Triangles.** A loop is cut into triangles by diagonals, none of which lies in a face of the cube: a
-//! diagonal in a face could be an edge of the neighbouring cell's triangles, too, and four triangles would
+//! **Triangles.** A loop is cut into triangles by diagonals, none of which lies in a face of the cube. A
+//! diagonal in a face could also be an edge of the neighbouring cell's triangles, and four triangles would
 //! meet on it. With this restriction every edge of the mesh belongs to exactly two triangles, in opposite
-//! directions, whatever the samples. Each loop of each configuration allows such triangles; that is checked
-//! when the table is made. Of the allowed ones, those with the shortest diagonals are taken.
+//! directions, for any samples. Each loop of each configuration allows such triangles; this is checked when
+//! the table is made. Among the allowed triangulations, the one with the shortest diagonals is taken.
 //!
 //! Corner k lies at (k & 1, k >> 1 & 1, k >> 2 & 1). Edge 4 a + p runs along axis a; the bits of p are its
 //! place on the other two axes, the lower axis first.
 
-/// Most triangles of a configuration.
+/// The greatest number of triangles of a configuration.
 pub(super) const MOST: usize = 5;
 
-/// The triangles of a configuration, as numbers of edges or corners. Only the first `count` mean something.
+/// The triangles of a configuration, as numbers of edges or corners. Only the first `count` are valid.
 #[derive(Clone, Copy, PartialEq, Eq, Debug)]
 pub(super) struct Triangles {
     pub count: u8,
@@ -46,14 +46,14 @@ impl Triangles {
     }
 }
 
-/// The triangles of each configuration, their corners being edges of the cube; counter-clockwise as seen from
-/// outside.
+/// The triangles of each configuration, with edges of the cube as their corners; counter-clockwise as seen
+/// from outside.
 pub(super) static MARCHING_CUBES: [Triangles; 256] = TABLE;
 
-/// The same as a constant, for other tables.
+/// [`MARCHING_CUBES`] as a constant, for other tables.
 pub(super) const TABLE: [Triangles; 256] = marching_cubes();
 
-/// The other two axes of each axis, ascending.
+/// The other two axes of each axis, in ascending order.
 pub(super) const OTHERS: [[usize; 2]; 3] = [[1, 2], [0, 2], [0, 1]];
 
 /// The corners at the lower and the upper end of each edge.
@@ -70,13 +70,13 @@ pub(super) const ENDS: [[u8; 2]; 12] = {
     ends
 };
 
-/// The faces' corners, counter-clockwise as seen from outside of the cube: −x, +x, −y, +y, −z, +z.
+/// The corners of each face, counter-clockwise as seen from outside the cube: −x, +x, −y, +y, −z, +z.
 const FACES: [[u8; 4]; 6] = {
     let mut faces = [[0; 4]; 6];
     let mut face = 0;
     while face < 6 {
         let (axis, side) = (face / 2, face % 2);
-        // From above, the axes that follow in cyclic order turn counter-clockwise.
+        // Seen from above, the two axes that follow in cyclic order turn counter-clockwise.
         let (u, v) = (1 << ((axis + 1) % 3), 1 << ((axis + 2) % 3));
         let base = side << axis;
         let (second, last) = if side == 1 { (u, v) } else { (v, u) };
@@ -105,7 +105,7 @@ const fn edge_between(a: u8, b: u8) -> usize {
     panic!("the corners are not beside each other")
 }
 
-/// For each edge the two faces that it lies in, as bits.
+/// The two faces that contain each edge, as bits.
 const FACES_AT: [u8; 12] = {
     let mut at = [0; 12];
     let mut i = 0;
@@ -120,7 +120,7 @@ const FACES_AT: [u8; 12] = {
 /// No edge.
 pub(super) const NONE: u8 = u8::MAX;
 
-/// For each cut edge the one at which the segment ends that begins there.
+/// For each cut edge, the edge at which the segment that begins there ends.
 pub(super) const fn successors(configuration: usize) -> [u8; 12] {
     let mut next = [NONE; 12];
     let mut face = 0;
@@ -129,7 +129,7 @@ pub(super) const fn successors(configuration: usize) -> [u8; 12] {
         let mut k = 0;
         while k < 4 {
             if !is_inside(configuration, corners[k]) && is_inside(configuration, corners[(k + 1) % 4]) {
-                // A run of inside corners begins here. The segment leads to its end.
+                // A run of inside corners begins here. The segment leads to the end of the run.
                 let mut end = k + 1;
                 while is_inside(configuration, corners[(end + 1) % 4]) {
                     end += 1;
@@ -166,7 +166,7 @@ const fn distance(a: u8, b: u8) -> u32 {
     sum
 }
 
-/// More than any sum of diagonals.
+/// A number greater than any sum of diagonals.
 const FORBIDDEN: u32 = 1 << 20;
 
 /// A loop of cut edges.
@@ -175,8 +175,8 @@ struct Loop {
     len: usize,
 }
 
-/// The triangles between the edges `first..=last` of a loop with the least sum of diagonals: that sum, and
-/// for each pair the corner of the triangle on it. (Klincsek 1980: minimal triangulations of polygons.)
+/// Triangulates the edges `first..=last` of a loop with the least sum of diagonals. Returns that sum, and for
+/// each pair the third corner of the triangle on it. (Klincsek 1980: minimal triangulations of polygons.)
 const fn best(polygon: &Loop) -> (u32, [[usize; 12]; 12]) {
     let (mut cost, mut apex) = ([[0u32; 12]; 12], [[0; 12]; 12]);
     let mut width = 2;

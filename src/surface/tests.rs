@@ -1,4 +1,4 @@
-//! The tables by their definitions, and meshes against dense arrays.
+//! Tests of the tables by their definitions, and of meshes against dense arrays.
 
 use super::marching_cubes;
 use super::table::{ENDS, MARCHING_CUBES, OTHERS};
@@ -11,7 +11,7 @@ use crate::octree::{Octree, Planes, Tag};
 use alloc::collections::{BTreeMap, BTreeSet};
 use alloc::vec::Vec;
 
-/// The directed edges of a configuration's triangles that no other triangle runs back along.
+/// The directed edges of a configuration's triangles without an opposite edge.
 fn boundary(configuration: usize) -> BTreeSet<(u8, u8)> {
     let mut edges = BTreeSet::new();
     for &[a, b, c] in MARCHING_CUBES[configuration].list() {
@@ -23,7 +23,7 @@ fn boundary(configuration: usize) -> BTreeSet<(u8, u8)> {
     edges.iter().filter(|&&(a, b)| !edges.contains(&(b, a))).copied().collect()
 }
 
-/// Whether an edge lies in the face of a cube on a side of an axis.
+/// Returns whether an edge lies in the face of a cube on a side of an axis.
 fn is_in_face(edge: u8, axis: usize, side: u8) -> bool {
     ENDS[edge as usize].iter().all(|corner| corner >> axis & 1 == side)
 }
@@ -38,7 +38,7 @@ fn edges_join_corners() {
     }
 }
 
-/// The boundary of each configuration lies in the faces of the cube, and is there what the rule says.
+/// The boundary of each configuration lies in the faces of the cube, and follows the rule there.
 #[test]
 fn every_face_is_cut_by_the_rule() {
     for configuration in 0..256usize {
@@ -50,8 +50,8 @@ fn every_face_is_cut_by_the_rule() {
                     .filter(|(a, b)| is_in_face(*a, axis, side) && is_in_face(*b, axis, side))
                     .copied()
                     .collect();
-                // Each segment has the inside corners of one run on its left, seen from outside of the cube;
-                // an inside corner alone has both of its edges cut.
+                // Each segment has the inside corners of one run on its left, as seen from outside the cube;
+                // a single inside corner has both its edges cut.
                 let corners: Vec<u8> =
                     (0..8).filter(|c| c >> axis & 1 == side && configuration >> c & 1 == 1).collect();
                 let diagonal = corners.len() == 2 && (corners[0] ^ corners[1]).count_ones() == 2;
@@ -71,7 +71,7 @@ fn every_face_is_cut_by_the_rule() {
     }
 }
 
-/// What one cell has on a face is what its neighbour has there, run the other way.
+/// The segments of one cell on a face are those of its neighbour there, in the opposite direction.
 #[test]
 fn neighbours_fit_together() {
     for axis in 0..3 {
@@ -79,7 +79,8 @@ fn neighbours_fit_together() {
             let [low, high] = ENDS[edge as usize].map(|corner| corner ^ 1 << axis);
             ENDS.iter().position(|&ends| ends == [low, high]).unwrap() as u8
         };
-        // By the samples of the common face: what the lower cell has there, and what the upper one.
+        // By the samples of the common face: the segments of the lower cell there, and those of the upper
+        // one.
         let mut seen: BTreeMap<Vec<bool>, BTreeSet<(u8, u8)>> = BTreeMap::new();
         for configuration in 0..256usize {
             for side in 0..2u8 {
@@ -98,7 +99,8 @@ fn neighbours_fit_together() {
     }
 }
 
-/// No diagonal lies in a face of the cube, each vertex is on a cut edge, and outside is where it should be.
+/// No diagonal lies in a face of the cube, each vertex is on a cut edge, and the outside is on the correct
+/// side.
 #[test]
 fn diagonals_lie_within() {
     let middle = |edge: u8| {
@@ -130,7 +132,7 @@ fn diagonals_lie_within() {
             assert_ne!(normal, [0; 3], "{configuration}: a triangle has no area");
         }
         assert_eq!(used, cut, "{configuration}");
-        // Vertices, edges and faces of discs: one for each loop.
+        // Vertices, edges and faces of discs: one disc for each loop.
         let triangles = MARCHING_CUBES[configuration].list().len();
         assert_eq!(triangles, cut.len() - 2 * loops(&outline), "{configuration}");
     }
@@ -159,8 +161,8 @@ fn triangles_face_outward() {
     assert!([[0, 8, 4], [8, 4, 0], [4, 0, 8]].contains(&[a, b, c]));
 }
 
-/// A random bitmap of `edge` samples per axis, somewhere in an octree of this depth: bit by bit, with
-/// `chance` in 256.
+/// A random bitmap of `edge` samples per axis, somewhere in an octree of this depth; each bit is set with a
+/// chance of `chance` in 256.
 fn bitmap(depth: u8, edge: u32, chance: u64, state: &mut u64) -> Vec<bool> {
     let n = 1u32 << depth;
     let mut random = || {
@@ -210,8 +212,8 @@ fn octree(depth: u8, bits: &[bool]) -> Octree {
     writer.finish(frame, root, Tag::Empty).unwrap()
 }
 
-/// Twelve times the volume of each configuration in a cube of edge 2 around the origin, by divergence: its
-/// triangles, and what it has of the faces.
+/// Twelve times the volume of each configuration in a cube of edge 2 around the origin, by the divergence
+/// theorem: its triangles, and its part of the faces.
 fn volumes() -> Vec<i32> {
     let middle = |edge: u8| {
         let [a, b] = ENDS[edge as usize];
@@ -265,7 +267,7 @@ fn dense(depth: u8, bits: &[bool], volumes: &[i32]) -> (Vec<Facet>, i64) {
     (facets, volume)
 }
 
-/// Facets that begin with their least corner, sorted.
+/// The facets, rotated so that each begins with its least corner, sorted.
 fn sorted(mut facets: Vec<Facet>) -> Vec<Facet> {
     for facet in &mut facets {
         let least = (0..3).min_by_key(|&k| facet[k]).unwrap();

@@ -1,8 +1,8 @@
-//! Bodies of which a mesh has no triangle.
+//! Bodies that have no triangle in a mesh.
 //!
-//! Vertices that lie at one place are one vertex, and triangles without area are dropped. A body whose
-//! surface lies nearer to its centres than doubles can tell loses all of its triangles so: its vertices lie
-//! at its centres, and for a body of one centre these are one place.
+//! Vertices at one place become one vertex, and triangles without area are dropped. So a body whose surface
+//! lies nearer to its centres than doubles can express loses all its triangles: its vertices lie at its
+//! centres. A body of one centre has all vertices at one place.
 
 use super::blocks::Blocks;
 use super::solid::edges;
@@ -12,22 +12,22 @@ use crate::walk::Edge;
 use alloc::collections::VecDeque;
 use hashbrown::HashMap;
 
-/// What is known of a centre that lies inside.
+/// The state of a centre that lies inside.
 #[derive(Clone, Copy, PartialEq)]
 enum Centre {
     /// None of its crossings has a triangle.
     Bare,
     /// One of its crossings has a triangle.
     Covered,
-    /// It was met in the search with this number.
+    /// The search with this number has visited the centre.
     Met(u32),
 }
 
-/// How many bodies have no triangle: sets of inside centres that hang together along edges of the lattice,
-/// none of whose crossings has one. `covered` says of each crossing, in the order of the cut edges, whether
-/// it has a triangle.
+/// Returns the number of bodies without a triangle. A body is a set of inside centres that are connected
+/// along edges of the lattice. It has no triangle if none of its crossings has one. `covered` says for each
+/// crossing, in the order of the cut edges, whether it has a triangle.
 ///
-/// O(crossings), and O(log intervals of a ray) for each crossing without a triangle.
+/// O(crossings), plus O(log intervals of a ray) for each crossing without a triangle.
 ///
 /// # Errors
 /// [`Error::OutOfMemory`].
@@ -62,9 +62,9 @@ pub(super) fn vanished(
     Ok(count)
 }
 
-/// The end of a cut edge that lies inside.
+/// The inside end of a cut edge.
 fn inner(edge: &Edge) -> [u32; 3] {
-    // (It lies in the universe.)
+    // (The inside end lies in the universe.)
     let mut centre = edge.lower.map(|at| at as u32);
     if !edge.starts_inside {
         centre[edge.axis] = centre[edge.axis].wrapping_add(1);
@@ -82,7 +82,7 @@ fn neighbours(model: &TriDexelRef<'_>, centre: [u32; 3]) -> impl Iterator<Item =
     all.filter(|&other| model.contains_cell(other))
 }
 
-/// Whether the body of a centre has a triangle.
+/// Returns whether the body of a centre has a triangle.
 fn has_triangles(
     model: &TriDexelRef<'_>,
     seed: [u32; 3],
@@ -98,10 +98,11 @@ fn has_triangles(
         for other in neighbours(model, centre) {
             match known.get(&other) {
                 Some(Centre::Met(of)) if *of == number => continue,
-                // A search that met only a part of its body ended at a triangle.
+                // A search that visited only a part of its body ended at a triangle.
                 Some(Centre::Covered | Centre::Met(_)) => return Ok(true),
                 Some(Centre::Bare) => {}
-                // It has no crossing without a triangle. So it has one with a triangle, or none at all.
+                // It has no crossing without a triangle. So either it has a crossing with a triangle, or no
+                // crossing at all.
                 None if neighbours(model, other).count() < 6 => return Ok(true),
                 None => {}
             }
@@ -114,7 +115,7 @@ fn has_triangles(
     Ok(false)
 }
 
-/// Whether a triangle has area enough to be kept: three corners at different places.
+/// Returns whether a triangle is kept: its three corners are distinct.
 pub(super) fn is_kept(vertices: &[[f64; 3]], triangle: [u32; 3]) -> bool {
     let [p, q, r] = triangle.map(|vertex| vertices[vertex as usize]);
     p != q && q != r && r != p

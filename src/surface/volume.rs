@@ -22,23 +22,23 @@ use crate::walk::Edge;
 use alloc::vec::Vec;
 use core::sync::atomic::{AtomicBool, Ordering::Relaxed};
 
-/// The surface of a volume by marching cubes, with vertices where the field, interpolated linearly between
-/// neighbouring samples, leaves the band ([`Volume::crossing_between`]). For samples of a smooth function,
-/// vertices lie on the surface to second order in the spacing.
+/// Extracts the surface of a volume by marching cubes. Vertices lie where the field, interpolated linearly
+/// between neighbouring samples, leaves the band ([`Volume::crossing_between`]). For samples of a smooth
+/// function, the vertices lie on the surface to second order in the spacing.
 ///
-/// Samples are the centres of voxels, which need not be cubes; everything beyond the grid is outside, so that
+/// Samples are the centres of voxels, which need not be cubes. Everything beyond the grid is outside, so that
 /// the mesh is closed, with vertices in the outer faces of the grid. Between bits, and where a sample is
-/// infinite or not a number, a vertex lies half-way. The mesh is oriented as that of
-/// [`marching_cubes`](crate::marching_cubes). Vertices that lie at one place, which is a sample on the
-/// surface, are one vertex, and triangles without area are dropped: there more than two triangles may meet on
-/// an edge, in balance.
+/// infinite or NaN, a vertex lies half-way. The mesh is oriented as that of
+/// [`marching_cubes`](crate::marching_cubes). Vertices that coincide at a sample on the surface become one
+/// vertex, and triangles without area are dropped. At such places more than two triangles may meet on an
+/// edge, in balance.
 ///
 /// O(n / 64 + surface) for n samples. The result is the same for any number of threads.
 ///
 /// # Errors
-/// [`Error::Argument`] if the grid is so far from the origin that doubles cannot tell its voxels apart;
-/// [`MeshError::TooMany`] for more than 2^32 − 1 vertices or triangles; [`Error::OutOfMemory`];
-/// [`Error::Cancelled`].
+/// [`Error::Argument`] if the grid is so far from the origin that doubles cannot distinguish its voxels;
+/// [`MeshError::TooMany`] for more than 2^32 − 1 vertices or triangles; [`Error::TooLarge`] or
+/// [`Error::Limit`] beyond the limits of `control`; [`Error::OutOfMemory`]; [`Error::Cancelled`].
 ///
 /// ```
 /// use leafless::{Control, Volume, solid::{Band, VoxelGrid}, surface::marching_cubes_volume};
@@ -58,16 +58,16 @@ pub fn marching_cubes_volume(volume: &Volume<'_>, control: &Control<'_>) -> Resu
     control.share([0.5, 1.0], |control| extract(tree.view(), false, volume, [0; 3], control))
 }
 
-/// The surface of an octree whose finest cells are voxels of a volume, as that of
-/// [`marching_cubes`](crate::marching_cubes), with the vertices of [`marching_cubes_volume`] where the
-/// volume's own surface passes between two cells. Elsewhere, as where the octree was cut by set operations,
-/// they lie half-way.
+/// Extracts the surface of an octree whose finest cells are voxels of a volume. The mesh is as that of
+/// [`marching_cubes`](crate::marching_cubes), but where the volume's own surface passes between two cells,
+/// the vertices are those of [`marching_cubes_volume`]. Elsewhere, for example where set operations have cut
+/// the octree, vertices lie half-way.
 ///
-/// `resolve` says what PARTIAL cells count as; `None` will do for trees without any.
+/// `resolve` defines the side of PARTIAL cells; `None` suffices for trees without PARTIAL cells.
 ///
 /// # Errors
-/// [`Error::Argument`] if the finest cells are no voxels of the volume's lattice ([`VoxelGrid::frame`] makes
-/// a frame of which they are), and as [`marching_cubes`](crate::marching_cubes).
+/// [`Error::Argument`] if the finest cells are not voxels of the volume's lattice ([`VoxelGrid::frame`] makes
+/// a suitable frame), and as [`marching_cubes`](crate::marching_cubes).
 pub fn marching_cubes_with_volume(
     tree: &OctreeRef<'_>,
     volume: &Volume<'_>,
@@ -80,7 +80,8 @@ pub fn marching_cubes_with_volume(
     resolved(tree, resolve, control, |tree, partial, control| extract(tree, partial, volume, first, control))
 }
 
-/// The surface of a tree whose first cell is the voxel `first`, whether or not the grid has that.
+/// Extracts the surface of a tree whose first cell is the voxel `first`, whether or not that voxel lies in
+/// the grid.
 fn extract(
     tree: &OctreeRef<'_>,
     partial: bool,
@@ -114,7 +115,7 @@ fn extract(
     })
 }
 
-/// Refuses grids whose voxels doubles cannot tell apart.
+/// Refuses grids whose voxels doubles cannot distinguish.
 fn check_resolution(grid: &VoxelGrid) -> Result<(), Error> {
     for axis in 0..3 {
         let spacing = grid.spacing()[axis];
@@ -130,7 +131,7 @@ fn check_resolution(grid: &VoxelGrid) -> Result<(), Error> {
     Ok(())
 }
 
-/// Where vertices lie.
+/// The places of vertices.
 struct Places<'a> {
     volume: &'a Volume<'a>,
     first: [i64; 3],
@@ -138,7 +139,7 @@ struct Places<'a> {
 }
 
 impl Places<'_> {
-    /// The vertices of blocks. The answer is whether they lie at different places.
+    /// Places the vertices of blocks. Returns whether they are distinct.
     fn fill(&self, blocks: &[Block], piece: &mut [[f64; 3]], job: &Job<'_>) -> Result<bool, Error> {
         let mut places = piece.iter_mut();
         let mut is_welded = true;
@@ -156,17 +157,17 @@ impl Places<'_> {
         Ok(is_welded)
     }
 
-    /// A part of a step behind a sample, in model units.
+    /// The coordinate at a fraction of a step behind a sample, in model units.
     fn coordinate(&self, axis: usize, at: i64, part: f64) -> f64 {
         let grid = self.volume.grid();
         let x = grid.corner()[axis] + (at as f64 + (0.5 + part)) * grid.spacing()[axis];
         if x.abs() < SMALLEST { 0.0 } else { x }
     }
 
-    /// Where an edge is crossed, from the sample `at` on; half-way if the volume does not cross it in this
-    /// sense.
+    /// Returns the fraction of the edge at which it is crossed, from the sample `at` on; one half if the
+    /// volume does not cross it in this direction.
     fn crossing(&self, edge: &Edge, at: [i64; 3]) -> f64 {
-        // (What is beyond such numbers is beyond the grid.)
+        // (Places beyond such numbers are beyond the grid.)
         let at = at.map(|a| i32::try_from(a).unwrap_or(i32::MAX - 1));
         let starts_inside = self.volume.contains_voxel(at.map(|a| u32::try_from(a).unwrap_or(u32::MAX)));
         match self.volume.crossing_between(at, edge.axis) {

@@ -1,12 +1,12 @@
-//! Meshes whose vertices may lie at one place.
+//! Merging vertices at one place.
 
 use crate::error::Error;
 use crate::memory;
 use crate::mesh::TriangleMesh;
 use alloc::vec::Vec;
 
-/// The mesh with equal vertices made one, without triangles that have lost their area by that, and without
-/// vertices that are then in no triangle. The others keep their order.
+/// Builds the mesh with equal vertices merged, without triangles that lose their area in this way, and
+/// without vertices that no triangle uses afterwards. The remaining vertices and triangles keep their order.
 ///
 /// # Errors
 /// As [`TriangleMesh::new`].

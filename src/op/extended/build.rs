@@ -1,4 +1,4 @@
-//! From any solid to an octree whose PARTIAL cells keep the surfaces that cross them.
+//! Building an octree from any solid whose PARTIAL cells keep the surfaces that cross them.
 
 use super::element::{Family, Fate, Output, Source, element};
 use super::function::{Done, Function, Known, MOST_KEPT};
@@ -27,18 +27,19 @@ use alloc::vec::Vec;
 use core::cmp::Ordering;
 use once_cell::race::OnceBox;
 
-/// Which surfaces an extended octree keeps.
+/// The kinds of surfaces that an extended octree keeps.
 #[derive(Debug, Clone, Copy, Default, PartialEq)]
 pub struct SurfaceOptions {
-    /// Where nothing exact is known of a surface (a mesh, a host program's function), two parallel planes may
-    /// stand for it, a layer, that are at most this far apart (model units). `None`: only exact surfaces are
+    /// The greatest distance (model units) of the two parallel planes of a *layer*. A layer may stand for a
+    /// surface without an exact form (a mesh, a host program's function). `None`: only exact surfaces are
     /// kept.
     pub tolerance: Option<f64>,
 }
 
 impl SurfaceOptions {
-    /// The frame to build on: around the bounds of a shape, with finest cells no longer than the tolerance.
-    /// Without a tolerance it has the greatest depth, because cells with exact surfaces end at any size.
+    /// Returns the frame to build on: around the bounds of a shape, with finest cells no longer than the
+    /// tolerance. Without a tolerance the frame has the greatest depth, because cells with exact surfaces end
+    /// at any size.
     ///
     /// # Errors
     /// As [`Frame::to_tolerance`].
@@ -55,46 +56,48 @@ impl SurfaceOptions {
     }
 }
 
-/// Builds the *extended octree* of `solid`: a certified octree whose PARTIAL cells keep the surfaces that
-/// cross them, up to three, and the function of their signs that the solid is.
+/// Builds the *extended octree* of `solid`: a certified octree whose PARTIAL cells keep up to three surfaces
+/// that cross them. The solid in such a cell is a function of the signs of these surfaces.
 ///
 /// A cell ends as soon as three surfaces are left in it, at any size. So the tree is small, and as exact as
-/// the solid: put on any frame of its universe, it splits below its own cells, and answers measures, points,
-/// rays and distances as the solid would. What is still crossed by more surfaces at the frame's depth is
-/// PARTIAL, and nothing is known of it.
+/// the solid. On any frame of its universe it splits below its own cells, and answers measures, points, rays
+/// and distances as the solid would. A cell that more surfaces cross at the frame's depth is PARTIAL, and
+/// nothing is known about it.
 ///
-/// A cell that had to be split may turn out to need no more than three surfaces: bounds over smaller cells
-/// are closer, and one of the surfaces in doubt does not reach it after all. So eight cells that are done
-/// become one, from the finest up, by this rule: none of them is given up, all their exact surfaces together
-/// are at most three, and one function of these has the value of each cell for all combinations of signs that
-/// are possible in that cell. Combinations that are possible in none of the eight have the value of the
-/// nearest that is. Cells with layers of their own stay apart, because each stands for a surface of its own.
+/// A split cell may turn out to need no more than three surfaces: bounds over smaller cells are closer, and a
+/// doubtful surface may prove not to reach the cell. So eight finished cells are merged, from the finest up,
+/// under three conditions. None of the cells is given up. All their exact surfaces together are at most
+/// three. One function of these surfaces has the value of each cell for all combinations of signs that are
+/// possible in that cell. A combination that is possible in none of the eight cells takes the value of the
+/// nearest possible one. Cells with layers of their own are not merged, because each layer stands for another
+/// piece of surface.
 ///
-/// With a tolerance, meshes take part by the planes of their facets: those that lie in one plane to rounding
-/// share one layer, with the width that this takes, in all cells that it crosses, and where more planes meet,
-/// facets that face about the same side share a layer of their cell, at most as thick as the tolerance. The
-/// table of the layers' sides is that of the fill rule, and proven: what is thinner than a layer is undecided
-/// within it, and no point is that is further than twice the tolerance from the surface, unless its cell was
-/// given up.
+/// With a tolerance, the tree also keeps the facet planes of meshes. Facets that lie in one plane up to
+/// rounding share one layer in all cells that the plane crosses; the layer is as wide as these facets need.
+/// Where more planes meet, facets that face about the same direction share a layer of their cell, at most as
+/// thick as the tolerance. The table of the layers' sides follows the fill rule, and is proven. A part that
+/// is thinner than a layer is undecided within the layer. No undecided point is further than twice the
+/// tolerance from the surface, unless its cell was given up.
 ///
-/// A solid whose answers are dear, such as a function of a host program, is asked level by level about many
-/// cells at once.
+/// A solid whose answers are expensive, such as a function of a host program, is evaluated level by level for
+/// many cells at once.
 ///
-/// The half-spaces of expressions are kept exactly, under any placements, and those of extended octrees
-/// within them. The result is the same bit for bit for any number of threads. Time and memory are linear in
-/// the cells that are visited.
+/// The half-spaces of expressions are kept exactly, under any placements, and so are the half-spaces of
+/// extended octrees within expressions. The result is the same bit for bit for any number of threads. Time
+/// and memory are linear in the number of visited cells.
 ///
-/// Whatever takes a [`Solid`] takes the surfaces into account, and so do points, rays and boxes in place. Set
-/// operations of stored octrees keep the surfaces. What means cells sees the cells alone, which are those of
-/// a certified octree. [`Octree`] has the table.
+/// Every function that takes a [`Solid`] takes the surfaces into account, and so do in-place queries of
+/// points, rays and boxes. Set operations of stored octrees keep the surfaces. Functions that work on cells
+/// see only the cells, which are those of a certified octree. [`Octree`] has the table.
 ///
 /// The method is that of Brunet and Navazo, *Solid representation and operation using extended octrees*, ACM
 /// Transactions on Graphics 9 (2), 1990, for curved surfaces and with exact signs.
 ///
 /// # Errors
-/// As [`build`](crate::build); [`Error::Argument`] if the tolerance is not a positive number;
-/// [`Error::Limit`] if an exact number of a surface is the sum of more than seven doubles, or a surface lies
-/// under more than 64 placements.
+/// The errors of the solid ([`Error::FrameMismatch`] for stored trees, [`Error::Damaged`] for unverified
+/// ones); [`Error::Argument`] if the tolerance is not a positive number; [`Error::Limit`] if an exact number
+/// of a surface is the sum of more than seven doubles, or a surface lies under more than 64 placements; and
+/// cancellation or an exceeded limit of `control`.
 ///
 /// ```
 /// use leafless::{Control, Csg, Frame, build_extended, measure, SurfaceOptions};
@@ -116,12 +119,12 @@ pub fn build_extended<S: Solid>(
     build_cells(solid, frame, options, None, control)
 }
 
-/// Builds the cells of a [`Shard`] of what [`build_extended`] makes: of all others nothing is known.
-/// [`join`](crate::op::join) makes of the top and of the shards of all cells that it leaves open the octree
-/// that [`build_extended`] makes, byte for byte.
+/// Builds the cells of a [`Shard`] of the octree that [`build_extended`] returns. All other cells are unknown
+/// (PARTIAL). [`join`](crate::op::join) combines the top shard and the shards of all cells that the top
+/// leaves open. The result is the octree that [`build_extended`] returns, byte for byte.
 ///
 /// # Errors
-/// As [`build_extended`]; [`Error::Argument`] if the frame does not have the shard's cells.
+/// As [`build_extended`]; [`Error::Argument`] if the frame does not contain the shard's cells.
 pub fn build_extended_shard<S: Solid>(
     solid: &S,
     frame: &Frame,
@@ -162,7 +165,7 @@ fn build_cells<S: Solid>(
     let mut places = memory::with_capacity(shared.len())?;
     places.resize_with(shared.len(), OnceBox::new);
     let levels = element_levels(frame.depth());
-    // Shallow trees are made faster than threads, unless it is somebody else who takes the time.
+    // A shallow tree is built faster than threads are started, unless a host program does the work.
     let likes_many = classifier.worker()?.likes_many();
     control.run(levels > 3 || likes_many, |parallel| {
         let (exact, tolerance) = (surfaces.len(), options.tolerance);
@@ -187,11 +190,11 @@ fn build_cells<S: Solid>(
             Fate::Goes(part) => builder.element(0, Cell::ROOT, &part, &mut hand)?,
         };
         let Hand { out: Output { writer, cuts }, mut slabs, .. } = hand;
-        // Those of the solid's list come first.
+        // The slabs of the solid's list come first.
         let mut layers = shared.clone();
         layers.try_reserve(slabs.len())?;
         layers.append(&mut slabs);
-        // Exact surfaces are numbered in their order.
+        // Exact surfaces are already numbered in their order.
         let by_size = |a: u32, b: u32| {
             let size = |id: u32| Some(layers.get((id as usize).checked_sub(exact)?)?.size());
             size(a).cmp(&size(b)).then(a.cmp(&b))
@@ -206,11 +209,11 @@ fn build_cells<S: Solid>(
         };
         let mut cuts = cuts.finish((tag == Tag::Partial).then_some(cut), by_size, group)?;
         if let Some((cuts, used)) = &mut cuts {
-            // Slabs have numbers that any shard of the tree gives them: their place in the solid's list, or
-            // one of their cell's.
+            // A slab has the same number in every shard of the tree: its place in the solid's list, or its
+            // number in its cell.
             for &id in &*used {
                 let Some(layer) = (id as usize).checked_sub(exact) else { continue };
-                // (A slab that another build made for a cell, and that has no origin, has none here.)
+                // (A slab without origin, which another build made for a cell, has no number here.)
                 if layer >= shared.len() || origin.is_some() && layers[layer].cell_slab(frame).is_none() {
                     let half_space = &mut layers[layer].half_space;
                     let number =
@@ -233,9 +236,10 @@ fn build_cells<S: Solid>(
     })
 }
 
-/// The tree without cuts that says what a tree with cuts does, to `depth`: for whatever means cells. Cells
-/// are decided by the surfaces that the tree keeps, and what is undecided at the depth is resolved by `rule`.
-/// Metadata and channels are those of `tree`. Of a tree without cuts it is the same tree, cut at the depth.
+/// Returns the tree without cuts that represents a tree with cuts to `depth`, for functions that work on
+/// cells. The surfaces of the tree decide the cells; cells that are undecided at the depth are resolved by
+/// `rule`. Metadata and channels are those of `tree`. For a tree without cuts the result is the same tree,
+/// cut off at the depth.
 ///
 /// # Errors
 /// As [`build`](crate::build); [`Error::Argument`] if `depth` is not 1 to 20.
@@ -244,7 +248,7 @@ pub fn plain(tree: &Octree, depth: u8, rule: Rule, control: &Control<'_>) -> Res
     Ok(plain.with_metadata_from(tree).with_channels_from(tree))
 }
 
-/// What tells the slabs of a build from all others; `None` if the solid cannot be told from others.
+/// The identity of the slabs of a build; `None` if the solid has no fingerprint.
 fn origin<S: Solid>(solid: &S, frame: &Frame, options: &SurfaceOptions) -> Option<Origin> {
     let all = Fingerprinter::new("slabs")
         .part(solid.fingerprint()?)
@@ -258,30 +262,31 @@ fn origin<S: Solid>(solid: &S, frame: &Frame, options: &SurfaceOptions) -> Optio
 struct Extended<'a, C> {
     classifier: &'a C,
     frame: Frame,
-    /// The cells that are wanted, unless all are.
+    /// The wanted cells; `None` for all cells.
     shard: Option<Shard>,
-    /// The level at which cells are split no more.
+    /// The level below which cells are not split.
     last: u8,
     tolerance: Option<f64>,
-    /// The same, if the solid has a list of layers.
+    /// The tolerance, if the solid has a list of layers.
     layers: Option<f64>,
-    /// For each surface of the solid's list its number among those that differ, and whether it stands there
-    /// negated.
+    /// For each surface of the solid's list, its number among the distinct surfaces, and whether the list
+    /// holds it negated.
     names: &'a [Option<(u32, bool)>],
-    /// The exact surfaces that differ, on the universe. Numbers from there on are those of the solid's
-    /// layers, and then of those of cells.
+    /// The distinct exact surfaces, on the universe. The numbers after them are those of the solid's layers,
+    /// followed by those of layers of single cells.
     placed: &'a [Placed],
-    /// The solid's layers, and where they lie on the universe, once somebody has asked.
+    /// The solid's layers, and their placed forms, created when they are first needed.
     shared: &'a [PlacedHalfSpace],
     places: &'a [OnceBox<Placed>],
     parallel: bool,
 }
 
-/// The list of surfaces that a solid gives.
+/// The list of surfaces that a solid provides.
 struct Listed {
-    /// For each its number among those that differ, exact ones first, and whether it stands there negated.
+    /// For each surface its number among the distinct surfaces, exact ones first, and whether the list holds
+    /// it negated.
     names: Vec<Option<(u32, bool)>>,
-    /// The exact surfaces that differ, in their order.
+    /// The distinct exact surfaces, in their order.
     surfaces: Vec<PlacedHalfSpace>,
     /// The layers.
     shared: Vec<PlacedHalfSpace>,
@@ -301,7 +306,7 @@ impl Listed {
                 name => Ok(name),
             });
         }
-        // By their bytes: A ∪ B numbers them as B ∪ A does.
+        // Sorted by their bytes, so that A ∪ B and B ∪ A number them in the same way.
         let (surfaces, places) = pool.sorted()?;
         let exact = surfaces.len() as u32;
         let names = memory::collected(names.into_iter().map(|name| match name {
@@ -312,7 +317,7 @@ impl Listed {
     }
 }
 
-/// What one thread needs, and what it has made.
+/// The state of one thread, and its output.
 struct Hand<'j, C: Classifier> {
     worker: C::Worker,
     out: Output<'j>,
@@ -331,7 +336,8 @@ impl<'j, C: Classifier> AsMut<Output<'j>> for Hand<'j, C> {
     }
 }
 
-/// A cell that was asked about together with others: where its children are, or, of the last level, its part.
+/// A cell that was evaluated together with others: the index of its children's family, or, on the last level,
+/// its part.
 #[derive(Clone)]
 enum Asked<P> {
     Children(usize),
@@ -373,12 +379,12 @@ impl<C: Classifier> Extended<'_, C> {
         }
     }
 
-    /// The number of the first layer that a cell has alone.
+    /// The number of the first layer that belongs to a single cell.
     fn own(&self) -> u32 {
         (self.placed.len() + self.shared.len()) as u32
     }
 
-    /// What becomes of a cell by the surfaces that cross it, and whether its slabs may still end it.
+    /// Returns the fate of a cell by the surfaces that cross it, and whether its slabs may still end it.
     fn by_surfaces(
         &self,
         cell: Cell,
@@ -418,8 +424,8 @@ impl<C: Classifier> Extended<'_, C> {
         Ok((fate, wants_slabs))
     }
 
-    /// Puts the slabs that a cell has alone in whole numbers, where those are about as close. (A cell may
-    /// have got more of them than its function needs; a home tells three apart.)
+    /// Stores a cell's own slabs as whole numbers, where whole numbers are about as close. (A cell may have
+    /// more slabs than its function needs; a home distinguishes only three.)
     fn quantise(&self, cell: Cell, own: &mut [PlacedHalfSpace]) {
         let tolerance = self.tolerance.unwrap_or(0.0);
         for (index, slab) in (0u8..).zip(own) {
@@ -427,7 +433,7 @@ impl<C: Classifier> Extended<'_, C> {
                 true => slab.quantised(&self.frame, cell, index, tolerance),
                 false => None,
             };
-            // (Who made it is told when the tree is done.)
+            // (The origin is set when the tree is complete.)
             *slab = quantised.unwrap_or_else(|| {
                 let number = CellSlab::number_in(cell, index);
                 let half_space = slab.half_space.identified(Some(([0; 2], number)));
@@ -436,7 +442,7 @@ impl<C: Classifier> Extended<'_, C> {
         }
     }
 
-    /// What becomes of a cell of which no exact surfaces are known.
+    /// Returns the fate of a cell that has no exact surfaces.
     fn by_slabs(
         &self,
         cell: Cell,
@@ -452,7 +458,8 @@ impl<C: Classifier> Extended<'_, C> {
         Ok(if cell.level == self.last { Fate::Ends(Cut::None) } else { Fate::Goes(part) })
     }
 
-    /// The same function of the surfaces that differ, simplified. `None` if a surface has no exact numbers.
+    /// Returns the same function of the distinct surfaces, simplified; `None` if a surface has no exact
+    /// numbers.
     fn renamed(&self, cell: Cell, open: &OpenSurfaces) -> Result<Option<Function>, Error> {
         let (mut ids, mut table) = ([0; OpenSurfaces::MOST], open.table());
         let mut has_own = false;
@@ -471,7 +478,7 @@ impl<C: Classifier> Extended<'_, C> {
         if has_own { Ok(Some(function.canonical(self))) } else { function.simplified(cell, self).map(Some) }
     }
 
-    /// Planes with a width for the slabs of a cell; `None` if one is too thick, or says nothing.
+    /// Returns layers for the slabs of a cell; `None` if one is too thick, or bounds nothing.
     fn slabs(
         &self,
         cell: Cell,
@@ -484,7 +491,7 @@ impl<C: Classifier> Extended<'_, C> {
         let is_slab = |slab: &&Slab| slab.normal != [0.0; 3];
         let mut planes = [const { None }; MOST_KEPT];
         let is_lone = enclosure.slabs.iter().filter(is_slab).count() == 1;
-        // Next to layers, slabs keep to what holds for these.
+        // If the solid has layers, slabs have to meet the conditions for layers.
         let is_admitted = |slab: &Slab, width: f64| {
             self.layers.is_none()
                 || width <= LayersQuestion::SHARE * tolerance
@@ -493,7 +500,7 @@ impl<C: Classifier> Extended<'_, C> {
         for (plane, slab) in planes.iter_mut().zip(enclosure.slabs.iter().filter(is_slab)) {
             let length = libm::sqrt(slab.normal.iter().map(|c| c * c).sum::<f64>());
             let width = (slab.outer - slab.inner) * half / length;
-            // (What is no number is not less.)
+            // (NaN is not less.)
             let is_thin = width <= tolerance && length.is_finite() && is_admitted(slab, width);
             if !is_thin {
                 return Ok(None);
@@ -515,11 +522,11 @@ impl<C: Classifier> Extended<'_, C> {
         Ok((count > 0).then_some(Cut::Table { ids, table: table as u8 }))
     }
 
-    /// Writes the element of a PARTIAL cell; returns the cell's tag, and its cut if that is PARTIAL.
+    /// Writes the element of a PARTIAL cell; returns the cell's tag, and its cut if the tag is PARTIAL.
     fn element(&self, e: usize, cell: Cell, part: &Part<C>, hand: &mut Hand<'_, C>) -> Result<Done, Error> {
         let mark = hand.worker.mark();
         let done = if hand.worker.likes_many() {
-            // Parts are left over where elements begin.
+            // Parts remain where the next elements begin.
             let levels = if e == 0 && starts_half_way(self.frame.depth()) { LEVELS - 1 } else { LEVELS };
             let last = (cell.level + levels).min(self.last);
             let told = Told { builder: self, families: self.asked(cell, part, last, hand)? };
@@ -531,8 +538,8 @@ impl<C: Classifier> Extended<'_, C> {
         done
     }
 
-    /// What becomes of all cells below one, to a last level, asked level by level: the children of cells that
-    /// are split.
+    /// Evaluates all cells below a cell level by level, down to a last level. Returns the fates of the
+    /// children of each split cell.
     fn asked(
         &self,
         cell: Cell,
@@ -547,7 +554,7 @@ impl<C: Classifier> Extended<'_, C> {
         while !front.is_empty() {
             let verdicts = split_each(self.classifier, &mut hand.worker, &front, threads, control)?;
             let mut all = memory::with_capacity(front.len())?;
-            // Children of which slabs are asked, and where they are.
+            // Children that need slabs, and their places.
             let (mut cells, mut places) = (Vec::new(), Vec::new());
             for ((cell, _), verdicts) in front.iter().zip(verdicts) {
                 let mut eight = OCTANTS.map(|_| Fate::Settled(Tag::Empty));
@@ -597,7 +604,7 @@ impl<C: Classifier> Extended<'_, C> {
         Ok(families)
     }
 
-    /// Elements of level `e`, one after the other as they are written.
+    /// Writes elements of level `e` in parallel, and appends them in order.
     fn elements_in_parallel(
         &self,
         e: usize,
@@ -638,7 +645,7 @@ impl<C: Classifier> Extended<'_, C> {
     }
 }
 
-/// Each cell is split when it is come to.
+/// A source that splits each cell when the walk reaches it.
 struct Directly<'a, 'b, C>(&'a Extended<'b, C>);
 
 impl<'j, C: Classifier> Source<'j> for Directly<'_, '_, C> {
@@ -668,7 +675,7 @@ impl<'j, C: Classifier> Source<'j> for Directly<'_, '_, C> {
         open: Vec<(Cell, Part<C>)>,
         hand: &mut Hand<'j, C>,
     ) -> Result<Vec<Done>, Error> {
-        // Threads begin near the root.
+        // Threads start near the root.
         if self.0.parallel && e < 3 && open.len() > 1 {
             return self.0.elements_in_parallel(e, &open, hand);
         }
@@ -680,7 +687,7 @@ impl<'j, C: Classifier> Source<'j> for Directly<'_, '_, C> {
     }
 }
 
-/// The children of cells that were asked about together.
+/// The children of cells that were evaluated together.
 struct Told<'a, 'b, C: Classifier> {
     builder: &'a Extended<'b, C>,
     families: Vec<Family<Asked<Part<C>>>>,

@@ -1,9 +1,9 @@
-//! The set algebra of stored trees of which one at least keeps surfaces.
+//! Set operations of stored trees of which at least one keeps surfaces.
 //!
-//! All operands are walked at once. A cell that all but one of them decide is copied from that one: whole
-//! subtrees as runs of their arrays, with their cuts. Where several operands end with functions of surfaces,
-//! these become one function, and the cell ends as soon as that takes no more than three surfaces. Elsewhere
-//! the cell is split.
+//! All operands are walked at once. Where only one operand leaves a cell undecided, the cell is copied from
+//! that operand: whole subtrees as runs of their arrays, with their cuts. Where several operands end with
+//! functions of surfaces, these become one function, and the cell ends as soon as the function needs no more
+//! than three surfaces. Otherwise the cell is split.
 
 use super::element::{Family, Fate, Output, Source, element};
 use super::function::{Done, Function, Known};
@@ -23,24 +23,24 @@ use alloc::boxed::Box;
 use alloc::vec::Vec;
 use core::ops::Range;
 
-/// What is meant of any number of trees.
+/// A set operation on any number of trees.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(in crate::op) enum Combination {
-    /// The points that lie in all of them; with `flip` all others.
+    /// The points that lie in all trees; with `flip`, the complement.
     All { flip: bool },
-    /// The points that lie in an odd number of them.
+    /// The points that lie in an odd number of the trees.
     Odd,
-    /// One solid, of which each of them knows something.
+    /// One solid, of which each tree knows a part.
     Known,
 }
 
 /// Entries of all operands from which threads pay.
 const WORTH_THREADS: u64 = 1 << 13;
 
-/// Operands up to which there are threads: each task remembers where it stands in all of them.
+/// The greatest number of operands with threads: each task stores its position in all of them.
 const MOST_IN_PARALLEL: usize = 1 << 12;
 
-/// Combines trees on one frame; of those with `true` the complement is meant.
+/// Combines trees on one frame. An operand with `true` stands for its complement.
 pub(in crate::op) fn combine(
     operands: &[(OctreeRef<'_>, bool)],
     combination: Combination,
@@ -49,7 +49,7 @@ pub(in crate::op) fn combine(
     combine_cells(operands, combination, None, control)
 }
 
-/// The same in the cells of a shard, if there is one.
+/// Combines trees on one frame in the cells of a shard, if there is one.
 pub(in crate::op) fn combine_cells(
     operands: &[(OctreeRef<'_>, bool)],
     combination: Combination,
@@ -75,7 +75,7 @@ pub(in crate::op) fn combine_cells(
     let last = shard.map_or(frame.depth(), |shard| shard.last(frame.depth()));
     let walk = Walk { frame, operands, combination, shard, last, surfaces };
     let exterior = walk.exterior()?;
-    // Without surfaces nothing needs be noted of cells that are PARTIAL.
+    // Without surfaces, PARTIAL cells need no records.
     let has_cuts = operands.iter().any(|(tree, _)| tree.cuts.is_some());
     control.run(entries > WORTH_THREADS, |parallel| {
         let parallel = parallel && operands.len() <= MOST_IN_PARALLEL;
@@ -89,7 +89,7 @@ pub(in crate::op) fn combine_cells(
             out: Output::new(writer, &frame)?,
         };
         let root = walk.root(&mut hand)?;
-        // Elsewhere progress is counted in the elements below the root's.
+        // In all other cases the progress is counted in the elements below the root's.
         if !matches!(root, Fate::Goes(Part::Open(..) | Part::Function(_))) {
             job.advance(WHOLE);
         }
@@ -116,30 +116,29 @@ pub(in crate::op) fn combine_cells(
     })
 }
 
-/// What an operand has in a cell in which it is not decided.
+/// The content of an operand in a cell that it does not decide.
 #[derive(Debug, Clone, Copy)]
 enum Side {
     /// Nothing is known.
     Unknown,
-    /// A function of surfaces, of the operand's complement if that is meant; whether it is that of a larger
-    /// cell.
+    /// A function of surfaces, complemented if the operand is; `is_wide` if it belongs to a larger cell.
     Function { ids: [u32; 3], table: u8, is_wide: bool },
-    /// The first of eight records.
+    /// The index of the first of eight records.
     Records(usize),
     /// An octant of an element.
     Octant { index: usize, octant: u8 },
-    /// All of an element.
+    /// A whole element.
     Element { parent: usize, index: usize },
 }
 
-/// What an operand has in a cell.
+/// The content of an operand in a cell.
 enum Met {
     Empty,
     Full,
     Open(Side),
 }
 
-/// A subtree that is copied.
+/// A subtree to be copied.
 #[derive(Debug, Clone, Copy)]
 struct Copied {
     of: u32,
@@ -148,7 +147,7 @@ struct Copied {
     flip: bool,
 }
 
-/// What two trees know together of one cell, PARTIAL being nothing.
+/// The joint tag of one cell from two trees, where PARTIAL means unknown.
 fn both(one: Tag, other: Tag) -> Result<Tag, Error> {
     match (one, other) {
         (Tag::Partial, known) | (known, Tag::Partial) => Ok(known),
@@ -158,23 +157,23 @@ fn both(one: Tag, other: Tag) -> Result<Tag, Error> {
 }
 
 fn contradiction() -> Error {
-    let problem = "are not of one solid: one says FULL where another one says EMPTY";
+    let problem = "do not describe one solid: one says FULL where another one says EMPTY";
     Error::Argument { name: "trees", problem }
 }
 
-/// What is known of a cell that is to be split.
+/// The content of a cell that is to be split.
 enum Part {
-    /// One operand is left, and the cell has an element there.
+    /// Only one operand matters, and the cell has an element there.
     Copy(Copied),
-    /// Operands that are not decided; whether the complement of what comes of them is meant.
+    /// The undecided operands, and whether their combination is complemented.
     Open(Vec<(u32, Side)>, bool),
     /// A function of surfaces.
     Function(Function),
 }
 
-/// What one thread needs, and what it has made.
+/// The state of one thread, and its output.
 struct Hand<'j> {
-    /// What of each operand has been passed.
+    /// The passed part of each operand.
     windows: Vec<Windows>,
     out: Output<'j>,
 }
@@ -189,15 +188,15 @@ struct Walk<'a> {
     frame: Frame,
     operands: &'a [(OctreeRef<'a>, bool)],
     combination: Combination,
-    /// The cells that are wanted, unless all are.
+    /// The wanted cells; `None` for all cells.
     shard: Option<Shard>,
-    /// The level at which cells are split no more.
+    /// The level below which cells are not split.
     last: u8,
     surfaces: JointSurfaces<'a>,
 }
 
 impl Walk<'_> {
-    /// Whether the complement of what comes of the operands is meant.
+    /// Returns whether the combination of the operands is complemented.
     fn flip(&self) -> bool {
         self.combination == Combination::All { flip: true }
     }
@@ -206,7 +205,7 @@ impl Walk<'_> {
         self.combination == Combination::Odd
     }
 
-    /// What is known outside of the universe.
+    /// The tag outside the universe.
     fn exterior(&self) -> Result<Tag, Error> {
         let all =
             self.operands.iter().map(|(tree, flip)| Planes::uniform(tree.exterior()).complement_if(*flip));
@@ -226,7 +225,7 @@ impl Walk<'_> {
         Ok(one.unwrap_or(Planes::uniform(Tag::Partial)).complement_if(self.flip()).tag(0))
     }
 
-    /// What the cells of the result prove.
+    /// The proof of the result's cells.
     fn proof(&self) -> Proof {
         let proof = |(tree, flip): &(OctreeRef<'_>, bool)| {
             if *flip { tree.proof().complement() } else { tree.proof() }
@@ -237,7 +236,7 @@ impl Walk<'_> {
         if self.flip() { one.complement() } else { one }
     }
 
-    /// The moments of the solid, if that is the same as before.
+    /// The moments of the solid, if the operation does not change the solid.
     fn moments(&self) -> Option<StoredMoments> {
         match self.combination {
             Combination::Known => self.operands.iter().find_map(|(tree, _)| tree.cuts?.moments).copied(),
@@ -245,7 +244,7 @@ impl Walk<'_> {
         }
     }
 
-    /// Whether nothing is wanted of a cell.
+    /// Returns whether a cell contains no wanted cell.
     fn is_without(&self, cell: Cell) -> bool {
         self.shard.is_some_and(|shard| shard.is_without(cell))
     }
@@ -260,7 +259,7 @@ impl Walk<'_> {
         if is_full { Met::Full } else { Met::Empty }
     }
 
-    /// What a record of an operand says.
+    /// Returns the content of a record of an operand.
     fn record(&self, of: u32, record: usize) -> Side {
         let (tree, flip) = self.operand(of);
         match tree.cuts.as_ref().map_or(CellCut::None, |cuts| cuts.at(record)) {
@@ -281,7 +280,7 @@ impl Walk<'_> {
         }
     }
 
-    /// What a record of an operand comes to where the others leave the cell to it.
+    /// Returns the cut of an operand's record in a cell that the other operands leave to it.
     fn taken(&self, of: u32, record: usize, flip: bool) -> Cut {
         match self.record(of, record) {
             Side::Function { ids, table, .. } => Cut::Table { ids, table: if flip { !table } else { table } },
@@ -292,7 +291,7 @@ impl Walk<'_> {
         }
     }
 
-    /// Refuses operands that decide a part of a cell otherwise than the whole cell is decided.
+    /// Refuses operands that contradict the decision for the whole cell in a part of it.
     fn agree(&self, cell: Cell, settled: Tag, open: &[(u32, Side)]) -> Result<(), Error> {
         let opposite = if settled == Tag::Full { Tag::Empty } else { Tag::Full };
         let first = cell.first_at(self.frame.depth()).at;
@@ -307,8 +306,8 @@ impl Walk<'_> {
         Ok(())
     }
 
-    /// What becomes of a cell of which these operands know something without deciding it, and all others know
-    /// nothing.
+    /// Returns the fate of a cell for [`Combination::Known`]. The operands in `open` know a part of the cell
+    /// without deciding it; all others know nothing.
     fn known(&self, cell: Cell, open: Vec<(u32, Side)>) -> Fate<Part> {
         let function = open.iter().find_map(|(_, side)| match *side {
             Side::Function { ids, table, .. } => Some(Cut::Table { ids, table }),
@@ -334,12 +333,13 @@ impl Walk<'_> {
         Fate::Goes(Part::Open(open, false))
     }
 
-    /// What becomes of a cell in which these operands are not decided, and all others do not matter.
+    /// Returns the fate of a cell that the operands in `open` do not decide, and in which all others do not
+    /// matter.
     fn fate(&self, cell: Cell, open: Vec<(u32, Side)>, flip: bool) -> Result<Fate<Part>, Error> {
         let is_last = cell.level == self.last;
         match *open {
             [] => {
-                // All hold, or none of an odd number.
+                // All operands are FULL for an intersection; the number is even for an XOR.
                 let is_full = self.is_odd() == flip;
                 return Ok(Fate::Settled(if is_full { Tag::Full } else { Tag::Empty }));
             }
@@ -374,7 +374,7 @@ impl Walk<'_> {
         Ok(if is_last { Fate::Ends(Cut::None) } else { Fate::Goes(Part::Open(open, flip)) })
     }
 
-    /// The function that operands come to which are functions; `None` if it takes more than six surfaces.
+    /// Combines the functions of the operands; `None` if the result needs more than six surfaces.
     fn function(&self, open: &[(u32, Side)], flip: bool) -> Option<Function> {
         let mut all: Option<Function> = None;
         for (_, side) in open {
@@ -389,7 +389,7 @@ impl Walk<'_> {
         all.map(|all| all.complement_if(flip))
     }
 
-    /// What an operand has in the children of a cell.
+    /// Returns the content of an operand in the children of a cell.
     fn below(
         &self,
         of: u32,
@@ -459,7 +459,7 @@ impl Walk<'_> {
         Ok(met)
     }
 
-    /// Copies neighbouring subtrees whose elements `run` of level `e` have been admitted.
+    /// Copies neighbouring subtrees, whose elements `run` of level `e` have been admitted.
     fn copy(&self, copied: &Copied, e: usize, run: Range<usize>, hand: &mut Hand<'_>) -> Result<(), Error> {
         let Copied { of, parent, flip, .. } = *copied;
         let (tree, _) = self.operand(of);
@@ -479,7 +479,7 @@ impl Walk<'_> {
     }
 }
 
-/// A walk, by several threads perhaps.
+/// A walk, possibly with several threads.
 struct Threads<'w, 'a> {
     walk: &'w Walk<'a>,
     parallel: bool,
@@ -511,7 +511,7 @@ impl Threads<'_, '_> {
         self.gathered(Cell::ROOT, met.into_iter(), self.walk.flip())
     }
 
-    /// What becomes of a cell in which the operands are these.
+    /// Returns the fate of a cell with these contents of the operands.
     fn gathered(
         &self,
         cell: Cell,
@@ -536,7 +536,7 @@ impl Threads<'_, '_> {
         self.walk.fate(cell, open, flip)
     }
 
-    /// The same of operands of which each knows something of one solid.
+    /// [`gathered`](Self::gathered) for operands that each know a part of one solid.
     fn gathered_known(&self, cell: Cell, met: impl Iterator<Item = (u32, Met)>) -> Result<Fate<Part>, Error> {
         let (mut open, mut settled) = (Vec::new(), Tag::Partial);
         if self.walk.is_without(cell) {
@@ -557,13 +557,13 @@ impl Threads<'_, '_> {
         Ok(Fate::Settled(settled))
     }
 
-    /// The element level of the element in which the children of a cell lie.
+    /// Returns the level of the element that contains the children of a cell.
     fn element_level(&self, cell: Cell) -> usize {
         let half = u8::from(starts_half_way(self.walk.frame.depth()));
         usize::from((cell.level + half) / 2)
     }
 
-    /// Elements of level `e` as independent tasks, whose outputs are put together in order.
+    /// Writes elements of level `e` as independent tasks, and appends their outputs in order.
     fn elements_in_parallel<'j>(
         &self,
         e: usize,
@@ -609,7 +609,8 @@ impl Threads<'_, '_> {
         Ok(all)
     }
 
-    /// The progress that each of so many elements of level `e` is; what does not divide evenly is reported.
+    /// Returns the progress of each of a number of elements of level `e`, and reports the remainder of the
+    /// division.
     fn share(&self, e: usize, elements: usize, out: &Output<'_>) -> usize {
         if e != 1 {
             return 0;
@@ -683,7 +684,7 @@ impl<'j> Source<'j> for Threads<'_, '_> {
         let mut done = memory::with_capacity(open.len())?;
         let (share, mut next) = (self.share(e, open.len(), &hand.out), 0);
         while let Some((cell, part)) = open.get(next) {
-            // Neighbours are copied together.
+            // Neighbouring subtrees are copied together.
             let mut run = 1;
             if let Part::Copy(first) = part {
                 let follows = |(run, (_, part)): &(usize, &(Cell, Part))| {

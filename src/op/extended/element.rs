@@ -1,4 +1,4 @@
-//! How cells that are asked about become elements, from the finest up.
+//! Building elements from cells, from the finest up.
 
 use super::function::{Done, Function, Known};
 use crate::error::Error;
@@ -11,14 +11,14 @@ use crate::octree::{Planes, Tag};
 use crate::solid::OCTANTS;
 use alloc::vec::Vec;
 
-/// What becomes of a cell.
+/// The result of examining a cell.
 #[derive(Clone)]
 pub(super) enum Fate<P> {
-    /// It is decided.
+    /// The cell is decided.
     Settled(Tag),
-    /// It is PARTIAL, and is not split.
+    /// The cell is PARTIAL, and is not split.
     Ends(Cut),
-    /// It is split.
+    /// The cell is split.
     Goes(P),
 }
 
@@ -38,10 +38,10 @@ impl<P> From<Done> for Fate<P> {
     }
 }
 
-/// The children of a cell.
+/// The fates of the eight children of a cell.
 pub(super) type Family<P> = [Fate<P>; 8];
 
-/// What a thread writes: elements, and their cuts.
+/// The output of a thread: elements, and their cuts.
 pub(super) struct Output<'j> {
     pub writer: Writer<'j>,
     pub cuts: CutWriter,
@@ -52,24 +52,24 @@ impl<'j> Output<'j> {
         Ok(Output { writer, cuts: CutWriter::new(element_levels(frame.depth()))? })
     }
 
-    /// An empty one for a part of the same tree.
+    /// Returns an empty output for a part of the same tree.
     pub(super) fn sibling(&self, frame: &Frame) -> Result<Output<'j>, Error> {
         Output::new(self.writer.sibling(), frame)
     }
 }
 
-/// Where the cells of a tree come from.
+/// The source of a tree's cells.
 pub(super) trait Source<'j> {
-    /// What is known of a cell that is to be split.
+    /// The content of a cell that is to be split.
     type Part;
-    /// What a thread needs.
+    /// The state of a thread.
     type Hand: AsMut<Output<'j>>;
 
     fn frame(&self) -> &Frame;
 
     fn surfaces(&self) -> &impl Known;
 
-    /// What becomes of the children of a cell.
+    /// Returns the fates of the children of a cell.
     fn children(
         &self,
         cell: Cell,
@@ -77,7 +77,7 @@ pub(super) trait Source<'j> {
         hand: &mut Self::Hand,
     ) -> Result<Family<Self::Part>, Error>;
 
-    /// Writes cells that elements of level `e` describe, one after the other.
+    /// Writes cells as elements of level `e`, one after the other.
     fn elements(
         &self,
         e: usize,
@@ -86,13 +86,13 @@ pub(super) trait Source<'j> {
     ) -> Result<Vec<Done>, Error>;
 }
 
-/// An octant of an element: one cell, or eight.
+/// An octant of an element: one cell, or eight cells.
 enum Octant<T> {
     One(Done),
     Eight([T; 8]),
 }
 
-/// Writes the element of level `e` of a cell that is split; returns the cell's tag, and its cut if that is
+/// Writes the element of level `e` of a split cell; returns the cell's tag, and its cut if the tag is
 /// PARTIAL.
 pub(super) fn element<'j, S: Source<'j>>(
     source: &S,
@@ -102,7 +102,7 @@ pub(super) fn element<'j, S: Source<'j>>(
     hand: &mut S::Hand,
 ) -> Result<Done, Error> {
     hand.as_mut().writer.job().check()?;
-    // Octants with the cells that they are.
+    // The octants, each with its cells.
     let mut octants = memory::with_capacity(8)?;
     if e == 0 && starts_half_way(source.frame().depth()) {
         octants.push((cell, Octant::Eight(source.children(cell, part, hand)?)));
@@ -118,7 +118,7 @@ pub(super) fn element<'j, S: Source<'j>>(
             ));
         }
     }
-    // What is done stays, what goes on is taken out.
+    // Finished cells stay here; cells that go on are moved to `open`.
     let mut open = Vec::new();
     let mut told = memory::with_capacity(octants.len())?;
     for (octant, cells) in octants {
@@ -164,7 +164,7 @@ pub(super) fn element<'j, S: Source<'j>>(
     put(e, cells, hand.as_mut())
 }
 
-/// A cell whose eight children are one function of up to three surfaces.
+/// Joins a cell whose eight children are one function of up to three surfaces.
 fn joined<'d, 'j>(
     cell: Cell,
     children: impl Iterator<Item = &'d Done> + Clone,
@@ -202,7 +202,7 @@ fn put(e: usize, octants: Vec<Octant<Done>>, out: &mut Output<'_>) -> Result<Don
             out.writer.job().spend(0, size_of::<[Cut; 8]>())?;
             let mut own = octants.into_iter().map(|octant| match octant {
                 Octant::One((_, cut)) => cut,
-                // (The root of an odd depth is its only octant.)
+                // (At an odd depth, the root element has only one octant.)
                 Octant::Eight(eight) => Cut::of_children(eight.map(|(_, cut)| cut)),
             });
             let children: [Option<Cut>; 8] = core::array::from_fn(|_| own.next());
@@ -218,7 +218,7 @@ fn put(e: usize, octants: Vec<Octant<Done>>, out: &mut Output<'_>) -> Result<Don
     }
 }
 
-/// Eight cells, or the one that they are.
+/// Merges eight cells into one if they agree.
 fn merged(cells: [Done; 8]) -> Octant<Done> {
     let [(tag, _), ..] = cells;
     if tag == Tag::Branch || cells.iter().any(|(other, _)| *other != tag) {

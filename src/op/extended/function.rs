@@ -1,4 +1,4 @@
-//! Functions of few surfaces.
+//! Functions of up to six surfaces.
 
 use crate::error::Error;
 use crate::lattice::Cell;
@@ -12,22 +12,22 @@ use crate::solid::half_space::possible::possible;
 use crate::solid::half_space::table::{MOST, Table};
 use core::cmp::Ordering;
 
-/// Most surfaces that a cell keeps.
+/// The greatest number of surfaces that a cell keeps.
 pub(super) const MOST_KEPT: usize = 3;
 
-/// The surfaces of a tree that is being made, by the numbers that they have so far.
+/// The surfaces of a tree under construction, by their preliminary numbers.
 pub(super) trait Known {
-    /// The surface on the universe.
+    /// Returns the surface on the universe.
     fn placed(&self, id: u32) -> Result<&Placed, Error>;
 
-    /// Compares surfaces, whatever their numbers.
+    /// Compares surfaces independently of their numbers.
     fn order(&self, a: u32, b: u32) -> Ordering;
 
-    /// Whether cells may become one that have it in common.
+    /// Returns whether cells that share this surface may be joined.
     fn joins(&self, id: u32) -> bool;
 }
 
-/// A cell that is done: its tag, and its cut if that is PARTIAL.
+/// A finished cell: its tag, and its cut if the tag is PARTIAL.
 pub(super) type Done = (Tag, Cut);
 
 /// A function of the signs of up to six surfaces.
@@ -43,15 +43,15 @@ impl Function {
         Function { ids: [0; MOST], count: 0, table: if inside { Table::FULL } else { Table::EMPTY } }
     }
 
-    /// The function of a record, whose table tells how many of the surfaces count.
+    /// The function of a record. Its table gives the number of surfaces that count.
     pub(super) fn of_record(ids: [u32; MOST_KEPT], table: u8) -> Function {
         let (mut own, count) = (Function::constant(false), Head(table).surfaces());
         own.ids[..count].copy_from_slice(&ids[..count]);
         Function { count, table: Table::widened(table), ..own }
     }
 
-    /// A function of surfaces with these numbers, some of which may be the same: `table` is that of six that
-    /// differ.
+    /// A function of surfaces with these numbers, some of which may be equal; `table` treats all six as
+    /// distinct.
     pub(super) fn of_numbers(ids: &[u32], table: Table) -> Function {
         let (mut own, mut places) = (Function::constant(false), [0; MOST]);
         for (place, &id) in places.iter_mut().zip(ids) {
@@ -72,7 +72,7 @@ impl Function {
         Function { table: if flip { Table(!self.table.0) } else { self.table }, ..self }
     }
 
-    /// A function of this one's value and that of another; `None` if they have more than six surfaces.
+    /// Combines the values of this function and another one; `None` if they have more than six surfaces.
     pub(super) fn with(&self, other: &Function, combine: impl Fn(u64, u64) -> u64) -> Option<Function> {
         let mut all = *self;
         let mut places = [0; MOST];
@@ -90,7 +90,7 @@ impl Function {
         Some(all)
     }
 
-    /// The same function, whose surfaces are in their order.
+    /// The same function, with its surfaces in their order.
     fn ordered(&self, surfaces: &impl Known) -> Function {
         if self.ids().windows(2).all(|pair| surfaces.order(pair[0], pair[1]).is_lt()) {
             return *self;
@@ -100,7 +100,7 @@ impl Function {
         self.chosen(&order[..self.count])
     }
 
-    /// The function of some of the surfaces, on which alone it depends, in another order.
+    /// The function with only these surfaces, in this order. It must not depend on others.
     fn chosen(&self, order: &[usize]) -> Function {
         let mut own = Function { count: order.len(), ..Function::constant(false) };
         let mut places = [0; MOST];
@@ -111,15 +111,15 @@ impl Function {
         Function { table: self.table.spread(&places[..self.count]), ..own }
     }
 
-    /// The function on the combinations that are possible in a cell, of as few surfaces as that takes, in
-    /// their order.
+    /// The function restricted to the combinations that are possible in a cell. It has as few surfaces as
+    /// possible, in their order.
     pub(super) fn simplified(&self, cell: Cell, surfaces: &impl Known) -> Result<Function, Error> {
         let own = self.ordered(surfaces);
         let possible = own.possible(cell, surfaces)?;
         Ok(own.reduced(possible))
     }
 
-    /// The same function, of as few surfaces as its table takes, in their order.
+    /// The same function with as few surfaces as its table allows, in their order.
     pub(super) fn canonical(&self, surfaces: &impl Known) -> Function {
         self.ordered(surfaces).reduced(Table::FULL)
     }
@@ -138,7 +138,7 @@ impl Function {
         own.chosen(&needed[..count])
     }
 
-    /// What a cell is that has this function, if that can be kept.
+    /// The finished cell of this function; `None` if the function has too many surfaces to be kept.
     pub(super) fn end(&self) -> Option<Done> {
         let mut ids = [0; MOST_KEPT];
         match self.count {
@@ -151,7 +151,7 @@ impl Function {
         }
     }
 
-    /// The function in each child of a cell, by the surfaces whose sign is known there.
+    /// The function in each child of a cell, simplified by the surfaces whose sign is known there.
     pub(super) fn below(&self, cell: Cell, surfaces: &impl Known) -> Result<[Function; 8], Error> {
         let at = Octants::of(cell);
         let mut children = [*self; 8];
@@ -164,8 +164,9 @@ impl Function {
         Ok(children.map(|child| child.reduced(Table::FULL)))
     }
 
-    /// The function of a cell whose eight children are done, if one of up to three surfaces has the value of
-    /// each child for all combinations of signs that are possible there.
+    /// Returns the joint function of a cell with eight finished children. It has up to three surfaces, and
+    /// the value of each child for all combinations of signs that are possible there. `None` if there is no
+    /// such function.
     pub(super) fn joined<'d>(
         cell: Cell,
         children: impl Iterator<Item = &'d Done> + Clone,
@@ -191,8 +192,8 @@ impl Function {
             return Ok(None);
         }
         let all = all.ordered(surfaces);
-        // What is possible in a child: bounds of pairs tell more than signs, and exact signs tell what bounds
-        // do not.
+        // The combinations that are possible in a child: bounds of pairs exclude some that signs allow, and
+        // exact signs exclude some that bounds allow.
         let at = Octants::of(cell);
         let mut sides = [Sides { inside: 0, outside: 0 }; MOST_KEPT];
         for (sides, &id) in sides.iter_mut().zip(all.ids()) {

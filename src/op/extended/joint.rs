@@ -15,26 +15,26 @@ use core::ops::Range;
 use hashbrown::HashMap;
 use once_cell::race::OnceBox;
 
-/// Where a surface is stored: in the table of which tree, and its number there.
+/// The place of a surface: the table of a tree, and the number in that table.
 type Place = (u32, u32);
 
-/// The surfaces of several trees, numbered through. What is asked of few of them is found out when it is
-/// asked for, because an operation on a large tree touches few of its surfaces.
+/// The surfaces of several trees with common numbers. Placed forms are computed when they are first needed,
+/// because an operation on a large tree touches few of its surfaces.
 pub(super) struct JointSurfaces<'a> {
     frame: Frame,
     tables: Vec<SurfacesRef<'a>>,
     places: Vec<Place>,
-    /// In which of the tables each was met last: what a table has twice stays two, because functions are of
-    /// surfaces that differ.
+    /// The table in which each surface was last found. Two equal surfaces in one table stay two, because
+    /// functions are of distinct surfaces.
     last: Vec<u32>,
     placed: Vec<OnceBox<Placed>>,
-    /// What the surfaces of each table are called.
+    /// The common name of each surface of each table.
     names: Vec<(u32, bool)>,
     ranges: Vec<Range<usize>>,
 }
 
 impl<'a> JointSurfaces<'a> {
-    /// O(surfaces).
+    /// Collects the surfaces of the tables. O(surfaces).
     ///
     /// # Errors
     /// [`Damage::Surface`]; [`Error::Limit`] if the exact map of placements is too long;
@@ -50,7 +50,7 @@ impl<'a> JointSurfaces<'a> {
             ranges: Vec::new(),
         };
         let mut known: HashMap<u64, u32> = HashMap::new();
-        // (Trees that share their table share surfaces that are like no others.)
+        // (Trees with a common table share its surfaces, even surfaces that cannot be compared.)
         let mut met: HashMap<[(usize, usize); 2], Range<usize>> = HashMap::new();
         for number in 0..own.tables.len() {
             let table = own.tables[number];
@@ -80,7 +80,7 @@ impl<'a> JointSurfaces<'a> {
         Ok(own)
     }
 
-    /// What a surface is called, and whether it is negated there.
+    /// Returns the common number of a surface, and whether the surface is negated there.
     fn name(&mut self, place: Place, known: &mut HashMap<u64, u32>) -> Result<(u32, bool), Error> {
         let next = self.places.len() as u32;
         let residue = residue(&self.tables[place.0 as usize], place.1 as usize);
@@ -95,8 +95,8 @@ impl<'a> JointSurfaces<'a> {
                     _ => self.read(before)?.same(&self.read(place)?)?,
                 };
                 if let Some(turned) = turned {
-                    // Of records that tell of one surface the smaller is kept, as long as nobody has seen the
-                    // other.
+                    // If two records describe one surface, the smaller record is kept, unless one is the
+                    // negation of the other.
                     if order.is_gt() && !turned {
                         self.places[id as usize] = place;
                     }
@@ -119,19 +119,19 @@ impl<'a> JointSurfaces<'a> {
         self.tables[a.0 as usize].order(a.1 as usize, &self.tables[b.0 as usize], b.1 as usize)
     }
 
-    /// What the surfaces of a table are called.
+    /// The common names of the surfaces of a table.
     pub(super) fn names(&self, table: usize) -> Names<'_> {
         &self.names[self.ranges[table].clone()]
     }
 
-    /// Of a slab of a cell its origin, or two zeros.
+    /// Returns the origin of a slab of a cell, or two zeros; `None` for other surfaces.
     pub(super) fn group(&self, id: u32) -> Option<Origin> {
         let (table, id) = self.places[id as usize];
         let (_, group) = self.tables[table as usize].group(id as usize)?;
         Some(group.origin)
     }
 
-    /// A table of the surfaces with these numbers.
+    /// Writes a table of the surfaces with these numbers.
     pub(super) fn written(&self, used: &[u32]) -> Result<Surfaces, Error> {
         let mut all = SurfaceWriter::new(Universe::of(&self.frame));
         let mut maps = Vec::new();
@@ -161,7 +161,7 @@ impl Known for JointSurfaces<'_> {
     }
 
     fn order(&self, a: u32, b: u32) -> Ordering {
-        // (Slabs without an origin may be alike.)
+        // (Slabs without an origin may be equal.)
         self.order_of(self.places[a as usize], self.places[b as usize]).then(a.cmp(&b))
     }
 

@@ -1,9 +1,9 @@
 //! Octrees whose PARTIAL cells keep the surfaces that cross them.
 //!
-//! - `build`: from any solid.
-//! - `combine`: the set algebra of stored trees, where one of them keeps surfaces.
-//! - `element`: how cells become elements, from the finest up; both do it in the same way.
-//! - `function`: the functions of few surfaces that cells end with.
+//! - `build`: building from any solid.
+//! - `combine`: set operations of stored trees, where one of them keeps surfaces.
+//! - `element`: building elements from cells, from the finest up; shared by `build` and `combine`.
+//! - `function`: the functions of few surfaces with which cells end.
 //! - `joint`: the surfaces of several trees, each once.
 
 mod build;

@@ -1,4 +1,4 @@
-//! Octrees that are split where and when somebody asks.
+//! Octrees that are split on demand.
 
 mod nodes;
 
@@ -17,19 +17,20 @@ use alloc::string::ToString;
 use alloc::vec::Vec;
 use nodes::{Children, Nodes, Place};
 
-/// Key of the fact that holds the fingerprint of what a tree was made from.
+/// The metadata key of the source's fingerprint.
 const SOURCE: &str = "source";
 
-/// An octree of a solid that is not built in one go: a cell is split when an application asks for it, and
-/// what was split is remembered. (Split on demand: Dai, Zha and Ni 1994, who count its work in splits.)
+/// An octree that is built on demand: a cell is split when an application asks for it, and the octree
+/// remembers all splits. (Split on demand: Dai, Zha and Ni 1994, who measure work in splits.)
 ///
-/// All that is known is certified: FULL and EMPTY cells are proven, and cells that nobody has split yet are
+/// All answers are certified: FULL and EMPTY cells are proven, and cells that have not been split yet are
 /// PARTIAL. Splitting a cell twice costs nothing. Eight children that turn out EMPTY, or FULL, are merged,
-/// and their memory is used again.
+/// and their memory is reused.
 ///
-/// The parts of cells are not kept: to split a cell, its ancestors are split anew, but for those that are
-/// also ancestors of the cell that was split last. So memory is 8 to 64 bytes a split, and the work beyond
-/// the splits that were asked for, which is counted apart, is small where these follow each other in space.
+/// The octree does not keep the parts of cells. To split a cell, it splits the cell's ancestors anew, except
+/// those that are also ancestors of the cell that was split last. So memory is 8 to 64 bytes per split. The
+/// additional splits are counted separately ([`replays`](Self::replays)); they are few if requests follow
+/// each other in space.
 ///
 /// ```
 /// use leafless::{Cell, Control, Csg, Frame, LazyOctree, Membership, Tag, op::{Refinement, Zone}};
@@ -55,17 +56,17 @@ pub struct LazyOctree<S: Solid> {
     classifier: S::Classifier,
     nodes: Nodes,
     trail: Trail<WorkerOf<S>>,
-    /// Cells of each level that were split.
+    /// Number of split cells on each level.
     splits: [u64; MAX_DEPTH as usize],
 }
 
-/// How a refinement by [`LazyOctree::refine`] ended.
+/// The way in which a refinement by [`LazyOctree::refine`] ended.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
 pub enum Refinement {
-    /// Every cell of the zone is decided, as fine as was asked for, or one that splitting does not help.
+    /// Every cell of the zone is decided, or as fine as requested, or splitting does not help it.
     Done,
-    /// A limit was reached first. A resumed octree may say so although all that is left are cells that
-    /// splitting does not help: it forgot which those are.
+    /// A limit was reached first. A resumed octree may return this value although splitting does not help any
+    /// of the remaining cells, because it does not store which cells these are.
     Spent,
 }
 
@@ -73,17 +74,17 @@ pub enum Refinement {
 struct Run<'c> {
     job: Job<'c>,
     reach: Reach,
-    /// What octants are changed by to come in their order.
+    /// The XOR mask that puts octants into visiting order.
     order: u8,
     /// Cells above this level are split.
     level: u8,
-    /// Splits that may still be made.
+    /// The number of splits that may still be made.
     left: u64,
     reports: bool,
 }
 
 impl Run<'_> {
-    /// Whether a limit forbids a further split.
+    /// Returns whether a limit forbids a further split.
     fn is_spent(&self, nodes: &Nodes) -> bool {
         self.left == 0
             || self.job.control().max_nodes.is_some_and(|most| nodes.count_nodes() >= most)
@@ -92,7 +93,7 @@ impl Run<'_> {
 
     /// Reports a cell of `level` as done.
     fn advance(&self, level: u8) {
-        // Of finer cells the ancestor is reported.
+        // For finer cells, their ancestor is reported.
         if self.reports && level <= 2 {
             self.job.advance(WHOLE >> (3 * level));
         }
@@ -100,11 +101,11 @@ impl Run<'_> {
 }
 
 impl<S: Solid> LazyOctree<S> {
-    /// An octree of which only the universe is known. No cell will ever be finer than the frame's depth,
-    /// which costs nothing until they are asked for.
+    /// Creates an octree of which only the universe is known. No cell will be finer than the frame's depth. A
+    /// deep frame costs nothing until its cells are requested.
     ///
     /// # Errors
-    /// If the solid cannot be had in this frame, or memory runs out.
+    /// The errors of putting the solid on this frame, and [`Error::OutOfMemory`].
     pub fn new(solid: S, frame: &Frame) -> Result<LazyOctree<S>, Error> {
         let classifier = solid.on(frame, &Control::default())?;
         let trail = Trail::new(classifier.worker()?)?;
@@ -112,19 +113,19 @@ impl<S: Solid> LazyOctree<S> {
         Ok(LazyOctree { solid, classifier, nodes, trail, splits: [0; MAX_DEPTH as usize] })
     }
 
-    /// Takes up an octree that [`freeze`](Self::freeze) made of the same solid. `frame` may be deeper than
-    /// the octree's. O(n); the limits of `control` concern the octree's nodes and the bytes that they take
-    /// here. Splits are counted from zero.
+    /// Resumes an octree that [`freeze`](Self::freeze) made from the same solid. `frame` may be deeper than
+    /// the octree's. O(n). The limits of `control` apply to the octree's nodes and to the bytes that they
+    /// take in memory. Splits are counted from zero.
     ///
-    /// That the solid is the same one is known by its fingerprint. Whatever else the octree holds is
-    /// believed, as far as the solid's splits, when they are replayed, do not contradict it.
+    /// The fingerprint proves that the solid is the same. All other contents of the octree are trusted,
+    /// unless the solid's splits contradict them when they are replayed.
     ///
     /// # Errors
-    /// [`Error::SourceMismatch`] if the octree does not hold the solid's fingerprint, or the universe is
-    /// something else to the solid; [`Error::Argument`] if the solid has no fingerprint, or the octree is
-    /// deeper than the frame; [`Error::FrameMismatch`] if it lies on another universe; [`Error::Damaged`] if
-    /// it was mapped unverified and its links are damaged; what the solid refuses; and what `control` asks
-    /// for.
+    /// [`Error::SourceMismatch`] if the octree does not hold the solid's fingerprint, or the solid has
+    /// another verdict on the universe; [`Error::Argument`] if the solid has no fingerprint, or the octree is
+    /// deeper than the frame; [`Error::FrameMismatch`] if the octree lies on another universe;
+    /// [`Error::Damaged`] if it was mapped unverified and its links are damaged; the errors of the solid; and
+    /// cancellation or an exceeded limit of `control`.
     pub fn resume(
         octree: &Octree,
         solid: S,
@@ -134,7 +135,7 @@ impl<S: Solid> LazyOctree<S> {
         let Some(fingerprint) = solid.fingerprint() else {
             return Err(Error::Argument {
                 name: "solid",
-                problem: "has no fingerprint to know it by; new begins without",
+                problem: "has no fingerprint, which resuming needs; LazyOctree::new needs none",
             });
         };
         if octree.metadata().get(SOURCE) != Some(&fingerprint.to_string()) {
@@ -156,7 +157,7 @@ impl<S: Solid> LazyOctree<S> {
         if !agree(resumed.trail.root(), stored.tag(Cell::ROOT)) {
             return Err(Error::SourceMismatch);
         }
-        // That the stored octree knows no more of a cell does not mean that the solid does not.
+        // Even if the stored octree cannot split a cell, the solid may be able to.
         stored.nodes.forget_hopeless();
         stored.nodes.exterior = resumed.nodes.exterior;
         stored.nodes.proof = stored.nodes.proof.and(resumed.nodes.proof);
@@ -164,23 +165,23 @@ impl<S: Solid> LazyOctree<S> {
         Ok(resumed)
     }
 
-    /// What the octree is of.
+    /// The solid of the octree.
     pub fn solid(&self) -> &S {
         &self.solid
     }
 
-    /// Where it lies, and how fine its cells may become.
+    /// The frame: the place of the octree, and the depth that limits its cells.
     pub fn frame(&self) -> &Frame {
         self.nodes.frame()
     }
 
-    /// Whether `cell` is an octant of the universe.
+    /// Returns whether `cell` is an octant of the universe.
     fn has(&self, cell: Cell) -> bool {
         cell.level <= self.frame().depth() && cell.at.iter().all(|&a| a < 1 << cell.level)
     }
 
-    /// What is known of a cell: BRANCH if it was split and its children differ. In a cell that is decided, or
-    /// was not split yet, there are only cells like it. PARTIAL of a cell that is none of the frame's.
+    /// Returns the tag of a cell: BRANCH if the cell was split and its children differ. A cell in a decided
+    /// or unsplit cell has the tag of that cell. A cell that does not belong to the frame is PARTIAL.
     /// O(level).
     pub fn tag(&self, cell: Cell) -> Tag {
         if !self.has(cell) {
@@ -190,9 +191,9 @@ impl<S: Solid> LazyOctree<S> {
         self.nodes.tag(way[level as usize])
     }
 
-    /// Whether [`split`](Self::split) would ask the solid about this cell: it is PARTIAL, its parent was
-    /// split, it is above the frame's depth, and the solid did not say that splitting does not help.
-    /// O(level).
+    /// Returns whether [`split`](Self::split) would evaluate the solid for this cell: the cell is PARTIAL,
+    /// its parent was split, it is above the frame's depth, and the solid has not reported that splitting
+    /// does not help. O(level).
     pub fn can_split(&self, cell: Cell) -> bool {
         if !self.has(cell) || cell.level == self.frame().depth() {
             return false;
@@ -202,13 +203,13 @@ impl<S: Solid> LazyOctree<S> {
         level == cell.level && self.nodes.tag(place) == Tag::Partial && !self.nodes.is_hopeless(place)
     }
 
-    /// Splits a PARTIAL cell: the tags of its children in octant order. A cell that was split before, is
-    /// decided, or that splitting does not help costs nothing, and the answer is what is known.
+    /// Splits a PARTIAL cell and returns the tags of its children in octant order. If the cell is already
+    /// split or decided, or if splitting does not help it, the call costs nothing and returns the known tags.
     ///
     /// # Errors
-    /// [`Error::Argument`] if the cell is none of the frame's, lies at its depth, or in a cell that is still
-    /// to be split; [`Error::SourceMismatch`] if the solid contradicts what the octree holds; what the solid
-    /// refuses; [`Error::OutOfMemory`]. The octree stays as it was.
+    /// [`Error::Argument`] if the cell does not belong to the frame, lies at the frame's depth, or in a cell
+    /// that has not been split yet; [`Error::SourceMismatch`] if the solid contradicts the octree; the errors
+    /// of the solid; [`Error::OutOfMemory`]. After an error the octree is unchanged.
     pub fn split(&mut self, cell: Cell) -> Result<[Tag; 8], Error> {
         let refuse = |problem| Err(Error::Argument { name: "cell", problem });
         if !self.has(cell) {
@@ -235,15 +236,16 @@ impl<S: Solid> LazyOctree<S> {
         })
     }
 
-    /// Splits the cells of a zone down to `level` (0 to the frame's depth), those that can be. One thread
-    /// does it; of a host program's shape all threads that `control` allows, level by level, unless nodes or
-    /// bytes are limited. Where `control` has a limit (`max_splits`, `max_nodes` and `max_bytes` of all that
-    /// the octree then holds), that ends the work, not the octree, and coarser cells are split before finer
-    /// ones; those of a ray as it meets them.
+    /// Splits the cells of a zone down to `level` (0 to the frame's depth), where splitting is possible. One
+    /// thread does the work. A shape of a host program is split by all threads that `control` allows, level
+    /// by level, unless nodes or bytes are limited. A limit of `control` (`max_splits`, or `max_nodes` and
+    /// `max_bytes` of everything that the octree then holds) ends the work, not the octree. Coarser cells are
+    /// split before finer ones; the cells along a ray are split in the order in which the ray meets them.
     ///
     /// # Errors
-    /// [`Error::Argument`] if the zone's numbers are not as they must be, or `level` is beyond the frame's
-    /// depth; [`Error::Cancelled`]; and as [`split`](Self::split). What was split before stays so.
+    /// [`Error::Argument`] if the zone's numbers are invalid, or `level` is beyond the frame's depth;
+    /// [`Error::Cancelled`]; and as [`split`](Self::split). Cells that were split before the error stay
+    /// split.
     pub fn refine(&mut self, zone: &Zone, level: u8, control: &Control<'_>) -> Result<Refinement, Error> {
         let frame = *self.frame();
         if level > frame.depth() {
@@ -261,7 +263,7 @@ impl<S: Solid> LazyOctree<S> {
         let mut run = Run { job: Job::new(control), reach, order, level, left, reports: true };
         let unlimited = control.max_nodes.is_none() && control.max_bytes.is_none();
         if unlimited && (direction.is_none() || control.max_splits.is_none()) && self.trail.likes_many() {
-            // All that is open on a level at once; what the walk below then finds is to be merged.
+            // Splits all open cells of a level at once; the walk below then merges the results.
             let done = control.run(true, |parallel| {
                 let threads = if parallel { parallel::threads() } else { 1 };
                 for above in 0..level {
@@ -290,8 +292,7 @@ impl<S: Solid> LazyOctree<S> {
         self.visit(&mut run, Cell::ROOT, Nodes::ROOT)
     }
 
-    /// Splits all cells of a level that are open in the zone, as many as may be, by as many threads as may
-    /// be.
+    /// Splits all cells of a level that are open in the zone, up to the limit, with up to `threads` threads.
     fn split_level(&mut self, run: &mut Run<'_>, level: u8, threads: usize) -> Result<Refinement, Error> {
         run.job.check()?;
         let mut open = Vec::new();
@@ -314,7 +315,7 @@ impl<S: Solid> LazyOctree<S> {
         let ask = |worker: &mut WorkerOf<S>, cells: &[(Cell, PartOf<S>)], verdicts: &mut Vec<_>| {
             worker.split_many(cells, control, verdicts)
         };
-        // Of what was asked before an error nothing is lost.
+        // Answers that arrived before an error are kept.
         let asked_all = walk::each_known(classifier, worker, &cells, threads, ask, |i, verdicts| {
             nodes.open(places[i], level, Children::new(&verdicts))?;
             splits[level as usize] += 1;
@@ -327,7 +328,7 @@ impl<S: Solid> LazyOctree<S> {
         Ok(done)
     }
 
-    /// Merges what agrees. The recursion is as deep as the octree.
+    /// Merges children that agree. The recursion is as deep as the octree.
     fn merge_below(&mut self, place: Place, level: u8) {
         if self.nodes.tag(place) == Tag::Branch {
             for octant in 0..8 {
@@ -364,7 +365,7 @@ impl<S: Solid> LazyOctree<S> {
         Ok(())
     }
 
-    /// Refines a cell. The recursion is as deep as the octree, twenty levels at the most.
+    /// Refines a cell. The recursion is as deep as the octree, at most twenty levels.
     fn visit(&mut self, run: &mut Run<'_>, cell: Cell, place: Place) -> Result<Refinement, Error> {
         if self.nodes.tag(place) == Tag::Partial && cell.level < run.level && !self.nodes.is_hopeless(place) {
             if run.is_spent(&self.nodes) {
@@ -399,8 +400,8 @@ impl<S: Solid> LazyOctree<S> {
         Ok(Refinement::Done)
     }
 
-    /// Splits a PARTIAL cell of which it is not known that this does not help: the tags of its children, or
-    /// `None` if it does not.
+    /// Splits a PARTIAL cell that is not marked as hopeless. Returns the tags of its children, or `None` if
+    /// splitting does not help.
     fn split_at(
         &mut self,
         cell: Cell,
@@ -412,7 +413,7 @@ impl<S: Solid> LazyOctree<S> {
         self.check(cell, at_hand)?;
         led?;
         let Some(verdicts) = self.trail.verdicts(cell.level) else {
-            // The octree is a resumed one, which forgot it.
+            // The octree is a resumed one, which did not store this fact.
             self.nodes.give_up(place);
             return Ok(None);
         };
@@ -422,8 +423,7 @@ impl<S: Solid> LazyOctree<S> {
         Ok(Some(children.tags()))
     }
 
-    /// Compares the splits of the ancestors of `cell` from `level` on, which were replayed, with what the
-    /// octree holds.
+    /// Compares the replayed splits of the ancestors of `cell`, from `level` on, with the octree.
     fn check(&mut self, cell: Cell, level: u8) -> Result<(), Error> {
         if level >= cell.level {
             return Ok(());
@@ -441,36 +441,38 @@ impl<S: Solid> LazyOctree<S> {
     }
 
     /// Nodes, cells and certified volumes level by level, without freezing. The volumes are those of the
-    /// frozen octree; but a cell counts as a node here also if its eight children are PARTIAL. O(depth).
+    /// frozen octree; but here a cell also counts as a node if its eight children are PARTIAL. O(depth).
     pub fn statistics(&self) -> Statistics {
         self.nodes.statistics()
     }
 
-    /// Cells that were split, as it happened: also those that were merged again. Nothing is counted twice.
+    /// The number of cells that were split, including cells that were merged again. Each cell is counted
+    /// once.
     pub fn splits(&self) -> u64 {
         self.splits.iter().sum()
     }
 
-    /// Cells of `level` that were split, as it happened.
+    /// The number of cells of `level` that were split, including cells that were merged again.
     pub fn splits_at(&self, level: u8) -> u64 {
         self.splits.get(level as usize).copied().unwrap_or(0)
     }
 
-    /// Splits that the solid was asked for anew, to have the parts of cells again.
+    /// The number of splits that were repeated to recompute the parts of cells.
     pub fn replays(&self) -> u64 {
         self.trail.splits().saturating_sub(self.splits())
     }
 
-    /// Bytes that the split cells take.
+    /// The memory of the split cells in bytes.
     pub fn bytes(&self) -> u64 {
         self.nodes.bytes()
     }
 
-    /// The octree as it is now: canonical, and what is not split is PARTIAL. As a fact under `source` it
-    /// holds the solid's fingerprint, if there is one: saved or not, it can be [resumed](Self::resume). O(n).
+    /// Returns the octree in its present state: canonical, with unsplit cells PARTIAL. Its fact `source`
+    /// holds the solid's fingerprint, if the solid has one. The octree can be [resumed](Self::resume),
+    /// whether it was saved or not. O(n).
     ///
     /// # Errors
-    /// What `control` asks for; [`Error::OutOfMemory`].
+    /// Cancellation or an exceeded limit of `control`; [`Error::OutOfMemory`].
     pub fn freeze(&self, control: &Control<'_>) -> Result<Octree, Error> {
         let octree = build_on(&&self.nodes, Rule::Certified, control)?;
         let Some(fingerprint) = self.solid.fingerprint() else { return Ok(octree) };
@@ -480,8 +482,8 @@ impl<S: Solid> LazyOctree<S> {
     }
 }
 
-/// Whether a cell can have this tag in an octree of the solid whose verdict this is: in what can be split,
-/// anything may have come out.
+/// Returns whether a cell can have this tag in an octree of a solid with this verdict. A cell that can be
+/// split may have any tag.
 fn agree<P>(verdict: &Verdict<P>, tag: Tag) -> bool {
     matches!(verdict, Verdict::Partial(_)) || verdict.tag() == tag
 }

@@ -1,4 +1,4 @@
-//! What a lazy octree remembers of its cells.
+//! The nodes of a lazy octree.
 
 use crate::control::Control;
 use crate::error::Error;
@@ -10,7 +10,7 @@ use crate::solid::{
 };
 use alloc::vec::Vec;
 
-/// What is known of the eight children of a cell.
+/// The known tags of the eight children of a cell.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Children {
     node: Node,
@@ -19,7 +19,7 @@ pub(super) struct Children {
 }
 
 impl Children {
-    /// As a solid says of cells that nobody has split.
+    /// The children with the verdicts of a solid, none of them split yet.
     pub(super) fn new<P>(verdicts: &[Verdict<P>; 8]) -> Children {
         let mut children = Children { node: Node { lower: 0, upper: 0 }, hopeless: 0 };
         for (octant, verdict) in (0..8).zip(verdicts) {
@@ -39,7 +39,7 @@ impl Children {
         self.hopeless >> octant & 1 != 0
     }
 
-    /// The one tag that the eight have, if there is nothing more to find out about any of them.
+    /// The common tag of all eight children, if nothing more can be found out about any of them.
     fn merged(&self) -> Option<Tag> {
         match (self.node.lower, self.node.upper, self.hopeless) {
             (0, 0, _) => Some(Tag::Empty),
@@ -53,7 +53,7 @@ impl Children {
         self.node.lower & !self.node.upper != 0
     }
 
-    /// How many are FULL, and how many PARTIAL.
+    /// The numbers of FULL and of PARTIAL children.
     fn counts(&self) -> (u64, u64) {
         let Node { lower, upper } = self.node;
         ((lower & upper).count_ones().into(), (!lower & upper).count_ones().into())
@@ -69,7 +69,7 @@ impl Children {
 #[derive(Debug, Clone, Copy)]
 struct Split {
     children: Children,
-    /// Block in which the children that are split are described, if there is one.
+    /// Block that describes the split children, or `NONE`.
     block: u32,
 }
 
@@ -81,7 +81,7 @@ impl Split {
         Split { children: Children { node: Node { lower: 0, upper: 0 }, hopeless: 0 }, block: NONE };
 }
 
-/// Where a cell is described: as a child of a split.
+/// The address of a cell: a child of a split.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Place {
     split: usize,
@@ -90,15 +90,15 @@ pub(super) struct Place {
 
 /// The split cells of an octree, eight siblings to a block, for changing it in place.
 ///
-/// A block is there as long as one of its eight is split. Blocks that are not used any more form a list, and
-/// are taken up again before there are new ones.
+/// A block exists as long as one of its eight cells is split. Unused blocks form a list and are reused before
+/// new blocks are allocated.
 pub(super) struct Nodes {
     frame: Frame,
     pub(super) exterior: Tag,
     pub(super) proof: Proof,
     /// Block b is `splits[8 * b..8 * b + 8]`. The universe is child 0 of the first of block 0.
     splits: Vec<Split>,
-    /// First block of those that are not used, each of which names the next as its first split's.
+    /// First block of the list of unused blocks. The first split of each unused block names the next block.
     unused: u32,
     blocks: usize,
     counts: [LevelCounts; MAX_DEPTH as usize + 1],
@@ -111,7 +111,7 @@ impl Nodes {
     /// The universe.
     pub(super) const ROOT: Place = Place { split: 0, octant: 0 };
 
-    /// An octree of which nothing is known but this of the universe.
+    /// Creates an octree with the given verdict on the universe and no splits.
     pub(super) fn new<P>(
         frame: Frame,
         root: &Verdict<P>,
@@ -135,28 +135,28 @@ impl Nodes {
         self.splits[place.split].children.node.tag(place.octant)
     }
 
-    /// Whether splitting a PARTIAL cell is known not to help.
+    /// Returns whether splitting a PARTIAL cell is known not to help.
     pub(super) fn is_hopeless(&self, place: Place) -> bool {
         self.splits[place.split].children.is_hopeless(place.octant)
     }
 
-    /// A child of a BRANCH.
+    /// Returns a child of a BRANCH.
     pub(super) fn child(&self, place: Place, octant: u8) -> Place {
         Place { split: self.own(place), octant }
     }
 
-    /// The split of a BRANCH.
+    /// Returns the index of the split of a BRANCH.
     fn own(&self, place: Place) -> usize {
         8 * self.splits[place.split].block as usize + place.octant as usize
     }
 
-    /// The children of a BRANCH.
+    /// Returns the children of a BRANCH.
     pub(super) fn children(&self, place: Place) -> Children {
         self.splits[self.own(place)].children
     }
 
-    /// The places from the universe towards `cell`, and the last of them with its level: `cell` itself, or
-    /// the last one that is no BRANCH.
+    /// Returns the places from the universe towards `cell`, and the level of the last place: `cell` itself,
+    /// or the last cell that is no BRANCH.
     pub(super) fn way(&self, cell: Cell) -> ([Place; MAX_DEPTH as usize + 1], u8) {
         let mut way = [Nodes::ROOT; MAX_DEPTH as usize + 1];
         for level in 0..cell.level {
@@ -169,7 +169,8 @@ impl Nodes {
         (way, cell.level)
     }
 
-    /// Makes a PARTIAL cell of `level` a BRANCH with these children; or, if they agree, what they are.
+    /// Makes a PARTIAL cell of `level` a BRANCH with these children. If the children agree, the cell takes
+    /// their tag.
     ///
     /// # Errors
     /// [`Error::OutOfMemory`]; then nothing has changed.
@@ -215,12 +216,12 @@ impl Nodes {
         }
     }
 
-    /// Notes that splitting a PARTIAL cell does not help.
+    /// Records that splitting a PARTIAL cell does not help.
     pub(super) fn give_up(&mut self, place: Place) {
         self.splits[place.split].children.set(place.octant, Tag::Partial, true);
     }
 
-    /// Takes every PARTIAL cell for one that may be split.
+    /// Marks every PARTIAL cell as one that may be split.
     pub(super) fn forget_hopeless(&mut self) {
         self.splits.iter_mut().for_each(|split| split.children.hopeless = 0);
     }
@@ -236,7 +237,7 @@ impl Nodes {
         *of = of.wrapping_add_signed(change);
     }
 
-    /// A block that nobody uses. Blocks do not move when others are taken.
+    /// Takes an unused block. Existing blocks do not move when a block is taken.
     fn take_block(&mut self) -> Result<u32, Error> {
         let block = match self.unused {
             NONE => {
@@ -256,17 +257,17 @@ impl Nodes {
         Ok(block)
     }
 
-    /// Bytes that the blocks take.
+    /// The memory of the blocks in bytes.
     pub(super) fn bytes(&self) -> u64 {
         self.blocks as u64 * Nodes::BLOCK
     }
 
-    /// Cells that are split and not merged.
+    /// The number of cells that are split and not merged.
     pub(super) fn count_nodes(&self) -> u64 {
         self.counts.iter().map(|level| level.nodes).sum()
     }
 
-    /// Whether a cell of `level` is PARTIAL.
+    /// Returns whether a cell of `level` is PARTIAL.
     pub(super) fn is_undecided_at(&self, level: u8) -> bool {
         self.counts[level as usize].partial > 0
     }
@@ -276,7 +277,7 @@ impl Nodes {
     }
 }
 
-/// As far as it is known: what is not split stays undecided. Parts are the places of splits.
+/// The known part of the octree as a solid: unsplit cells stay undecided.
 impl<'n> Solid for &'n Nodes {
     type Classifier = &'n Nodes;
 

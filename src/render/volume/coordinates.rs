@@ -1,13 +1,13 @@
-//! A layer's own coordinates: they begin at the frame's origin, so that a plane between two voxels is the
-//! same number for both.
+//! The own coordinates of a layer. They begin at the frame's origin, so that a plane between two voxels has
+//! the same coordinate for both.
 
 use crate::lattice::{Cell, Frame, MAX_DEPTH};
 use crate::render::camera::Camera;
 use glam::DVec3;
 
-/// Where a layer's cells lie.
+/// The places of a layer's cells.
 pub(super) struct Coordinates {
-    /// Where they begin, in the model's coordinates.
+    /// The origin, in the model's coordinates.
     pub origin: DVec3,
     /// The edge of the cells of each level.
     pub edges: [f64; MAX_DEPTH as usize + 2],
@@ -19,22 +19,21 @@ impl Coordinates {
         Coordinates { origin: DVec3::from(frame.origin()), edges }
     }
 
-    /// The centre of a cell, and half of its edge.
+    /// The centre of a cell, and half its edge.
     #[inline(always)]
     pub fn cube(&self, cell: Cell) -> (DVec3, f64) {
         let half = 0.5 * self.edges[cell.level as usize];
         (DVec3::from(cell.at.map(|a| (2 * a + 1) as f64 * half)), half)
     }
 
-    /// The corners of a cell, the least and the greatest. Cells that touch have the same numbers where they
-    /// do.
+    /// The least and the greatest corner of a cell. Cells that touch have the same numbers where they do.
     #[inline(always)]
     pub fn corners(&self, cell: Cell) -> [DVec3; 2] {
         let edge = self.edges[cell.level as usize];
         [0, 1].map(|end| DVec3::from(cell.at.map(|a| f64::from(a + end) * edge)))
     }
 
-    /// The camera.
+    /// The place of the camera.
     pub fn place(&self, camera: &Camera) -> Place {
         Place {
             eye: DVec3::from(camera.eye()) - self.origin,

@@ -1,10 +1,10 @@
-//! The layer, and what can be chosen of it.
+//! The volume layer and its settings.
 
 use crate::error::Error;
 use crate::render::Transfer;
 use crate::voxel::VoxelRecordsRef;
 
-/// How voxels of different sizes are put together.
+/// A way of compositing voxels of different sizes.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
 pub enum Compositing {
     /// By the exact length of each line of sight's path through a voxel. Clip planes and opaque surfaces cut
@@ -14,8 +14,8 @@ pub enum Compositing {
     /// As published (Zhu, Tang and Dong 2002): a voxel is a cell of one unit, repeated edge / unit times,
     /// wherever its projection covers a sample. The transfer function's opacity holds for one repetition, and
     /// its length does not count. A voxel whose centre is cut away is left out. A voxel lies behind a surface
-    /// if the line of sight enters the voxel behind the surface; else all of the voxel lies before the
-    /// surface.
+    /// if the line of sight enters the voxel behind the surface; otherwise the whole voxel lies in front of
+    /// the surface.
     ///
     /// Let n repetitions of the colour C and the opacity α lie in front of the light D (a colour times its
     /// opacity) with the opacity β. The light of both is D (1 − α)^n + C (1 − (1 − α)^n), and their opacity
@@ -26,18 +26,18 @@ pub enum Compositing {
     },
 }
 
-/// A layer that shows voxel records as a translucent volume. Inside and boundary voxels are seen; outside and
-/// refined ones are not.
+/// A layer that shows voxel records as a translucent volume. Inside and boundary voxels are visible; outside
+/// and refined ones are not.
 ///
 /// The weight of a voxel, 0 to 1, scales its optical depth, as if only that part of it were filled. Inside
 /// voxels weigh 1 and boundary voxels ½ unless [`weights`](Self::weights) are given.
 ///
-/// The voxels of one layer are seen in their right order from everywhere, also from among them. Of two volume
-/// layers, the one that comes first in the picture is taken to be in front.
+/// The voxels of one layer are composited in the correct order from everywhere, also from among them. Among
+/// two volume layers, the one that comes first in the picture counts as in front.
 ///
 /// O(pairs of a voxel and a sample that it covers + pairs of a voxel and a tile that it meets · levels).
-/// Where less than 10⁻⁷ of the light comes through, nothing farther away is drawn. So each channel, as linear
-/// light from 0 to 1, is within 10⁻⁶ of the truth.
+/// Where less than 10⁻⁷ of the light comes through, nothing farther away is drawn. So the error of each
+/// channel, as linear light from 0 to 1, is at most 10⁻⁶.
 ///
 /// ```
 /// use leafless::{
@@ -66,13 +66,12 @@ pub struct VolumeLayer<'a> {
 }
 
 impl<'a> VolumeLayer<'a> {
-    /// A layer of records whose values look as the transfer function says, with exact compositing.
+    /// Creates a layer of records whose values look as the transfer function says, with exact compositing.
     pub fn new(records: VoxelRecordsRef<'a>, transfer: Transfer) -> VolumeLayer<'a> {
         VolumeLayer { records, transfer, weights: None, compositing: Compositing::Exact }
     }
 
-    /// The same layer with a weight, 0 to 1, for each record: the part of the voxel that is solid.
-    /// O(records).
+    /// Sets a weight, 0 to 1, for each record: the part of the voxel that is solid. O(records).
     ///
     /// # Errors
     /// [`Error::Argument`] if there are not as many weights as records, or if one is not in [0, 1].
@@ -87,7 +86,7 @@ impl<'a> VolumeLayer<'a> {
         Ok(VolumeLayer { weights: Some(weights), ..self })
     }
 
-    /// The same layer with another way of compositing.
+    /// Sets the way of compositing.
     ///
     /// # Errors
     /// [`Error::Argument`] if the unit is not above 0 and finite.

@@ -1,4 +1,4 @@
-//! What is seen along a line of sight: translucent surfaces and voxels, put behind each other.
+//! Compositing of translucent surfaces and voxels along a line of sight.
 
 use super::coordinates::Coordinates;
 use crate::error::Error;
@@ -9,31 +9,31 @@ use crate::render::transfer::absorbed;
 use alloc::vec::Vec;
 use glam::DVec3;
 
-/// What is left of the light at which samples count as opaque.
+/// The remaining share of the light at which samples count as opaque.
 const DARK: f64 = 1e-7;
 
-/// A line of sight, of which point + t · direction has the depth t, and the light that comes along it.
+/// A line of sight, on which point + t · direction has the depth t, and the light that comes along it.
 pub(super) struct LightPath {
     from: DVec3,
     /// One over each component of the direction.
     inverse: DVec3,
-    /// Model units to a unit of depth.
+    /// Model units per unit of depth.
     stretch: f64,
-    /// The depths between which there is something to see. Where nothing is seen any more the end is −∞.
+    /// The depths between which something can be visible. Where nothing is visible any more, the end is −∞.
     start: f64,
     pub end: f64,
-    /// The next translucent surface among all of the tile, its depth (∞ if there is none), and how many have
-    /// been passed.
+    /// The next translucent surface among all of the tile, its depth (∞ if there is none), and the number of
+    /// surfaces that have been passed.
     fragment: usize,
     next: f64,
     pub passed: u32,
-    /// What has been seen, linear, and the share of the light that comes through it.
+    /// The light so far (linear), and the share of the light behind that comes through.
     pub light: DVec3,
     pub through: f64,
 }
 
-/// The paths of a tile's samples, with what other layers have left. A clip cuts the paths off; without one
-/// they are whole.
+/// The paths of a tile's samples, with the light that other layers have left. A clip cuts the paths off;
+/// without one they are whole.
 pub(super) fn light_paths(
     tile: &Tile<'_>,
     clip: Option<&Clip>,
@@ -73,7 +73,7 @@ pub(super) fn light_paths(
     Ok(paths)
 }
 
-/// One over a component of a direction. A line along a plane between voxels belongs to the upper one: it
+/// One over a component of a direction. A line in a plane between voxels belongs to the upper voxel: it
 /// counts as rising, so slowly that it stays where it is.
 fn inverse(component: f64) -> f64 {
     const LEAST: f64 = 1e-300;
@@ -81,20 +81,21 @@ fn inverse(component: f64) -> f64 {
 }
 
 impl LightPath {
-    /// Whether something can be seen.
+    /// Returns whether something can be visible.
     pub fn is_open(&self) -> bool {
         self.start < self.end
     }
 
-    /// The depths between which the path is in a box; the first is not before there is something to see.
+    /// The depths between which the path is in a box; the first is not before the start of the path.
     #[inline(always)]
     pub fn within(&self, [low, high]: [DVec3; 2]) -> [f64; 2] {
         let (a, b) = ((low - self.from) * self.inverse, (high - self.from) * self.inverse);
         [a.min(b).max_element().max(self.start), a.max(b).min_element()]
     }
 
-    /// Puts a voxel behind what has been seen, by the length of the path in it; surfaces divide that. `depth`
-    /// is the optical depth of a model unit. Tells whether nothing is seen beyond it any more.
+    /// Composites a voxel behind the light so far, by the length of the path in it; surfaces divide the path.
+    /// `depth` is the optical depth of a model unit. Returns whether nothing beyond the voxel is visible any
+    /// more.
     #[inline(always)]
     pub fn cross(&mut self, [mut from, to]: [f64; 2], colour: DVec3, depth: f64, all: &[Fragment]) -> bool {
         let to = to.min(self.end);
@@ -112,8 +113,8 @@ impl LightPath {
         self.close()
     }
 
-    /// Puts a voxel behind what has been seen, as one thing at the depth where it is entered. Tells whether
-    /// nothing is seen beyond it any more.
+    /// Composites a voxel behind the light so far, as one thing at the depth where the path enters it.
+    /// Returns whether nothing beyond the voxel is visible any more.
     #[inline(always)]
     pub fn enter(&mut self, [from, to]: [f64; 2], colour: DVec3, opacity: f64, all: &[Fragment]) -> bool {
         if from >= to || from >= self.end {
@@ -126,14 +127,14 @@ impl LightPath {
         self.close()
     }
 
-    /// Puts something of a colour and an opacity behind what has been seen.
+    /// Composites a colour with an opacity behind the light so far.
     #[inline(always)]
     fn meet(&mut self, colour: DVec3, opacity: f64) {
         self.light += colour * (self.through * opacity);
         self.through *= 1.0 - opacity;
     }
 
-    /// Puts the next translucent surface behind what has been seen.
+    /// Composites the next translucent surface behind the light so far.
     fn pass(&mut self, fragments: &[Fragment]) {
         let (now, next) = (&fragments[self.fragment], fragments.get(self.fragment + 1));
         let light = now.light.0.as_dvec4();
@@ -143,7 +144,7 @@ impl LightPath {
         self.next = next.filter(|next| next.sample == now.sample).map_or(f64::INFINITY, |next| next.depth);
     }
 
-    /// Ends the path if hardly any light comes through; tells whether it does.
+    /// Ends the path if hardly any light comes through; returns whether it does.
     #[inline(always)]
     fn close(&mut self) -> bool {
         let is_dark = self.through < DARK;

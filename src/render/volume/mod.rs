@@ -1,4 +1,4 @@
-//! Voxels as a translucent volume: cells are projected in the order in which they are seen.
+//! Voxels as a translucent volume: cells are projected in their order along the view.
 
 mod coordinates;
 mod layer;

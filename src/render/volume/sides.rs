@@ -1,4 +1,4 @@
-//! What a cell must meet to be seen in a tile.
+//! Half-spaces that a cell must meet to be visible in a tile.
 
 use super::coordinates::{Coordinates, Place};
 use crate::error::Error;
@@ -12,7 +12,7 @@ use glam::DVec3;
 pub(super) struct Side {
     normal: DVec3,
     offset: f64,
-    /// How far a cube with the half edge 1 reaches along the normal.
+    /// The extent of a cube with the half edge 1 along the normal.
     reach: f64,
 }
 
@@ -21,19 +21,19 @@ impl Side {
         Side { normal, offset: -normal.dot(through), reach: reach(normal) }
     }
 
-    /// Whether some of a cube lies on this side.
+    /// Returns whether some of a cube lies on this side.
     #[inline(always)]
     pub fn meets(&self, (centre, half): (DVec3, f64)) -> bool {
         self.normal.dot(centre) + self.offset + self.reach * half >= 0.0
     }
 }
 
-/// How far a cube with the half edge 1 reaches along a direction.
+/// The extent of a cube with the half edge 1 along a direction.
 pub(super) fn reach(normal: DVec3) -> f64 {
     normal.abs().element_sum()
 }
 
-/// The sides of a tile, of the eye, and of what is not cut away.
+/// The sides of a tile, of the eye, and of the clip planes.
 pub(super) fn sides(
     tile: &Tile<'_>,
     clip: &Clip,
@@ -42,7 +42,7 @@ pub(super) fn sides(
 ) -> Result<Vec<Side>, Error> {
     let clip = clip.planes();
     let mut sides = memory::with_capacity(6 + clip.len())?;
-    // Half a sample beyond the outermost ones, so that rounding does not count.
+    // Half a sample beyond the outermost samples, so that rounding does not matter.
     let [left, top] = tile.first.map(f64::from);
     let (from, first) = tile.view.line(left, top);
     let (end, last) = tile.view.line(left + f64::from(tile.size[0]), top + f64::from(tile.size[1]));

@@ -1,5 +1,5 @@
-//! Voxels and surfaces along lines of sight, against all that a line meets, sorted by depth and put together
-//! from behind.
+//! Tests of voxels and surfaces along lines of sight, against everything that a line meets, sorted by depth
+//! and composited from behind.
 
 use super::{Compositing, VolumeLayer};
 use crate::control::{Control, Job};
@@ -16,7 +16,8 @@ use alloc::vec;
 use alloc::vec::Vec;
 use glam::{DVec3, DVec4};
 
-/// Surfaces across the view, each with its light, its depth, and how fast that rises from column to column.
+/// Surfaces across the view, each with its light, its depth, and the increase of the depth from column to
+/// column.
 struct Sheets(Vec<(Light, f64, f64)>);
 
 impl Sheets {
@@ -47,7 +48,7 @@ impl Painter for Sheets {
 
 const BEHIND: [u8; 4] = [0, 100, 0, 255];
 
-/// What is seen at each sample of a picture of one tile, one sample a pixel.
+/// The light at each sample of a picture of one tile, one sample per pixel.
 fn seen(view: &View, clip: &Clip, sheets: &Sheets, volumes: &[VolumeLayer<'_>]) -> Vec<DVec4> {
     let control = Control::threads(1);
     let job = &Job::new(&control);
@@ -135,7 +136,7 @@ fn repetitions_are_so_many_layers() {
     }
 }
 
-/// All that a line of sight meets, each thing at the depth where it begins, put together from behind.
+/// Everything that a line of sight meets, each thing at the depth where it begins, composited from behind.
 fn expected(
     view: &View,
     sheets: &Sheets,
@@ -189,7 +190,7 @@ fn expected(
     met.iter().rev().fold(behind, |behind, &(_, _, light)| over(light, behind))
 }
 
-/// Surfaces and voxels take turns along each line of sight, and surfaces lie within voxels.
+/// Surfaces and voxels alternate along each line of sight, and surfaces lie within voxels.
 #[test]
 fn surfaces_and_voxels_interleave() {
     let frame = Frame::new([0.0; 3], 8.0, 3).unwrap();
@@ -209,7 +210,7 @@ fn surfaces_and_voxels_interleave() {
         vec![(white, 9.0, 0.2), (red, 8.0, 0.1), (blue, 14.0, -0.4), (red, 3.0, 0.0)],
         vec![(blue, 4.0, 0.9), (red, 24.0, -0.9), (white, 18.0, -0.1), (white, 60.0, 0.0), (red, 12.0, 0.0)],
         vec![(red, 50.0, 0.0), (blue, 2.0, 0.0)],
-        // Of two at one depth the first is seen.
+        // At equal depth the first surface is visible.
         vec![(blue, 11.0, 0.0), (red, 11.0, 0.0)],
     ];
     let up = [0.0, 0.0, 1.0];

@@ -27,8 +27,8 @@ impl<'a> Voxels<'a> {
         Ok(Voxels { layer, coordinates, clip, looks: Looks::new(&layer.transfer)? })
     }
 
-    /// Draws a voxel, by exact paths or as published. Its optical depth is that of its value for each
-    /// `length`. Returns how many samples see nothing beyond it.
+    /// Draws a voxel, by exact paths or as published. Its optical depth is that of its value per `length`.
+    /// Returns the number of samples at which nothing beyond the voxel is visible.
     pub fn draw<const EXACT: bool>(
         &self,
         tile: &Tile<'_>,

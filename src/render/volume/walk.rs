@@ -1,8 +1,8 @@
 //! The walk through the voxels of a tile, from front to back.
 //!
-//! The records are sorted by code, so that the records of a cell are a range of them. A tile walks through
-//! these ranges from the root on, octant by octant from front to back, and leaves out the cells that lie
-//! beside the tile. Each voxel that is left is put behind what its samples have seen so far.
+//! The records are sorted by code, so that the records of a cell are a range. A tile walks through these
+//! ranges from the root on, octant by octant from front to back, and skips the cells that lie beside the
+//! tile. Each remaining voxel is composited behind the light of its samples so far.
 
 use super::layer::{Compositing, VolumeLayer};
 use super::light_path::light_paths;
@@ -52,8 +52,8 @@ struct Part {
 }
 
 impl Volume<'_> {
-    /// Draws a tile, by exact paths or as published. The optical depth of a voxel is that of its value for
-    /// each `length`.
+    /// Draws a tile, by exact paths or as published. The optical depth of a voxel is that of its value per
+    /// `length`.
     fn draw<const EXACT: bool>(&self, tile: &mut Tile<'_>, length: f64) -> Result<(), Error> {
         let voxels = &self.voxels;
         let records = &voxels.layer.records;
@@ -70,7 +70,7 @@ impl Volume<'_> {
             memory::push(&mut sides, Side::new(-place.forward, place.eye + place.forward * far))?;
         }
 
-        // Of each level there are at most seven parts that wait.
+        // Each level has at most seven waiting parts.
         let mut parts = memory::with_capacity(8 * (MAX_DEPTH as usize + 2))?;
         parts.push(Part { cell: Cell::ROOT, records: 0..codes.len() });
         let mut count = 0u32;
@@ -113,7 +113,7 @@ impl Volume<'_> {
             };
             let near = (0..3).fold(0, |bits, axis| bits | u8::from(is_upper(axis)) << axis);
             let ends = ends(&codes[range.clone()], 3 * (depth - cell.level - 1));
-            // The last one is taken first.
+            // The last part is taken first.
             for octant in (0..8).rev().map(|k| k ^ near) {
                 let records = range.start + ends[octant as usize]..range.start + ends[octant as usize + 1];
                 if !records.is_empty() {
@@ -136,7 +136,7 @@ impl Volume<'_> {
     }
 }
 
-/// Where the records of each octant end, as the digit at `shift` of their codes says; the first is 0.
+/// The end of the records of each octant, by the digit at `shift` of their codes; the first is 0.
 fn ends(codes: &[u64], shift: u8) -> [usize; 9] {
     let digit = |code: u64| (code >> shift & 7) as usize;
     let mut ends = [0; 9];

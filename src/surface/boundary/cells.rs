@@ -1,5 +1,5 @@
-//! The boundary in cells: polygons on one surface each, bounded by arcs in faces and by the edges in which
-//! surfaces meet.
+//! The boundary in cells: polygons that lie on one surface each. Arcs in faces, and edges in which surfaces
+//! meet, bound the polygons.
 
 use super::curve::refine;
 use super::edges::{Edges, NONE};
@@ -12,15 +12,15 @@ use crate::memory;
 use crate::solid::OpenSurfaces;
 use alloc::vec::Vec;
 
-/// Pieces of the boundary.
+/// The pieces of the boundary.
 #[derive(Default)]
 pub(super) struct Pieces {
-    /// Polygons, each on one surface, with the solid behind it: the vertices counter-clockwise seen from
-    /// outside.
+    /// Polygons, each on one surface, with the solid behind it: the vertices are counter-clockwise as seen
+    /// from outside.
     pub(super) polygons: Vec<Polygon>,
     pub(super) corners: Vec<u32>,
-    /// Triangles where the surfaces have no simple arrangement, with the surface that each comes from, or
-    /// [`NONE`], and the cell.
+    /// Triangles where the surfaces have no simple arrangement, each with its surface, or [`NONE`], and its
+    /// cell.
     pub(super) triangles: Vec<([u32; 3], u32, Cell)>,
 }
 
@@ -37,7 +37,7 @@ impl Pieces {
         &self.corners[polygon.first as usize..(polygon.first + polygon.count) as usize]
     }
 
-    /// Refuses the cells of all pieces with a vertex that is `met`, but the finest ones.
+    /// Refuses the cells of all pieces with a vertex for which `met` is true, except the finest cells.
     pub(super) fn refuse(
         &self,
         met: impl Fn(u32) -> bool,
@@ -55,24 +55,24 @@ impl Pieces {
     }
 }
 
-/// A way through the inside of a cell from one vertex of a face to another.
+/// A path through the inside of a cell, from one vertex of a face to another.
 struct Way {
-    /// The surface's place in the list, and the vertex where it begins.
+    /// The surface's place in the list, and the vertex where the path begins.
     start: (usize, u32),
     between: Vec<u32>,
     end: u32,
 }
 
-/// The edge from a vertex of a face to the point in which three surfaces meet.
+/// An edge from a vertex of a face to the point in which three surfaces meet.
 struct Line {
     from: u32,
-    /// The least of the vertices that share one there.
+    /// The least of the vertices whose lines share a vertex at that point.
     group: u32,
     top: u32,
     between: Vec<u32>,
 }
 
-/// What makes the pieces of one cell.
+/// The builder of the pieces of one cell.
 struct Cutter<'c, 'f> {
     leaf: Option<OpenLeaf>,
     arcs: &'c [(u32, u32, bool)],
@@ -124,11 +124,11 @@ impl Cutter<'_, '_> {
         self.fans(pieces)
     }
 
-    /// An arc as the boundary of a piece runs along it in this cell.
+    /// The arc as the boundary of a piece runs along it in this cell.
     fn run(&self, number: u32, is_above: bool) -> (u32, u32, Arc) {
         let arc = self.faces.arcs[number as usize];
-        // Seen from outside of the cell below, the solid in the face lies on the left; the piece lies on the
-        // other side of the arc.
+        // Seen from outside the cell below, the solid in the face lies on the left of the arc; the piece lies
+        // on the other side of the arc.
         if is_above { (arc.from, arc.to, arc) } else { (arc.to, arc.from, arc) }
     }
 
@@ -154,7 +154,7 @@ impl Cutter<'_, '_> {
         self.edges.vertices[vertex as usize]
     }
 
-    /// Vertices of the curve on two surfaces between two others.
+    /// Adds vertices on the curve of two surfaces between two other vertices.
     fn edge(&mut self, surfaces: [u32; 2], ends: [u32; 2]) -> Result<Vec<u32>, Error> {
         let mut points = Vec::new();
         let places = ends.map(|end| self.at(end));
@@ -166,8 +166,8 @@ impl Cutter<'_, '_> {
         Ok(vertices)
     }
 
-    /// The edges in which surfaces meet, twice each: as both surfaces see them. `None` if they have no simple
-    /// arrangement.
+    /// The edges in which surfaces meet, each twice: once for each surface. `None` if the surfaces have no
+    /// simple arrangement.
     fn ways(&mut self, open: &OpenSurfaces, joint: Option<Joint>) -> Result<Option<Vec<Way>>, Error> {
         let count = open.indices().len();
         let mut ways = Vec::new();
@@ -185,7 +185,7 @@ impl Cutter<'_, '_> {
                     memory::push(&mut tops, [one, other])?;
                     continue;
                 }
-                // (Newton's method does not find where surfaces touch.)
+                // (Newton's method does not find the points where surfaces touch.)
                 let pair = joint.map_or(one.pair.map(usize::from), |joint| [joint.plane, joint.sides[0]]);
                 let surfaces = pair.map(|k| open.indices()[k]);
                 for copy in 0..2 {
@@ -210,7 +210,8 @@ impl Cutter<'_, '_> {
         }
     }
 
-    /// The ways through the point in which three surfaces meet.
+    /// Adds the paths through the point in which three surfaces meet. `false` if there is no simple
+    /// arrangement.
     fn top(
         &mut self,
         open: &OpenSurfaces,
@@ -228,8 +229,8 @@ impl Cutter<'_, '_> {
             let [low, high] = if open.indices()[i] < open.indices()[j] { [i, j] } else { [j, i] };
             Corner { open, low, high, signs }
         };
-        // Where the boundary of a part of surface i goes on that comes to the point along its edge with j, in
-        // the sector `signs`.
+        // A part of surface i comes to the point along its edge with j, in the sector `signs`. Find the edge
+        // along which its boundary goes on.
         let mut found: Vec<(usize, u32, u32)> = Vec::new();
         for (i, j) in [(0, 1), (0, 2), (1, 0), (1, 2), (2, 0), (2, 1)] {
             for sector in 0..4u8 {
@@ -244,7 +245,7 @@ impl Cutter<'_, '_> {
                 let (mut a, mut b) = (j, k);
                 let mut end = None;
                 for _ in 0..4 {
-                    // The next line that bounds the sector is that with b.
+                    // The next line that bounds the sector is the line with b.
                     let next = corner(i, b, signs);
                     let sign = signs >> b & 1;
                     if next.edges() > 0 {
@@ -266,7 +267,8 @@ impl Cutter<'_, '_> {
             return Ok(true);
         }
         let Some(place) = self.top_place(open, meetings) else { return Ok(false) };
-        // Vertices that are connected by way of the point share one there: the line of each to its group's.
+        // Vertices that are connected through the point share a vertex there: each line leads to the vertex
+        // of its group.
         let mut lines: Vec<Line> = Vec::new();
         for vertex in found.iter().flat_map(|&(_, from, end)| [from, end]) {
             if !lines.iter().any(|line| line.from == vertex) {
@@ -314,7 +316,7 @@ impl Cutter<'_, '_> {
         Ok(true)
     }
 
-    /// Whether a point lies in the cell: there pieces do not meet those of other cells.
+    /// Returns whether a point lies in the cell. Pieces in the cell do not meet the pieces of other cells.
     fn holds(&self, point: &[f64; 3]) -> bool {
         self.leaf.is_some_and(|OpenLeaf { cell, .. }| {
             let size = 1.0 / f64::from(1u32 << cell.level);
@@ -338,7 +340,7 @@ impl Cutter<'_, '_> {
         self.edges.figures.onto(open.indices(), None, start).filter(|point| self.holds(point))
     }
 
-    /// The polygons of the surfaces. `false` if they do not close.
+    /// Adds the polygons of the surfaces. `false` if the polygons do not close.
     fn polygons(
         &mut self,
         cell: Cell,
@@ -384,10 +386,10 @@ impl Cutter<'_, '_> {
         Ok(true)
     }
 
-    /// Closes loops of arcs, whatever surfaces they lie on, by triangles around a point.
+    /// Closes loops of arcs on any surfaces by triangles around a point.
     fn fans(&mut self, pieces: &mut Pieces) -> Result<(), Error> {
         let mut used = memory::filled(self.arcs.len(), false)?;
-        // (A decided cell is none that could be split.)
+        // (A decided cell cannot be split.)
         let cell = self.leaf.map_or(Cell { level: self.depth, at: [0; 3] }, |leaf| leaf.cell);
         for start in 0..self.arcs.len() {
             if used[start] {
@@ -422,7 +424,7 @@ impl Cutter<'_, '_> {
         Ok(())
     }
 
-    /// A point for the middle of a loop: on its surfaces, if there are few of them.
+    /// A point for the middle of a loop. It lies on the loop's surfaces, if these are few.
     fn centre(&self, corners: &[u32], surfaces: &[u32]) -> [f64; 3] {
         let mut sum = [0.0; 3];
         for &corner in corners {

@@ -1,16 +1,16 @@
-//! Curves as chains of chords.
+//! Chains of chords along curves.
 
 use super::figures::{Figures, Shape, length, middle, minus};
 use crate::error::Error;
 use crate::memory;
 use alloc::vec::Vec;
 
-/// How often a chord is halved at most.
+/// The greatest number of halvings of a chord.
 const HALVINGS: u32 = 12;
 
-/// Adds points of a curve between two points of it, so that no chord is further from the curve than the
-/// tolerance (edges of the universe): the curve of points on one or two surfaces, which keep a coordinate if
-/// that is said.
+/// Adds points of a curve between two of its points, so that no chord is further from the curve than the
+/// tolerance (edges of the universe). The curve consists of the points on one or two surfaces. If `kept` is
+/// given, this coordinate stays constant.
 pub(super) fn refine(
     figures: &Figures,
     surfaces: &[u32],
@@ -37,7 +37,7 @@ fn halve(
     let chord = middle(from, to);
     let Some(point) = figures.onto(surfaces, kept, chord) else { return Ok(()) };
     let (rise, long) = (length(minus(point, chord)), length(minus(to, from)));
-    // (What leads elsewhere is no point of the curve between the ends.)
+    // (A point that lies elsewhere does not belong to the curve between the ends.)
     if left == 0 || rise <= tolerance || rise > long {
         return Ok(());
     }

@@ -1,4 +1,4 @@
-//! Where surfaces cross the edges of cells.
+//! Crossings of surfaces and edges of cells.
 
 use super::figures::Figures;
 use super::leaves::{Leaf, Leaves, OpenLeaf};
@@ -10,21 +10,21 @@ use crate::solid::OpenSurfaces;
 use alloc::vec::Vec;
 use hashbrown::HashMap;
 
-/// No vertex, no surface.
+/// No vertex, or no surface.
 pub(super) const NONE: u32 = u32::MAX;
 
 /// A surface that crosses an edge.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Crossing {
-    /// [`NONE`] where the solid begins or ends, and no surface is known.
+    /// The surface, or [`NONE`] where the solid begins or ends, and no surface is known.
     pub(super) surface: u32,
-    /// Its vertex, if the solid begins or ends there; else [`NONE`].
+    /// The vertex, if the solid begins or ends at the crossing; otherwise [`NONE`].
     pub(super) vertex: u32,
-    /// Where it is, in unit coordinates.
+    /// The place in unit coordinates.
     pub(super) at: [f64; 3],
 }
 
-/// An edge of which the axis, the lower end and its place along the axis are known.
+/// An edge: its axis, the lower end on the other two axes, and its place along the axis.
 type Key = (u8, u32, u32, u32);
 
 struct Crossed {
@@ -33,7 +33,7 @@ struct Crossed {
     count: u32,
 }
 
-/// Whether a corner of the lattice lies in the solid where no surfaces are known.
+/// A test of lattice corners where no surfaces are known.
 pub(super) trait Corners {
     fn is_inside(&mut self, at: [u32; 3], unit: [f64; 3]) -> Result<bool, Error>;
 }
@@ -43,14 +43,14 @@ pub(super) struct Edges<'f> {
     pub(super) figures: &'f Figures,
     list: Vec<Crossed>,
     crossings: Vec<Crossing>,
-    /// Which corners lie in the solid.
+    /// Whether each visited corner lies in the solid.
     states: HashMap<[u32; 3], bool>,
     pub(super) vertices: Vec<[f64; 3]>,
     /// Finest cells per axis.
     cells: f64,
 }
 
-/// What finds them.
+/// The builder of [`Edges`].
 struct Finder<'f, 'l, C> {
     edges: Edges<'f>,
     leaves: &'l Leaves,
@@ -82,7 +82,7 @@ impl<'f> Edges<'f> {
         at.map(|c| f64::from(c) / self.cells)
     }
 
-    /// Whether a corner lies in the solid, as was found out on the way.
+    /// Returns whether a corner lies in the solid, as the search for edges found.
     pub(super) fn is_inside(&self, at: [u32; 3]) -> bool {
         self.states.get(&at).copied().unwrap_or(false)
     }
@@ -104,7 +104,7 @@ impl<'f> Edges<'f> {
     }
 }
 
-/// The open cell of which most is known.
+/// Returns the open cell of which most is known.
 pub(super) fn best(leaves: &Leaves, around: impl Iterator<Item = Leaf>) -> Option<&OpenLeaf> {
     let rank = |leaf: &OpenLeaf| (leaf.is_simple, leaf.open.is_some());
     let mut best: Option<&OpenLeaf> = None;
@@ -159,7 +159,7 @@ impl<C: Corners> Visitor for Finder<'_, '_, C> {
                 self.edges.states.insert([edge.at, end][k], states[k]);
             }
         }
-        // All surfaces that cross it.
+        // All surfaces that cross the edge.
         let mut found: Vec<(f64, u32)> = Vec::new();
         for q in 0..4 {
             let Leaf::Open(number) = leaf(q) else { continue };
@@ -177,7 +177,7 @@ impl<C: Corners> Visitor for Finder<'_, '_, C> {
         found.sort_unstable_by(|a, b| a.0.total_cmp(&b.0).then(a.1.cmp(&b.1)));
         let first = self.edges.crossings.len();
         let place = |x: f64| axes(|k| if k == axis { x } else { from[k] });
-        // Where cells contradict each other about a corner, the solid begins or ends there.
+        // Where cells contradict each other about a corner, the solid begins or ends at the corner.
         let agreed = [known[0].unwrap_or(states[0]), known[1].unwrap_or(states[1])];
         let mut state = states[0];
         if agreed[0] != state {

@@ -1,9 +1,9 @@
 //! The boundary in the faces of cells: arcs of surfaces, and the points where two surfaces meet.
 //!
-//! In a face of a simple cell each surface is a single arc between two points of the face's outline, if it is
-//! there at all, and two arcs cross each other once if their ends alternate along the outline, else never. So
-//! the signs of the surfaces at the corners of the lattice decide what is connected with what, and the same
-//! for both cells beside the face; no rounding does.
+//! In a face of a simple cell each surface that is present is a single arc between two points of the face's
+//! outline. Two arcs cross each other once if their ends alternate along the outline, and otherwise never. So
+//! the signs of the surfaces at the corners of the lattice decide all connections, identically for both cells
+//! beside the face. Rounding does not affect the decisions.
 
 use super::curve::refine;
 use super::edges::{Crossing, Edges, NONE, best};
@@ -18,14 +18,14 @@ use crate::solid::OpenSurfaces;
 use alloc::vec::Vec;
 use hashbrown::HashMap;
 
-/// A curve in a face on which the solid begins, which it has on its left, seen from above: from where the
-/// coordinate across the face is greater.
+/// A curve in a face along which the solid begins. The solid lies on its left, seen from above: from the side
+/// where the coordinate across the face is greater.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Arc {
     pub(super) surface: u32,
     pub(super) from: u32,
     pub(super) to: u32,
-    /// The vertices between them, in [`Faces::between`].
+    /// The vertices between the ends, in [`Faces::between`].
     pub(super) first: u32,
     pub(super) count: u32,
 }
@@ -33,38 +33,39 @@ pub(super) struct Arc {
 /// A point of a face where two surfaces of a cell meet.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Meeting {
-    /// Their places in the cell's list, the one with the lower number first.
+    /// The places of the two surfaces in the cell's list. The surface with the lower number comes first.
     pub(super) pair: [u8; 2],
-    /// The signs that the surfaces of the cell's list have there; those of the two are 0.
+    /// The signs of the surfaces of the cell's list at the point; the signs of the two surfaces are 0.
     pub(super) signs: u8,
-    /// The vertices there, if an edge of the boundary leads through the point: where two do, the solid lies
-    /// between the surfaces twice, once where the second one is negative and once where it is positive. Of
-    /// one edge, the same vertex twice.
+    /// The vertices at the point, if an edge of the boundary passes through it. If two edges do, the solid
+    /// lies between the surfaces twice: the first vertex is for the side where the second surface is
+    /// negative, the second vertex for the side where it is positive. If there is one edge, both vertices are
+    /// the same.
     pub(super) vertices: [u32; 2],
 }
 
-/// What the faces have for cells.
+/// The arcs and meetings in faces, by cells.
 pub(super) struct Faces {
     pub(super) arcs: Vec<Arc>,
     pub(super) between: Vec<u32>,
-    /// Cells with their arcs, and whether they lie above the face. Cells that are decided have numbers behind
-    /// all others.
+    /// Cells with their arcs, and whether the cell lies above the face. Decided cells have numbers after
+    /// those of all open cells.
     pub(super) of_cells: Vec<(u32, u32, bool)>,
     pub(super) meetings: Vec<(u32, Meeting)>,
 }
 
-/// What finds them.
+/// The builder of [`Faces`].
 struct Finder<'e, 'f, 'l> {
     faces: Faces,
     edges: &'e mut Edges<'f>,
     leaves: &'l Leaves,
-    /// Numbers of decided cells.
+    /// The numbers of decided cells.
     decided: HashMap<Cell, u32>,
     tolerance: f64,
     refused: &'l mut Refused,
 }
 
-/// A meeting of a face, by the surfaces' numbers.
+/// A meeting in a face, by the surfaces' numbers.
 #[derive(Clone, Copy)]
 struct Met {
     surfaces: [u32; 2],
@@ -78,17 +79,17 @@ struct Line {
     ends: [usize; 2],
 }
 
-/// How surfaces lie in a face.
+/// The arrangement of the surfaces in a face.
 struct Arrangement<'o> {
     open: &'o OpenSurfaces,
     outline: &'o [Crossing],
     lines: [Option<Line>; MOST],
-    /// Signs at the first corner.
+    /// The signs at the first corner.
     signs: u8,
 }
 
 impl Arrangement<'_> {
-    /// `None` if a surface crosses the outline more than twice.
+    /// Returns `None` if a surface crosses the outline more than twice.
     fn new<'o>(open: &'o OpenSurfaces, outline: &'o [Crossing], signs: u8) -> Option<Arrangement<'o>> {
         let mut lines = [None; MOST];
         for (line, &surface) in lines.iter_mut().zip(open.indices()) {
@@ -106,14 +107,14 @@ impl Arrangement<'_> {
         self.open.indices().len()
     }
 
-    /// Whether a surface is positive at a place of the outline, just before a crossing.
+    /// Returns whether a surface is positive at a place of the outline, just before a crossing.
     fn sign(&self, surface: usize, place: usize) -> bool {
         let flips =
             self.lines[surface].map_or(0, |line| line.ends.iter().filter(|&&end| end < place).count());
         (self.signs >> surface & 1 != 0) ^ (flips & 1 != 0)
     }
 
-    /// Whether a surface is positive where the arc of another one begins.
+    /// Returns whether a surface is positive where the arc of another surface begins.
     fn sign_at_start(&self, surface: usize, of: usize) -> bool {
         self.lines[of].is_some_and(|line| self.sign(surface, line.ends[0]))
     }
@@ -124,8 +125,8 @@ impl Arrangement<'_> {
         i != j && within(b.ends[0]) != within(b.ends[1])
     }
 
-    /// Whether surface k is positive where i and j meet; `first` tells that of the third surface where the
-    /// first two meet.
+    /// Returns whether surface k is positive where i and j meet; `first` is the sign of the third surface
+    /// where the first two meet.
     fn sign_at_meeting(&self, k: usize, i: usize, j: usize, first: bool) -> bool {
         if !self.cross(j, k) {
             return self.sign_at_start(k, j);
@@ -137,8 +138,8 @@ impl Arrangement<'_> {
         if k == 2 {
             return first;
         }
-        // Along 0, or along 1, the meeting with 2 comes before that of 0 and 1 if 2 is not there what it is
-        // where the line begins.
+        // The meeting with 2 comes before the meeting of 0 and 1, along 0 or along 1, if the sign of 2 at
+        // that meeting differs from its sign at the beginning of the line.
         let other = 1 - k;
         let two_comes_first = first != self.sign_at_start(2, other);
         self.sign_at_start(k, other) ^ !two_comes_first
@@ -213,7 +214,7 @@ impl Visitor for Finder<'_, '_, '_> {
 }
 
 impl Finder<'_, '_, '_> {
-    /// The number of a cell; decided ones get one.
+    /// The number of a cell. A decided cell gets a number here.
     fn number(&mut self, at: &At) -> Result<u32, Error> {
         if let Leaf::Open(number) = at.leaf {
             return Ok(number);
@@ -230,7 +231,7 @@ impl Finder<'_, '_, '_> {
         Ok(())
     }
 
-    /// The crossings around a face, counter-clockwise seen from above.
+    /// The crossings around a face, counter-clockwise as seen from above.
     fn outline(&self, face: &Face) -> Result<Vec<Crossing>, Error> {
         let (u, v) = ((face.axis + 1) % 3, (face.axis + 2) % 3);
         let moved = |du: u32, dv: u32| {
@@ -258,7 +259,7 @@ impl Finder<'_, '_, '_> {
         Ok(signs)
     }
 
-    /// Where two arcs cross.
+    /// The point where two arcs cross.
     fn meeting_point(&self, face: &Face, arrangement: &Arrangement<'_>, i: usize, j: usize) -> [f64; 3] {
         let ends =
             |k: usize| arrangement.lines[k].map(|line| line.ends.map(|end| arrangement.outline[end].at));
@@ -272,7 +273,7 @@ impl Finder<'_, '_, '_> {
         self.onto(face, [open[i], open[j]], axes(|k| a[k] + share * along[k]))
     }
 
-    /// The point of a face next to another one in which two surfaces meet.
+    /// The point of a face near another point in which two surfaces meet.
     fn meeting_in(&self, face: &Face, surfaces: [u32; 2], start: [f64; 3]) -> Option<[f64; 3]> {
         let (u, v) = ((face.axis + 1) % 3, (face.axis + 2) % 3);
         let (low, size) =
@@ -281,13 +282,13 @@ impl Finder<'_, '_, '_> {
         self.edges.figures.onto(&surfaces, Some(face.axis), start).filter(is_in)
     }
 
-    /// The same, and the place itself if there is no such point.
+    /// As [`meeting_in`](Self::meeting_in), but returns the start if there is no such point.
     fn onto(&self, face: &Face, surfaces: [u32; 2], start: [f64; 3]) -> [f64; 3] {
         self.meeting_in(face, surfaces, start).unwrap_or(start)
     }
 
-    /// The meetings of an arrangement, with vertices of those that are known; new ones are made for the
-    /// others if `makes`. `None` if a vertex is missing.
+    /// The meetings of an arrangement. Known meetings keep their vertices; if `makes` is set, new vertices
+    /// are made for the others. `None` if a vertex is missing.
     fn meetings(
         &mut self,
         face: &Face,
@@ -352,8 +353,8 @@ impl Finder<'_, '_, '_> {
         Ok(self.edges.vertices.len() as u32 - 1)
     }
 
-    /// Adds the arcs of a face as a cell with a simple arrangement knows them. `false` if it is not as simple
-    /// as it looks.
+    /// Adds the arcs of a face according to a cell with a simple arrangement. `false` if the face is not as
+    /// simple as it looks.
     fn arrange(
         &mut self,
         face: &Face,
@@ -380,8 +381,8 @@ impl Finder<'_, '_, '_> {
                 memory::push(&mut on_way, meeting)?;
             }
             if let [one, two] = on_way[..] {
-                // The other surface of the second meeting has at the first one the sign that it has at the
-                // beginning, or not.
+                // The order of the two meetings follows from the other surface of the second meeting: its
+                // sign at the first meeting either equals its sign at the beginning, or differs from it.
                 let other = other(two, i);
                 if (one.signs ^ signs) >> other & 1 != 0 {
                     on_way.swap(0, 1);
@@ -394,7 +395,7 @@ impl Finder<'_, '_, '_> {
                 let place = met_at(met, open, meeting);
                 let is_active = before.0 != before.1;
                 if meeting.vertices == [NONE; 2] && before == after {
-                    // Nothing happens here.
+                    // The boundary does not change at this meeting.
                     signs ^= 1 << other;
                     continue;
                 }
@@ -418,13 +419,13 @@ impl Finder<'_, '_, '_> {
                 return Ok(false);
             }
         }
-        // Each vertex of the outline is an end of one of them.
+        // Each vertex of the outline must be an end of exactly one arc.
         let own = &self.faces.arcs[before_all..];
         let ends = |vertex: u32| own.iter().filter(|arc| arc.from == vertex || arc.to == vertex).count();
         Ok(outline.iter().all(|crossing| crossing.vertex == NONE || ends(crossing.vertex) == 1))
     }
 
-    /// Adds an arc, which has the solid on its left as it is given, or on its right. `false` if an end has no
+    /// Adds an arc. The solid lies on the left of the arc as given, or on its right. `false` if an end has no
     /// vertex.
     fn add(
         &mut self,
@@ -453,7 +454,8 @@ impl Finder<'_, '_, '_> {
         Ok(true)
     }
 
-    /// Tells a simple cell beside a face where its surfaces meet there. `false` if the face knows better.
+    /// Adds to a simple cell beside a face the meetings of its surfaces there. `false` if the meetings in the
+    /// face contradict the cell.
     fn meet(&mut self, face: &Face, outline: &[Crossing], at: &At, met: &[Met]) -> Result<bool, Error> {
         let Leaf::Open(number) = at.leaf else { return Ok(true) };
         let OpenLeaf { open: Some(open), is_simple: true, joint, .. } = self.leaves.open[number as usize]
@@ -473,8 +475,9 @@ impl Finder<'_, '_, '_> {
         Ok(true)
     }
 
-    /// Adds the arcs of a face as a cell with a joint knows them: one on each of its surfaces where the plane
-    /// crosses the face, else one on either. `false` if it is not as simple as it looks.
+    /// Adds the arcs of a face according to a cell with a joint: one arc on each of the joint's surfaces if
+    /// the plane crosses the face, otherwise one arc on either. `false` if the face is not as simple as it
+    /// looks.
     fn arrange_joint(
         &mut self,
         face: &Face,
@@ -512,7 +515,8 @@ impl Finder<'_, '_, '_> {
             && self.add(face, last.surface, [vertex, last.vertex], [at, last.at], is_left)?)
     }
 
-    /// Tells a cell with a joint where that crosses a face. `false` if the face knows better.
+    /// Adds to a cell with a joint the point where the joint crosses a face. `false` if the face contradicts
+    /// the cell.
     fn meet_joint(
         &mut self,
         number: u32,
@@ -535,8 +539,8 @@ impl Finder<'_, '_, '_> {
         Ok(true)
     }
 
-    /// Connects the vertices of an outline so that each piece of the solid in it is cut off alone; of two
-    /// pieces only if the solid is not known to lie between them. Where two surfaces meet in the face, each
+    /// Connects the vertices of an outline so that each piece of the solid in it is cut off separately. Two
+    /// pieces are joined if the solid is known to lie between them. Where two surfaces meet in the face, each
     /// has its own arc.
     fn pair(&mut self, face: &Face, outline: &[Crossing], own: Option<&OpenSurfaces>) -> Result<(), Error> {
         let mut ends = Vec::new();
@@ -569,8 +573,8 @@ impl Finder<'_, '_, '_> {
             let surface = if surfaces[0] == surfaces[1] { surfaces[0] } else { NONE };
             let before = self.faces.between.len();
             self.add(face, surface, [leaves.vertex, enters.vertex], [leaves.at, enters.at], true)?;
-            // Other faces beside an edge may have an arc between the same two places of it: each gets a
-            // vertex of its own.
+            // Another face beside the same edge may have an arc between the same two places. So each of these
+            // arcs gets a vertex of its own.
             let is_on_side = (0..3).filter(|&k| leaves.at[k] == enters.at[k]).count() >= 2;
             if is_on_side && self.faces.between.len() == before {
                 let vertex = self.vertex(start)?;
@@ -591,11 +595,11 @@ fn met_at(met: &[Met], open: &OpenSurfaces, meeting: &Meeting) -> [f64; 3] {
     met.iter().find(|met| met.surfaces == pair).map_or([0.0; 3], |met| met.at)
 }
 
-/// Where two surfaces meet, and the others have signs.
+/// A point where two surfaces meet, and the other surfaces have signs.
 #[derive(Clone, Copy)]
 pub(super) struct Corner<'o> {
     pub(super) open: &'o OpenSurfaces,
-    /// Places in the list, that of the surface with the lower number first.
+    /// The places of the two surfaces in the list. The surface with the lower number comes first.
     pub(super) low: usize,
     pub(super) high: usize,
     pub(super) signs: u8,
@@ -607,7 +611,7 @@ impl Corner<'_> {
         self.open.inside(others | low << self.low | high << self.high)
     }
 
-    /// Whether the solid begins on surface i where the other one has a sign.
+    /// Returns whether the solid begins on surface i where the other surface has a sign.
     pub(super) fn is_active(&self, i: usize, sign: u8) -> bool {
         if i == self.low {
             self.inside(0, sign) != self.inside(1, sign)
@@ -616,7 +620,7 @@ impl Corner<'_> {
         }
     }
 
-    /// How many edges the boundary has there.
+    /// The number of boundary edges at the point.
     pub(super) fn edges(&self) -> usize {
         let halves = |i: usize| usize::from(self.is_active(i, 0)) + usize::from(self.is_active(i, 1));
         match (halves(self.low), halves(self.high)) {
@@ -626,8 +630,8 @@ impl Corner<'_> {
         }
     }
 
-    /// Which of the two edges the half of surface i belongs to on which the other one has a sign: the sign
-    /// that the second surface has in the solid there.
+    /// Returns the edge (0 or 1) to which a half of surface i belongs, the half on which the other surface
+    /// has a sign. The result is the sign of the second surface in the solid there.
     pub(super) fn copy(&self, i: usize, sign: u8) -> usize {
         if i == self.low { usize::from(sign) } else { usize::from(self.inside(sign, 1)) }
     }

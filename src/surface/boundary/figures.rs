@@ -1,8 +1,8 @@
 //! The surfaces that bound a solid, as functions on the lattice of a boundary evaluation.
 //!
-//! Points are in unit coordinates: the universe is [0, 1]³. Which side of a surface a corner of the lattice
-//! lies on is an exact sign. Places are found in plain doubles, to the last digits: nothing is decided by
-//! them but the order of places.
+//! Points are in unit coordinates: the universe is [0, 1]³. The side of a surface on which a corner of the
+//! lattice lies is an exact sign. Places are computed in plain doubles, to the last digits; they decide
+//! nothing but the order of places.
 
 use crate::cut::{Quadratic, Taylor};
 use crate::error::Error;
@@ -13,11 +13,11 @@ use crate::solid::PlacedHalfSpace;
 use crate::solid::half_space::Placed;
 use alloc::vec::Vec;
 
-/// How a surface is curved.
+/// The curvature class of a surface.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(super) enum Shape {
     Plane,
-    /// Along one direction at each point, as a cylinder or a cone.
+    /// Curved along one direction at each point, as a cylinder or a cone.
     Ruled,
     Bent,
 }
@@ -32,23 +32,22 @@ pub(super) struct Figures {
     list: Vec<Figure>,
 }
 
-/// A cylinder or a cone has a determinant that is no greater part than this of the product that it is a sum
-/// of.
+/// The greatest determinant of a cylinder or a cone, as a part of the product whose sum it is.
 const SINGULAR: f64 = 1e-9;
 
-/// Half the edge of a cube in which a function is known well enough for its value and its gradient at the
-/// centre: a power of two.
+/// Half the edge of the cube in which a function is expanded to get its value and its gradient at the centre:
+/// a power of two.
 const NEAR: f64 = 1.0 / (1u64 << 24) as f64;
 
-/// Steps of Newton's method.
+/// The number of Newton steps.
 const STEPS: usize = 24;
 
-/// Steps along an edge.
+/// The number of steps along an edge.
 const HALVINGS: usize = 80;
 
-/// Of a host program's function no gradient is known.
+/// The error for a host program's function, whose gradient is unknown.
 pub(super) const UNKNOWN: Error =
-    Error::Argument { name: "solid", problem: "must consist of surfaces that are known" };
+    Error::Argument { name: "solid", problem: "must consist of surfaces with known functions" };
 
 pub(super) fn dot(a: [f64; 3], b: [f64; 3]) -> f64 {
     a[0] * b[0] + a[1] * b[1] + a[2] * b[2]
@@ -88,8 +87,8 @@ impl Figures {
         self.list[surface as usize].shape
     }
 
-    /// Whether a point lies on the positive side of a surface. A point on it is taken as a point a little
-    /// further along x, y and z.
+    /// Returns whether a point lies on the positive side of a surface. A point on the surface is treated as a
+    /// point a little further along x, y and z.
     pub(super) fn is_positive(&self, surface: u32, at: [f64; 3]) -> Result<bool, Error> {
         let placed = &self.list[surface as usize].placed;
         if !matches!(placed, Placed::Slab(_))
@@ -97,11 +96,11 @@ impl Figures {
         {
             return Ok(side);
         }
-        // Within the width of a plane its middle counts.
+        // For a plane with a width, its middle decides.
         Ok(self.about(surface, at).0 >= 0.0)
     }
 
-    /// What is known of a surface's function in a cell.
+    /// The Taylor expansion of a surface's function in a cell, if it is known.
     pub(super) fn taylor(&self, surface: u32, cell: Cell) -> Option<Taylor> {
         let half = 0.5 / f64::from(1u32 << cell.level);
         let centre = cell.at.map(|at| (2.0 * f64::from(at) + 1.0) * half);
@@ -112,8 +111,8 @@ impl Figures {
         Some(self.near(surface, centre, half)?.0)
     }
 
-    /// What is known of a surface's function in a cube, by how much the surface may differ from where that is
-    /// 0, and whether the terms are all that the function has.
+    /// The Taylor expansion of a surface's function in a cube, the greatest deviation of the surface from the
+    /// zeros of this function, and whether the function has no further terms.
     pub(super) fn near(&self, surface: u32, centre: [f64; 3], half: f64) -> Option<(Taylor, f64, bool)> {
         let placed = &self.list[surface as usize].placed;
         match placed {
@@ -136,14 +135,15 @@ impl Figures {
         }
     }
 
-    /// About how far a point is from a surface.
+    /// The approximate distance of a point from a surface.
     pub(super) fn distance(&self, surface: u32, at: [f64; 3]) -> f64 {
         let (value, gradient) = self.about(surface, at);
         let away = value.abs() / length(gradient);
         if away.is_finite() { away } else { 0.0 }
     }
 
-    /// Where a segment along an axis, whose ends lie on different sides of a surface, meets it.
+    /// The place where a segment along an axis meets a surface. The ends of the segment lie on different
+    /// sides of the surface.
     pub(super) fn on_edge(&self, surface: u32, axis: usize, from: [f64; 3], to: f64) -> f64 {
         let at = |x: f64| {
             let mut point = from;
@@ -153,7 +153,7 @@ impl Figures {
         };
         let (mut low, mut high) = (from[axis], to);
         let (first, last) = (at(low).0, at(high).0);
-        // (Next to a corner, rounding may show both ends on one side.)
+        // (Next to a corner, rounding may put both ends on one side.)
         if first == 0.0 || first * last > 0.0 && first.abs() <= last.abs() {
             return low;
         }
@@ -181,8 +181,8 @@ impl Figures {
         x
     }
 
-    /// A point next to another one on up to three surfaces, which keeps a coordinate if that is said: by
-    /// steps that are as short as they can be. Nothing if there is none.
+    /// A point on up to three surfaces near another point, found by the shortest possible steps. If `kept` is
+    /// given, this coordinate stays constant. `None` if no such point is found.
     pub(super) fn onto(&self, surfaces: &[u32], kept: Option<usize>, start: [f64; 3]) -> Option<[f64; 3]> {
         let mut point = start;
         let mut before = f64::INFINITY;
@@ -212,7 +212,7 @@ impl Figures {
     }
 }
 
-/// The shortest vector whose products with up to three unit vectors are `values`.
+/// The shortest vector whose dot products with up to three unit vectors are `values`.
 pub(super) fn shortest(rows: &[[f64; 3]], values: &[f64; 3]) -> Option<[f64; 3]> {
     let factors = match *rows {
         [a] => {
@@ -227,7 +227,7 @@ pub(super) fn shortest(rows: &[[f64; 3]], values: &[f64; 3]) -> Option<[f64; 3]>
             [(x * bb - y * ab) / determinant, (y * aa - x * ab) / determinant, 0.0]
         }
         [a, b, c] => {
-            // Of three, the vector itself by Cramer's rule.
+            // With three vectors, the solution is unique (Cramer's rule).
             let cross = |p: [f64; 3], q: [f64; 3]| {
                 [p[1] * q[2] - p[2] * q[1], p[2] * q[0] - p[0] * q[2], p[0] * q[1] - p[1] * q[0]]
             };
@@ -243,7 +243,7 @@ pub(super) fn shortest(rows: &[[f64; 3]], values: &[f64; 3]) -> Option<[f64; 3]>
     vector.iter().all(|c| c.is_finite()).then_some(vector)
 }
 
-/// Whether the surface of a polynomial of degree two is a cylinder or a cone: whether its matrix of four rows
+/// Returns whether the surface of a polynomial of degree two is a cylinder or a cone: whether its 4×4 matrix
 /// is singular.
 fn is_ruled(f: &Quadratic) -> bool {
     let ([x, y, z], [xx, yy, zz, xy, xz, yz]) = (f.gradient.map(|c| 0.5 * c), f.squares);

@@ -1,5 +1,5 @@
-//! Cells in which no vertex is taken out, nor in those beside them, because the mesh was too far from the
-//! boundary there.
+//! Cells whose vertices stay, because the mesh was too far from the boundary there. The vertices of the
+//! neighbouring cells stay, too.
 
 use crate::error::Error;
 use crate::lattice::{Cell, axes};
@@ -22,8 +22,8 @@ impl Held {
         Ok(())
     }
 
-    /// Which points (unit coordinates) lie in a cell or in one of the 26 of its size around it. (Triangles
-    /// that reach into the cell from there would go on changing.)
+    /// Returns for each point (unit coordinates) whether it lies in a held cell or in one of the 26 cells of
+    /// its size around it. (Otherwise triangles that reach into the cell from there would still change.)
     pub(super) fn chosen(&self, points: impl ExactSizeIterator<Item = [f64; 3]>) -> Result<Vec<bool>, Error> {
         let mut levels = [false; 32];
         self.cells.iter().for_each(|cell| levels[usize::from(cell.0 & 31)] = true);

@@ -1,9 +1,9 @@
-//! Where one surface goes over into another one that touches it: as where a ball ends a round bar, or the
-//! round end of a slot begins.
+//! Joints: places where one surface continues as another one that touches it, for example where a ball ends a
+//! round bar, or where the round end of a slot begins.
 //!
-//! Such surfaces, a and b, have a plane p through the curve in which they touch, on which both are 0 in the
-//! same places: b = m a there. On one side of p the solid depends on a alone, and on the other one on b
-//! alone. So the boundary is a single smooth sheet, which has an edge on p.
+//! Such surfaces, a and b, have a plane p through the curve in which they touch. On p both functions are 0 in
+//! the same places: b = m a there. On one side of p the solid depends on a alone, and on the other side on b
+//! alone. So the boundary is a single smooth sheet with an edge on p.
 
 use super::figures::{Figures, length};
 use super::redundant::{least_squares, never, rest, without};
@@ -11,30 +11,31 @@ use super::scaled::{Scaled, Terms};
 use crate::lattice::{Cell, axes};
 use crate::solid::OpenSurfaces;
 
-/// The boundary may be further by no more than this from where the surfaces of a joint have it (edges of the
-/// universe).
+/// The greatest deviation of the boundary from the surfaces of a joint (edges of the universe).
 const SLACK: f64 = 1e-9;
 
-/// The functions of surfaces that are nearly one on a plane differ by less there (half edges of the cell).
+/// The greatest difference on a plane of two functions that are nearly the same there (half edges of the
+/// cell).
 const NEAR: f64 = 1e-6;
 
-/// The factor m is no smaller in a cell.
+/// The least factor m in a cell.
 const FACTOR: f64 = 0.1;
 
 /// Half the diagonal of a cell in half edges.
 const DIAGONAL: f64 = 1.733;
 
-/// The places of three surfaces in the list of a cell.
+/// A joint, by the places of three surfaces in the list of a cell.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(super) struct Joint {
     pub(super) plane: usize,
-    /// Where the plane's function is negative the boundary lies on the first one, else on the second.
+    /// Where the plane's function is negative, the boundary lies on the first surface, otherwise on the
+    /// second.
     pub(super) sides: [usize; 2],
 }
 
 impl Joint {
-    /// The joint in a cell that depends on three surfaces, the function in which it is seen, and by how much
-    /// the boundary may be elsewhere (edges of the universe).
+    /// Finds the joint in a cell that depends on three surfaces. Also returns the function that shows the
+    /// joint, and the greatest deviation of the boundary (edges of the universe).
     pub(super) fn find(
         figures: &Figures,
         cell: Cell,
@@ -68,8 +69,8 @@ impl Joint {
     }
 }
 
-/// Three surfaces of a cell through the point in which a joint ends: the plane of the joint, one of the two
-/// surfaces that touch, and one that cuts them off. `None` if there is no such point.
+/// Returns three surfaces of a cell through the point in which a joint ends: the plane of the joint, one of
+/// the two touching surfaces, and one that cuts them off. `None` if there is no such point.
 pub(super) fn end(figures: &Figures, cell: Cell, open: &OpenSurfaces) -> Option<[u32; 3]> {
     let surfaces = open.indices();
     let count = surfaces.len();
@@ -92,7 +93,8 @@ pub(super) fn end(figures: &Figures, cell: Cell, open: &OpenSurfaces) -> Option<
     })
 }
 
-/// How far the function of a surface may be from a positive multiple of another one's on a plane in the cell.
+/// The greatest deviation of a surface's function from a positive multiple of another one's, on a plane in
+/// the cell.
 fn off(a: &Scaled, b: &Scaled, plane: &Scaled, is_turned: bool) -> Option<f64> {
     let (normal, away) = (plane.normal(), plane.terms[0]);
     let foot = axes(|k| -away * normal[k]);
@@ -105,7 +107,7 @@ fn off(a: &Scaled, b: &Scaled, plane: &Scaled, is_turned: bool) -> Option<f64> {
         let (i, j) = ((k + 1) % 3, (k + 2) % 3);
         normal[i] * first[j] - normal[j] * first[i]
     });
-    // A plane times a linear function, or a quadric times a number.
+    // Either a plane times a linear function, or a quadric times a number.
     let (flat, other) = if b.is_plane { (b, a) } else { (a, b) };
     let [flat_on, other_on] = [flat, other].map(|known| on_plane(&known.terms, foot, [first, second]));
     let [f, u, v, ..] = flat_on;
@@ -121,7 +123,8 @@ fn off(a: &Scaled, b: &Scaled, plane: &Scaled, is_turned: bool) -> Option<f64> {
         }
     };
     let sign = if is_turned { -1.0 } else { 1.0 };
-    // No place of the cell is further than that from its centre, and so none on the plane from its foot.
+    // No point of the cell is further than the half diagonal from its centre. So no point of the cell on the
+    // plane is further from the foot.
     let least = sign * factors[0] - DIAGONAL * (factors[1].abs() + factors[2].abs());
     if least.is_nan() || least < FACTOR {
         return None;
@@ -131,7 +134,7 @@ fn off(a: &Scaled, b: &Scaled, plane: &Scaled, is_turned: bool) -> Option<f64> {
     Some(DIAGONAL * DIAGONAL * off + a.error + b.error)
 }
 
-/// A polynomial on a plane: the terms 1, u, v, u², u v, v².
+/// A polynomial restricted to a plane: the terms 1, u, v, u², u v, v².
 fn on_plane(terms: &Terms, at: [f64; 3], [p, q]: [[f64; 3]; 2]) -> [f64; 6] {
     let [value, x, y, z, xx, yy, zz, xy, xz, yz] = *terms;
     let product = |a: [f64; 3], b: [f64; 3]| {

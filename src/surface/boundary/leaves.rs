@@ -1,4 +1,4 @@
-//! The cells of a boundary evaluation: where the surfaces in them have a simple arrangement.
+//! The cells of a boundary evaluation: split until the surfaces in each cell have a simple arrangement.
 
 use super::figures::{Figures, Shape, dot};
 use super::joint::Joint;
@@ -19,10 +19,10 @@ use alloc::vec::Vec;
 pub(super) enum Leaf {
     Empty,
     Full,
-    /// Its number among those that are not decided.
+    /// The number of the cell among the open ones.
     Open(u32),
     Branch(u32),
-    /// What lies around the universe.
+    /// The space around the universe.
     Outside,
 }
 
@@ -30,11 +30,11 @@ pub(super) enum Leaf {
 #[derive(Debug, Clone, Copy)]
 pub(super) struct OpenLeaf {
     pub(super) cell: Cell,
-    /// The function that the solid is in it, if that is known.
+    /// The function that describes the solid in the cell, if it is known.
     pub(super) open: Option<OpenSurfaces>,
-    /// Whether the surfaces cross each other at most once in each of its faces.
+    /// Whether the surfaces cross each other at most once in each face of the cell.
     pub(super) is_simple: bool,
-    /// Two of them that touch each other, of a simple cell.
+    /// Two touching surfaces of a simple cell.
     pub(super) joint: Option<Joint>,
 }
 
@@ -45,43 +45,43 @@ pub(super) struct Leaves {
     pub(super) root: Leaf,
     pub(super) depth: u8,
     pub(super) splits: u64,
-    /// By how much the boundary may be elsewhere where surfaces were left out (edges of the universe).
+    /// The greatest deviation of the boundary where surfaces were left out (edges of the universe).
     pub(super) slack: f64,
-    /// Finest cells in which no surface is known.
+    /// The number of finest cells in which no surface is known.
     unknown: u32,
 }
 
-/// So many finest cells without a known surface are no points or lines in which surfaces meet, but a boundary
-/// that is none of surfaces.
+/// More finest cells without a known surface than this are not points or lines in which surfaces meet, but a
+/// boundary without surfaces.
 const UNKNOWN_CELLS: u32 = 1 << 16;
 
-/// A mesh or a host program's function bounds a part of the solid.
+/// The error if a mesh or a host program's function bounds a part of the solid.
 const MIXED: Error = Error::Argument {
     name: "solid",
-    problem: "is bounded by more than surfaces that are known; a contour or dual contouring takes any solid",
+    problem: "is bounded by something other than known surfaces; a contour or dual contouring takes any solid",
 };
 
-/// Most surfaces of a simple cell.
+/// The greatest number of surfaces in a simple cell.
 pub(super) const MOST: usize = 3;
 
-/// No normal of a surface in a simple cell is further than this from that at its centre (its sine).
+/// The sine of the greatest angle between a surface's normals in a simple cell and its normal at the centre.
 const CONE: f64 = 0.6;
 
-/// When cells end.
+/// The conditions under which cells end.
 pub(super) struct Wanted<'w> {
     pub(super) figures: &'w Figures,
-    /// How far chords may be from surfaces, in edges of the universe.
+    /// The greatest distance of chords from surfaces, in edges of the universe.
     pub(super) tolerance: f64,
     /// Cells that are split although they look simple.
     pub(super) refused: &'w Refused,
-    /// Parts of the work that all of the universe is.
+    /// The progress units of the whole universe.
     pub(super) parts: usize,
 }
 
 /// Cells that are not as simple as they look.
 #[derive(Default)]
 pub(super) struct Refused {
-    /// In ascending order, but for those behind the first `known`.
+    /// The first `known` cells are in ascending order.
     cells: Vec<(u8, [u32; 3])>,
     known: usize,
 }
@@ -91,12 +91,12 @@ impl Refused {
         memory::push(&mut self.cells, (cell.level, cell.at))
     }
 
-    /// Whether a cell was refused before the last [`settle`](Self::settle).
+    /// Returns whether a cell was refused before the last [`settle`](Self::settle).
     fn contains(&self, cell: Cell) -> bool {
         self.cells[..self.known].binary_search(&(cell.level, cell.at)).is_ok()
     }
 
-    /// Takes in what was added. `false` if that is nothing new.
+    /// Sorts in the added cells. `false` if there are no new ones.
     pub(super) fn settle(&mut self) -> bool {
         let before = self.known;
         self.cells.sort_unstable();
@@ -121,7 +121,7 @@ impl Leaves {
         Ok(leaves)
     }
 
-    /// Takes in a cell, and reports it.
+    /// Adds a cell, and reports it.
     fn add<W: Worker>(
         &mut self,
         cell: Cell,
@@ -195,7 +195,8 @@ impl Leaves {
     }
 }
 
-/// Whether the boundary in a cell lies between two planes that are nearer to each other than the tolerance.
+/// Returns whether the boundary in a cell lies between two planes that are nearer to each other than half the
+/// tolerance.
 fn is_thin<W: Worker>(
     worker: &mut W,
     cell: Cell,
@@ -211,7 +212,7 @@ fn is_thin<W: Worker>(
 }
 
 impl Wanted<'_> {
-    /// Reports a cell that is done.
+    /// Reports a cell as done.
     fn report(&self, cell: Cell, job: &Job<'_>) {
         let parts = self.parts >> (3 * u32::from(cell.level)).min(usize::BITS - 1);
         if parts > 0 {
@@ -219,9 +220,9 @@ impl Wanted<'_> {
         }
     }
 
-    /// Whether the boundary in a cell lies within the tolerance of one nearly flat surface: if those surfaces
-    /// count as one that are so near to each other, as where a ball ends a round bar, it depends on that one
-    /// alone.
+    /// Returns whether the boundary in a cell lies within the tolerance of one nearly flat surface. Surfaces
+    /// that are very near to each other count as one, as where a ball ends a round bar; the solid must then
+    /// depend on one surface only.
     fn is_merged(&self, cell: Cell, open: &OpenSurfaces) -> bool {
         let most = 0.4 * self.tolerance / (0.5 / f64::from(1u32 << cell.level));
         let mut known = [Scaled::default(); OpenSurfaces::MOST];
@@ -246,8 +247,8 @@ impl Wanted<'_> {
         }
     }
 
-    /// Whether the surfaces in a cell are nearly flat, and cross each other at angles, but for two that touch
-    /// in a joint.
+    /// Returns whether the surfaces in a cell are nearly flat, and cross each other at clear angles, except
+    /// two that touch in a joint.
     fn is_simple(&self, cell: Cell, open: &OpenSurfaces, joint: Option<Joint>) -> bool {
         if open.indices().len() > MOST {
             return false;
@@ -267,7 +268,7 @@ impl Wanted<'_> {
             if shape == Shape::Plane {
                 continue;
             }
-            // How far the surface is from its tangent plane.
+            // The distance of the surface from its tangent plane.
             let [xx, yy, zz, xy, xz, yz] = taylor.f.squares.map(f64::abs);
             let rise = (xx + yy + zz + 2.0 * (xy + xz + yz) + taylor.f.error) / steep * half;
             if shape == Shape::Bent && rise > 1.5 * self.tolerance {
@@ -296,8 +297,8 @@ impl Wanted<'_> {
     }
 }
 
-/// Whether a surface leaves a cell through an edge or a face and comes back by the same, by more than `most`
-/// (in half edges).
+/// Returns whether a surface leaves a cell through an edge or a face and comes back through the same one, by
+/// more than `most` (in half edges).
 fn bulges(f: &Quadratic, steep: f64, most: f64) -> bool {
     let ([a, b, c], [xx, yy, zz, xy, xz, yz]) = (f.gradient, f.squares);
     let square = [[xx, xy, xz], [xy, yy, yz], [xz, yz, zz]];

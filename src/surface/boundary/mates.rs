@@ -1,10 +1,10 @@
-//! Which triangles lie on the other side of the sides of each.
+//! Adjacency of triangles across their sides.
 
 use crate::error::Error;
 use crate::memory;
 use alloc::vec::Vec;
 
-/// The triangles on the other side of the sides of each; `None` if a side has not exactly one.
+/// Returns for each triangle the triangles across its sides; `None` if a side does not have exactly one.
 pub(super) fn mates(triangles: &[[u32; 3]]) -> Result<Option<Vec<[u32; 3]>>, Error> {
     let mut sides = memory::with_capacity(3 * triangles.len())?;
     for (number, triangle) in (0u32..).zip(triangles) {

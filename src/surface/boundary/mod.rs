@@ -3,16 +3,16 @@
 //! (Requicha and Voelcker, *Boolean operations in solid modeling: boundary evaluation and merging
 //! algorithms*, 1985; Brunet and Navazo, *Solid representation and operation using extended octrees*, 1990.)
 //!
-//! Cells are split until the surfaces in each have a simple arrangement. Then edges of cells are crossed by
-//! surfaces where these have different signs at the ends, faces have arcs between such crossings, and cells
-//! have polygons between such arcs. All of that is decided by signs at corners of the lattice, which
-//! neighbours share, so that the result is closed. Places are found last.
+//! Cells are split until the surfaces in each have a simple arrangement. Then surfaces cross the edges of
+//! cells where they have different signs at the ends, faces have arcs between such crossings, and cells have
+//! polygons between such arcs. Signs at corners of the lattice decide all of this. Neighbours share the
+//! signs, so the result is closed. Places are computed last.
 //!
 //! From the bottom up, each file uses only files named before it: `figures` (surfaces as functions), `scaled`
-//! (two functions beside each other), `redundant` (which surfaces need not be known), `joint` (which of them
-//! touch), `leaves` (the cells), `walk` (their minimal faces and edges), `edges`, `curve` (curves as chords),
-//! `faces`, `cells`, `patches` (triangles), `held` (where these stay), `mates`, `proof`, `regions` (triangles
-//! on one surface as faces).
+//! (comparing two functions), `redundant` (surfaces that need not be known), `joint` (touching surfaces),
+//! `leaves` (the cells), `walk` (their minimal faces and edges), `edges`, `curve` (curves as chords),
+//! `faces`, `cells`, `patches` (triangles), `held` (places whose triangles stay), `mates`, `proof`, `regions`
+//! (triangles on one surface as faces).
 
 mod cells;
 mod curve;
@@ -53,7 +53,7 @@ use patches::Patches;
 use proof::{Known, prove};
 pub use regions::{BoundaryFaces, BoundaryRegion};
 
-/// The boundary of a solid: a mesh whose triangles know their surfaces.
+/// The boundary of a solid: a mesh that stores the surface of each triangle.
 pub struct Boundary {
     mesh: TriangleMesh,
     surfaces: Vec<PlacedHalfSpace>,
@@ -61,48 +61,48 @@ pub struct Boundary {
     report: BoundaryReport,
 }
 
-/// How a boundary was found.
+/// A report on a boundary evaluation.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct BoundaryReport {
-    /// Pairs of triangles that intersect each other, as [`TriangleMesh::intersecting_pairs`] counts them.
+    /// The number of pairs of intersecting triangles, counted as by [`TriangleMesh::intersecting_pairs`].
     pub intersecting_pairs: u64,
-    /// Cells that the boundary passes through.
+    /// The number of cells that the boundary passes through.
     pub cells: u64,
-    /// Cells that were split.
+    /// The number of cells that were split.
     pub splits: u64,
-    /// No point of the mesh is further from the solid's boundary than that, and none of the boundary from the
-    /// mesh (model units): proven. Infinite if nothing is known.
+    /// A proven bound of the distance of the mesh from the solid's boundary, and of the boundary from the
+    /// mesh (model units). Infinite if nothing is known.
     pub deviation: f64,
 }
 
 impl Boundary {
-    /// The triangles.
+    /// The mesh.
     pub fn mesh(&self) -> &TriangleMesh {
         &self.mesh
     }
 
-    /// The triangles.
+    /// Returns the mesh.
     pub fn into_mesh(self) -> TriangleMesh {
         self.mesh
     }
 
-    /// How it was found.
+    /// The report on the evaluation.
     pub fn report(&self) -> &BoundaryReport {
         &self.report
     }
 
-    /// The surfaces that the solid is made of.
+    /// The surfaces of which the solid is made.
     pub fn surfaces(&self) -> &[PlacedHalfSpace] {
         &self.surfaces
     }
 
-    /// The number of the surface that a triangle lies on, but for chords; `None` where the boundary is known
-    /// to a cell only.
+    /// Returns the number of the surface on which a triangle lies (up to its chords); `None` where the
+    /// boundary is only known to a cell.
     pub fn surface_of(&self, triangle: usize) -> Option<u32> {
         self.of_triangles.get(triangle).copied().filter(|&surface| surface != NONE)
     }
 
-    /// The faces: plane ones as polygons, curved ones as triangles, each with its surface.
+    /// Returns the faces: plane ones as polygons, curved ones as triangles, each with its surface.
     ///
     /// ```
     /// use leafless::{Control, Csg, Frame, mesh::Polyhedron, surface::boundary};
@@ -134,68 +134,69 @@ impl Boundary {
     }
 }
 
-/// How often the cells are made anew where some were not as simple as they looked.
+/// How often the cells are rebuilt if some are not as simple as they looked.
 const ROUNDS: usize = 24;
 
-/// How often a proof that is not good enough is begun anew with smaller cells.
+/// How often an insufficient proof is repeated with smaller cells.
 const PROOFS: usize = 6;
 
-/// Intersecting pairs that are looked at in one round.
+/// The greatest number of intersecting pairs that one round examines.
 const PAIRS: usize = 4096;
 
-/// How far surfaces may rise between the sides of a cell, and chords of edges be from these, as parts of the
-/// tolerance.
+/// The greatest rise of a surface between the sides of a cell, and the greatest distance of chords from
+/// edges, as parts of the tolerance.
 const CELLS: f64 = 0.8;
 const CHORDS: f64 = 0.5;
 
-/// How far the surface may move where vertices are taken out, as a part of the tolerance.
+/// The greatest movement of the surface by removing vertices, as a part of the tolerance.
 const FEWER: f64 = 0.35;
 
-/// How far the lattice is moved, as parts of the edge: so that no face of a part with round dimensions lies
-/// in it.
+/// The shift of the lattice, as parts of the edge. With it, no face of a part with round dimensions lies in
+/// the lattice.
 const SHIFTS: [f64; 3] = [0.013_371, 0.017_317, 0.011_831];
 const LARGER: f64 = 1.031_77;
 
-/// The boundary of a solid that knows its surfaces, as expressions of half-spaces do, and octrees that keep
-/// theirs ([`build_extended`](crate::build_extended)): its plane faces as they are, and curved ones in
-/// chords. The solid must end inside of the universe of `frame`. The boundary of a closed mesh whose
-/// triangles do not intersect is the mesh, [simplified](super::simplify()), without triangles inside of other
-/// bodies.
+/// Evaluates the boundary of a solid that provides its surfaces: expressions of half-spaces, and octrees that
+/// keep surfaces ([`build_extended`](crate::build_extended)). Plane faces are exact, and curved faces are
+/// approximated by chords. The solid must end inside the universe of `frame`. For a closed mesh without
+/// intersecting triangles, the boundary is the mesh, [simplified](super::simplify()), without triangles
+/// inside other bodies.
 ///
-/// Vertices that are not needed within the tolerance are taken out, along edges and within the pieces of one
+/// Vertices that are not needed within the tolerance are removed, along edges and within the pieces of one
 /// surface, so that walls of cylinders and cones have triangles from end to end.
 ///
-/// A plane face becomes triangles between its corners alone, whatever its shape, and a corner is the point in
+/// A plane face becomes triangles between its corners only, whatever its shape. A corner is the point in
 /// which its surfaces meet, to rounding (some 10^-15 of the coordinates). Where two plane faces meet, they
-/// have a straight edge without further vertices. Vertices on curved edges lie on both surfaces, all others
-/// on theirs. No side of a triangle is further from its surface than about `tolerance` (model units) in its
-/// middle, and no triangle in its own. So the number of triangles does not depend on cells: a box has 12, a
-/// bore some π √(2 r / `tolerance`) in a strip around.
+/// have a straight edge without further vertices. Vertices on curved edges lie on both surfaces; all other
+/// vertices lie on their surface. The middle of each side of a triangle, and the middle of the triangle, are
+/// within about `tolerance` (model units) of the surface. So the number of triangles does not depend on
+/// cells: a box has 12 triangles, a bore about π √(2 r / `tolerance`) in a strip around it.
 ///
 /// The mesh is closed, and exactly two triangles meet in each edge. Where the solid touches itself in a line
-/// or a point, vertices lie at one place. [`BoundaryReport::intersecting_pairs`] tells whether triangles
-/// intersect each other; cells are split until none do, or there are no finer ones.
+/// or a point, several vertices lie at one place. [`BoundaryReport::intersecting_pairs`] counts intersecting
+/// triangles. Cells are split until there are none, or until the finest cells are reached.
 ///
-/// Where no triangle is left of a solid that is thinner than a finest cell, [`BoundaryReport::deviation`] is
-/// infinite, unless the solid is proven to be empty: it may be somewhere in the cells.
+/// If no triangle remains of a solid that is thinner than a finest cell, [`BoundaryReport::deviation`] is
+/// infinite, because the solid may be anywhere in the cells. It is finite if the solid is proven to be empty.
 ///
-/// [`BoundaryReport::deviation`] is proven, by the surfaces and not by how the mesh was made. From the mesh
-/// to the boundary: all of a triangle comes to lie inside by one short step, and outside by another one, so
-/// that the boundary lies between. From the boundary to the mesh: the triangles of a surface, seen along its
-/// normal, cover what bounds the solid on it, up to sides of which the functions of the other surfaces tell
-/// how far it goes on. Where the proof is not within the tolerance, cells are split a few times. What is left
-/// beyond it (edges in which the solid touches itself, and finest cells) is told as it is.
+/// [`BoundaryReport::deviation`] is proven from the surfaces, independently of how the mesh was made. From
+/// the mesh to the boundary: one short step moves the whole triangle inside, and another one outside, so the
+/// boundary lies between. From the boundary to the mesh: the triangles of a surface, seen along its normal,
+/// cover the part of the surface that bounds the solid. At the sides where the triangles end, the functions
+/// of the other surfaces bound how far the part can go on. If the proven distance exceeds the tolerance,
+/// cells are split a few more times. Any larger deviation that remains (at edges in which the solid touches
+/// itself, and in finest cells) is reported as it is.
 ///
-/// Cells are split until there are at most three surfaces in each that are nearly flat and cross at angles,
-/// or two that touch along a curve on a plane and go over into one another there. Where more meet in a point,
-/// and where surfaces touch otherwise, cells are split as far as the depth of the frame, and the boundary is
-/// known to a finest cell there: a depth of 12 to 16 is good for parts, and costs little, because only such
-/// places are cut that far. What is thinner than such a cell may vanish there. The lattice is not that of the
-/// frame but lies a little beside it, so that faces may lie in planes of the frame's lattice.
+/// Cells are split until each has at most three surfaces that are nearly flat and cross at angles, or two
+/// surfaces that touch along a curve on a plane and continue each other there. Where more surfaces meet in a
+/// point, and where surfaces touch otherwise, cells are split down to the depth of the frame, and the
+/// boundary is only known to a finest cell there. A depth of 12 to 16 is good for parts, and costs little,
+/// because only such places are cut that far. A part thinner than such a cell may vanish there. The lattice
+/// is shifted a little against that of the frame, so that faces may lie in planes of the frame's lattice.
 ///
-/// Some 50 µs a cell, most of it for the proof, which several threads share. The result depends on the solid,
-/// the frame and the tolerance alone. The memory is that of the cells and of the triangles, some 500 bytes a
-/// cell; `control.max_nodes` bounds the splits.
+/// The time is about 50 µs per cell, most of it for the proof, which several threads share. The result
+/// depends only on the solid, the frame and the tolerance. The memory is that of the cells and of the
+/// triangles, about 500 bytes per cell; `control.max_nodes` bounds the splits.
 ///
 /// ```
 /// use leafless::{Control, Csg, Frame, surface::boundary};
@@ -209,10 +210,10 @@ const LARGER: f64 = 1.031_77;
 /// ```
 ///
 /// # Errors
-/// [`Error::Argument`] if the solid is not known to end inside of the universe, if something else than
-/// surfaces bounds it in more than 65,536 finest cells, as in an expression of meshes and half-spaces or with
-/// a host program's function (a [`contour`](crate::surface::contour()) takes any solid), or if `tolerance` is
-/// not between 2^-256 and 2^256; the solid's own; [`Error::Limit`], [`Error::OutOfMemory`], and
+/// [`Error::Argument`] if the solid is not known to end inside the universe, if something other than surfaces
+/// bounds it in more than 65,536 finest cells (as in an expression of meshes and half-spaces, or with a host
+/// program's function; a [`contour`](crate::surface::contour()) takes any solid), or if `tolerance` is not
+/// between 2^-256 and 2^256; the errors of the solid; [`Error::Limit`], [`Error::OutOfMemory`], and
 /// [`Error::Cancelled`].
 pub fn boundary<S: Solid>(
     solid: &S,
@@ -229,7 +230,7 @@ pub fn boundary<S: Solid>(
     let found = match solid.home() {
         None => evaluate(&solid.on(&lattice, control)?, tolerance, &job)?,
         Some(home) => {
-            // A stored octree is known on its own lattice alone.
+            // A stored octree can only be evaluated on its own lattice.
             let moved = Transform::new(solid, &home, &Affine::IDENTITY);
             evaluate(&moved.on(&lattice, control)?, tolerance, &job)?
         }
@@ -253,7 +254,7 @@ fn evaluate<C: Classifier>(classifier: &C, tolerance: f64, job: &Job<'_>) -> Res
     let (mut refused, mut held) = (Refused::default(), Held::default());
     let (mut round, mut proofs, mut known) = (0, 0, Known::default());
     loop {
-        // (How many rounds there will be is not known: the first one is taken for all.)
+        // (The number of rounds is not known in advance, so progress treats the first one as all.)
         let parts = if round == 0 { WHOLE / 8 } else { 0 };
         let wanted = Wanted { figures: &figures, tolerance: bent, refused: &refused, parts: 2 * parts };
         let leaves = Leaves::grow(classifier, &wanted, job)?;
@@ -292,7 +293,7 @@ fn evaluate<C: Classifier>(classifier: &C, tolerance: f64, job: &Job<'_>) -> Res
         let mut reduction = Reduction::new(&mesh, numbers, slack)?;
         reduction.keep(&held.chosen(mesh.vertices().iter().map(unit))?);
         if proofs + 2 >= PROOFS {
-            // At last all vertices stay.
+            // In the last round all vertices stay.
             reduction.keep(&memory::filled(mesh.vertices().len(), true)?);
         }
         let (mesh, kept, pairs) = reduction.run(job, 0)?;
@@ -312,7 +313,7 @@ fn evaluate<C: Classifier>(classifier: &C, tolerance: f64, job: &Job<'_>) -> Res
     }
 }
 
-/// The boundary of a solid that is bounded by triangles: by fewer of them.
+/// The boundary of a solid that triangles bound, with fewer triangles.
 fn of_facets(facets: BoundaryFacets, tolerance: f64, control: &Control<'_>) -> Result<Boundary, Error> {
     let BoundaryFacets { mesh, chosen } = facets;
     let mut triangles = memory::copied(mesh.triangles())?;
@@ -333,18 +334,18 @@ fn of_facets(facets: BoundaryFacets, tolerance: f64, control: &Control<'_>) -> R
     Ok(Boundary { mesh, surfaces: Vec::new(), of_triangles, report })
 }
 
-/// A length in model units, with what places of vertices are rounded by.
+/// A length in model units, plus the rounding errors of vertices.
 fn rounded_up(most: f64, frame: &Frame) -> f64 {
     let far = frame.origin().iter().fold(frame.edge(), |most, c| most.max(c.abs()));
     most * frame.edge() * (1.0 + 1e-12) + 8.0 * f64::EPSILON * far
 }
 
-/// The same without reports of progress.
+/// The same control without progress reports.
 fn quiet<'c>(control: &Control<'c>) -> Control<'c> {
     Control { progress: None, ..*control }
 }
 
-/// The mesh, without vertices that no triangle has.
+/// The mesh, without vertices that no triangle uses.
 fn assemble(patches: &Patches, vertices: &[[f64; 3]], frame: &Frame) -> Result<TriangleMesh, Error> {
     let mut places = memory::filled(vertices.len(), NONE)?;
     let mut kept = Vec::new();
@@ -365,7 +366,7 @@ fn assemble(patches: &Patches, vertices: &[[f64; 3]], frame: &Frame) -> Result<T
     Ok(TriangleMesh::from_welded(kept, triangles, 0, 0))
 }
 
-/// Corners of which no surface tells.
+/// Corners that no surface decides.
 struct Points<'c, W: Worker> {
     trail: Trail<W>,
     frame: Frame,

@@ -1,4 +1,4 @@
-//! Triangles of polygons: plane faces as wholes, curved ones cell by cell.
+//! Triangles of polygons: plane faces as a whole, curved faces cell by cell.
 
 use super::cells::{Pieces, Polygon};
 use super::edges::NONE;
@@ -12,7 +12,7 @@ use crate::mesh::polygon::triangulate;
 use alloc::vec::Vec;
 use hashbrown::HashMap;
 
-/// Triangles with the surface that each lies on.
+/// Triangles with the surface of each.
 #[derive(Default)]
 pub(super) struct Patches {
     pub(super) triangles: Vec<[u32; 3]>,
@@ -22,14 +22,14 @@ pub(super) struct Patches {
 /// A part of the boundary on one plane.
 struct Region {
     surface: u32,
-    /// The loops one after the other, and where each ends; the first one is the outer one.
+    /// The loops one after the other, and the end of each; the outer loop comes first.
     corners: Vec<u32>,
     ends: Vec<usize>,
 }
 
 impl Patches {
-    /// The triangles of curved polygons, and of those that are none. Cells are `refused` whose triangles are
-    /// further from the surface than the tolerance.
+    /// Makes the triangles of curved polygons, and takes over the separate triangles. Cells whose triangles
+    /// are further from the surface than the tolerance are added to `refused`.
     pub(super) fn of_curves(
         pieces: &Pieces,
         figures: &Figures,
@@ -107,7 +107,7 @@ impl Patches {
     }
 }
 
-/// The least number of a group.
+/// The representative of a group: its least number.
 fn root(groups: &mut [u32], mut k: u32) -> u32 {
     while groups[k as usize] != k {
         groups[k as usize] = groups[groups[k as usize] as usize];
@@ -116,7 +116,7 @@ fn root(groups: &mut [u32], mut k: u32) -> u32 {
     k
 }
 
-/// The regions of polygons on one plane: what they have in common with each other is no boundary.
+/// Merges polygons on one plane into regions: common sides of two polygons are no boundary.
 fn merge(
     surface: u32,
     polygons: &[&Polygon],
@@ -124,7 +124,7 @@ fn merge(
     vertices: &[[f64; 3]],
     regions: &mut Vec<Region>,
 ) -> Result<(), Error> {
-    // Sides with the polygons that have them.
+    // The sides, each with its polygon.
     let mut sides: HashMap<(u32, u32), u32> = HashMap::new();
     let mut groups: Vec<u32> = memory::collected(0..polygons.len() as u32)?;
     for (number, polygon) in (0u32..).zip(polygons) {
@@ -143,7 +143,7 @@ fn merge(
             }
         }
     }
-    // The sides that are left, by groups.
+    // The remaining sides, by groups.
     let mut left = memory::with_capacity(sides.len())?;
     left.extend(sides.iter().map(|(&(from, to), &number)| (root(&mut groups, number), from, to)));
     left.sort_unstable();
@@ -165,7 +165,7 @@ fn merge(
                 memory::push(&mut loops, corners)?;
             }
         }
-        // The outer loop encloses the most.
+        // The outer loop encloses the largest area.
         let size = |corners: &Vec<u32>| {
             let area = area(corners, vertices);
             area.iter().map(|c| c * c).sum::<f64>()
@@ -195,9 +195,9 @@ pub(super) fn area(corners: &[u32], vertices: &[[f64; 3]]) -> [f64; 3] {
     sum
 }
 
-/// Which of the vertices lie between two plane regions alone: their edge is straight there.
+/// Returns for each vertex whether only two plane regions meet there. Their edge is straight there.
 fn straight(regions: &[Region], patches: &Patches, vertices: usize) -> Result<Vec<bool>, Error> {
-    // How often a vertex is a corner, up to three times, and the region of the first time.
+    // The number of times a vertex is a corner, up to three, and the region of the first time.
     let mut seen = memory::filled(vertices, (0u8, NONE))?;
     for (number, region) in (0u32..).zip(regions) {
         for &corner in &region.corners {
@@ -209,7 +209,7 @@ fn straight(regions: &[Region], patches: &Patches, vertices: usize) -> Result<Ve
             };
         }
     }
-    // Other triangles keep theirs.
+    // Vertices of other triangles stay.
     for &corner in patches.triangles.as_flattened() {
         seen[corner as usize].0 = 3;
     }

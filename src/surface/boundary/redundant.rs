@@ -1,33 +1,33 @@
-//! Surfaces that need not be known in a cell because others tell their sides: of three that meet in one
-//! curve, as where a chamfer ends on a round, the third; of two beside each other that are nearly parallel,
-//! as where a ball ends a round bar, that which bounds nothing.
+//! Surfaces that need not be known in a cell, because others determine their sides. One case is the third of
+//! three surfaces that meet in one curve, as where a chamfer ends on a round. Another case is one of two
+//! nearly parallel surfaces, as where a ball ends a round bar: the one that bounds nothing.
 //!
-//! Where b = c a + l p with factors c and l that keep their signs in a cell, a point at which c a and l p
-//! have the same sign has b of that sign, too: two of the eight combinations of signs cannot be. For two
-//! quadrics that meet in a plane p, l is a linear function, for three planes through a line it is constant.
-//! Where b − c a has one sign in the cell, or everywhere, one of the surfaces lies beside the other, or
-//! touches it.
+//! Suppose b = c a + l p, with factors c and l that keep their signs in a cell. Then b has the common sign of
+//! c a and l p wherever these have the same sign, so two of the eight combinations of signs are impossible.
+//! For two quadrics that meet in a plane p, l is a linear function; for three planes through a line it is
+//! constant. If b − c a has one sign in the cell, or everywhere, one of the surfaces lies beside the other,
+//! or touches it.
 
 use super::figures::{Figures, length};
 use super::scaled::{Scaled, Terms};
 use crate::lattice::Cell;
 use crate::solid::OpenSurfaces;
 
-/// The surfaces of a cell in which one is left out may be further by no more than this from where the others
-/// have them (edges of the universe): they are told by rounded numbers.
+/// The greatest deviation of the boundary in a cell in which a surface is left out (edges of the universe).
+/// It is caused by rounded numbers.
 const SLACK: f64 = 1e-9;
 
-/// The factors of an identity are no smaller, if all functions have slope 1 at the centre.
+/// The least factor of an identity, if all functions have slope 1 at the centre.
 const FACTOR: f64 = 1e-3;
 
-/// Surfaces of an identity cross each other at no smaller angle (its sine).
+/// The sine of the least angle at which surfaces of an identity cross each other.
 const SINE: f64 = 0.01;
 
-/// The unknown factors of an identity: c, and the four terms of l.
+/// The number of unknown factors of an identity: c, and the four terms of l.
 const UNKNOWN: usize = 5;
 
-/// The function of a cell without surfaces whose sides others tell, and by how much the boundary may be
-/// elsewhere (edges of the universe). `None` if there are none.
+/// The function of a cell without redundant surfaces, and the greatest deviation of the boundary (edges of
+/// the universe). `None` if no surface is redundant.
 pub(super) fn without_redundant(
     figures: &Figures,
     cell: Cell,
@@ -56,15 +56,15 @@ pub(super) fn without_redundant(
                 cannot_be |= never(count, [a, b], touch.is_turned, touch.is_above);
             }
             for p in (0..count).filter(|&p| p != a && p != b) {
-                // (What is told of a and b is told of b and a, if both are curved.)
+                // (If a and b are both curved, the result for a and b also holds for b and a.)
                 let is_new = known[p].is_plane && (a < b || known[a].is_plane);
                 let sine = least_sine(known, [a, b, p]);
                 if !is_new || sine < SINE {
                     continue;
                 }
                 let Some((positive, off)) = identity(known, [a, b, p]) else { continue };
-                // A point whose signs cannot be is next to all three surfaces, and the curve in which they
-                // meet is next to it.
+                // A point with an impossible combination of signs is near all three surfaces, and so near the
+                // curve in which they meet.
                 let away = 2.0 * off * half / sine;
                 if away > SLACK {
                     continue;
@@ -86,23 +86,22 @@ pub(super) fn without_redundant(
     Some((left_out(open, cannot_be)?, slack))
 }
 
-/// The combinations of signs in which surface b is on the wrong side of surface a: where one function (or its
-/// opposite, if it is turned) is positive and the other one is not, or the reverse.
+/// The combinations of signs in which surface b is on the wrong side of surface a. One function (or its
+/// opposite, if `is_turned`) is then positive while the other one is not, or the reverse.
 pub(super) fn never(count: usize, [a, b]: [usize; 2], is_turned: bool, is_above: bool) -> u64 {
     let is = |signs: u8, k: usize| signs >> k & 1 != 0;
     let never = |signs: &u8| (is(*signs, a) != is_turned) == is_above && is(*signs, b) != is_above;
     (0..1u8 << count).filter(never).fold(0, |all, signs| all | 1 << signs)
 }
 
-/// The function without a variable on which it depends in no combination that can be, and again. `None` if
-/// there are none.
+/// The function without the variables that do not matter in any possible combination. `None` if there are no
+/// such variables.
 fn left_out(open: &OpenSurfaces, cannot_be: u64) -> Option<OpenSurfaces> {
     let less = without(*open, cannot_be);
     (less != *open).then(|| less.shortened())
 }
 
-/// A function that does not depend on a variable on which it depends in no combination that can be, and
-/// again.
+/// Removes the dependence on each variable that does not matter in any possible combination.
 pub(super) fn without(mut open: OpenSurfaces, cannot_be: u64) -> OpenSurfaces {
     let count = open.indices().len();
     for k in 0..count {
@@ -122,14 +121,14 @@ pub(super) fn without(mut open: OpenSurfaces, cannot_be: u64) -> OpenSurfaces {
             }
         }
         if is_free {
-            // (Bits of variables that there are not repeat those of the others.)
+            // (The bits of missing variables repeat those of the others.)
             open = open.with_table((count..OpenSurfaces::MOST).fold(table, |table, k| table.with(k, false)));
         }
     }
     open
 }
 
-/// The least sine of an angle between two of three surfaces, wherever in the cell their normals are taken.
+/// The least sine of an angle between two of three surfaces, for all normals in the cell.
 fn least_sine(known: &[Scaled], of: [usize; 3]) -> f64 {
     let sine = |a: &Scaled, b: &Scaled| {
         let (n, m) = (a.normal(), b.normal());
@@ -140,7 +139,7 @@ fn least_sine(known: &[Scaled], of: [usize; 3]) -> f64 {
     sine(a, b).min(sine(a, p)).min(sine(b, p))
 }
 
-/// The product of a plane's function with a linear one.
+/// The product of a plane's function and a linear function.
 fn product(p: &Terms, l: &[f64; 4]) -> Terms {
     let [p0, x, y, z, ..] = *p;
     let [l0, u, v, w] = *l;
@@ -158,14 +157,14 @@ fn product(p: &Terms, l: &[f64; 4]) -> Terms {
     ]
 }
 
-/// Whether the factors are positive with which b = c a + l p, and how far a point may be from each of the
-/// surfaces (half edges of the cell) at which rounding makes it wrong. `None` if a factor has no sign.
+/// Returns the signs of the factors in b = c a + l p, and the greatest distance from the surfaces (half edges
+/// of the cell) at which rounding can make a sign wrong. `None` if a factor has no fixed sign.
 fn identity(known: &[Scaled], [a, b, p]: [usize; 3]) -> Option<([bool; 2], f64)> {
     let (own, given, plane) = (&known[b], &known[a], &known[p]);
     let unit = |k: usize| product(&plane.terms, &core::array::from_fn(|i| f64::from(u8::from(i == k))));
     let columns = [given.terms, unit(0), unit(1), unit(2), unit(3)];
     let mut factors = [0.0; UNKNOWN];
-    // The second time for what rounding left.
+    // The second pass corrects the rounding errors of the first.
     for _ in 0..2 {
         let rest = rest(&own.terms, &columns, &factors);
         let step = least_squares(&columns, &rest)?;
@@ -183,7 +182,7 @@ fn identity(known: &[Scaled], [a, b, p]: [usize; 3]) -> Option<([bool; 2], f64)>
     Some(([c > 0.0, l0 > 0.0], off))
 }
 
-/// What columns leave of a polynomial.
+/// The remainder of a polynomial after subtracting the columns times their factors.
 pub(super) fn rest<const N: usize, const M: usize>(
     of: &[f64; M],
     columns: &[[f64; M]; N],
@@ -194,7 +193,7 @@ pub(super) fn rest<const N: usize, const M: usize>(
     })
 }
 
-/// The factors of columns whose sum is nearest to a polynomial. `None` if there are several.
+/// The factors of columns whose sum is nearest to a polynomial. `None` if they are not unique.
 pub(super) fn least_squares<const N: usize, const M: usize>(
     columns: &[[f64; M]; N],
     of: &[f64; M],

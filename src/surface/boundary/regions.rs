@@ -1,4 +1,4 @@
-//! Faces of a boundary: what hangs together on one surface, plane faces as polygons.
+//! Faces of a boundary: connected parts on one surface, plane ones as polygons.
 
 use super::edges::NONE;
 use super::mates::mates;
@@ -12,19 +12,19 @@ use crate::solid::PlacedHalfSpace;
 use alloc::vec::Vec;
 use core::ops::Range;
 
-/// The faces of a boundary, as boundary representations have them.
+/// The faces of a boundary, in the form of a boundary representation.
 ///
-/// A *region* is what hangs together on one surface, over edges of the mesh. On a plane it is one face: an
-/// outer loop, which runs counter-clockwise as seen from outside of the solid, and a loop around each hole,
-/// which runs the other way. On a curved surface its triangles are the faces. Two faces that meet in an edge
-/// have the same vertices there, so that each edge of a loop is run through once more in the opposite
-/// direction; where two plane faces meet they have vertices in the ends of the edge alone.
+/// A *region* is a part of the mesh on one surface that is connected through edges. On a plane it is one
+/// face: an outer loop, which runs counter-clockwise as seen from outside the solid, and a loop in the other
+/// direction around each hole. On a curved surface the triangles of the region are the faces. Two faces that
+/// meet in an edge have the same vertices there, so each edge of a loop is used exactly once more, in the
+/// opposite direction. Where two plane faces meet, only the ends of the edge are vertices.
 ///
-/// A plane region becomes triangles, too, if its loops touch each other along edges, as they do where the
-/// solid touches itself, or if its corners lie further beside one plane than 10^-9 of the solid's extent.
+/// A plane region also becomes triangles if its loops touch each other along edges (as they do where the
+/// solid touches itself), or if its corners deviate from one plane by more than 10^-9 of the solid's extent.
 ///
-/// Parts of the boundary that hang together are shells. A shell around a void belongs to the smallest solid
-/// in which it lies.
+/// The connected parts of the boundary are shells. A shell around a void belongs to the smallest solid that
+/// contains it.
 #[derive(Debug, Clone)]
 pub struct BoundaryFaces {
     vertices: Vec<[f64; 3]>,
@@ -37,27 +37,27 @@ pub struct BoundaryFaces {
     of_triangles: Vec<u32>,
 }
 
-/// What hangs together on one surface.
+/// A connected part of the boundary on one surface.
 #[derive(Debug, Clone, PartialEq)]
 pub struct BoundaryRegion {
     /// The surface, as a number in [`Boundary::surfaces`](super::Boundary::surfaces); `None` where the
-    /// boundary is known to a cell only.
+    /// boundary is only known to a cell.
     pub surface: Option<u32>,
-    /// Its faces.
+    /// The faces of the region.
     pub faces: Range<u32>,
-    /// How many triangles of the mesh it has.
+    /// The number of triangles of the mesh in the region.
     pub triangles: u32,
     /// The area of these triangles, in squared model units.
     pub area: f64,
     /// Whether the surface's normal ([`SurfaceShape::normal`](crate::solid::SurfaceShape::normal)) points
-    /// into the solid: that of a bore does, which points away from its axis.
+    /// into the solid. It does in a bore, where it points away from the axis.
     pub is_turned: bool,
 }
 
 impl BoundaryFaces {
-    /// The faces in the arrays that [`Polyhedron`](crate::mesh::Polyhedron) is made from and
-    /// [`write_polygons`](crate::exchange::write_polygons) writes. Without a face there is no solid, which
-    /// both refuse.
+    /// The faces as arrays, the input of [`Polyhedron`](crate::mesh::Polyhedron) and
+    /// [`write_polygons`](crate::exchange::write_polygons). Without faces there is no solid, and both
+    /// functions refuse the arrays.
     pub fn arrays(&self) -> PolyhedronArrays<'_> {
         PolyhedronArrays {
             vertices: &self.vertices,
@@ -69,7 +69,7 @@ impl BoundaryFaces {
         }
     }
 
-    /// The regions, in the order of their faces: each face belongs to one.
+    /// The regions, in the order of their faces. Each face belongs to one region.
     pub fn regions(&self) -> &[BoundaryRegion] {
         &self.regions
     }
@@ -79,13 +79,13 @@ impl BoundaryFaces {
         &self.of_triangles
     }
 
-    /// The number of the region that a face belongs to; `None` if there is no such face.
+    /// Returns the number of the region to which a face belongs; `None` if there is no such face.
     pub fn region_of(&self, face: u32) -> Option<u32> {
         let number = self.regions.partition_point(|region| region.faces.end <= face);
         self.regions.get(number).map(|_| number as u32)
     }
 
-    /// The faces of a mesh whose triangles lie on surfaces.
+    /// Finds the faces of a mesh whose triangles lie on surfaces.
     pub(super) fn find(
         mesh: &TriangleMesh,
         surfaces: &[PlacedHalfSpace],
@@ -124,7 +124,7 @@ impl BoundaryFaces {
         let mut tracer = Tracer { triangles, mates: &mates, regions: &sets, used };
         for solid in solids(mesh, &shells)? {
             for shell in solid {
-                // Regions are numbered by their first triangles, and so they follow each other in a shell.
+                // Regions are numbered by their first triangles, so the regions of a shell are in order.
                 for &first in shells.of(shell) {
                     let own = regions.of(sets[first as usize]);
                     if own[0] == first {
@@ -185,7 +185,7 @@ impl BoundaryFaces {
         memory::push(&mut self.regions, region)
     }
 
-    /// Adds a face of loops, of which `ends` tells where they end in `corners`.
+    /// Adds a face of loops; `ends` holds the end of each loop in `corners`.
     fn add_face(&mut self, corners: &[u32], ends: &[usize]) -> Result<(), Error> {
         let before = self.corners.len();
         self.corners.try_reserve(corners.len())?;
@@ -200,14 +200,14 @@ impl BoundaryFaces {
     }
 }
 
-/// Triangles by the groups that they belong to.
+/// Triangles by groups.
 struct Groups {
     starts: Vec<usize>,
     triangles: Vec<u32>,
 }
 
 impl Groups {
-    /// By the number of each triangle's group. Groups are numbered by their first triangles.
+    /// Groups triangles by the number of each triangle's group. Groups are numbered by their first triangles.
     fn new(numbers: &[u32]) -> Result<Groups, Error> {
         let mut triangles = memory::collected(0..numbers.len() as u32)?;
         triangles.sort_by_key(|&triangle| numbers[triangle as usize]);
@@ -223,7 +223,7 @@ impl Groups {
         self.starts.len() as u32 - 1
     }
 
-    /// The triangles of a group, ascending.
+    /// The triangles of a group, in ascending order.
     fn of(&self, group: u32) -> &[u32] {
         &self.triangles[self.starts[group as usize]..self.starts[group as usize + 1]]
     }
@@ -240,7 +240,7 @@ fn solids(mesh: &TriangleMesh, shells: &Groups) -> Result<Vec<Vec<u32>>, Error> 
         memory::push(&mut sizes, (volume(vertices, &list, &extent), extent))?;
         memory::push(&mut own, list)?;
     }
-    // The solid of each void: the smallest one that holds it.
+    // The solid of each void: the smallest solid that contains it.
     let mut around: Vec<Option<u32>> = memory::filled(own.len(), None)?;
     let size = |shell: u32| sizes[shell as usize].0;
     let mut outer = memory::collected(0..own.len() as u32)?;
@@ -271,28 +271,28 @@ fn solids(mesh: &TriangleMesh, shells: &Groups) -> Result<Vec<Vec<u32>>, Error> 
     Ok(solids)
 }
 
-/// What runs along the sides between regions.
+/// Traces the sides between regions.
 struct Tracer<'m> {
     triangles: &'m [[u32; 3]],
     mates: &'m [[u32; 3]],
     /// The region of each triangle.
     regions: &'m [u32],
-    /// The sides that belong to a loop already.
+    /// The sides that already belong to a loop.
     used: Vec<[bool; 3]>,
 }
 
-/// Corners of loops, and where each loop ends.
+/// The corners of loops, and the end of each loop.
 type Polygon = (Vec<u32>, Vec<usize>);
 
 impl Tracer<'_> {
-    /// The triangle of the same region beside a side.
+    /// The triangle of the same region across a side.
     fn beside(&self, triangle: u32, side: usize) -> Option<u32> {
         let mate = self.mates[triangle as usize][side];
         let is_same = mate != NONE && self.regions[mate as usize] == self.regions[triangle as usize];
         is_same.then_some(mate)
     }
 
-    /// The side of the region's boundary that follows one of them: that which is found around the vertex
+    /// The side that follows on the region's boundary: the next boundary side around the vertex, found
     /// without leaving the region.
     fn next(&self, (mut triangle, mut side): (u32, usize)) -> (u32, usize) {
         side = (side + 1) % 3;
@@ -304,7 +304,7 @@ impl Tracer<'_> {
         (triangle, side)
     }
 
-    /// The loops of a region, the outer one first; `None` if they are none of a polygon.
+    /// The loops of a region, the outer one first; `None` if they do not bound a polygon.
     fn polygon(
         &mut self,
         own: &[u32],
@@ -326,7 +326,7 @@ impl Tracer<'_> {
                 memory::push(&mut loops, corners)?;
             }
         }
-        // The outer loop runs around the others: as all of them do together.
+        // The outer loop has the orientation of the sum of all areas.
         let areas = memory::collected(loops.iter().map(|corners| area(corners, vertices)))?;
         let whole = areas.iter().fold([0.0; 3], |sum: [f64; 3], own| axes(|k| sum[k] + own[k]));
         let along = |loop_: usize| (0..3).map(|k| areas[loop_][k] * whole[k]).sum::<f64>();

@@ -5,33 +5,34 @@ use crate::cut::Quadratic;
 use crate::lattice::exact::sqrt;
 use crate::lattice::{Cell, axes};
 
-/// Sums of terms are off by less, if all functions have slope 1 at the centre.
+/// The greatest rounding error of terms, if all functions have slope 1 at the centre.
 const ROUNDING: f64 = 1e-12;
 
-/// The normals of surfaces that may touch each other in a cell have a product of at least that.
+/// The least dot product of the normals of surfaces that may touch each other in a cell.
 const ALIKE: f64 = 0.7;
 
-/// A surface is no more curved in a cell if it may touch another one there.
+/// The greatest curvature in a cell of a surface that may touch another one there.
 const CURVED: f64 = 0.6;
 
-/// A form that is 0 but for rounding is no smaller than that, its eigenvalues being up to some 1.
+/// The greatest eigenvalue that counts as 0 because of rounding, for a form with eigenvalues of about 1 or
+/// less.
 const NOTHING: f64 = 1e-13;
 
-/// So much may be unknown of a function.
+/// The greatest uncertainty of a function.
 const UNKNOWN: f64 = 1e-6;
 
-/// Rotations of all pairs of axes: with each the rest shrinks to its square, or more.
+/// The number of rotations of all pairs of axes. Each sweep at least squares the remainder.
 const SWEEPS: usize = 8;
 
-/// The part of a stretch at which a search for the best place divides it.
+/// The ratio in which a golden-section search divides an interval.
 const GOLDEN: f64 = 0.618_033_988_749_894_8;
 
-/// The coefficients of a polynomial of degree two, those of mixed products twice, so that their squares add
-/// up evenly.
+/// The coefficients of a polynomial of degree two. Those of mixed products are doubled, so that all squares
+/// have the same weight.
 pub(super) type Terms = [f64; 10];
 
-/// A function in a cell whose slope at the centre is 1. Places are measured from there in half edges of the
-/// cell.
+/// A function in a cell, scaled to slope 1 at the centre. Places are measured from the centre in half edges
+/// of the cell.
 #[derive(Clone, Copy, Default)]
 pub(super) struct Scaled {
     pub(super) terms: Terms,
@@ -40,22 +41,22 @@ pub(super) struct Scaled {
     pub(super) is_plane: bool,
 }
 
-/// How two surfaces lie that touch each other, or come near to that.
+/// The position of two surfaces that touch each other, or nearly do.
 #[derive(Clone, Copy)]
 pub(super) struct Touch {
     /// Whether their functions have opposite signs.
     pub(super) is_turned: bool,
-    /// Whether one function, less a positive multiple of the other one (with its sign turned, if that is so),
-    /// is nowhere negative; else it is nowhere positive.
+    /// Whether the combination is nowhere negative (otherwise it is nowhere positive): one function minus a
+    /// positive multiple of the other one, whose sign is reversed if `is_turned`.
     pub(super) is_above: bool,
-    /// It may be so much on the wrong side in the cell.
+    /// The amount by which the combination may have the wrong sign in the cell.
     pub(super) off: f64,
 }
 
 impl Touch {
-    /// How far a point that is on the wrong side may be from both surfaces (half edges of the cell).
+    /// The greatest distance from both surfaces of a point on the wrong side (half edges of the cell).
     pub(super) fn away(&self) -> f64 {
-        // Factors are 2 at most.
+        // Factors are at most 2.
         2.0 * self.off / (1.0 - CURVED)
     }
 }
@@ -77,12 +78,12 @@ impl Scaled {
         is_finite.then_some(known)
     }
 
-    /// How far the surface may be from its tangent plane (half edges of the cell).
+    /// The greatest distance of the surface from its tangent plane (half edges of the cell).
     pub(super) fn rise(&self) -> f64 {
         self.terms[4..].iter().map(|term| term.abs()).sum::<f64>() + self.error
     }
 
-    /// How far apart this surface and another one may be (half edges of the cell), and whether their
+    /// The greatest distance between this surface and another one (half edges of the cell), and whether their
     /// functions have opposite signs.
     pub(super) fn apart(&self, other: &Scaled) -> (f64, bool) {
         let is_turned = dot(self.normal(), other.normal()) < 0.0;
@@ -91,8 +92,8 @@ impl Scaled {
         (differences.sum::<f64>() + self.error + other.error, is_turned)
     }
 
-    /// Whether this function, less a multiple of another one, has one sign in all of the cell: whether the
-    /// factor is negative, and whether the sign is positive.
+    /// Tests whether this function minus a multiple of another one has one sign in the whole cell. Returns
+    /// whether the factor is negative, and whether the sign is positive.
     pub(super) fn beside(&self, other: &Scaled) -> Option<(bool, bool)> {
         let factor = dot(self.normal(), other.normal());
         let mut rest = self.terms;
@@ -102,11 +103,12 @@ impl Scaled {
         (rest[0].abs() > away && factor != 0.0).then_some((factor < 0.0, rest[0] > 0.0))
     }
 
-    /// How this surface and another one lie if some combination of their functions, whose factors have
-    /// opposite signs but for turned functions, has one sign everywhere: as where a ball ends a round bar, or
-    /// a plane face goes over into a round.
+    /// Finds a combination of this function and another one that has one sign everywhere, as where a ball
+    /// ends a round bar, or where a plane face continues as a round. The factors have opposite signs, or
+    /// equal signs if the functions are turned.
     ///
-    /// The least eigenvalue of own − c other is concave in c, so that the best factor is found by halving.
+    /// The least eigenvalue of own − c other is concave in c, so a golden-section search finds the best
+    /// factor.
     pub(super) fn touches(&self, other: &Scaled) -> Option<Touch> {
         let alike = dot(self.normal(), other.normal());
         let error = self.error + 2.0 * other.error;
@@ -130,7 +132,7 @@ impl Scaled {
             let mut values = places.map(least);
             while to - from > 4.0 * f64::EPSILON {
                 let best = f64::max(values[0], values[1]);
-                // No eigenvalue changes faster than the size of what is added.
+                // No eigenvalue changes faster than the norm of the added matrix.
                 if best >= -nothing || best + size * (to - from) < -nothing {
                     break;
                 }
@@ -144,7 +146,7 @@ impl Scaled {
                     (places, values) = ([places[1], next], [values[1], least(next)]);
                 }
             }
-            // A point of the cell and 1 have four squares that sum up to no more than four.
+            // The four squares of a point of the cell, extended by 1, sum up to at most four.
             let is_found = values[0] >= -nothing || values[1] >= -nothing;
             is_found.then_some(Touch { is_turned: turned < 0.0, is_above, off: 8.0 * nothing })
         })
@@ -155,7 +157,7 @@ impl Scaled {
     }
 }
 
-/// The symmetric matrix of a polynomial, for points with a 1 before them.
+/// The symmetric matrix of a polynomial, for points extended by a leading 1.
 fn form([value, x, y, z, xx, yy, zz, xy, xz, yz]: &Terms) -> [[f64; 4]; 4] {
     let [x, y, z, xy, xz, yz] = [x, y, z, xy, xz, yz].map(|c| 0.5 * c);
     [[*value, x, y, z], [x, *xx, xy, xz], [y, xy, *yy, yz], [z, xz, yz, *zz]]

@@ -1,5 +1,5 @@
-//! Triangles of polygons on curved surfaces: one corner after the other is cut off where the new side stays
-//! nearest to the surface.
+//! Triangles of polygons on curved surfaces: corners are cut off one after the other, first where the new
+//! side stays nearest to the surface.
 
 use super::figures::{Figures, dot, middle, minus};
 use crate::error::Error;
@@ -13,16 +13,17 @@ struct Clipper<'p> {
     surface: u32,
     corners: Vec<u32>,
     places: Vec<[f64; 3]>,
-    /// The corners seen along the surface's normal.
+    /// The corners projected along the surface's normal.
     flat: Vec<[f64; 2]>,
     next: Vec<usize>,
     previous: Vec<usize>,
-    /// How far the side that cuts off a corner is from the surface; infinite where it cannot be cut off.
+    /// The distance from the surface of the side that would cut off a corner; infinite where the corner
+    /// cannot be cut off.
     cost: Vec<f64>,
 }
 
-/// Adds the triangles of a polygon on a surface that is nearly flat there. The answer is how far their sides
-/// and their middles are from the surface; infinite if the polygon overlaps itself where it is seen along the
+/// Adds the triangles of a polygon on a nearly flat part of a surface. Returns the greatest distance of their
+/// sides and their middles from the surface; infinite if the polygon overlaps itself as seen along the
 /// normal.
 pub(super) fn triangulate(
     figures: &Figures,
@@ -67,7 +68,7 @@ pub(super) fn triangulate(
         clipper.previous[n] = p;
         left -= 1;
         at = n;
-        // What lay in a corner's triangle may have gone.
+        // A corner that lay in one of these triangles may be gone.
         for k in [p, n] {
             clipper.cost[k] = clipper.cost_of(k);
         }
@@ -84,7 +85,7 @@ pub(super) fn triangulate(
     Ok(most.max(clipper.middle(at)))
 }
 
-/// Places seen along the normal of the loop that they are.
+/// Projects the places of a loop along its normal.
 fn seen(places: &[[f64; 3]]) -> Result<Vec<[f64; 2]>, Error> {
     let origin = places[0];
     let mut normal = [0.0; 3];
@@ -92,7 +93,7 @@ fn seen(places: &[[f64; 3]]) -> Result<Vec<[f64; 2]>, Error> {
         let (p, q) = (minus(pair[0], origin), minus(pair[1], origin));
         normal = axes(|k| normal[k] + p[(k + 1) % 3] * q[(k + 2) % 3] - p[(k + 2) % 3] * q[(k + 1) % 3]);
     }
-    // Two directions across it.
+    // Two directions across the normal.
     let least = (0..3).fold(0, |best, k| if normal[k].abs() < normal[best].abs() { k } else { best });
     let unit: [f64; 3] = axes(|k| f64::from(u8::from(k == least)));
     let cross = |a: [f64; 3], b: [f64; 3]| {
@@ -114,7 +115,7 @@ fn turn(a: [f64; 2], b: [f64; 2], c: [f64; 2]) -> f64 {
 }
 
 impl Clipper<'_> {
-    /// How far the side is from the surface that cuts off a corner.
+    /// The distance from the surface of the side that cuts off a corner.
     fn cost_of(&self, k: usize) -> f64 {
         let (p, n) = (self.previous[k], self.next[k]);
         let [a, b, c] = [p, k, n].map(|k| self.flat[k]);
@@ -133,7 +134,7 @@ impl Clipper<'_> {
         self.figures.distance(self.surface, middle(self.places[p], self.places[n]))
     }
 
-    /// How far the middle of a corner's triangle is from the surface.
+    /// The distance of the middle of a corner's triangle from the surface.
     fn middle(&self, k: usize) -> f64 {
         let [a, b, c] = [self.previous[k], k, self.next[k]].map(|k| self.places[k]);
         self.figures.distance(self.surface, axes(|i| (a[i] + b[i] + c[i]) / 3.0))

@@ -1,12 +1,12 @@
-//! What is proven of meshes that are not the boundary.
+//! Proofs for meshes that are not the boundary.
 
 use super::scaled::Scaled;
 use super::*;
 use crate::solid::Csg;
 use alloc::vec;
 
-/// What is proven of a mesh whose triangles are said to lie on these surfaces, with cells as they are made
-/// for the solid (model units).
+/// The proven deviation of a mesh (model units), with claimed surfaces of its triangles, and cells as they
+/// are made for the solid.
 fn proven(solid: &Csg, mesh: &TriangleMesh, of_triangles: &[u32], tolerance: f64) -> f64 {
     let control = Control::threads(1);
     let job = Job::new(&control);
@@ -39,7 +39,7 @@ fn wrong_meshes_are_found_out() {
     let right = found(&solid);
     let of = |mesh: &TriangleMesh, surfaces: &[u32]| proven(&solid, mesh, surfaces, 0.08);
     assert!(of(right.mesh(), &right.of_triangles) <= 0.08);
-    // Each vertex in turn, moved to the outside and to the inside, or along an edge.
+    // Move each vertex in turn to the outside and to the inside, or along an edge.
     for (vertex, way) in (0..right.mesh().vertices().len()).step_by(5).zip(0..) {
         let mut vertices = right.mesh().vertices().to_vec();
         let away = [0.3, 1.0, 4.0][way % 3];
@@ -51,7 +51,7 @@ fn wrong_meshes_are_found_out() {
         let most = of(&mesh, &right.of_triangles);
         assert!(most >= off * (1.0 - 1e-9), "vertex {vertex}: {most}, and it is {off} away");
     }
-    // A triangle is missing.
+    // Remove a triangle.
     let mut triangles = right.mesh().triangles().to_vec();
     triangles.pop();
     let mesh = TriangleMesh::new(right.mesh().vertices().to_vec(), triangles).unwrap();
@@ -70,7 +70,7 @@ fn wrong_meshes_are_found_out() {
         (plate(5.0).difference(&Csg::ball([20.0, 20.0, 5.0], 2.0).unwrap()).unwrap(), 3.0),
     ] {
         let wrong = found(&other);
-        // Whatever is said of the surfaces of its triangles.
+        // The claimed surfaces of the triangles do not matter.
         let count = wrong.mesh().triangles().len();
         for labels in [wrong.of_triangles.clone(), vec![0; count], vec![6; count], vec![NONE; count]] {
             let labels: Vec<u32> = labels.into_iter().map(|own| if own > 6 { NONE } else { own }).collect();
@@ -80,7 +80,7 @@ fn wrong_meshes_are_found_out() {
     }
 }
 
-/// How far a point is from the surface of the plate.
+/// The distance of a point from the surface of the plate.
 fn away_from_plate([x, y, z]: [f64; 3]) -> f64 {
     let beside = |c: f64, most: f64| (-c).max(c - most).max(0.0);
     let outside = [beside(x, 80.0), beside(y, 60.0), beside(z, 10.0)];
@@ -92,7 +92,7 @@ fn away_from_plate([x, y, z]: [f64; 3]) -> f64 {
     [x, 80.0 - x, y, 60.0 - y, z, 10.0 - z].into_iter().fold(wall, f64::min)
 }
 
-/// What is said of surfaces that touch each other holds in all of a cell, and nothing is said of others.
+/// Claims about touching surfaces hold in the whole cell, and other surfaces yield no claim.
 #[test]
 fn surfaces_that_touch() {
     let cylinder = || Csg::cylinder(3.0, -40.0, 40.0).unwrap();
@@ -100,7 +100,7 @@ fn surfaces_that_touch() {
     let plane = |at: f64| Csg::cuboid([at, -90.0, -80.0], [at + 7.0, 95.0, 85.0]).unwrap();
     let cone = Csg::frustum(4.0, 1.0, 3.0, 7.0).unwrap();
     let turn = Affine::new([[0.36, 0.48, -0.8, 1.0], [-0.8, 0.6, 0.0, 2.0], [0.48, 0.64, 0.6, 3.0]]).unwrap();
-    // Two solids, a point next to which their surfaces are compared, and whether they touch.
+    // Two solids, a point near which their surfaces are compared, and whether they touch.
     let cases = [
         (cylinder(), ball([0.0, 0.0, 1.0], 3.0), [3.0, 0.0, 1.0], true),
         (cylinder(), ball([0.0, 0.0, 1.0], 3.001), [3.0, 0.0, 1.0], false),
@@ -128,7 +128,7 @@ fn surfaces_that_touch() {
                 let figures = Figures::new(&surfaces, &frame).unwrap();
                 let size = f64::from(1u32 << level);
                 let cell = Cell { level, at: axes(|k| ((at[k] - frame.origin()[k]) / 128.0 * size) as u32) };
-                // Those two of all surfaces that come nearest to the point: they bound the two solids there.
+                // The two surfaces that come nearest to the point: they bound the two solids there.
                 let unit = axes(|k| (at[k] - frame.origin()[k]) / 128.0);
                 let mut near: Vec<u32> = (0..surfaces.len() as u32).collect();
                 let is_curved = |k: u32| {

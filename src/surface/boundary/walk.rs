@@ -6,7 +6,7 @@ use super::leaves::{Leaf, Leaves};
 use crate::error::Error;
 use crate::lattice::Cell;
 
-/// A cell with what it is.
+/// A cell with its leaf.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct At {
     pub(super) cell: Cell,
@@ -14,7 +14,7 @@ pub(super) struct At {
 }
 
 impl At {
-    /// The greater, the smaller the cell.
+    /// A rank of sizes: the smaller the cell, the greater the rank.
     fn size(&self) -> u8 {
         if matches!(self.leaf, Leaf::Outside) { 0 } else { 1 + self.cell.level }
     }
@@ -27,7 +27,7 @@ pub(super) struct Face {
     /// The lower corner, in finest cells.
     pub(super) at: [u32; 3],
     pub(super) edge: u32,
-    /// The cells below and above.
+    /// The cells below and above the face.
     pub(super) sides: [At; 2],
 }
 
@@ -38,19 +38,19 @@ pub(super) struct Edge {
     /// The lower end, in finest cells.
     pub(super) at: [u32; 3],
     pub(super) length: u32,
-    /// The cells around it: bit 0 of their places is for the axis that comes next, bit 1 for the one after
-    /// that.
+    /// The cells around the edge. Bit 0 of a cell's place is for the next axis in cyclic order, bit 1 for the
+    /// axis after it.
     pub(super) around: [At; 4],
 }
 
-/// Whoever wants to see them.
+/// A visitor of minimal faces and edges.
 pub(super) trait Visitor {
     fn face(&mut self, face: &Face) -> Result<(), Error>;
     fn edge(&mut self, edge: &Edge) -> Result<(), Error>;
 }
 
 impl Leaves {
-    /// Shows all minimal faces and edges of open cells. Around the universe everything is empty.
+    /// Visits all minimal faces and edges of open cells. The space around the universe is empty.
     pub(super) fn walk(&self, visitor: &mut impl Visitor) -> Result<(), Error> {
         let (root, outside) =
             (At { cell: Cell::ROOT, leaf: self.root }, At { cell: Cell::ROOT, leaf: Leaf::Outside });
@@ -69,7 +69,7 @@ impl Leaves {
         Ok(())
     }
 
-    /// The child in an octant; a cell that is not split stands for its children.
+    /// The child in an octant. A cell that is not split stands for its children.
     fn child(&self, at: &At, octant: usize) -> At {
         match at.leaf {
             Leaf::Branch(node) => {
@@ -115,7 +115,8 @@ impl Leaves {
             return visitor.face(&Face { axis, at, edge: 1 << log, sides });
         }
         let (u, v) = ((axis + 1) % 3, (axis + 2) % 3);
-        // The children that touch the face: of the lower cell the upper ones.
+        // The children that touch the face: the upper children of the lower cell, and the lower ones of the
+        // upper cell.
         let touching = |side: usize, pu: usize, pv: usize| {
             self.child(&sides[side], (1 - side) << axis | pu << u | pv << v)
         };
@@ -124,7 +125,8 @@ impl Leaves {
             self.across_face([touching(0, pu, pv), touching(1, pu, pv)], axis, visitor)?;
         }
         for half in 0..2 {
-            // Along u: around it come v and the axis; along v: the axis and u.
+            // Along u, the axes around the edge are v and the face's axis; along v, they are the face's axis
+            // and u.
             let along_u =
                 [touching(0, half, 0), touching(0, half, 1), touching(1, half, 0), touching(1, half, 1)];
             self.around_edge(along_u, u, visitor)?;
@@ -147,7 +149,7 @@ impl Leaves {
             let cell = around[small].cell;
             let log = self.depth - cell.level;
             let mut at = cell.at.map(|c| c << log);
-            // A cell below the edge has it at its upper side.
+            // A cell below the edge has the edge at its upper side.
             at[u] += u32::from(small & 1 == 0) << log;
             at[v] += u32::from(small >> 1 == 0) << log;
             return visitor.edge(&Edge { axis, at, length: 1 << log, around });

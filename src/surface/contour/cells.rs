@@ -1,11 +1,11 @@
-//! The cells of a contour: those that are not split any further, of several sizes.
+//! The cells of a contour: the unsplit cells, of several sizes.
 
 use crate::error::Error;
 use crate::lattice::Cell;
 use crate::memory;
 use alloc::vec::Vec;
 
-/// What is known of a cell.
+/// The verdict on a cell.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(super) enum Kind {
     Empty,
@@ -18,11 +18,12 @@ pub(super) enum Kind {
 pub(super) struct Leaf {
     pub(super) cell: Cell,
     pub(super) kind: Kind,
-    /// Where the planes of the surface in it meet, in unit coordinates, if the surface was looked at.
+    /// The point where the planes of the surface in the cell meet, in unit coordinates, if the surface was
+    /// examined.
     pub(super) vertex: Option<[f64; 3]>,
-    /// Whether it was compared with a mesh.
+    /// Whether the cell was compared with a mesh.
     pub(super) is_checked: bool,
-    /// Whether it was split later on.
+    /// Whether the cell was split later.
     pub(super) is_gone: bool,
 }
 
@@ -32,7 +33,7 @@ pub(super) enum Slot {
     Branch(u32),
 }
 
-/// The number of what lies around the universe.
+/// The number that stands for the space around the universe.
 pub(super) const OUTSIDE: u32 = u32::MAX;
 
 /// The cells of the universe.
@@ -40,19 +41,19 @@ pub(super) struct Cells {
     pub(super) root: Slot,
     pub(super) nodes: Vec<[Slot; 8]>,
     pub(super) leaves: Vec<Leaf>,
-    /// Corners of cells are told in cells of this level.
+    /// The level of the finest cells, in which corners are measured.
     pub(super) depth: u8,
 }
 
 impl Cells {
-    /// The universe as one cell.
+    /// Creates the universe as one cell.
     pub(super) fn new(kind: Kind, depth: u8) -> Result<Cells, Error> {
         let mut cells = Cells { root: Slot::Leaf(0), nodes: Vec::new(), leaves: Vec::new(), depth };
         cells.add(Cell::ROOT, kind)?;
         Ok(cells)
     }
 
-    /// How many leaves the surface passes through.
+    /// The number of leaves that the surface passes through.
     pub(super) fn open(&self) -> u64 {
         self.leaves.iter().filter(|leaf| leaf.kind == Kind::Open && !leaf.is_gone).count() as u64
     }
@@ -62,7 +63,7 @@ impl Cells {
         Ok(self.leaves.len() as u32 - 1)
     }
 
-    /// Splits a leaf into eight. The number of the first of them.
+    /// Splits a leaf into eight. Returns the number of the first child.
     pub(super) fn split(&mut self, leaf: u32, kinds: [Kind; 8]) -> Result<u32, Error> {
         let cell = self.leaves[leaf as usize].cell;
         let first = self.leaves.len() as u32;
@@ -78,7 +79,7 @@ impl Cells {
         Ok(first)
     }
 
-    /// Where a cell stands.
+    /// The slot of a cell.
     fn slot(&mut self, cell: Cell) -> &mut Slot {
         let mut place: Option<(usize, usize)> = None;
         for level in 1..=cell.level {

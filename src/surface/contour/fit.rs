@@ -1,28 +1,28 @@
-//! The vertex that stands for the surface in a cell: where its planes meet.
+//! The vertex that represents the surface in a cell: the point where the surface's planes meet.
 
 use super::triangles::{Place, dot};
 use crate::lattice::axes;
 use crate::surface::qef::{Qef, eigen};
 
-/// Eigenvalues below this part of the greatest one say nothing, each plane counted once.
+/// Eigenvalues below this part of the greatest one are ignored. Each plane counts once.
 const LEAST: f64 = 0.01;
 
-/// Planes are one if their normals, and their offsets in edges of the cell, differ by no more.
+/// Two planes count as one if their normals, and their offsets in edges of the cell, differ by at most this.
 const SAME: f64 = 1e-7;
 
-/// Distinct planes that are looked at.
+/// The greatest number of distinct planes that are examined.
 const MOST: usize = 48;
 
-/// A vertex.
+/// A fitted vertex.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Fit {
-    /// In unit coordinates.
+    /// The place in unit coordinates.
     pub(super) at: [f64; 3],
-    /// In how many directions the planes tell where it lies.
+    /// The number of directions in which the planes determine the vertex.
     pub(super) rank: usize,
 }
 
-/// A box in unit coordinates: the lower corner, and the edge.
+/// A box in unit coordinates, given by its lower corner and its edge.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Space {
     pub(super) low: [f64; 3],
@@ -39,8 +39,8 @@ impl Space {
     }
 }
 
-/// The vertex that is no further than `allowed` from all planes, and no further than `slack` edges out of its
-/// cell. Of several ones, that which most planes have a say in.
+/// Returns a vertex that is at most `allowed` from all planes, and at most `slack` edges outside its cell. If
+/// there are several, the one with the highest rank is taken.
 pub(super) fn fit(places: &[Place], space: &Space, allowed: f64, slack: f64) -> Option<Fit> {
     let mut planes = [([0.0; 3], 0.0); MOST];
     let mut count = 0;
@@ -90,7 +90,7 @@ pub(super) fn fit(places: &[Place], space: &Space, allowed: f64, slack: f64) -> 
     None
 }
 
-/// The vertex in a cell that fits its planes best, however well that is.
+/// The vertex in a cell that fits its planes best, however large the error.
 pub(super) fn best(places: impl Iterator<Item = Place>, space: &Space) -> [f64; 3] {
     let mut qef = Qef::default();
     for place in places {

@@ -1,4 +1,4 @@
-//! When cells end.
+//! Splitting cells until each represents its surface by one vertex.
 
 use super::cells::{Cells, Kind};
 use super::fit::{Fit, Space, fit};
@@ -13,37 +13,37 @@ use crate::octree::Tag;
 use crate::solid::{Slab, Worker};
 use alloc::vec::Vec;
 
-/// Cells of this level are split in any case, so that lines see something of the solid.
+/// Cells coarser than this level are always split, so that lines see something of the solid.
 const COARSEST: u8 = 3;
 
-/// How far from a vertex the planes of its cell may be, in tolerances.
+/// The greatest distance of a cell's planes from its vertex, in tolerances.
 const FAR: f64 = 2.0;
 
-/// Cells of so many tolerances with one piece of the surface end whatever it looks like: a comparison with
-/// the mesh will tell.
+/// A cell up to this size (in tolerances) with one piece of the surface always ends, because a comparison
+/// with the mesh follows.
 const SMALL: f64 = 8.0;
 
-/// How far out of its cell a vertex may lie, in edges of the cell.
+/// The greatest distance of a vertex outside its cell, in edges of the cell.
 const SLACK: f64 = 0.1;
 
-/// How many levels below a cell are looked at, where its own slab is not thin.
+/// The number of levels examined below a cell whose own slab is not thin.
 const AHEAD: u8 = 3;
 
-/// Cells that are split to know where the boundary is, for each cell of the contour, and those of any
+/// The number of cells that may be split to locate the boundary: for each cell of the contour, and for any
 /// contour.
 const SPLITS: u64 = 16;
 const ANYWAY: u64 = 4096;
 
-/// Cells are rare if there are so many times as many others.
+/// Cells are rare if there are at least this many times as many others.
 const RARE: u64 = 512;
 
-/// No normal of a flat piece is further than this from that of its slab.
+/// The greatest deviation of the normals of a flat piece from the normal of its slab.
 const CONE: f64 = 1.0;
 
-/// On a smooth piece no two normals have a product below this.
+/// The least dot product of two normals on a smooth piece.
 const BENT: f64 = 0.3;
 
-/// What grows the cells.
+/// The builder of the cells.
 pub(super) struct Grower<'g, 'c, W: Worker> {
     pub(super) cells: Cells,
     pub(super) probe: &'g mut Probe<'c, W>,
@@ -72,8 +72,7 @@ impl<'g, 'c, W: Worker> Grower<'g, 'c, W> {
         Ok(Grower { cells, probe, tolerance, job, splits: 0, places: Vec::new() })
     }
 
-    /// Splits a leaf, if it can be split, and the new ones as far as that is needed. `parts` of the work are
-    /// reported.
+    /// Splits a leaf, if possible, and the new leaves as far as necessary. Reports `parts` of the work.
     pub(super) fn split(&mut self, leaf: u32, parts: usize) -> Result<bool, Error> {
         let cell = self.cells.leaves[leaf as usize].cell;
         let is_spent = self.job.control().max_splits.is_some_and(|most| self.splits >= most);
@@ -90,9 +89,9 @@ impl<'g, 'c, W: Worker> Grower<'g, 'c, W> {
         Ok(true)
     }
 
-    /// Splits leaves, but for those that are split already; `count` of them are asked for, about. Where these
-    /// are few beside all others, so are their parts: one round does the work of two. Whether there was one
-    /// to split.
+    /// Splits leaves that are not split yet; `count` is their approximate number. If these are few beside all
+    /// others, their children are split, too, because one round then does the work of two. Returns whether a
+    /// leaf was split.
     pub(super) fn split_all(
         &mut self,
         count: usize,
@@ -116,13 +115,13 @@ impl<'g, 'c, W: Worker> Grower<'g, 'c, W> {
         Ok(is_any)
     }
 
-    /// How many cells may be split to know where the boundary is.
+    /// The number of cells that may be split to locate the boundary.
     pub(super) fn budget(&self) -> u64 {
         let most = self.job.control().max_splits.map_or(u64::MAX, |most| most.saturating_sub(self.splits));
         (SPLITS * self.cells.open() + ANYWAY).min(most)
     }
 
-    /// Splits a leaf as far as that is needed.
+    /// Splits a leaf as far as necessary.
     pub(super) fn grow(&mut self, leaf: u32, parts: usize) -> Result<(), Error> {
         let own = self.cells.leaves[leaf as usize];
         let is_done = own.kind != Kind::Open
@@ -137,7 +136,7 @@ impl<'g, 'c, W: Worker> Grower<'g, 'c, W> {
     fn is_done(&mut self, leaf: u32) -> Result<bool, Error> {
         let cell = self.cells.leaves[leaf as usize].cell;
         let edge = 1.0 / f64::from(1u32 << cell.level);
-        // Whatever is in a cell is no further from the rest of it than that.
+        // No two points of a cell are further apart.
         if edge * 1.75 <= self.tolerance {
             return Ok(true);
         }
@@ -149,8 +148,7 @@ impl<'g, 'c, W: Worker> Grower<'g, 'c, W> {
         }
         let slab = self.slab(cell)?;
         if corners == 0 || corners == 0xFF {
-            // The surface may do no more than reach a little into it, which a comparison with the mesh will
-            // tell.
+            // The surface can only reach a little into the cell. A comparison with the mesh finds this case.
             return Ok(cell.level > COARSEST || slab.is_some());
         }
         if !is_connected(corners) || !is_connected(!corners) {
@@ -168,8 +166,8 @@ impl<'g, 'c, W: Worker> Grower<'g, 'c, W> {
         Ok(is_known || edge <= SMALL * self.tolerance)
     }
 
-    /// The two planes between which the surface in a cell lies, if it is about flat: in unit coordinates,
-    /// with a normal of length 1.
+    /// The two planes between which the surface in a cell lies, if it is nearly flat: in unit coordinates,
+    /// with a unit normal.
     fn slab(&mut self, cell: Cell) -> Result<Option<Slab>, Error> {
         let Some(enclosure) = self.probe.enclosure(cell)? else { return Ok(None) };
         let mut slabs = enclosure.slabs.iter().filter(|slab| slab.normal != [0.0; 3]);
@@ -177,13 +175,13 @@ impl<'g, 'c, W: Worker> Grower<'g, 'c, W> {
         Ok((enclosure.cone <= CONE).then(|| unit_slab(slab, cell)))
     }
 
-    /// Whether both planes of a slab are near to a vertex.
+    /// Returns whether both planes of a slab are near a vertex.
     fn is_within(&self, slab: &Slab, at: [f64; 3]) -> bool {
         let height = dot(slab.normal, at);
         (height - slab.inner).abs().max((height - slab.outer).abs()) <= FAR * self.tolerance
     }
 
-    /// Whether the planes of the surface in all parts of a cell pass by a vertex.
+    /// Returns whether the planes of the surface in all parts of a cell pass near a vertex.
     fn agrees(&mut self, cell: Cell, vertex: [f64; 3], ahead: u8) -> Result<bool, Error> {
         if ahead == 0 || cell.level >= MAX_DEPTH {
             return self.passes(cell, vertex);
@@ -207,7 +205,7 @@ impl<'g, 'c, W: Worker> Grower<'g, 'c, W> {
         Ok(true)
     }
 
-    /// The same by lines through the middle of a cell.
+    /// Returns whether the planes at crossings on lines through the middle of a cell pass near a vertex.
     fn passes(&mut self, cell: Cell, vertex: [f64; 3]) -> Result<bool, Error> {
         self.places.clear();
         self.probe.middle(cell, &mut self.places)?;
@@ -215,8 +213,8 @@ impl<'g, 'c, W: Worker> Grower<'g, 'c, W> {
         Ok(self.places.iter().all(|place| dot(place.normal, axes(|k| vertex[k] - place.at[k])).abs() <= most))
     }
 
-    /// The vertex of a cell through which one simple piece of the surface passes: by what crosses its edges,
-    /// or other lines, too.
+    /// Fits the vertex of a cell with one simple piece of the surface, to the crossings on the cell's edges,
+    /// and on further lines unless `by_edges` is set.
     fn fit(&mut self, cell: Cell, corners: u8, by_edges: bool) -> Result<Option<Fit>, Error> {
         let half = 1u32 << (self.cells.depth - cell.level);
         let low = cell.at.map(|c| c * 2 * half);
@@ -238,7 +236,8 @@ impl<'g, 'c, W: Worker> Grower<'g, 'c, W> {
                 if is_edge {
                     let corner = (steps[u] / 2) << u | (steps[v] / 2) << v;
                     let is_crossed = (corners >> corner ^ corners >> (corner | 1 << axis)) & 1 == 1;
-                    // (Two where the ends are alike: a sharp edge looks out of another cell.)
+                    // (Two crossings between ends on one side mean that a sharp edge reaches out of another
+                    // cell.)
                     if found % 2 != usize::from(is_crossed) {
                         return Ok(None);
                     }
@@ -262,7 +261,7 @@ impl<'g, 'c, W: Worker> Grower<'g, 'c, W> {
     }
 }
 
-/// A slab of a cell in unit coordinates, with a normal of length 1.
+/// A slab of a cell in unit coordinates, with a unit normal.
 fn unit_slab(slab: &Slab, cell: Cell) -> Slab {
     let edge = 1.0 / f64::from(1u32 << cell.level);
     let centre = cell.at.map(|c| (f64::from(c) + 0.5) * edge);
@@ -273,7 +272,7 @@ fn unit_slab(slab: &Slab, cell: Cell) -> Slab {
     Slab { normal, inner, outer }
 }
 
-/// Whether some corners of a cell hang together along its edges.
+/// Returns whether some corners of a cell are connected along its edges.
 fn is_connected(corners: u8) -> bool {
     let mut met = corners & corners.wrapping_neg();
     loop {

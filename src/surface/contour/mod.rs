@@ -3,13 +3,13 @@
 //! (Ju, Losasso, Schaefer and Warren, *Dual contouring of Hermite data*, 2002; Schaefer, Ju and Warren,
 //! *Manifold dual contouring*, 2007; Ju and Udeshi, *Intersection-free contouring on an octree grid*, 2006.)
 //!
-//! Cells are split until the surface in each is one piece that a single vertex can stand for. Which pieces
-//! there are, and how they hang together, is decided by signs at corners of cells, which neighbours share:
-//! the mesh is closed and a manifold whatever they are. Places are found last.
+//! Cells are split until the surface in each is one piece that a single vertex can represent. The signs at
+//! the corners of cells, which neighbours share, decide which pieces there are, and how they are connected.
+//! So the mesh is closed and a manifold for any signs. Places are computed last.
 //!
 //! From the bottom up, each file uses only files named before it: `cells`, `walk` (their minimal faces and
-//! edges), `sheets` (pieces of the surface), `triangles`, `probe` (what the solid is asked for), `fit`
-//! (vertices), `grow` (when cells end).
+//! edges), `sheets` (pieces of the surface), `triangles`, `probe` (queries of the solid), `fit` (vertices),
+//! `grow` (splitting of cells).
 
 mod cells;
 mod fit;
@@ -42,120 +42,121 @@ use probe::Probe;
 use sheets::{NONE, Sheets};
 use triangles::{Place, Triangles, dot};
 
-/// The contour of a solid.
+/// A contour of a solid: its mesh and a report.
 pub struct Contour {
     mesh: TriangleMesh,
     report: ContourReport,
 }
 
-/// How a contour was found.
+/// A report on a contour.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct ContourReport {
-    /// Pairs of triangles that intersect each other, as [`TriangleMesh::intersecting_pairs`] counts them.
+    /// The number of pairs of intersecting triangles, counted as by [`TriangleMesh::intersecting_pairs`].
     pub intersecting_pairs: u64,
-    /// Cells that the surface passes through.
+    /// The number of cells that the surface passes through.
     pub cells: u64,
-    /// Cells that were split.
+    /// The number of cells that were split.
     pub splits: u64,
-    /// Points of which the solid did not tell whether they lie inside; they counted as outside.
+    /// Points whose side the solid did not report; they counted as outside.
     pub undecided: u64,
-    /// No point of the mesh is further from the solid's boundary than that, and none of the boundary from the
-    /// mesh (model units): proven. Where mesh and boundary have more than 32 768 triangles together, it is
-    /// known no more exactly than it takes to tell whether it is within the tolerance. Infinite if nothing is
-    /// known.
+    /// A proven bound of the distance of the mesh from the solid's boundary, and of the boundary from the
+    /// mesh (model units). If mesh and boundary have more than 32 768 triangles together, the bound is only
+    /// as tight as the comparison with the tolerance needs. Infinite if nothing is known.
     pub deviation: f64,
 }
 
 impl Contour {
-    /// The triangles.
+    /// The mesh.
     pub fn mesh(&self) -> &TriangleMesh {
         &self.mesh
     }
 
-    /// The triangles.
+    /// Returns the mesh.
     pub fn into_mesh(self) -> TriangleMesh {
         self.mesh
     }
 
-    /// How it was found.
+    /// The report on the contour.
     pub fn report(&self) -> &ContourReport {
         &self.report
     }
 }
 
-/// How often the mesh is made anew because cells were split.
+/// How often the mesh is rebuilt because cells were split.
 const ROUNDS: usize = 48;
 
-/// Intersecting pairs that are looked at in one round.
+/// The greatest number of intersecting pairs that one round examines.
 const PAIRS: usize = 1 << 16;
 
 /// How often cells are split because the mesh is proven to be too far from the boundary next to them.
 const PROOFS: usize = 16;
 
-/// How far cells may be from the surface, and the surface may move where vertices are taken out, as parts of
-/// the tolerance. (Both are rarely so at one place; where they are, vertices stay.)
+/// The greatest distance of cells from the surface, and the greatest movement of the surface by removing
+/// vertices, as parts of the tolerance. (Both rarely occur at one place; where they do, vertices stay.)
 const CELLS: f64 = 0.7;
 const FEWER: f64 = 0.5;
 
-/// How often a triangle is cut to find out whether it is near, and to prove how near.
+/// How often a triangle is cut to test whether it is near the boundary, and to prove a bound of its distance.
 const LOOKS: u64 = 16;
 const PROVES: u64 = 1 << 10;
 
-/// Pairs that intersect are looked for once no more than one cell of so many was refused.
+/// Intersecting pairs are searched for if at most one in this number of cells was refused.
 const ROUGH: u64 = 64;
 
-/// Vertices are put back, and the mesh is compared again, while the triangles that are too far become fewer
-/// by a sixteenth, or are so few.
+/// Vertices are put back and the mesh is compared again as long as the number of triangles that are too far
+/// falls by a sixteenth, or falls at all while it is at most this number.
 const FEW: usize = 1 << 8;
 
-/// How well they tell it, as a part of the tolerance.
+/// The accuracy of the reference boundary, as a part of the tolerance of cells.
 const KNOWN: f64 = 0.25;
 
-/// How many levels below a cell its surface is compared with the mesh.
+/// The number of levels below a cell at which its surface is compared with the mesh.
 const AHEAD: u8 = 2;
 
-/// Cells or triangles that one task compares with the surface, and how many are worth several threads.
+/// The number of cells or triangles that one task compares with the surface, and the number from which
+/// several threads pay.
 const CHUNK: usize = 64;
 const MANY: usize = 1 << 10;
 
-/// How far the lattice is moved, as parts of the edge: so that no face of a part with round dimensions lies
-/// in it.
+/// The shift of the lattice, as parts of the edge. With it, no face of a part with round dimensions lies in
+/// the lattice.
 const SHIFTS: [f64; 3] = [0.013_371, 0.017_317, 0.011_831];
 const LARGER: f64 = 1.031_77;
 
-/// A closed mesh of any solid, with few triangles where it is flat and small ones where it is not: of meshes,
-/// expressions with meshes in them, volumes, tri-dexel models, and a host program's functions. The solid must
-/// end inside of the universe of `frame`. (Solids that know their surfaces have
+/// Builds a closed mesh of any solid, with few triangles where the solid is flat and small ones elsewhere: of
+/// meshes, expressions that contain meshes, volumes, tri-dexel models, and a host program's functions. The
+/// solid must end inside the universe of `frame`. (For solids that provide their surfaces, use
 /// [`boundary`](crate::surface::boundary), whose faces and corners are exact.)
 ///
-/// Cells are split until the surface in each is one piece that a single vertex can stand for: where the
-/// planes of the surface meet, so that sharp edges and corners of flat faces are exact to rounding in such
-/// cells. Cells that are proven empty or full are never split. Slabs of the solid in a cell and in the cells
-/// below it tell whether a vertex will do, and lines through the cell do where there are none. Where the
-/// solid tells nearest points, as meshes do, the mesh is compared with it at many points, and cells are split
-/// where the two are further from each other than seven tenths of `tolerance` (model units), as far as the
-/// depth of the frame. At last vertices are taken out as [`simplify`](super::simplify()) does it, where the
-/// mesh stays within `tolerance`: a plane face has few triangles, however many cells it has.
+/// Cells are split until the surface in each is one piece that a single vertex can represent. The vertex lies
+/// where the planes of the surface meet, so sharp edges and corners of flat faces are exact to rounding in
+/// such cells. Cells that are proven empty or full are never split. Slabs of the solid in a cell and in the
+/// cells below it show whether a vertex suffices; without slabs, lines through the cell do. If the solid
+/// provides nearest points, as meshes do, the mesh is compared with the solid at many points. Cells are
+/// split, down to the depth of the frame, where the two are further from each other than seven tenths of
+/// `tolerance` (model units). At the end, vertices are removed as by [`simplify`](super::simplify()), where
+/// the mesh stays within `tolerance`. So a plane face has few triangles, however many cells it has.
 ///
-/// [`ContourReport::deviation`] is proven, as [`deviation`](crate::deviation) proves it: for closed meshes by
-/// their triangles, and for anything else by slabs of cells, of which up to sixteen are split for each cell
-/// of the contour. Where a point of the mesh or of the boundary is proven to be further from the other than
-/// seven tenths of `tolerance`, cells are split, too. What is left beyond it is told as it is: where cells of
-/// the frame's depth are too coarse, and where slabs are. A solid without any is known to about the size of
-/// these cells, and of an octree that proves nothing of its solid nothing is known.
+/// [`ContourReport::deviation`] is proven in the same way as by [`deviation`](crate::deviation): for closed
+/// meshes from their triangles, and for all other solids from slabs of cells, of which up to sixteen are
+/// split for each cell of the contour. Cells are also split where a point of the mesh or of the boundary is
+/// proven to be further from the other than seven tenths of `tolerance`. Any larger deviation that remains is
+/// reported as it is: where cells of the frame's depth are too coarse, and where slabs are too coarse. The
+/// boundary of a solid without slabs is known to about the size of these cells. For an octree that proves
+/// nothing about its solid, nothing is known.
 ///
-/// The mesh is closed, exactly two triangles meet in each edge, and the triangles around each vertex are one
-/// fan, whatever the solid is. It is decided by signs at corners of cells, and of a solid thinner than a
-/// finest cell nothing may be left. Triangles may intersect each other where sheets of the surface come
-/// close; cells are split until none do, or there are no finer ones, and
-/// [`ContourReport::intersecting_pairs`] counts what is left. Points of which the solid does not tell on
-/// which side they lie, as such in PARTIAL cells of a stored octree, count as outside. The lattice is not
-/// that of the frame but lies a little beside it, so that faces may lie in planes of the frame's lattice.
+/// For any solid, the mesh is closed, exactly two triangles meet in each edge, and the triangles around each
+/// vertex form one fan. Signs at corners of cells decide about the mesh, so a solid thinner than a finest
+/// cell may vanish. Triangles may intersect each other where sheets of the surface come close. Cells are
+/// split until no triangles intersect, or until the finest cells are reached, and
+/// [`ContourReport::intersecting_pairs`] counts the remaining pairs. Points whose side the solid does not
+/// report, such as points in PARTIAL cells of a stored octree, count as outside. The lattice is shifted a
+/// little against that of the frame, so that faces may lie in planes of the frame's lattice.
 ///
-/// Some 100 µs a cell of a mesh, and more for solids that answer no rays; threads share what is compared with
-/// the solid, and the proof. The result depends on the solid, the frame and the tolerance alone. The memory
-/// is that of the cells and of the triangles. `control.max_nodes` bounds the splits; with
-/// `control.max_splits` spent cells stay as they are, and the mesh is coarser.
+/// The time is about 100 µs per cell for a mesh, and more for solids that answer no rays. Threads share the
+/// comparison with the solid and the proof. The result depends only on the solid, the frame and the
+/// tolerance. The memory is that of the cells and of the triangles. `control.max_nodes` bounds the splits.
+/// When `control.max_splits` is spent, cells stay as they are, and the mesh is coarser.
 ///
 /// (Ju, Losasso, Schaefer and Warren, *Dual contouring of Hermite data*, 2002; Schaefer, Ju and Warren,
 /// *Manifold dual contouring*, 2007.)
@@ -172,8 +173,9 @@ const LARGER: f64 = 1.031_77;
 /// ```
 ///
 /// # Errors
-/// [`Error::Argument`] if the solid is not known to end inside of the universe, or `tolerance` is not between
-/// 2^-256 and 2^256; the solid's own; [`Error::Limit`], [`Error::OutOfMemory`], and [`Error::Cancelled`].
+/// [`Error::Argument`] if the solid is not known to end inside the universe, or `tolerance` is not between
+/// 2^-256 and 2^256; the errors of the solid; [`Error::Limit`], [`Error::OutOfMemory`], and
+/// [`Error::Cancelled`].
 pub fn contour<S: Solid>(
     solid: &S,
     frame: &Frame,
@@ -191,8 +193,8 @@ pub fn contour<S: Solid>(
     let found = match solid.home() {
         None => wanted.find(solid.on(&lattice, &quiet)?, &job)?,
         Some(home) => {
-            // A stored octree is known on its own lattice alone, and says nothing of what is smaller than
-            // half of its cells.
+            // A stored octree can only be evaluated on its own lattice, and knows nothing smaller than half
+            // its cells.
             let is_finer = |depth: &u8| edge / f64::from(1u32 << depth) < 0.5 * home.cell_size();
             wanted.depth -= (2..=frame.depth()).filter(is_finer).count() as u8;
             let moved = Transform::new(solid, &home, &Affine::IDENTITY);
@@ -203,10 +205,10 @@ pub fn contour<S: Solid>(
     Ok(found)
 }
 
-/// What is wanted.
+/// The parameters of a contour.
 struct Wanted<'w> {
     depth: u8,
-    /// In unit coordinates.
+    /// The tolerance in unit coordinates.
     tolerance: f64,
     quiet: &'w Control<'w>,
 }
@@ -279,8 +281,8 @@ impl Wanted<'_> {
         Ok(Contour { mesh, report })
     }
 
-    /// A mesh with fewer triangles, how many pairs of these intersect, and how far it is from the boundary of
-    /// a solid in a universe with such an edge.
+    /// Returns a mesh with fewer triangles, the number of pairs of these that intersect, and a bound of its
+    /// distance from the boundary of the solid. `edge` is the edge of the universe.
     fn reduced(
         &self,
         mesh: &TriangleMesh,
@@ -296,7 +298,7 @@ impl Wanted<'_> {
             let remade = Remade { mesh: &simple, is_new: &[], cuts: PROVES };
             let found = reference.beyond(&remade, tolerance, self.quiet)?;
             let beyond = found.beyond.iter().map(|&triangle| kept[triangle as usize]);
-            // (What is too far in any case, is so again.)
+            // (Triangles that are too far in any case will be so again.)
             let count = found.beyond.len();
             let hardly_falls = count >= last || (count > FEW && count > last - last / 16);
             if hardly_falls || !reduction.hold(beyond)? {
@@ -308,7 +310,8 @@ impl Wanted<'_> {
     }
 }
 
-/// Which triangles of a mesh are not among the known ones, which they become.
+/// Returns for each triangle of a mesh whether it is not yet in the known set, and adds all triangles to the
+/// set.
 fn fresh(mesh: &TriangleMesh, known: &mut HashSet<[[u64; 3]; 3]>) -> Result<Vec<bool>, Error> {
     known.try_reserve(mesh.triangles().len())?;
     let vertices = mesh.vertices();
@@ -317,18 +320,19 @@ fn fresh(mesh: &TriangleMesh, known: &mut HashSet<[[u64; 3]; 3]>) -> Result<Vec<
     memory::collected(corners.map(|corners| known.insert(corners)))
 }
 
-/// How far meshes are from a solid.
+/// Bounds of the distance between meshes and a solid.
 struct Proof<'p, C> {
     classifier: &'p C,
-    /// Where the boundary is, once somebody has asked.
+    /// The reference boundary, computed when it is first needed.
     reference: Option<Reference>,
-    /// To which it is to be known (model units).
+    /// The accuracy of the reference boundary (model units).
     tolerance: f64,
     job: Job<'p>,
 }
 
 impl<C: Classifier> Proof<'_, C> {
-    /// Where the boundary is: by no more than `budget` cells if it is not known exactly.
+    /// Returns the reference boundary. If it is not known exactly, at most `budget` cells are split to locate
+    /// it.
     fn reference(&mut self, budget: u64) -> Result<&Reference, Error> {
         match &mut self.reference {
             Some(reference) => Ok(reference),
@@ -337,7 +341,7 @@ impl<C: Classifier> Proof<'_, C> {
     }
 }
 
-/// Where edges are crossed.
+/// The places where edges are crossed.
 fn places<W: Worker>(sheets: &Sheets, probe: &mut Probe<'_, W>) -> Result<Vec<Place>, Error> {
     let mut places = memory::with_capacity(sheets.crossings.len())?;
     let mut spare = Vec::new();
@@ -349,7 +353,7 @@ fn places<W: Worker>(sheets: &Sheets, probe: &mut Probe<'_, W>) -> Result<Vec<Pl
     Ok(places)
 }
 
-/// A mesh with what it was made of.
+/// A mesh with the sheets and triangles from which it was made.
 struct Compared<'c> {
     made: &'c Triangles,
     sheets: &'c Sheets,
@@ -357,13 +361,13 @@ struct Compared<'c> {
 }
 
 impl Compared<'_> {
-    /// The leaves around the crossing that a triangle belongs to.
+    /// The leaves around the crossing to which a triangle belongs.
     fn around(&self, triangle: u32) -> [u32; 4] {
         self.sheets.crossings[self.made.crossings[triangle as usize] as usize].around
     }
 
-    /// The leaves next to which the mesh is too far from the surface. `known` are points of meshes that are
-    /// near to it.
+    /// Returns the leaves next to which the mesh is too far from the surface. `known` holds points of meshes
+    /// that are near the surface.
     fn refused<C: Classifier>(
         &self,
         classifier: &C,
@@ -455,8 +459,8 @@ impl Compared<'_> {
         Ok(leaves)
     }
 
-    /// Points of a triangle that are compared with the surface: its middle, and those of sides that run this
-    /// way.
+    /// The points of a triangle that are compared with the surface: its middle, and the middles of the sides
+    /// that lead to a greater vertex number. (So each side is compared once.)
     fn points(&self, triangle: u32) -> impl Iterator<Item = [f64; 3]> {
         let own = self.made.triangles[triangle as usize];
         let [a, b, c] = own.map(|vertex| self.made.vertices[vertex as usize]);
@@ -498,7 +502,7 @@ fn vertices(cells: &Cells, sheets: &Sheets, places: &[Place]) -> Result<Vec<[f64
     }))
 }
 
-/// The mesh, without vertices that no triangle has.
+/// The mesh, without vertices that no triangle uses.
 fn assemble(made: &Triangles, frame: &Frame) -> Result<TriangleMesh, Error> {
     let mut numbers = memory::filled(made.vertices.len(), NONE)?;
     let mut kept = memory::with_capacity(made.vertices.len())?;

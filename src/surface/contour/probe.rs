@@ -1,4 +1,4 @@
-//! What a solid is asked for: which points lie in it, and where lines cross its surface.
+//! Queries of a solid: the sides of points, and the crossings of lines with its surface.
 
 use super::sheets::Inside;
 use super::triangles::{Place, dot};
@@ -13,29 +13,29 @@ use crate::walk::Trail;
 use alloc::vec::Vec;
 use hashbrown::HashMap;
 
-/// Halvings of an edge between an inside point and an outside one.
+/// The greatest number of halvings of an edge between an inside point and an outside one.
 const HALVINGS: usize = 40;
 
-/// How much finer than an edge the cells are whose slabs tell the normal there.
+/// The number of levels by which a cell whose slabs give the normal at an edge is finer than the edge.
 const FINER: u8 = 10;
 
-/// How far beside a crossing others are looked for, as a part of its edge, where nothing else tells the
-/// normal.
+/// The distance beside a crossing at which other crossings are searched for, as a part of the edge, if
+/// nothing else gives the normal.
 const BESIDE: f64 = 1.0 / 64.0;
 
 /// An edge that is crossed: its axis, its lower end, its length, and whether it starts inside.
 type Segment = (u8, [u32; 3], u32, bool);
 
-/// Whoever asks.
+/// The queries of one solid.
 pub(super) struct Probe<'c, W: Worker> {
-    /// Asks about points and rays.
+    /// Queries points and rays.
     worker: W,
-    /// What rays begin with, if the solid answers them.
+    /// The root part for rays, if the solid answers them.
     root: Option<W::Part>,
-    /// What the nearest point of the surface is asked of, if the solid tells it.
+    /// The root part for nearest points, if the solid provides them.
     nearest: Option<W::Part>,
     trace: RayTrace,
-    /// Asks about cells.
+    /// Queries cells.
     trail: Trail<W>,
     frame: Frame,
     control: &'c Control<'c>,
@@ -43,12 +43,12 @@ pub(super) struct Probe<'c, W: Worker> {
     half: f64,
     known: HashMap<[u32; 3], bool>,
     crossings: HashMap<Segment, Place>,
-    /// Points of which the solid does not tell whether they lie inside.
+    /// The number of points whose side the solid did not report.
     pub(super) undecided: u64,
 }
 
 impl<'c, W: Worker> Probe<'c, W> {
-    /// `classifier` is to have the greatest depth, the contour has `depth`.
+    /// `classifier` must have the greatest depth; `depth` is the depth of the contour.
     pub(super) fn new<C: Classifier<Worker = W>>(
         classifier: &C,
         depth: u8,
@@ -83,7 +83,7 @@ impl<'c, W: Worker> Probe<'c, W> {
         self.trail.root().tag()
     }
 
-    /// What the children of a cell are, if it can be split.
+    /// The tags of the children of a cell, if it can be split.
     pub(super) fn children(&mut self, cell: Cell) -> Result<Option<[Tag; 8]>, Error> {
         self.trail.follow(cell, self.control)?;
         Ok(self
@@ -92,13 +92,13 @@ impl<'c, W: Worker> Probe<'c, W> {
             .map(|verdicts| [0, 1, 2, 3, 4, 5, 6, 7].map(|octant: usize| verdicts[octant].tag())))
     }
 
-    /// What is known of the surface in a cell that is not the universe.
+    /// The slabs of the surface in a cell that is not the universe.
     pub(super) fn enclosure(&mut self, cell: Cell) -> Result<Option<Enclosure>, Error> {
         self.trail.follow(cell.parent(), self.control)?;
         self.trail.enclosure(cell)
     }
 
-    /// In unit coordinates.
+    /// A lattice point in unit coordinates.
     pub(super) fn unit(&self, at: [u32; 3]) -> [f64; 3] {
         at.map(|c| f64::from(c) * self.half)
     }
@@ -108,7 +108,7 @@ impl<'c, W: Worker> Probe<'c, W> {
         self.frame.edge()
     }
 
-    /// The point of the surface that is nearest to another one, if the solid tells it.
+    /// The nearest point of the surface, if the solid provides it.
     pub(super) fn nearest(&mut self, unit: [f64; 3]) -> Result<Option<[f64; 3]>, Error> {
         let point = self.model(unit);
         let Some(root) = &self.nearest else { return Ok(None) };
@@ -117,8 +117,8 @@ impl<'c, W: Worker> Probe<'c, W> {
         Ok(found.map(|found| axes(|k| (found.point[k] - frame.origin()[k]) / frame.edge())))
     }
 
-    /// Adds points of the surface in a cell: for each small cell in it that is not decided the nearest one,
-    /// if that is known.
+    /// Adds points of the surface in a cell: for each undecided small cell in it the nearest point, if it is
+    /// known.
     pub(super) fn samples(&mut self, cell: Cell, ahead: u8, found: &mut Vec<[f64; 3]>) -> Result<(), Error> {
         if ahead > 0
             && cell.level < MAX_DEPTH
@@ -137,7 +137,7 @@ impl<'c, W: Worker> Probe<'c, W> {
             return memory::push(found, point);
         }
         let Some(enclosure) = self.enclosure(cell)? else { return Ok(()) };
-        // The foot of the centre on the middle of its slab.
+        // The foot of the centre on the middle plane of its slab.
         let mut slabs = enclosure.slabs.iter().filter(|slab| slab.normal != [0.0; 3]);
         let (Some(slab), None) = (slabs.next(), slabs.next()) else { return Ok(()) };
         let way = 0.5 * (slab.inner + slab.outer) / dot(slab.normal, slab.normal);
@@ -150,7 +150,7 @@ impl<'c, W: Worker> Probe<'c, W> {
         axes(|axis| self.frame.origin()[axis] + unit[axis] * self.frame.edge())
     }
 
-    /// Whether a point lies inside. One of which nobody knows does not.
+    /// Returns whether a point lies inside. Undecided points count as outside.
     fn holds(&mut self, unit: [f64; 3]) -> Result<bool, Error> {
         let mut answer = [None];
         self.worker.inside(&[self.model(unit)], &mut answer)?;
@@ -170,15 +170,16 @@ impl<'c, W: Worker> Probe<'c, W> {
         }
     }
 
-    /// The cell of a level that holds a point.
+    /// The cell of a level that contains a point.
     fn cell(&self, unit: [f64; 3], level: u8) -> Cell {
         let cells = f64::from(1u32 << level);
-        // (What is no number becomes 0.)
+        // (NaN becomes 0.)
         Cell { level, at: unit.map(|c| (c * cells).clamp(0.0, cells - 1.0) as u32) }
     }
 
-    /// Adds the crossings of the surface on a line along an axis between two lattice points, which are told
-    /// in halves of finest cells; if the solid answers no rays, at most one in each half of it.
+    /// Adds the crossings of the surface on a line along an axis between two lattice points, which are given
+    /// in halves of finest cells. If the solid answers no rays, at most one crossing in each half of the line
+    /// is added.
     pub(super) fn line(
         &mut self,
         axis: usize,
@@ -216,7 +217,7 @@ impl<'c, W: Worker> Probe<'c, W> {
         Ok(())
     }
 
-    /// Adds all crossings on a line by a ray. `false` if that is not known.
+    /// Adds all crossings on a line by a ray. `false` if they are not known.
     fn rays(
         &mut self,
         axis: usize,
@@ -244,7 +245,7 @@ impl<'c, W: Worker> Probe<'c, W> {
         Ok(true)
     }
 
-    /// Where an edge with an inside end and an outside one is crossed. The answer is remembered.
+    /// Returns the crossing of an edge with an inside end and an outside one. The result is cached.
     pub(super) fn crossing(
         &mut self,
         axis: usize,
@@ -274,7 +275,7 @@ impl<'c, W: Worker> Probe<'c, W> {
         spare.clear();
         let start = self.unit(from);
         if self.rays(axis, start, f64::from(length) * self.half, spare)? {
-            // Of several ones, that by which the solid ends.
+            // If there are several crossings, take the one through which the line leaves the solid.
             let sign = if starts_inside { 1.0 } else { -1.0 };
             let out = |place: &&Place| place.normal[axis] * sign > 0.0;
             let nearest = if starts_inside { spare.iter().find(out) } else { spare.iter().rev().find(out) };
@@ -285,7 +286,7 @@ impl<'c, W: Worker> Probe<'c, W> {
         self.between(axis, from, length, starts_inside)
     }
 
-    /// The same by halvings.
+    /// Finds the crossing by halving.
     fn between(
         &mut self,
         axis: usize,
@@ -300,7 +301,7 @@ impl<'c, W: Worker> Probe<'c, W> {
         at[axis] = x;
         let sign = if starts_inside { 1.0 } else { -1.0 };
         let normal = match self.slab(at, length)? {
-            // (It may be that of another surface nearby.)
+            // (The normal may be that of another surface nearby.)
             Some(normal) if normal[axis] * sign > 0.0 => normal,
             _ => self.slope(axis, at, length, starts_inside)?.unwrap_or([0.0; 3]),
         };
@@ -340,7 +341,7 @@ impl<'c, W: Worker> Probe<'c, W> {
         let Some(enclosure) = self.trail.enclosure(cell)? else { return Ok(None) };
         let cells = f64::from(1u32 << level);
         let own = axes(|k| 2.0 * (at[k] * cells - f64::from(cell.at[k])) - 1.0);
-        // Of several slabs the one in whose middle the point lies.
+        // If there are several slabs, take the one whose middle is nearest to the point.
         let mut best: Option<(f64, [f64; 3])> = None;
         for slab in enclosure.slabs.iter().filter(|slab| slab.normal != [0.0; 3]) {
             let normal = unit_vector(slab.normal);
@@ -353,7 +354,7 @@ impl<'c, W: Worker> Probe<'c, W> {
         Ok(best.map(|(_, normal)| normal))
     }
 
-    /// The normal by crossings beside one.
+    /// The normal by other crossings beside the crossing.
     fn slope(
         &mut self,
         axis: usize,
@@ -400,9 +401,9 @@ impl<W: Worker> Inside for Probe<'_, W> {
     }
 }
 
-/// A vector of length 1; all zero if it has no direction.
+/// The unit vector in a direction; all zero if there is no direction.
 fn unit_vector(vector: [f64; 3]) -> [f64; 3] {
-    // (Products of very small or large numbers are none.)
+    // (Products of very small or very large numbers underflow or overflow.)
     let most = vector.iter().fold(0.0, |most: f64, c| most.max(c.abs()));
     let scaled = vector.map(|c| c / most);
     let unit = scaled.map(|c| c / sqrt(dot(scaled, scaled)));

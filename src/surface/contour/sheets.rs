@@ -1,10 +1,10 @@
-//! Which pieces of the surface there are in each cell.
+//! The pieces of the surface in each cell.
 //!
-//! Corners of cells lie inside or outside. Minimal edges between an inside corner and an outside one are
-//! crossed by the surface. In a minimal face crossings are joined in pairs by arcs, which both cells beside
-//! the face see. Arcs form loops around cells, and each loop bounds one sheet, a disc. So crossings, arcs and
-//! sheets form a closed surface, whatever the signs are: each arc lies between two sheets, and around each
-//! crossing there are three or four sheets.
+//! Corners of cells lie inside or outside. The surface crosses minimal edges between an inside corner and an
+//! outside one. In a minimal face, arcs join the crossings in pairs; both cells beside the face share the
+//! arcs. Arcs form loops around cells, and each loop bounds one sheet, a disc. So crossings, arcs and sheets
+//! form a closed surface for any signs: each arc lies between two sheets, and each crossing is surrounded by
+//! three or four sheets.
 
 use super::cells::{Cells, Kind, OUTSIDE};
 use super::walk::{Edge, Face, Visitor, walk};
@@ -16,7 +16,7 @@ use hashbrown::HashMap;
 /// No arc.
 pub(super) const NONE: u32 = u32::MAX;
 
-/// Tells which points lie inside. Their coordinates are counted in halves of finest cells.
+/// A test of points. Their coordinates are counted in halves of finest cells.
 pub(super) trait Inside {
     fn is_inside(&mut self, at: [u32; 3]) -> Result<bool, Error>;
 }
@@ -29,19 +29,19 @@ pub(super) struct Crossing {
     pub(super) length: u32,
     /// The lower end, in finest cells.
     pub(super) at: [u32; 3],
-    /// The leaves around it, counter-clockwise seen from above.
+    /// The leaves around the edge, counter-clockwise as seen from above.
     pub(super) around: [u32; 4],
-    /// The arc between each and the next of them; [`NONE`] if they are one.
+    /// The arc between each leaf and the next one; [`NONE`] if both are the same leaf.
     pub(super) arcs: [u32; 4],
 }
 
 impl Crossing {
-    /// Crossings in the order in which those on one line follow each other.
+    /// A key that sorts crossings so that those on one line follow each other.
     fn key(&self) -> u128 {
         key(usize::from(self.axis), self.at)
     }
 
-    /// The first place of a leaf around it.
+    /// The first place of a leaf around the crossing.
     fn place(&self, leaf: u32) -> Option<usize> {
         self.around.iter().position(|&around| around == leaf)
     }
@@ -52,11 +52,11 @@ fn key(axis: usize, at: [u32; 3]) -> u128 {
     (axis as u128) << 96 | u << 64 | v << 32 | along
 }
 
-/// What joins two crossings in a face.
+/// A connection of two crossings in a face.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Arc {
     pub(super) crossings: [u32; 2],
-    /// The leaves beside it.
+    /// The leaves beside the arc.
     pub(super) leaves: [u32; 2],
     pub(super) axis: u8,
 }
@@ -65,7 +65,7 @@ pub(super) struct Arc {
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Sheet {
     pub(super) leaf: u32,
-    /// How many crossings there are around it.
+    /// The number of crossings around the disc.
     pub(super) crossings: u32,
 }
 
@@ -73,27 +73,27 @@ pub(super) struct Sheets {
     pub(super) crossings: Vec<Crossing>,
     pub(super) arcs: Vec<Arc>,
     pub(super) sheets: Vec<Sheet>,
-    /// For each crossing the sheets in the cells around it.
+    /// For each crossing, the sheets in the cells around it.
     pub(super) around: Vec<[u32; 4]>,
-    /// How many sheets each leaf has.
+    /// The number of sheets of each leaf.
     pub(super) counts: Vec<u32>,
 }
 
-/// What decided cells say of a corner: some of these.
+/// The flags of a corner: decided cells around it are empty, or full.
 const EMPTY: u8 = 1;
 const FULL: u8 = 2;
-/// A corner that was asked for.
+/// The corner was queried.
 const ASKED: u8 = 4;
 const INSIDE: u8 = 8;
 
-/// Whether there is nothing but empty cells around an edge: both its ends lie outside. Whoever else meets
-/// such an end says so, too.
+/// Returns whether there are only empty cells around an edge, so that both its ends lie outside. Any other
+/// edge that meets such an end also knows this.
 fn is_empty(cells: &Cells, edge: &Edge) -> bool {
     let mut around = edge.around.iter().map(|&leaf| cells.leaves.get(leaf as usize));
     around.all(|leaf| leaf.is_none_or(|leaf| leaf.kind == Kind::Empty))
 }
 
-/// Finds out what cells say of corners.
+/// Collects the verdicts of cells on corners.
 struct Touched<'c> {
     cells: &'c Cells,
     states: HashMap<[u32; 3], u8>,
@@ -126,7 +126,7 @@ impl Visitor for Touched<'_> {
     }
 }
 
-/// Finds the edges that are crossed.
+/// Finds the crossed edges.
 struct Crossed<'i, I> {
     cells: &'i Cells,
     states: HashMap<[u32; 3], u8>,
@@ -171,21 +171,22 @@ impl<I: Inside> Visitor for Crossed<'_, I> {
     }
 }
 
-/// Finds arcs.
+/// Finds the arcs.
 struct Joined<'i, I> {
     inside: &'i mut I,
     crossings: Vec<Crossing>,
-    /// The keys of these.
+    /// The keys of the crossings.
     keys: Vec<u128>,
-    /// Which leaves lie around crossings: no other face has any.
+    /// Whether crossings lie around each leaf. Other leaves have no crossings in their faces.
     is_crossed: Vec<bool>,
     arcs: Vec<Arc>,
-    /// Of the face at hand, counter-clockwise: crossings, and whether the corner before each lies inside.
+    /// The crossings around the current face, counter-clockwise, and whether the corner before each lies
+    /// inside.
     ring: Vec<(u32, bool)>,
 }
 
 impl<I> Joined<'_, I> {
-    /// Takes in the crossings from a corner along an axis.
+    /// Adds the crossings from a corner along an axis to the ring.
     fn along(&mut self, axis: usize, at: [u32; 3], length: u32, is_backward: bool) -> Result<(), Error> {
         let mut over = at;
         over[axis] += length;
@@ -224,13 +225,13 @@ impl<I: Inside> Visitor for Joined<'_, I> {
         if count < 2 {
             return Ok(());
         }
-        // Where there is a choice, the centre decides whether inside or outside is in one piece.
+        // If there is a choice, the centre decides whether the inside or the outside is in one piece.
         let mut centre = at.map(|c| 2 * c);
         centre[u] += length;
         centre[v] += length;
         let is_whole = count > 2 && self.inside.is_inside(centre)?;
-        // An arc cuts off the corners between a crossing and the next one that lie inside; or those that lie
-        // outside.
+        // An arc cuts off the corners between a crossing and the next one: those that lie inside, or those
+        // that lie outside.
         let first = usize::from(self.ring[0].1 != is_whole);
         for k in (first..count + first).step_by(2) {
             let crossings = [self.ring[k % count].0, self.ring[(k + 1) % count].0];
@@ -276,9 +277,9 @@ impl Sheets {
         Ok(sheets)
     }
 
-    /// Makes loops of arcs.
+    /// Joins arcs to loops.
     fn link(&mut self, cells: &Cells) -> Result<(), Error> {
-        // The place of a cell around a crossing stands for the part of the cell's surface there.
+        // The place of a cell around a crossing represents the part of the cell's surface there.
         let mut parents = memory::collected(0..4 * self.crossings.len() as u32)?;
         for arc in &self.arcs {
             for leaf in arc.leaves {

@@ -1,4 +1,4 @@
-//! Any signs at the corners of any cells give a manifold.
+//! Tests: any signs at the corners of any cells give a manifold.
 
 use super::cells::{Cells, Kind, Slot};
 use super::sheets::{Inside, Sheets};
@@ -37,7 +37,8 @@ impl Inside for Signs {
     }
 }
 
-/// Each edge has two triangles in opposite directions, and around each vertex there is one fan. V - E + F.
+/// Checks that each edge has two triangles in opposite directions, and that there is one fan around each
+/// vertex. Returns V - E + F.
 fn euler(triangles: &[[u32; 3]]) -> i64 {
     let mut next: HashMap<(u32, u32), u32> = HashMap::new();
     let mut fans: HashMap<u32, (u32, u32)> = HashMap::new();
@@ -105,7 +106,7 @@ fn trial(seed: u64) -> usize {
     let mut random = Random(seed);
     let depth = 1 + random.below(4) as u8;
     let cells = if random.below(4) == 0 {
-        // All of one size: a bitmap.
+        // All cells of one size: a bitmap.
         let depth = depth.min(3);
         let mut cells = Cells::new(Kind::Open, depth).unwrap();
         let mut leaf = 0;

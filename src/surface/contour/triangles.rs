@@ -1,13 +1,13 @@
 //! Triangles between the vertices of sheets.
 //!
-//! Each crossing has a polygon through the sheets around it. Polygons are the dual of the surface that sheets
-//! form, which is closed; so their triangles are, too. Three cases would give an edge more than two
-//! triangles, and get further vertices:
+//! Each crossing has a polygon through the sheets around it. The polygons are the dual of the surface that
+//! the sheets form. This surface is closed, so the triangles of the polygons are closed, too. Three cases
+//! would give an edge more than two triangles, and get additional vertices:
 //!
 //! * Where several arcs lie between the same two sheets, each of them gets a vertex.
-//! * A polygon with such a vertex, and one of which both diagonals are edges already, gets a vertex in its
+//! * A polygon with such a vertex, and a polygon whose diagonals both are edges already, gets a vertex at its
 //!   crossing.
-//! * So does a triangle of three sheets of two crossings each, whose other side is a triangle, too.
+//! * A triangle of three sheets with two crossings each also gets one, if its other side is a triangle, too.
 
 use super::sheets::{NONE, Sheets};
 use crate::error::{Error, MeshError};
@@ -17,7 +17,7 @@ use crate::memory;
 use alloc::vec::Vec;
 use hashbrown::HashSet;
 
-/// Where something of the surface lies, in unit coordinates.
+/// A point of the surface, in unit coordinates.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Place {
     pub(super) at: [f64; 3],
@@ -25,25 +25,25 @@ pub(super) struct Place {
     pub(super) normal: [f64; 3],
 }
 
-/// What becomes of the sheets.
+/// The triangles of the sheets.
 #[derive(Default)]
 pub(super) struct Triangles {
     pub(super) vertices: Vec<[f64; 3]>,
     pub(super) triangles: Vec<[u32; 3]>,
-    /// The crossing that each triangle belongs to.
+    /// The crossing to which each triangle belongs.
     pub(super) crossings: Vec<u32>,
 }
 
-/// Distances that differ by no more are alike, in edges of the universe.
+/// Two distances count as equal if they differ by at most this, in edges of the universe.
 const ALIKE: f64 = 1e-12;
 
 struct Maker<'s> {
     sheets: &'s Sheets,
     places: &'s [Place],
     made: Triangles,
-    /// The vertex of each arc; [`NONE`] as a rule.
+    /// The vertex of each arc; usually [`NONE`].
     of_arcs: Vec<u32>,
-    /// Edges between sheets, the lower one first.
+    /// Edges between sheets, the lower sheet first.
     edges: HashSet<(u32, u32)>,
 }
 
@@ -104,8 +104,8 @@ impl Maker<'_> {
         Ok(())
     }
 
-    /// A point for the middle of an arc: where its planes meet in the face, if that lies about there, else
-    /// half-way.
+    /// A point for the middle of an arc: where its planes meet in the face, if that point lies nearby,
+    /// otherwise half-way.
     fn on_face(&self, number: u32) -> [f64; 3] {
         let arc = &self.sheets.arcs[number as usize];
         let axis = usize::from(arc.axis);
@@ -181,13 +181,14 @@ impl Maker<'_> {
         Ok(())
     }
 
-    /// Which diagonal a quadrilateral gets: that from its first corner (`true`) or the other one. Nothing if
-    /// neither may be, or both would make it fold.
+    /// Returns the diagonal of a quadrilateral: the one from its first corner (`true`) or the other one.
+    /// `None` if neither is allowed, or both would make the quadrilateral fold.
     fn diagonal(&self, number: u32, ring: [u32; 4]) -> Option<bool> {
         let Place { at, normal } = self.places[number as usize];
         let [a, b, c, d] = ring.map(|sheet| self.made.vertices[sheet as usize]);
         let is_free = |p: u32, q: u32| !self.edges.contains(&(p.min(q), p.max(q)));
-        // Triangles that face the wrong way, how far the crossing is, and how long the diagonal is.
+        // The number of triangles that face the wrong way, the distance of the crossing, and the length of
+        // the diagonal.
         let cost = |halves: [[[f64; 3]; 3]; 2], is_free: bool, p: [f64; 3], q: [f64; 3]| {
             let folds = halves.iter().filter(|half| dot(area(half), normal) < 0.0).count();
             let away = halves.iter().map(|half| away(half, at)).fold(f64::INFINITY, f64::min);
@@ -231,7 +232,7 @@ fn area(&[a, b, c]: &[[f64; 3]; 3]) -> [f64; 3] {
     cross(minus(b, a), minus(c, a))
 }
 
-/// How far a point is from a triangle.
+/// The distance of a point from a triangle.
 pub(super) fn away(triangle: &[[f64; 3]; 3], at: [f64; 3]) -> f64 {
     let normal = area(triangle);
     let square = dot(normal, normal);

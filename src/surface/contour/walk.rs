@@ -25,7 +25,8 @@ impl At {
         }
     }
 
-    /// The smaller the cell, the greater; what lies around the universe is the largest.
+    /// A rank of sizes: the smaller the cell, the greater the rank. The space around the universe has the
+    /// least.
     fn fineness(&self) -> u8 {
         if self.leaf() == OUTSIDE { 0 } else { self.cell.level + 1 }
     }
@@ -38,7 +39,7 @@ pub(super) struct Face {
     /// The lower corner, in finest cells.
     pub(super) at: [u32; 3],
     pub(super) length: u32,
-    /// The leaves below and above.
+    /// The leaves below and above the face.
     pub(super) sides: [u32; 2],
 }
 
@@ -49,21 +50,21 @@ pub(super) struct Edge {
     /// The lower end, in finest cells.
     pub(super) at: [u32; 3],
     pub(super) length: u32,
-    /// The leaves around it, counter-clockwise seen from above: low on both other axes first, then high on
-    /// the axis that comes next.
+    /// The leaves around the edge, counter-clockwise as seen from above: first low on both other axes, then
+    /// high on the next axis in cyclic order.
     pub(super) around: [u32; 4],
 }
 
-/// Where on the two next axes the cells around an edge lie.
+/// The places of the cells around an edge, on the two next axes.
 const ROUND: [[usize; 2]; 4] = [[0, 0], [1, 0], [1, 1], [0, 1]];
 
-/// Whoever wants to see faces and edges.
+/// A visitor of minimal faces and edges.
 pub(super) trait Visitor {
     fn face(&mut self, face: &Face) -> Result<(), Error>;
     fn edge(&mut self, edge: &Edge) -> Result<(), Error>;
 }
 
-/// Shows all minimal faces and edges, those on the boundary of the universe with them.
+/// Visits all minimal faces and edges, including those on the boundary of the universe.
 pub(super) fn walk(cells: &Cells, visitor: &mut impl Visitor) -> Result<(), Error> {
     let root = At { cell: Cell::ROOT, slot: cells.root };
     let outside = At { cell: Cell::ROOT, slot: Slot::Leaf(OUTSIDE) };
@@ -123,7 +124,7 @@ impl<V: Visitor> Walker<'_, V> {
         }
         let touching = |side: usize, u: usize, v: usize| self.child(sides[side], axis, [1 - side, u, v]);
         let pieces = ROUND.map(|[u, v]| [touching(0, u, v), touching(1, u, v)]);
-        // Edges in the face, along the next axis and along the one after that.
+        // The edges in the face, along the next axis and along the axis after it.
         let along_u =
             [0, 1].map(|u| [touching(0, u, 0), touching(0, u, 1), touching(1, u, 1), touching(1, u, 0)]);
         let along_v =

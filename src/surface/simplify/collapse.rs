@@ -1,4 +1,4 @@
-//! Vertices are taken out one after the other, first those without which the surface moves least.
+//! Removing vertices one after the other, first those whose removal moves the surface least.
 
 use super::links::{Links, NONE, Ring};
 use super::patch::Patch;
@@ -10,24 +10,24 @@ use crate::walk::Queue;
 use alloc::vec::Vec;
 use core::cmp::Reverse;
 
-/// Vertices with more triangles stay.
+/// Vertices with more triangles than this stay.
 const MOST: usize = 96;
 
-/// What the length of a side counts beside how far the surface moves: of vertices that are as good, those go
-/// first that lie close together.
+/// The weight of a side's length in the rank, besides the movement of the surface. Among equally good
+/// vertices, those that lie close together go first.
 const LENGTH: f64 = 1e-3;
 
-/// Sums of steps that are no greater part of the tolerance are as good as what points of the first surface
-/// tell.
+/// A sum of steps up to this part of the tolerance is used as the error bound. Beyond it, the points of the
+/// first surface are evaluated.
 const SURE: f64 = 0.125;
 
-/// Of more points over one triangle every other one is forgotten.
+/// If a triangle has more points than this, every other point is dropped.
 const MANY: usize = 64;
 
-/// How many vertices are looked at between two questions whether to go on.
+/// The number of vertices between two checks for cancellation.
 const CHECKED: usize = 1 << 10;
 
-/// A vertex that can go: where to, and how far from the first surface all is then.
+/// A possible collapse of a vertex: its target, and the distance of the result from the first surface.
 #[derive(Clone, Copy)]
 struct Step {
     onto: u32,
@@ -37,17 +37,17 @@ struct Step {
     rank: f64,
 }
 
-/// A mesh on the way to fewer vertices.
+/// A mesh while its vertices are being removed.
 pub(super) struct Collapse<'c> {
     pub(super) links: Links,
     vertices: &'c [[f64; 3]],
-    /// How far the surface may move where a vertex goes (model units); those of 0 stay.
+    /// The greatest movement of the surface at each vertex (model units). Vertices with 0 stay.
     limits: &'c [f64],
     /// The middles of the sides, triangle by triangle.
     middles: Vec<[f64; 3]>,
-    /// Which vertex each one went to.
+    /// The vertex onto which each vertex was collapsed.
     pub(super) went: Vec<u32>,
-    /// How often what is known of a vertex has changed.
+    /// The number of changes of a vertex's surroundings.
     changes: Vec<u32>,
     marks: Marks,
     ring: Ring,
@@ -86,7 +86,7 @@ impl<'c> Collapse<'c> {
         })
     }
 
-    /// Takes vertices out until no more can go. Progress advances by `parts`.
+    /// Removes vertices until no more can go. Progress advances by `parts`.
     pub(super) fn run(&mut self, job: &Job<'_>, parts: usize) -> Result<(), Error> {
         for vertex in 0..self.vertices.len() as u32 {
             if (vertex as usize).is_multiple_of(CHECKED) {
@@ -98,7 +98,7 @@ impl<'c> Collapse<'c> {
         let mut taken = 0;
         while let Some(entry) = self.queue.peek() {
             let Reverse((_, vertex)) = entry.key;
-            // (There is one, as the line before says.)
+            // (The queue is not empty, as the line before shows.)
             let Some((changes, step)) = self.queue.pop() else { break };
             if self.changes[vertex as usize] != changes {
                 continue;
@@ -110,7 +110,7 @@ impl<'c> Collapse<'c> {
             self.links.ring(vertex, MOST, &mut self.ring)?;
             let onto = self.ring.vertices.iter().position(|&other| other == step.onto);
             let Some(onto) = onto.filter(|&onto| self.marks.may_go(&self.links, &self.ring, onto)) else {
-                // What lies beyond the ring has changed since.
+                // The surroundings beyond the ring have changed since.
                 self.enter(vertex)?;
                 continue;
             };
@@ -128,7 +128,7 @@ impl<'c> Collapse<'c> {
         Ok(())
     }
 
-    /// A point of the first surface: a vertex, or behind these the middle of a side.
+    /// A point of the first surface: a vertex, or, with a greater number, the middle of a side.
     fn point(&self, number: u32) -> [f64; 3] {
         let number = number as usize;
         if number < self.vertices.len() {
@@ -138,7 +138,7 @@ impl<'c> Collapse<'c> {
         }
     }
 
-    /// Takes the middle of the ring out.
+    /// Removes the vertex in the middle of the ring.
     fn take(&mut self, vertex: u32, onto: usize, step: &Step) -> Result<(), Error> {
         let ring = self.ring.vertices.iter().map(|&other| self.vertices[other as usize]);
         self.patch.see(self.vertices[vertex as usize], ring)?;
@@ -172,12 +172,12 @@ impl<'c> Collapse<'c> {
     /// Puts a vertex into the queue, if it can go.
     fn enter(&mut self, vertex: u32) -> Result<(), Error> {
         let Some(step) = self.best(vertex)? else { return Ok(()) };
-        // (The bits of numbers that are not negative have the same order.)
+        // (The bits of non-negative numbers have the same order as the numbers.)
         let key = Reverse((step.rank.to_bits(), vertex));
         self.queue.push(key, (self.changes[vertex as usize], step))
     }
 
-    /// The best place for a vertex to go to.
+    /// Returns the best collapse of a vertex.
     fn best(&mut self, vertex: u32) -> Result<Option<Step>, Error> {
         let limit = self.limits[vertex as usize];
         if limit == 0.0 || !self.links.ring(vertex, MOST, &mut self.ring)? {
@@ -202,7 +202,7 @@ impl<'c> Collapse<'c> {
         }
         let mut best: Option<Step> = None;
         for k in 0..count {
-            // Along an edge only, whose two parts become one.
+            // A vertex on an edge of the shape can only move along the edge, whose two parts become one.
             if sharp == 2 && (!is_sharp(k) || is_sharp(k + 1) || is_sharp(k + count - 1)) {
                 continue;
             }
@@ -236,22 +236,22 @@ impl<'c> Collapse<'c> {
     }
 }
 
-/// The neighbours of a vertex: those that bear the last mark.
+/// Marks of the neighbours of a vertex: those with the last mark.
 struct Marks {
     marks: Vec<u32>,
     last: u32,
 }
 
 impl Marks {
-    /// Whether the surface hangs together as before if the middle of the ring goes to one of it: no new side
-    /// may be there already.
+    /// Returns whether the surface stays connected in the same way if the middle of the ring moves to one of
+    /// its vertices: no new side may exist already.
     fn may_go(&mut self, links: &Links, ring: &Ring, onto: usize) -> bool {
         let vertices = &ring.vertices;
         let count = vertices.len();
         let [target, next, before] = [0, 1, count - 1].map(|step| vertices[(onto + step) % count]);
         self.last = self.last.wrapping_add(1);
         if self.last == 0 {
-            // All numbers were used.
+            // All mark numbers have been used.
             self.marks.fill(0);
             self.last = 1;
         }

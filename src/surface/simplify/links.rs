@@ -1,4 +1,4 @@
-//! Triangles that vertices are taken out of: which of them are around a vertex.
+//! Triangles whose vertices are being removed, with the triangles around each vertex.
 
 use crate::error::Error;
 use crate::memory;
@@ -7,33 +7,34 @@ use alloc::vec::Vec;
 /// No corner, or no vertex.
 pub(super) const NONE: u32 = u32::MAX;
 
-/// Triangles and the corners of each vertex. A corner is three times a triangle's number and the place in it.
+/// Triangles and the corners of each vertex. A corner is three times a triangle's number plus the place in
+/// the triangle.
 pub(super) struct Links {
     pub(super) triangles: Vec<[u32; 3]>,
-    /// Of each triangle which of its sides are sharp: bit k for the side from corner k to the next one.
+    /// The sharp sides of each triangle: bit k for the side from corner k to the next one.
     pub(super) sharp: Vec<u8>,
-    /// How far a triangle may be from what was in its place at first (model units).
+    /// The greatest distance of each triangle from the first surface in its place (model units).
     pub(super) errors: Vec<f64>,
-    /// The first corner of each vertex, and the one behind each corner.
+    /// The first corner of each vertex, and the next one after each corner.
     heads: Vec<u32>,
     next: Vec<u32>,
-    /// The first of the points that are gone and lay over a triangle, and the one behind each of these. (Of
-    /// vertices, and of the middles of sides.)
+    /// The first of the removed points that lay over each triangle, and the next one after each point. (The
+    /// points are vertices, and the middles of sides.)
     first_gone: Vec<u32>,
     next_gone: Vec<u32>,
 }
 
-/// The vertices around another one, counter-clockwise as seen from outside.
+/// The vertices around a vertex, counter-clockwise as seen from outside.
 #[derive(Default)]
 pub(super) struct Ring {
     pub(super) vertices: Vec<u32>,
-    /// The corners that the middle has; number k is that of the triangle before side k.
+    /// The corners of the middle vertex; corner k is that of the triangle before side k.
     pub(super) corners: Vec<u32>,
     spare: Vec<(u32, u32, u32)>,
 }
 
 impl Links {
-    /// Links of triangles that have so many vertices. No side is sharp yet.
+    /// Links of triangles with `count` vertices. No side is sharp yet.
     pub(super) fn new(count: usize, triangles: Vec<[u32; 3]>) -> Result<Links, Error> {
         let mut links = Links {
             sharp: memory::filled(triangles.len(), 0)?,
@@ -52,7 +53,7 @@ impl Links {
         Ok(links)
     }
 
-    /// Whether a triangle is still there.
+    /// Returns whether a triangle still exists.
     pub(super) fn is_there(&self, triangle: usize) -> bool {
         self.triangles[triangle][0] != NONE
     }
@@ -77,7 +78,7 @@ impl Links {
         [triangle[(k + 1) % 3], triangle[(k + 2) % 3]]
     }
 
-    /// The ring around a vertex; `false` if there is none, or a larger one than `most`.
+    /// Finds the ring around a vertex; `false` if there is none, or if it is larger than `most`.
     pub(super) fn ring(&self, vertex: u32, most: usize, ring: &mut Ring) -> Result<bool, Error> {
         let Ring { vertices, corners, spare } = ring;
         vertices.clear();
@@ -93,7 +94,7 @@ impl Links {
         if spare.len() < 3 {
             return Ok(false);
         }
-        // (In the order of the vertices, so that the next one is soon found.)
+        // (Sorted by the vertices, so that the next one is found quickly.)
         spare.sort_unstable();
         if spare.windows(2).any(|two| two[0].0 == two[1].0) {
             return Ok(false);
@@ -115,12 +116,12 @@ impl Links {
         Ok(at == first && vertices.len() == spare.len())
     }
 
-    /// Whether the side from a corner to the next one is sharp.
+    /// Returns whether the side from a corner to the next one is sharp.
     pub(super) fn is_sharp(&self, corner: u32) -> bool {
         self.sharp[corner as usize / 3] >> (corner % 3) & 1 != 0
     }
 
-    /// Vertices that are gone and belong to a triangle.
+    /// The removed points that belong to a triangle.
     pub(super) fn gone(&self, triangle: usize) -> impl Iterator<Item = u32> {
         let mut at = self.first_gone[triangle];
         core::iter::from_fn(move || {
@@ -132,23 +133,22 @@ impl Links {
         })
     }
 
-    /// Takes the vertices away that are gone and belong to a triangle.
+    /// Drops the removed points that belong to a triangle.
     pub(super) fn forget(&mut self, triangle: usize) {
         self.first_gone[triangle] = NONE;
     }
 
-    /// Gives a vertex that is gone to a triangle.
+    /// Adds a removed point to a triangle.
     pub(super) fn remember(&mut self, triangle: usize, vertex: u32) {
         self.next_gone[vertex as usize] = self.first_gone[triangle];
         self.first_gone[triangle] = vertex;
     }
 
-    /// Moves a vertex to another one of its ring: two triangles vanish.
+    /// Collapses the vertex of a ring onto one of the ring's vertices: two triangles vanish.
     pub(super) fn collapse(&mut self, ring: &Ring, onto: usize) {
         let count = ring.vertices.len();
         let target = ring.vertices[onto];
-        // The sides that the target has in common with the triangles that stay: they take the places of sides
-        // that vanish.
+        // The sides between the target and the remaining triangles. They replace sides that vanish.
         let before = (onto + count - 1) % count;
         let [first, last] = [ring.corners[onto], ring.corners[before]];
         let is_sharp = [self.is_opposite_sharp(first), self.is_opposite_sharp(last)];
@@ -162,8 +162,8 @@ impl Links {
             self.triangles[triangle][k] = target;
             self.next[corner as usize] = self.heads[target as usize];
             self.heads[target as usize] = corner;
-            // The triangle behind the first that vanishes begins where that one ended, and the one before the
-            // last ends where it began.
+            // The triangle after the first vanishing one begins where that one ended, and the triangle before
+            // the last vanishing one ends where that one began.
             if place == (onto + 1) % count {
                 self.set_sharp(triangle, k, is_sharp[0]);
             }
@@ -173,7 +173,7 @@ impl Links {
         }
     }
 
-    /// Whether the side opposite of a corner is sharp.
+    /// Returns whether the side opposite a corner is sharp.
     fn is_opposite_sharp(&self, corner: u32) -> bool {
         self.sharp[corner as usize / 3] >> ((corner + 1) % 3) & 1 != 0
     }

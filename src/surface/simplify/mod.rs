@@ -1,10 +1,10 @@
-//! Meshes with fewer triangles, and a proof of how far they are from those that they were made of.
+//! Simplified meshes, with a proven bound of their distance from the original meshes.
 //!
 //! (Guéziec, *Locally toleranced surface simplification*, 1999; Borouchaki and Frey, *Simplification of
 //! surface mesh using Hausdorff envelope*, 2005.)
 //!
 //! From the bottom up, each file uses only files named before it: `links` (triangles around vertices),
-//! `sharp` (edges of the shape), `patch` (how far the surface moves), `collapse` (which vertices go).
+//! `sharp` (edges of the shape), `patch` (the movement of the surface), `collapse` (the choice of vertices).
 
 mod collapse;
 mod links;
@@ -22,68 +22,68 @@ use collapse::Collapse;
 use links::{Links, NONE};
 pub(super) use sharp::Regions;
 
-/// A mesh with fewer triangles.
+/// A mesh with fewer triangles, and a report.
 pub struct Simplified {
     mesh: TriangleMesh,
     report: SimplifiedReport,
 }
 
-/// How a mesh was simplified.
+/// A report on a simplification.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct SimplifiedReport {
-    /// No point of either mesh is further from the other one than that (model units): proven.
+    /// A proven bound of the distance of each mesh from the other one (model units).
     pub deviation: f64,
-    /// Triangles that were taken away.
+    /// The number of triangles that were removed.
     pub removed: u64,
-    /// Pairs of triangles that intersect each other, as [`TriangleMesh::intersecting_pairs`] counts them.
+    /// The number of pairs of intersecting triangles, counted as by [`TriangleMesh::intersecting_pairs`].
     pub intersecting_pairs: u64,
 }
 
 impl Simplified {
-    /// The triangles.
+    /// The mesh.
     pub fn mesh(&self) -> &TriangleMesh {
         &self.mesh
     }
 
-    /// The triangles.
+    /// Returns the mesh.
     pub fn into_mesh(self) -> TriangleMesh {
         self.mesh
     }
 
-    /// How it was found.
+    /// The report on the simplification.
     pub fn report(&self) -> &SimplifiedReport {
         &self.report
     }
 }
 
-/// Intersecting pairs that are looked at in one round.
+/// The greatest number of intersecting pairs that one round examines.
 const PAIRS: usize = 1 << 16;
 
-/// How much less the surface may move where it went too far, and the least part of the tolerance before it
-/// stays where it is.
+/// The factor of a limit where the surface moved too far, and the least part of the tolerance below which a
+/// limit becomes 0.
 const HOLD: f64 = 0.5;
 const LEAST: f64 = 0.1;
 
-/// The same mesh with fewer triangles, no point of which is further than `tolerance` (model units) from the
-/// mesh, and none of the mesh further from it.
+/// Returns the mesh with fewer triangles. No point of the result is further than `tolerance` (model units)
+/// from the mesh, and no point of the mesh is further than that from the result.
 ///
-/// Vertices are taken out, and none is moved: those first without which the surface moves least. Edges
-/// between triangles whose normals differ by more than 30 degrees stay edges, and so do those between
-/// triangles that bear different values: along an edge vertices go as far as the tolerance allows, and
-/// corners stay. So a plane face becomes triangles between its corners, whatever it was made of, with the
-/// rounding of the mesh for a tolerance.
+/// Vertices are removed, and none is moved: first those whose removal moves the surface least. Edges between
+/// triangles whose normals differ by more than 30 degrees stay edges, and so do edges between triangles with
+/// different attribute values. Along an edge, vertices are removed as far as the tolerance allows; corners
+/// stay. So a plane face becomes triangles between its corners, however it was divided, even if the tolerance
+/// is only the rounding of the mesh.
 ///
-/// The triangles hang together as before: a mesh that is closed and a manifold stays so, with as many bodies
-/// and holes. Vertices on open edges, and those where more than two triangles meet in an edge, stay. No
-/// triangles intersect each other that did not before. The result bears the values of triangles that are left
-/// ([`AttributeDomain::Triangle`]), and none of corners. Its [deviation](TriangleMesh::deviation) is that of
-/// the mesh with what is proven here.
+/// The triangles stay connected as before: a closed mesh and a manifold stay so, with the same number of
+/// bodies and holes. Vertices on open edges, and those where more than two triangles meet in an edge, stay.
+/// No triangles intersect each other that did not intersect before. The result keeps the attribute values of
+/// the remaining triangles ([`AttributeDomain::Triangle`]), and none of corners. Its
+/// [deviation](TriangleMesh::deviation) is that of the mesh plus the bound proven here.
 ///
-/// The deviation is proven in both directions by the triangles of both meshes, and not by how vertices were
-/// chosen. Where it is too large, less is taken out the next time.
+/// The deviation is proven in both directions from the triangles of both meshes, independently of the choice
+/// of vertices. Where it is too large, the next round removes less.
 ///
-/// O(n log n) for n triangles whose vertices have few: some 20 µs a triangle, and some 300 bytes. One thread
-/// takes vertices out, and all prove. The result is the same for any number of them.
+/// O(n log n) for n triangles whose vertices have few triangles: about 20 µs and 300 bytes per triangle. One
+/// thread removes vertices, and all threads prove. The result is the same for any number of threads.
 ///
 /// (Guéziec, *Locally toleranced surface simplification*, 1999; Borouchaki and Frey, *Simplification of
 /// surface mesh using Hausdorff envelope*, 2005.)
@@ -117,7 +117,7 @@ pub fn simplify(mesh: &TriangleMesh, tolerance: f64, control: &Control<'_>) -> R
     let mut reduction = Reduction::new(mesh, regions, tolerance)?;
     let mut is_first = true;
     let (mut simple, kept, deviation, intersecting_pairs) = loop {
-        // (How many rounds there will be is not known: the first one is taken for all.)
+        // (The number of rounds is not known in advance, so progress treats the first one as all.)
         let parts = if is_first { WHOLE / 2 } else { 0 };
         let (simple, kept, pairs) = reduction.run(&job, parts)?;
         let (most, beyond) = match is_first {
@@ -148,15 +148,15 @@ pub fn simplify(mesh: &TriangleMesh, tolerance: f64, control: &Control<'_>) -> R
     Ok(Simplified { mesh: simple, report: SimplifiedReport { deviation, removed, intersecting_pairs } })
 }
 
-/// A mesh that is to have fewer triangles, as often as it takes until what is left will do.
+/// The repeated reduction of a mesh until the result is good enough.
 pub(super) struct Reduction<'r> {
     mesh: &'r TriangleMesh,
     regions: Regions<'r>,
-    /// How far the surface may move where a vertex goes (model units); those of 0 stay.
+    /// The greatest movement of the surface at each vertex (model units). Vertices with 0 stay.
     limits: Vec<f64>,
-    /// The least of these but 0.
+    /// The least limit other than 0.
     least: f64,
-    /// Which vertex each one went to the last time, and what was left.
+    /// The vertex onto which each vertex was collapsed in the last round, and the remaining links.
     went: Vec<u32>,
     left: Option<Links>,
 }
@@ -168,15 +168,15 @@ impl<'r> Reduction<'r> {
         Ok(Reduction { mesh, regions, limits, least: LEAST * tolerance, went: Vec::new(), left: None })
     }
 
-    /// Vertices that stay where they are.
+    /// Fixes vertices.
     pub(super) fn keep(&mut self, is_kept: &[bool]) {
         for (limit, &is_kept) in self.limits.iter_mut().zip(is_kept) {
             *limit = if is_kept { 0.0 } else { *limit };
         }
     }
 
-    /// The mesh with fewer triangles, which of them are left, and how many pairs of these intersect. Progress
-    /// advances by `parts`.
+    /// Returns the mesh with fewer triangles, the numbers of the remaining triangles, and the number of
+    /// intersecting pairs. Progress advances by `parts`.
     pub(super) fn run(
         &mut self,
         job: &Job<'_>,
@@ -201,14 +201,14 @@ impl<'r> Reduction<'r> {
         }
     }
 
-    /// Lets the surface move less next to some triangles the next time; `false` if it did not move there.
+    /// Lets the surface move less next to some triangles in the next round; `false` if it did not move there.
     pub(super) fn hold(&mut self, triangles: impl Iterator<Item = u32>) -> Result<bool, Error> {
         let least = self.least;
         self.change(triangles, |limit| if limit > least { HOLD * limit } else { 0.0 })
     }
 
-    /// Changes the limits of vertices that are gone and lay over some triangles, or else of all that went to
-    /// their corners; `false` if there are none.
+    /// Changes the limits of the removed vertices that lay over some triangles, or, if there are none, of all
+    /// vertices that were collapsed onto the triangles' corners. `false` if there are none.
     fn change(
         &mut self,
         triangles: impl Iterator<Item = u32>,
@@ -241,7 +241,7 @@ impl<'r> Reduction<'r> {
         Ok(is_changed)
     }
 
-    /// The triangles that are left, and which they are.
+    /// The remaining triangles, and their numbers.
     fn assemble(&self, links: &Links) -> Result<(TriangleMesh, Vec<u32>), Error> {
         let mut numbers = memory::filled(self.limits.len(), NONE)?;
         let (mut vertices, mut triangles, mut kept) = (Vec::new(), Vec::new(), Vec::new());

@@ -1,34 +1,34 @@
-//! The triangles around a vertex as a map of heights, and what it would be without the vertex.
+//! The triangles around a vertex as a height map, before and after the removal of the vertex.
 //!
-//! Seen along one direction in which no triangle turns away, the triangles around a vertex and those that
-//! take their place lie one above the other. The difference of their heights is linear wherever both are, and
-//! hence greatest at a corner of one of them or where sides cross. (Borouchaki and Frey, *Simplification of
-//! surface mesh using Hausdorff envelope*, 2005, bound the same distance by cones.)
+//! The triangles around a vertex, and those that replace them, are seen along one direction in which no
+//! triangle turns away. They lie one above the other. The difference of their heights is linear wherever both
+//! are linear, so its maximum lies at a corner of one of them or where sides cross. (Borouchaki and Frey,
+//! *Simplification of surface mesh using Hausdorff envelope*, 2005, bound the same distance by cones.)
 
 use crate::error::Error;
 use crate::lattice::axes;
 use crate::memory;
 use alloc::vec::Vec;
 
-/// How far normals may turn away from the direction in which a patch is seen: the least cosine.
+/// The least cosine between normals and the direction in which a patch is seen.
 const STEEP: f64 = 0.2;
 
-/// The least area of a triangle as it is seen, as a part of the square of its longest side.
+/// The least area of a projected triangle, as a part of the square of its longest side.
 const THIN: f64 = 1e-9;
 
-/// Rings with more vertices are not looked at but where they are flat.
+/// Rings with more vertices are only examined where they are flat.
 const LARGE: usize = 24;
 
-/// What surrounds a vertex, which lies at the origin.
+/// The surroundings of a vertex, which lies at the origin.
 #[derive(Default)]
 pub(super) struct Patch {
-    /// The ring, seen along the direction, and the heights.
+    /// The ring, projected along the direction, and the heights.
     flat: Vec<[f64; 2]>,
     heights: Vec<f64>,
-    /// The least and the greatest height, with that of the vertex.
+    /// The least and the greatest height, including that of the vertex.
     span: [f64; 2],
-    /// Points of the first surface that belong here, the vertex among them: where they are seen, and their
-    /// heights.
+    /// Points of the first surface that belong to the patch, including the vertex: their projections, and
+    /// their heights.
     points: Vec<([f64; 2], f64)>,
     /// The axes of the view: two across and the direction.
     view: [[f64; 3]; 3],
@@ -58,7 +58,7 @@ fn scaled(a: [f64; 3], factor: f64) -> [f64; 3] {
 }
 
 impl Patch {
-    /// Looks at a vertex and its ring; `false` if no direction shows all of its triangles from outside.
+    /// Examines a vertex and its ring; `false` if no direction shows all its triangles from outside.
     pub(super) fn see(
         &mut self,
         middle: [f64; 3],
@@ -109,7 +109,7 @@ impl Patch {
             let normal = cross(spokes[k], spokes[next]);
             let area = cross2(flat[k], flat[next]);
             let whole = dot(normal, normal).sqrt();
-            // (Triangles without area say nothing, if they are seen from no side.)
+            // (Triangles without area do not matter if they are not visible from any side.)
             let is_seen = area > STEEP * whole;
             if !is_seen {
                 return Ok(false);
@@ -127,7 +127,7 @@ impl Patch {
         memory::push(&mut self.points, ([east, north], up))
     }
 
-    /// Whether no triangle turns over if the vertex moves to number `onto` of the ring.
+    /// Returns whether no triangle is inverted if the vertex moves to number `onto` of the ring.
     pub(super) fn may_go(&self, onto: usize) -> bool {
         let (flat, heights) = (&self.flat, &self.heights);
         let count = flat.len();
@@ -147,14 +147,14 @@ impl Patch {
         })
     }
 
-    /// How far the surface moves if the vertex moves to number `onto` of the ring.
+    /// The movement of the surface if the vertex moves to number `onto` of the ring.
     pub(super) fn change(&self, onto: usize) -> f64 {
         let most = self.span[1] - self.span[0];
         if self.flat.len() > LARGE { most } else { self.difference(onto).min(most) }
     }
 
-    /// In which triangle each point is seen then, as the number of its first vertex in the ring, and how far
-    /// below or above.
+    /// The triangle over or under which each point lies after the move, as the number of its first vertex in
+    /// the ring, and the distance.
     pub(super) fn places(&self, onto: usize) -> impl Iterator<Item = (usize, f64)> {
         let (flat, heights) = (&self.flat, &self.heights);
         let count = flat.len();
@@ -180,7 +180,7 @@ impl Patch {
         })
     }
 
-    /// How far number `k` of the ring is from the vertex.
+    /// The distance of number `k` of the ring from the vertex.
     pub(super) fn length(&self, k: usize) -> f64 {
         let ([east, north], height) = (self.flat[k], self.heights[k]);
         (east * east + north * north + height * height).sqrt()

@@ -1,4 +1,4 @@
-//! Which sides of triangles are edges of the shape: those that stay where they are.
+//! Sides of triangles that are edges of the shape, and stay in place.
 
 use super::links::Links;
 use crate::error::Error;
@@ -6,16 +6,17 @@ use crate::lattice::axes;
 use crate::memory;
 use crate::mesh::MeshAttribute;
 
-/// The cosine of the greatest angle between the normals of two triangles whose common side is no edge: 30
+/// The cosine of the greatest angle between the normals of two triangles whose common side is not an edge: 30
 /// degrees.
 const SMOOTH: f64 = 0.866;
 
-/// What tells edges of the shape.
+/// The regions whose borders are edges of the shape.
 #[derive(Clone, Copy)]
 pub(in crate::surface) enum Regions<'r> {
-    /// The triangles of a region have the same number, whatever their normals are.
+    /// The triangles of a region have the same number, whatever their normals.
     Numbered(&'r [u32]),
-    /// The normals of its triangles differ little from each other, and the triangles bear the same values.
+    /// Neighbouring triangles of a region have similar normals, and its triangles have the same attribute
+    /// values.
     Alike(&'r [MeshAttribute]),
 }
 
@@ -46,7 +47,7 @@ pub(super) fn mark(links: &mut Links, vertices: &[[f64; 3]], regions: Regions<'_
             Regions::Alike(_) => {
                 let [m, n] = triangles.map(|triangle| normal(links.triangles[triangle], vertices));
                 let cosine: f64 = (0..3).map(|k| m[k] * n[k]).sum();
-                // (Triangles without area have no direction, and sides to them are none.)
+                // (Triangles without area have no direction, and their sides are not edges.)
                 cosine < SMOOTH && m != [0.0; 3] && n != [0.0; 3]
             }
         };
@@ -59,7 +60,7 @@ pub(super) fn mark(links: &mut Links, vertices: &[[f64; 3]], regions: Regions<'_
     Ok(())
 }
 
-/// The direction in which a triangle faces, of the length 1.
+/// The unit normal of a triangle.
 fn normal(corners: [u32; 3], vertices: &[[f64; 3]]) -> [f64; 3] {
     let [a, b, c] = corners.map(|vertex| vertices[vertex as usize]);
     let (u, v): ([f64; 3], [f64; 3]) = (axes(|k| b[k] - a[k]), axes(|k| c[k] - a[k]));

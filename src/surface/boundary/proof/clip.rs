@@ -1,13 +1,13 @@
-//! Polygons that boxes cut.
+//! Clipping polygons to boxes.
 
 use crate::error::Error;
 use crate::lattice::axes;
 use crate::memory;
 use alloc::vec::Vec;
 
-/// Leaves of a polygon what lies in a box. `kept` is a list to work with.
+/// Clips a polygon to a box. `kept` is a buffer.
 ///
-/// A corner that is no number stays: nothing is lost by what is too large.
+/// A corner that is NaN stays: a polygon that is too large does not weaken the proof.
 pub(super) fn clip(
     polygon: &mut Vec<[f64; 3]>,
     kept: &mut Vec<[f64; 3]>,

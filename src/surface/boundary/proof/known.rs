@@ -1,5 +1,5 @@
-//! What one proof found out that holds in the next: how near triangles are that both meshes have, and how
-//! near the boundary in a cell is to such triangles.
+//! Results of one proof that hold in the next: distances of triangles that both meshes have, and distances of
+//! the boundary in a cell from such triangles.
 
 use crate::error::Error;
 use crate::lattice::Cell;
@@ -7,31 +7,31 @@ use crate::memory;
 use alloc::vec::Vec;
 use hashbrown::HashMap;
 
-/// A triangle by the bits of its corners, of which the least is the first, and its surface.
+/// A triangle by the bits of its corners, the least corner first, and its surface.
 type Key = ([[u64; 3]; 3], u32);
 
-/// What holds of triangles and cells, whatever the mesh.
+/// Facts about triangles and cells that hold for any mesh.
 #[derive(Default)]
 pub(in super::super) struct Known {
-    /// A number for each triangle that any mesh had.
+    /// A name for each triangle of any mesh.
     names: HashMap<Key, u32>,
-    /// How far no point of a triangle is from the boundary, by its name.
+    /// A bound of the distance of each triangle from the boundary, by its name.
     near: Vec<Option<f64>>,
-    /// Which of them the mesh has.
+    /// Whether the current mesh has the triangle.
     is_there: Vec<bool>,
     /// The names of the mesh's triangles.
     of_mesh: Vec<u32>,
     cells: HashMap<Cell, Shown>,
 }
 
-/// How far no point of the boundary in a cell is from triangles, with their names.
+/// A bound of the distance of the boundary in a cell from some triangles, with their names.
 struct Shown {
     most: f64,
     by: Vec<u32>,
 }
 
 impl Known {
-    /// Turns to another mesh.
+    /// Changes to another mesh.
     pub(super) fn turn_to(
         &mut self,
         vertices: &[[f64; 3]],
@@ -57,7 +57,7 @@ impl Known {
         Ok(())
     }
 
-    /// How far no point of a triangle of the mesh is from the boundary, if that is known.
+    /// The bound of a triangle's distance from the boundary, if it is known.
     pub(super) fn of_triangle(&self, number: u32) -> Option<f64> {
         self.near[self.of_mesh[number as usize] as usize]
     }
@@ -66,13 +66,13 @@ impl Known {
         self.near[self.of_mesh[number as usize] as usize] = Some(most);
     }
 
-    /// How far no point of the boundary in a cell is from the mesh, if that is known.
+    /// The bound of the distance of the boundary in a cell from the mesh, if it is known.
     pub(super) fn of_cell(&self, cell: Cell) -> Option<f64> {
         let shown = self.cells.get(&cell)?;
         shown.by.iter().all(|&name| self.is_there[name as usize]).then_some(shown.most)
     }
 
-    /// Keeps how far no point of the boundary in a cell is from triangles of the mesh.
+    /// Stores a bound of the distance of the boundary in a cell from triangles of the mesh.
     pub(super) fn keep_cell(&mut self, cell: Cell, most: f64, mut by: Vec<u32>) -> Result<(), Error> {
         by.iter_mut().for_each(|number| *number = self.of_mesh[*number as usize]);
         self.cells.try_reserve(1)?;

@@ -1,13 +1,13 @@
-//! What is known of a surface's function about a place.
+//! Expansions of a surface's function around a place.
 
 use super::super::figures::{Figures, dot, length, middle, minus};
 use crate::lattice::axes;
 
-/// A part of all terms that is for rounding.
+/// The rounding error, as a part of all terms.
 const ROUNDING: f64 = 1e-14;
 
-/// How far beside a triangle, as a part of its sides, a place counts as one within: rounding must not lose it
-/// between two triangles.
+/// The margin beside a triangle, as a part of its sides, within which a place counts as inside: rounding must
+/// not lose it between two triangles.
 const BESIDE: f64 = 1e-6;
 
 /// A function within a cube: value + gradient · x + xᵀ squares x, where x is measured from the centre in
@@ -19,37 +19,38 @@ pub(super) struct Local {
     gradient: [f64; 3],
     /// A symmetric matrix.
     squares: [[f64; 3]; 3],
-    /// The function differs from that by no more. (Between two planes all functions count as one.)
+    /// The greatest difference of the function from the expansion. (Between two planes all functions count as
+    /// one.)
     error: f64,
     /// Whether the terms are the function's own, so that gradients follow from them.
     is_polynomial: bool,
-    /// Whether there are no terms of second order.
+    /// Whether there are no second-order terms.
     is_flat: bool,
-    /// No gradient in the cube differs from that at the centre by more.
+    /// The greatest difference of a gradient in the cube from the gradient at the centre.
     bend: f64,
 }
 
-/// A box of any direction.
+/// A box of any orientation.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Prism {
     pub(super) centre: [f64; 3],
-    /// Unit vectors at right angles. The last one is about normal to the surface.
+    /// Unit vectors at right angles. The last one is approximately normal to the surface.
     pub(super) axes: [[f64; 3]; 3],
     pub(super) half: [f64; 3],
 }
 
 impl Prism {
-    /// How far it extends along a direction from its centre.
+    /// The extent along a direction, from the centre.
     pub(super) fn along(&self, direction: [f64; 3]) -> f64 {
         (0..3).map(|i| self.half[i] * dot(self.axes[i], direction).abs()).sum()
     }
 
-    /// How far it extends along x, y and z.
+    /// The extent along x, y and z, from the centre.
     pub(super) fn reach(&self) -> [f64; 3] {
         axes(|k| (0..3).map(|i| self.half[i] * self.axes[i][k].abs()).sum())
     }
 
-    /// The point at a place.
+    /// The point at a place in the box's coordinates.
     pub(super) fn point(&self, place: [f64; 3]) -> [f64; 3] {
         axes(|k| self.centre[k] + (0..3).map(|i| place[i] * self.axes[i][k]).sum::<f64>())
     }
@@ -62,7 +63,7 @@ impl Prism {
 }
 
 impl Local {
-    /// What is known within `reach` of a point along each axis; `None` if that is nothing.
+    /// The expansion within `reach` of a point along each axis; `None` if nothing is known.
     pub(super) fn new(figures: &Figures, surface: u32, centre: [f64; 3], reach: f64) -> Option<Local> {
         let (taylor, width, is_polynomial) = figures.near(surface, centre, reach)?;
         let f = taylor.f;
@@ -80,7 +81,7 @@ impl Local {
         (local.error.is_finite() && local.steepness() > 0.0).then_some(local)
     }
 
-    /// The function times a sign, less another one times a factor.
+    /// The function times a sign, minus another one times a factor.
     pub(super) fn combined(&self, sign: f64, factor: f64, other: &Local) -> Local {
         Local {
             centre: self.centre,
@@ -107,13 +108,13 @@ impl Local {
         length(self.gradient)
     }
 
-    /// The length of the gradient at a point, but for the error.
+    /// The length of the gradient at a point, up to the error.
     pub(super) fn steepness_at(&self, point: [f64; 3]) -> f64 {
         let x = minus(point, self.centre);
         length(axes(|k| self.gradient[k] + 2.0 * dot(self.squares[k], x)))
     }
 
-    /// The product of two vectors by the terms of second order.
+    /// The second-order product of two vectors.
     pub(super) fn second(&self, a: [f64; 3], b: [f64; 3]) -> f64 {
         let rows: [f64; 3] = axes(|i| dot(self.squares[i], b));
         dot(a, rows)
@@ -124,7 +125,7 @@ impl Local {
         self.value + dot(self.gradient, x) + self.second(x, x)
     }
 
-    /// The least and the greatest value on the hull of points in a plane that lie in order around it.
+    /// The least and the greatest value on the convex hull of points in a plane, given in order around it.
     pub(super) fn over(&self, corners: &[[f64; 3]]) -> [f64; 2] {
         let mut range = Range::NONE;
         if self.is_flat {
@@ -146,10 +147,10 @@ impl Local {
         [range.0[0] - self.error, range.0[1] + self.error]
     }
 
-    /// Adds what lies between the ends of a side, of which the values are known.
+    /// Adds the values between the ends of a side, whose values are given.
     fn along_side(&self, (a, first): ([f64; 3], f64), (b, last): ([f64; 3], f64), range: &mut Range) {
         let half = self.at(middle(a, b));
-        // The parabola through the three.
+        // The parabola through the three values.
         let (slope, bent) = (4.0 * half - 3.0 * first - last, 2.0 * (first + last - 2.0 * half));
         let place = -slope / (2.0 * bent);
         if 0.0 < place && place < 1.0 {
@@ -157,7 +158,7 @@ impl Local {
         }
     }
 
-    /// Adds the value where the function is level within a triangle or a little beside it.
+    /// Adds the value at a stationary point within a triangle or a little beside it.
     fn inside_triangle(&self, [a, b, c]: [[f64; 3]; 3], range: &mut Range) {
         let (u, v, from) = (minus(b, a), minus(c, a), minus(a, self.centre));
         let slope = |d: [f64; 3]| dot(self.gradient, d) + 2.0 * self.second(from, d);
@@ -193,7 +194,7 @@ impl Local {
     }
 }
 
-/// Values from the first to the last.
+/// The values from the first to the last.
 struct Range([f64; 2]);
 
 impl Range {
@@ -204,7 +205,7 @@ impl Range {
     }
 }
 
-/// The greatest magnitude of a range.
+/// The greatest magnitude in a range.
 pub(super) fn magnitude([low, high]: [f64; 2]) -> f64 {
     high.max(-low)
 }

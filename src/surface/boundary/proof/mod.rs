@@ -1,9 +1,9 @@
-//! How far a mesh and the boundary of a solid are from each other, by the surfaces that the solid is made of:
-//! a proof that does not depend on how the mesh was made.
+//! Proven bounds of the distance between a mesh and the boundary of a solid. The proof uses the surfaces of
+//! which the solid is made, and does not depend on how the mesh was made.
 //!
-//! From the bottom up: `local` (functions about a place), `clip` (polygons), `truth` (what the leaves say),
-//! `witness` (from the mesh to the boundary), `sheets` (from the boundary to the mesh), `known` (what holds
-//! for several meshes).
+//! From the bottom up: `local` (functions around a place), `clip` (polygons), `truth` (verdicts of the leaves
+//! on polygons), `witness` (from the mesh to the boundary), `sheets` (from the boundary to the mesh), `known`
+//! (results that hold for several meshes).
 
 mod clip;
 mod known;
@@ -28,32 +28,33 @@ use sheets::{Lists, Sheet, Subject};
 use truth::{Around, Truth, cube};
 use witness::Witnesses;
 
-/// Parts of cells that are looked at where nothing but their extent is known: of all together, and of one at
-/// most.
+/// The greatest number of parts of cells that are examined where only their extent is known: for all cells
+/// together, and for one cell.
 const PARTS: usize = 1 << 18;
 const PARTS_OF_CELL: usize = 64;
 
-/// What each triangle may spend at first on pieces that are halved and on sizes of cubes around them, and
-/// each surface in a cell on boxes.
+/// The first budget of each triangle for halved pieces and for sizes of cubes around them, and of each
+/// surface in a cell for boxes.
 const PIECES: u32 = 16;
 const BOXES: u32 = 64;
 
-/// What those that this is not enough for share with each other: so much, and as much again as all may spend
-/// at first; and what one of them gets at most.
+/// A second budget for triangles and cells that need more: their common share is this number plus the total
+/// first budget. `MOST` bounds the share of one of them.
 const MORE: u32 = 1 << 15;
 const MOST: u32 = 1024;
 
-/// Triangles, or cells, that are looked at by one task.
+/// The number of triangles, or cells, that one task examines.
 const GROUP: usize = 32;
 
-/// So many triangles and cells are worth starting threads.
+/// The number of triangles and cells from which threads pay.
 const WORTH: usize = 256;
 
-/// What is proven.
+/// The result of a proof.
 pub(super) struct Proof {
-    /// No point of either is further from the other than that (edges of the universe).
+    /// A bound of the distance of each point of the mesh from the boundary, and of the boundary from the mesh
+    /// (edges of the universe).
     pub(super) most: f64,
-    /// The cells in which it is more than the tolerance.
+    /// The cells in which the bound exceeds the tolerance.
     pub(super) beyond: Vec<Cell>,
     tolerance: f64,
 }
@@ -68,9 +69,9 @@ impl Proof {
     }
 }
 
-/// Proves how far a mesh is from the boundary of the solid that the leaves know. `surfaces` are those of the
-/// triangles, and `known` is what proofs for other meshes and leaves of the same solid with the same
-/// tolerance found out.
+/// Proves a bound of the distance between a mesh and the boundary of the solid that the leaves describe.
+/// `surfaces` are those of the triangles. `known` holds results of proofs for other meshes and leaves of the
+/// same solid with the same tolerance.
 ///
 /// The result does not depend on the number of threads.
 pub(super) fn prove(
@@ -108,8 +109,8 @@ pub(super) fn prove(
     })
 }
 
-/// What looks at all triangles and cells. Those that little effort proves near are done first; the others
-/// share a budget.
+/// Examines all triangles and cells. Those that little effort proves near are done first; the others share a
+/// budget.
 struct Prover<'p> {
     truth: &'p Truth<'p>,
     subject: &'p Subject<'p>,
@@ -118,27 +119,27 @@ struct Prover<'p> {
     job: &'p Job<'p>,
 }
 
-/// What is found out about a triangle.
+/// The result for a triangle.
 struct Triangle {
     number: u32,
     most: f64,
-    /// The cells in which it is further from the boundary than the tolerance, with how far.
+    /// The cells in which the triangle is further from the boundary than the tolerance, with the bounds.
     beyond: Vec<(Cell, f64)>,
-    /// Whether more might be found out.
+    /// Whether a greater budget might improve the result.
     is_spent: bool,
 }
 
-/// What is found out about the boundary in a cell.
+/// The result for the boundary in a cell.
 struct Shown {
     leaf: u32,
-    /// `None` if nothing is found out.
+    /// The bound; `None` if nothing was proven.
     most: Option<f64>,
-    /// The triangles that it is near.
+    /// The triangles near which the boundary was proven to be.
     by: Vec<u32>,
 }
 
 impl Prover<'_> {
-    /// How far the triangles are from the boundary.
+    /// Bounds the distance of the triangles from the boundary.
     fn triangles_to_boundary(&self, known: &mut Known, proof: &mut Proof) -> Result<(), Error> {
         let count = self.subject.triangles.len() as u32;
         let mut left = Vec::new();
@@ -164,7 +165,7 @@ impl Prover<'_> {
             proof.most = proof.most.max(triangle.most);
             triangle.beyond.iter().try_for_each(|&(cell, most)| proof.add(cell, most))?;
         }
-        // The others are as near as the way to one of which more is known.
+        // For the others, the bound is the path to a triangle with a known bound, plus that bound.
         for triangle in found.iter().filter(|triangle| !triangle.most.is_finite()) {
             let [a, b, c] = self.subject.corners(triangle.number);
             let long = length(minus(b, a)).max(length(minus(c, a)));
@@ -181,7 +182,7 @@ impl Prover<'_> {
         Ok(())
     }
 
-    /// Looks at triangles, each of which may spend `budget`.
+    /// Examines triangles, each with a budget of `budget`.
     fn triangles(&self, numbers: &[u32], budget: u32) -> Result<Vec<Triangle>, Error> {
         let start = || Witnesses::new(self.truth, self.tolerance);
         let groups = parallel::each_with(self.parallel, numbers.chunks(GROUP), start, |witnesses, group| {
@@ -205,7 +206,7 @@ impl Prover<'_> {
         joined(groups)
     }
 
-    /// How far the boundary in open cells is from the triangles.
+    /// Bounds the distance of the boundary in open cells from the triangles.
     fn boundary_to_triangles(&self, known: &mut Known, proof: &mut Proof) -> Result<(), Error> {
         let leaves = &self.truth.leaves.open;
         let mut left = Vec::new();
@@ -244,7 +245,7 @@ impl Prover<'_> {
         Ok(())
     }
 
-    /// Looks at cells, in which each surface may take some boxes.
+    /// Examines cells, in which each surface may use a number of boxes.
     fn cells(&self, numbers: &[u32], boxes: u32) -> Result<Vec<Shown>, Error> {
         let groups =
             parallel::each_with(self.parallel, numbers.chunks(GROUP), Lists::default, |lists, group| {
@@ -266,11 +267,12 @@ impl Prover<'_> {
         joined(groups)
     }
 
-    /// How far the boundary in a cell is from the mesh, surface by surface; `None` if that is not found out.
+    /// Bounds the distance of the boundary in a cell from the mesh, surface by surface; `None` if nothing is
+    /// proven.
     fn cell(&self, leaf: &OpenLeaf, boxes: u32, lists: &mut Lists) -> Result<Option<f64>, Error> {
         let Some(open) = leaf.open else { return Ok(None) };
         let mut most: f64 = 0.0;
-        // (On the plane of a joint the solid changes nowhere but where its surfaces have both sides.)
+        // (On the plane of a joint the solid only changes where its surfaces do.)
         let plane = leaf.joint.map(|joint| joint.plane);
         for place in (0..open.indices().len()).filter(|&place| Some(place) != plane) {
             for is_above in [false, true] {
@@ -286,7 +288,7 @@ impl Prover<'_> {
     }
 }
 
-/// What each of some gets of what all did not need.
+/// The share of each of `some` in the budget that all together did not need.
 fn shared(all: u32, each: u32, some: usize) -> u32 {
     let whole = MORE.saturating_add(each.saturating_mul(all));
     (whole / some.max(1) as u32).min(MOST)
@@ -298,8 +300,8 @@ fn joined<T>(groups: Vec<Vec<T>>) -> Result<Vec<T>, Error> {
     Ok(all)
 }
 
-/// Calls `told` for the cells that are full next to an empty one, where the boundary lies in no cell between,
-/// with how far it is from the mesh there at most.
+/// Calls `told` for each full cell beside an empty one, if no cell between them contains the boundary. The
+/// second argument is a bound of the distance of the boundary there from the mesh.
 fn contacts(
     truth: &Truth<'_>,
     subject: &Subject<'_>,
@@ -318,7 +320,7 @@ fn contacts(
     let own = cube(cell);
     for side in 0..6 {
         let (axis, is_upper) = (side / 2, side % 2 == 1);
-        // What lies behind the inside of the face. (No cell is as small as `LEAST`.)
+        // The layer behind the inside of the face. (No cell is as small as `LEAST`.)
         let mut behind = own.grown(-truth::LEAST);
         let face = if is_upper { own.high[axis] } else { own.low[axis] };
         let away = if is_upper { truth::LEAST } else { -truth::LEAST };
@@ -340,7 +342,7 @@ fn contacts(
     Ok(())
 }
 
-/// How far the boundary is from the mesh in a part of a cell, by the part's extent.
+/// Bounds the distance of the boundary in a part of a cell from the mesh, by the part's extent.
 fn far(
     subject: &Subject<'_>,
     figures: &Figures,

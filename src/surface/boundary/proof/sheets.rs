@@ -1,11 +1,12 @@
-//! How far the boundary is from the mesh: surface by surface, in boxes that lie along it.
+//! Bounds of the distance of the boundary from the mesh: surface by surface, in boxes along the surface.
 //!
-//! In a box in which the surface is a graph over a plane, let the triangles of the surface be seen along the
-//! plane's normal. Where they cover the plane, the graph lies above them, and values of the surface's
-//! function on them tell how far. Where the solid begins on the surface only beside others, all of these go
-//! up along one direction in the plane: a line along it that starts where the boundary is stays there. It
-//! comes to a part of the plane that is covered, and so it enters the triangles by a side. How far it has
-//! come by then follows from the values of the others' functions on that side.
+//! Consider a box in which the surface is a graph over a plane, and the triangles of the surface seen along
+//! the plane's normal. Where they cover the plane, the graph lies above them, and the values of the surface's
+//! function on them bound the distance. If the solid begins on the surface only beside other surfaces, the
+//! functions of all these increase along one direction in the plane. So a line in this direction that starts
+//! on the boundary stays on it. It reaches a part of the plane that is covered, so it enters the triangles
+//! through a side. The length of the line up to that side then follows from the values of the others'
+//! functions on that side.
 
 use super::super::figures::{Figures, dot, length, minus};
 use super::clip::clip;
@@ -18,16 +19,16 @@ use crate::mesh::TriangleTree;
 use crate::solid::OpenSurfaces;
 use alloc::vec::Vec;
 
-/// Places in the plane are off by less.
+/// The greatest rounding error of places in the plane.
 const ROUNDING: f64 = 1e-14;
 
-/// A mesh that is proven to be near a solid, in the coordinates of the universe.
+/// A mesh that is to be proven near a solid, in the coordinates of the universe.
 pub(super) struct Subject<'m> {
     pub(super) vertices: &'m [[f64; 3]],
     pub(super) triangles: &'m [[u32; 3]],
     /// The surface of each triangle.
     pub(super) surfaces: &'m [u32],
-    /// The triangles on the other side of the sides.
+    /// The triangles across the sides of each triangle.
     pub(super) mates: Vec<[u32; 3]>,
     pub(super) tree: TriangleTree<'m>,
     pub(super) origin: [f64; 3],
@@ -55,8 +56,8 @@ impl Subject<'_> {
         failed.map_or(Ok(()), Err)
     }
 
-    /// More than the distance of the point that is furthest from the mesh in a box, with the triangle that is
-    /// as near; infinite without a mesh.
+    /// An upper bound of the distance of the points in a box from the mesh, with the nearest triangle;
+    /// infinite without a mesh.
     pub(super) fn away(&self, around: &Around) -> (f64, Option<u32>) {
         let centre = around.centre();
         let point = axes(|k| self.origin[k] + centre[k] * self.edge);
@@ -68,11 +69,11 @@ impl Subject<'_> {
     }
 }
 
-/// What is found out about a box.
+/// The result for a box.
 enum Outcome {
-    /// No point of the boundary in it is further from the mesh than that.
+    /// A bound of the distance of the boundary in the box from the mesh.
     Within(f64),
-    /// It is to be cut across a direction.
+    /// The box is to be cut across a direction.
     Cut([f64; 3]),
 }
 
@@ -83,8 +84,7 @@ pub(super) struct Sheet<'s> {
     pub(super) open: &'s OpenSurfaces,
     /// The surface's place in the list.
     place: usize,
-    /// Whether the solid is where the surface's function is positive. (Where it is on the other side, that is
-    /// another sheet.)
+    /// Whether the solid lies where the surface's function is positive. (The negative side is another sheet.)
     is_above: bool,
     pub(super) cell: Cell,
     pub(super) tolerance: f64,
@@ -92,14 +92,14 @@ pub(super) struct Sheet<'s> {
     boxes: u32,
 }
 
-/// Lists to work with.
+/// Buffers.
 #[derive(Default)]
 pub(super) struct Lists {
-    /// Triangles of the surface next to a box.
+    /// The triangles of the surface near a box.
     found: Vec<u32>,
-    /// The same as they are seen along the normal.
+    /// The same triangles as seen along the normal.
     seen: Vec<Seen>,
-    /// All triangles that were looked at.
+    /// All triangles that were examined.
     pub(super) used: Vec<u32>,
     part: Vec<[f64; 3]>,
     cut: Vec<[f64; 3]>,
@@ -109,18 +109,19 @@ pub(super) struct Lists {
 struct Seen {
     number: u32,
     places: [[f64; 3]; 3],
-    /// Positive if it faces the way that the boundary does.
+    /// The area; positive if the triangle faces in the same direction as the boundary.
     area: f64,
 }
 
-/// Another surface beside which the solid begins on this one.
+/// Another surface, beside which the solid begins on this one.
 #[derive(Clone, Copy)]
 struct Limit {
     surface: u32,
     bit: u8,
     /// Whether the solid begins where its function is positive.
     is_up: bool,
-    /// Its function with that sign, less so much of the surface's own that it is level along the normal.
+    /// Its function with that sign, minus a multiple of the surface's own function, so that it is constant
+    /// along the normal.
     function: Local,
 }
 
@@ -140,14 +141,14 @@ impl<'s> Sheet<'s> {
         self.open.indices()[self.place]
     }
 
-    /// Whether the solid begins on the surface where the others have signs.
+    /// Returns whether the solid begins on the surface for these signs of the other surfaces.
     fn is_active(&self, signs: u8) -> bool {
         let bit = 1 << self.place;
         [self.open.inside(signs | bit), self.open.inside(signs & !bit)] == [self.is_above, !self.is_above]
     }
 
-    /// How far the boundary on the surface is from the mesh at most; `None` if so many boxes do not tell
-    /// that.
+    /// Bounds the distance of the boundary on the surface from the mesh; `None` if this number of boxes is
+    /// not sufficient.
     pub(super) fn away(&mut self, boxes: u32) -> Result<Option<f64>, Error> {
         let all = (1u8 << self.open.indices().len()) - 1;
         if (0..=all).all(|signs| !self.is_active(signs)) {
@@ -165,7 +166,7 @@ impl<'s> Sheet<'s> {
         self.box_of(&whole)
     }
 
-    /// The part of the surface in a box, in which another box is laid along it.
+    /// Bounds the part of the surface in a box, by another box that is laid along the surface.
     fn box_of(&mut self, old: &Prism) -> Result<Option<f64>, Error> {
         if self.boxes == 0 {
             return Ok(None);
@@ -185,7 +186,7 @@ impl<'s> Sheet<'s> {
         }
         let axes3 = frame(normal, old.axes[0]);
         let mut prism = Prism { centre: start, axes: axes3, half: [0.0; 3] };
-        // What the old box and the cell have in common.
+        // The intersection of the old box and the cell.
         let cube = cube(self.cell);
         let from_cube = minus(cube.centre(), start);
         for i in 0..3 {
@@ -205,7 +206,7 @@ impl<'s> Sheet<'s> {
             Outcome::Within(most) if most <= self.tolerance => Ok(Some(most)),
             outcome => {
                 if wide <= 0.125 * self.tolerance {
-                    // Nothing but its extent is known of the box.
+                    // Only the extent of the box is known.
                     let (most, nearest) = self.subject.away(&around(&prism));
                     if let Some(triangle) = nearest {
                         memory::push(&mut self.lists.used, triangle)?;
@@ -240,7 +241,7 @@ impl<'s> Sheet<'s> {
         }
     }
 
-    /// Looks at a box, whose height becomes that of the surface in it.
+    /// Examines a box, and sets its height to that of the surface in it.
     fn look(&mut self, prism: &mut Prism) -> Result<Outcome, Error> {
         let anywhere = Outcome::Cut([0.0; 3]);
         let normal = prism.axes[2];
@@ -251,11 +252,11 @@ impl<'s> Sheet<'s> {
         if least > 0.0 || most < 0.0 {
             return Ok(Outcome::Within(0.0));
         }
-        // The surface has one height above each place.
+        // The surface must have one height above each place.
         if local.slopes(normal, prism)[0] <= 0.0 {
             return Ok(anywhere);
         }
-        // What there is of it lies about as high as above the middle.
+        // The surface in the box lies about as high as above the middle.
         let mut low = *prism;
         if View::new(self.figures, self.surface(), &mut low, self.tolerance).is_none() {
             return Ok(anywhere);
@@ -296,7 +297,7 @@ impl<'s> Sheet<'s> {
         if !subsets(unknown).any(|subset| self.is_active(signs | subset)) {
             return Ok(Outcome::Within(0.0));
         }
-        // Those beside which the solid begins, or ends.
+        // The surfaces beside which the solid begins, or ends.
         let mut count = 0;
         for k in 0..limits.len() {
             let mut limit = limits[k];
@@ -322,11 +323,11 @@ impl<'s> Sheet<'s> {
         self.cover(prism, signs, &limits)
     }
 
-    /// Whether the triangles of the surface cover it in a box, up to what the limits leave away.
+    /// Tests whether the triangles of the surface cover it in a box, up to the parts that the limits exclude.
     fn cover(&mut self, prism: &Prism, signs: u8, limits: &[Limit]) -> Result<Outcome, Error> {
         let normal = prism.axes[2];
         let cut = Outcome::Cut(limits.first().map_or([0.0; 3], |limit| limit.function.gradient()));
-        // The direction along which all limits go up, and how far one goes.
+        // The direction along which all limits increase, and the length to go along it.
         let mut up = [0.0; 3];
         for limit in limits {
             let flat = level(limit.function.gradient(), normal);
@@ -367,7 +368,7 @@ impl<'s> Sheet<'s> {
             kept.push(Kept { limit: Limit { function, ..*limit }, slope, askew });
         }
         let own = [dot(up, prism.axes[0]), dot(up, prism.axes[1])];
-        // Where lines come to: the box, moved.
+        // The place that the lines reach: the box, moved.
         let moved = axes(|k| prism.centre[k] + ahead * up[k]);
         let (first, last) = (view.flat(prism.centre, &long), view.flat(moved, &long));
         let half = |prism: &Prism| [prism.half[0], prism.half[1]];
@@ -386,7 +387,7 @@ impl<'s> Sheet<'s> {
         self.see(&view, &long, own, &kept, signs)
     }
 
-    /// The triangles seen along the normal.
+    /// Projects the triangles along the normal, and bounds the distance of the surface from them.
     fn see(
         &mut self,
         view: &View,
@@ -418,8 +419,8 @@ impl<'s> Sheet<'s> {
         Ok(Outcome::Within(high.max(most) + ROUNDING))
     }
 
-    /// The area of a triangle seen along the normal, which is positive if the triangle faces the way that the
-    /// boundary does there, and 0 if it is so small that it covers nothing.
+    /// The area of a triangle seen along the normal. It is positive if the triangle faces in the same
+    /// direction as the boundary there, and 0 if the triangle is so small that it covers nothing.
     fn area(&self, places: &[[f64; 3]; 3]) -> f64 {
         let flat = places.map(|[u, v, _]| [u, v]);
         let area = turn(flat[0], flat[1], flat[2]);
@@ -431,8 +432,8 @@ impl<'s> Sheet<'s> {
         }
     }
 
-    /// How far the surface is from the triangles above the box at most; `None` if they do not cover the place
-    /// that lines lead to.
+    /// Bounds the distance of the surface above the box from the triangles; `None` if the triangles do not
+    /// cover the place to which lines lead.
     fn above(&mut self, view: &View, long: &Prism, seen: &[Seen]) -> Result<Option<f64>, Error> {
         let [whole, first, _] = view.boxes;
         let (mut most, mut is_covered) = (0.0f64, false);
@@ -448,7 +449,7 @@ impl<'s> Sheet<'s> {
             if part.len() < 3 {
                 continue;
             }
-            // What is far above is no part of this sheet.
+            // A triangle far above does not belong to this sheet.
             if part.iter().any(|place| place[2].abs() > view.high) {
                 return Ok(None);
             }
@@ -462,7 +463,7 @@ impl<'s> Sheet<'s> {
         Ok(is_covered.then_some(most))
     }
 
-    /// How far the surface goes on at most beside the sides at which its triangles end; `None` if lines may
+    /// Bounds how far the surface goes on beside the sides at which its triangles end; `None` if lines may
     /// leave the triangles there, or nothing is known. `up` is the direction of lines.
     fn beside(
         &mut self,
@@ -490,8 +491,8 @@ impl<'s> Sheet<'s> {
                             && self.area(&subject.corners(mate).map(|p| long.place(p))) >= 0.0
                     }
                 };
-                // Without limits, what lies outside of the cell does not matter: all that lies inside is
-                // convex, and is covered at one place.
+                // Without limits, the part outside the cell does not matter: the part inside is convex, and
+                // is covered at one place.
                 if kept.is_empty() && !self.is_in_cell(long, &side)? {
                     continue;
                 }
@@ -499,7 +500,7 @@ impl<'s> Sheet<'s> {
                     return Ok(None);
                 }
                 let way = [ends[1][0] - ends[0][0], ends[1][1] - ends[0][1]];
-                // A line comes from where the triangle is not: it faces up or down.
+                // A line comes from the side where the triangle is not. Triangles may face up or down.
                 let enters = (way[0] * up[1] - way[1] * up[0]) * if self.is_above { -1.0 } else { 1.0 };
                 if enters <= ROUNDING * way[0].hypot(way[1]) {
                     return Ok(None);
@@ -512,8 +513,8 @@ impl<'s> Sheet<'s> {
         Ok(Some(most))
     }
 
-    /// The part of the plane through the middle of a box above or below which points of the box may lie in
-    /// the cell: a convex polygon.
+    /// The convex polygon in the plane through the middle of a box above or below which points of the box may
+    /// lie in the cell.
     fn in_cell(&mut self, prism: &Prism) -> Result<&[[f64; 3]], Error> {
         let corner = |u: f64, v: f64| prism.point([u * prism.half[0], v * prism.half[1], 0.0]);
         self.clip_to_cell(
@@ -532,13 +533,13 @@ impl<'s> Sheet<'s> {
         Ok(part)
     }
 
-    /// Whether points of a box above or below a side may lie in the cell.
+    /// Returns whether points of a box above or below a side may lie in the cell.
     fn is_in_cell(&mut self, long: &Prism, side: &[[f64; 3]; 2]) -> Result<bool, Error> {
         let side = side.map(|[u, v, _]| long.point([u, v, 0.0]));
         Ok(!self.clip_to_cell(&side, long)?.is_empty())
     }
 
-    /// How far before a side the boundary may begin, of whose limits none is further than on the side.
+    /// Bounds how far before a side the boundary may begin, from the values of the limits on that side.
     fn ahead(
         &self,
         view: &View,
@@ -553,7 +554,7 @@ impl<'s> Sheet<'s> {
             let [_, most] = kept.limit.function.over(&ends);
             (most + kept.limit.function.error() + high * kept.askew * view.slope) / kept.slope
         };
-        // (The function of a limit is known up to its error in two places.)
+        // (The function of a limit has an error in two places.)
         let mut best = f64::INFINITY;
         for ahead in kept.iter().map(reach).map(|far| far.max(0.0)).chain([0.0]) {
             let mut own = signs;
@@ -574,34 +575,34 @@ impl<'s> Sheet<'s> {
 /// The directions x, y and z.
 pub(super) const UNITS: [[f64; 3]; 3] = [[1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]];
 
-/// A limit on its way up.
+/// A limit along the direction of lines.
 struct Kept {
     limit: Limit,
-    /// What it goes up at least along the surface.
+    /// Its least increase along the surface.
     slope: f64,
-    /// What it changes along the normal at most, as a part of what the surface's own function does.
+    /// Its greatest change along the normal, relative to the change of the surface's own function.
     askew: f64,
 }
 
-/// A box as one sees it along the normal of the surface.
+/// A box as seen along the normal of the surface.
 struct View {
     local: Local,
     /// The least slope of the surface's function along the normal.
     slope: f64,
-    /// The greatest of the surface over the plane.
+    /// The greatest slope of the surface over the plane.
     steep: f64,
-    /// Rectangles in the plane, as centres and half edges: all of it, the box itself, and where lines lead
-    /// from there.
+    /// Rectangles in the plane, as centres and half edges: the whole, the box itself, and the place to which
+    /// lines lead from the box.
     boxes: [[[f64; 2]; 2]; 3],
     /// A place that triangles must cover.
     covered: [f64; 2],
-    /// How far from the plane the slopes hold.
+    /// The distance from the plane up to which the slopes hold.
     high: f64,
     reach: f64,
 }
 
 impl View {
-    /// The box is brought to the surface, and becomes as high as the surface is there.
+    /// Moves the box to the surface, and sets its height to that of the surface there.
     fn new(figures: &Figures, surface: u32, prism: &mut Prism, tolerance: f64) -> Option<View> {
         let normal = prism.axes[2];
         prism.half[2] = prism.half[2].min(prism.half[0].max(prism.half[1]));
@@ -614,7 +615,7 @@ impl View {
         prism.centre = axes(|k| prism.centre[k] - up * normal[k]);
         let local = Local::new(figures, surface, prism.centre, reach)?;
         prism.half[2] = height(&local, prism)?;
-        // Triangles may lie above or below what the surface takes.
+        // Triangles may lie above or below the range of the surface.
         let mut tall = *prism;
         tall.half[2] = tall.half[2].max(2.0 * tolerance);
         let slope = local.slopes(normal, &tall)[0];
@@ -636,8 +637,8 @@ impl View {
         [u, v]
     }
 
-    /// How far the surface is from a polygon along the normal at most; `None` if that is not known. `points`
-    /// is a list to work with.
+    /// Bounds the distance of the surface from a polygon along the normal; `None` if it is not known.
+    /// `points` is a buffer.
     fn height_over(
         &self,
         prism: &Prism,
@@ -657,33 +658,34 @@ impl View {
     }
 }
 
-/// How high a surface may be above and below the plane through the centre of a box; `None` if that is not
-/// known.
+/// The greatest height of a surface above and below the plane through the centre of a box; `None` if it is
+/// not known.
 fn height(local: &Local, prism: &Prism) -> Option<f64> {
     let normal = prism.axes[2];
     let corner = |u: f64, v: f64| prism.point([u * prism.half[0], v * prism.half[1], 0.0]);
     let plane = [corner(-1.0, -1.0), corner(1.0, -1.0), corner(1.0, 1.0), corner(-1.0, 1.0)];
     let most = magnitude(local.over(&plane));
-    // Twice as high as it seems must be enough.
+    // Twice the apparent height must suffice.
     let mut tall = *prism;
     tall.half[2] = 2.0 * most / dot(local.gradient(), normal).abs();
     let high = most / local.slopes(normal, &tall)[0];
     (0.0 <= high && high <= tall.half[2]).then_some(high)
 }
 
-/// A function times a sign, less so much of another one that it is level along a direction.
+/// A function times a sign, minus a multiple of another one, so that the result is constant along a
+/// direction.
 fn leveled(function: &Local, sign: f64, other: &Local, normal: [f64; 3]) -> Local {
     let factor = sign * dot(function.gradient(), normal) / dot(other.gradient(), normal);
     function.combined(sign, factor, other)
 }
 
-/// The part of a vector across a direction of length 1.
+/// The part of a vector across a unit direction.
 fn level(vector: [f64; 3], normal: [f64; 3]) -> [f64; 3] {
     let along = dot(vector, normal);
     axes(|k| vector[k] - along * normal[k])
 }
 
-/// All sets of bits of a mask.
+/// All subsets of the bits of a mask.
 fn subsets(mask: u8) -> impl Iterator<Item = u8> {
     let mut next = Some(mask);
     core::iter::from_fn(move || {
@@ -693,18 +695,18 @@ fn subsets(mask: u8) -> impl Iterator<Item = u8> {
     })
 }
 
-/// Half the edge of the cube along x, y and z around a box.
+/// Half the edge of the axis-aligned cube around a box.
 fn farthest(prism: &Prism) -> f64 {
     prism.reach().iter().fold(LEAST, |most: f64, &c| most.max(c))
 }
 
-/// The box along x, y and z around another one.
+/// The axis-aligned box around a box.
 fn around(prism: &Prism) -> Around {
     let reach = prism.reach();
     Around { low: axes(|k| prism.centre[k] - reach[k]), high: axes(|k| prism.centre[k] + reach[k]) }
 }
 
-/// Three directions at right angles, of which the last is given, and the first is about another one.
+/// Three directions at right angles: the last one is given, and the first is near another given one.
 fn frame(normal: [f64; 3], about: [f64; 3]) -> [[f64; 3]; 3] {
     let least = (0..3).fold(0, |best, k| if normal[k].abs() < normal[best].abs() { k } else { best });
     let mut first = level(about, normal);
@@ -722,13 +724,13 @@ fn turn(a: [f64; 2], b: [f64; 2], c: [f64; 2]) -> f64 {
     (b[0] - a[0]) * (c[1] - a[1]) - (b[1] - a[1]) * (c[0] - a[0])
 }
 
-/// Whether a triangle of either direction holds a point.
+/// Returns whether a triangle of either orientation contains a point.
 fn holds([a, b, c]: [[f64; 2]; 3], point: [f64; 2]) -> bool {
     let turns = [turn(a, b, point), turn(b, c, point), turn(c, a, point)];
     turns.iter().all(|&turn| turn >= 0.0) || turns.iter().all(|&turn| turn <= 0.0)
 }
 
-/// A corner of a rectangle, and all that lies above and below.
+/// A corner of a rectangle, with an unbounded height.
 fn corner([centre, half]: [[f64; 2]; 2], sign: f64) -> [f64; 3] {
     let [u, v] = [0, 1].map(|k| centre[k] + sign * (half[k] + ROUNDING));
     [u, v, sign * f64::MAX]

@@ -1,4 +1,4 @@
-//! What the leaves say of polygons.
+//! Verdicts of the leaves on polygons.
 
 use super::super::figures::{Figures, dot, minus};
 use super::super::leaves::{Leaf, Leaves, OpenLeaf};
@@ -10,7 +10,7 @@ use crate::memory;
 use crate::solid::OpenSurfaces;
 use alloc::vec::Vec;
 
-/// The smallest box along the axes around points.
+/// The smallest axis-aligned box around points.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Around {
     pub(super) low: [f64; 3],
@@ -42,7 +42,7 @@ impl Around {
         (0..3).all(|k| self.low[k] <= other.low[k] && other.high[k] <= self.high[k])
     }
 
-    /// Whether all of it lies in the universe.
+    /// Returns whether the whole box lies in the universe.
     fn is_in_universe(&self) -> bool {
         Around { low: [0.0; 3], high: [1.0; 3] }.holds(self)
     }
@@ -59,14 +59,14 @@ pub(super) fn cube(cell: Cell) -> Around {
     Around { low, high: low.map(|c| c + size) }
 }
 
-/// The solid as its leaves know it.
+/// The solid as its leaves describe it.
 pub(super) struct Truth<'l> {
     pub(super) leaves: &'l Leaves,
     pub(super) figures: &'l Figures,
 }
 
 impl Truth<'_> {
-    /// The leaves that meet a box: what each is, with its cell. What lies around the universe is one of them.
+    /// The leaves that meet a box, each with its cell. The space around the universe is one of them.
     pub(super) fn meeting(&self, around: &Around, found: &mut Vec<(Cell, Leaf)>) -> Result<(), Error> {
         found.clear();
         if !around.is_in_universe() {
@@ -90,7 +90,7 @@ impl Truth<'_> {
         let (u, v) = (minus(b, a), minus(c, a));
         let normal: [f64; 3] = axes(|k| u[(k + 1) % 3] * v[(k + 2) % 3] - u[(k + 2) % 3] * v[(k + 1) % 3]);
         let width: f64 = normal.iter().map(|c| c.abs()).sum();
-        // (All numbers are at most about 1, and the cubes are a little larger than they need be.)
+        // (All numbers are at most about 1, and the cubes are a little larger than necessary.)
         let meets = |cube: &Around| {
             let (off, half) = (dot(normal, minus(cube.centre(), a)).abs(), cube.half());
             cube.meets(&around) && off <= (half + LEAST) * width + LEAST * LEAST
@@ -119,8 +119,8 @@ impl Truth<'_> {
     }
 }
 
-/// The solid near a place: the leaves there, and the functions of their surfaces, which many polygons are
-/// compared with.
+/// The solid near a place: the leaves there, and the functions of their surfaces. Many polygons are compared
+/// with these.
 #[derive(Default)]
 pub(super) struct Near {
     around: Option<Around>,
@@ -138,12 +138,12 @@ impl Near {
         truth.meeting(&around, &mut self.leaves)
     }
 
-    /// The leaves there: what each is, with its cell.
+    /// The leaves at the place, each with its cell.
     pub(super) fn leaves(&self) -> &[(Cell, Leaf)] {
         &self.leaves
     }
 
-    /// What is known of a surface's function there; `None` if that is nothing.
+    /// The expansion of a surface's function at the place; `None` if nothing is known.
     pub(super) fn function(&mut self, figures: &Figures, surface: u32) -> Result<Option<&Local>, Error> {
         let place = match self.functions.iter().position(|(known, _)| *known == surface) {
             Some(place) => place,
@@ -158,7 +158,7 @@ impl Near {
         Ok(self.functions[place].1.as_ref())
     }
 
-    /// Whether all points of a polygon that lies there are inside of the solid, or all outside; `None` if
+    /// Returns whether all points of a polygon at the place are inside the solid, or all outside; `None` if
     /// neither is known.
     pub(super) fn of(&mut self, truth: &Truth<'_>, polygon: &[[f64; 3]]) -> Result<Option<bool>, Error> {
         let around = Around::of(polygon);
@@ -178,7 +178,7 @@ impl Near {
                 all = own;
                 continue;
             }
-            // It may be only a part of the polygon that lies in the cell, or nothing of it.
+            // Possibly only a part of the polygon lies in the cell, or nothing of it.
             if matches!(leaf, Leaf::Outside) || polygon.len() < 3 {
                 return Ok(None);
             }
@@ -233,16 +233,16 @@ impl Near {
     }
 }
 
-/// Places are off by less.
+/// The greatest rounding error of places.
 const ROUNDING: f64 = 4e-15;
 
-/// Half the edge of the least cube in which functions are looked at.
+/// Half the edge of the least cube in which functions are expanded.
 pub(super) const LEAST: f64 = 1.0 / (1u64 << 24) as f64;
 
-/// What a function says where some signs are unknown, if that is one thing.
+/// The value of a function with some unknown signs, if it is the same for all of them.
 pub(super) fn settled(open: &OpenSurfaces, signs: u8, unknown: u8) -> Option<bool> {
     let first = open.inside(signs);
-    // All subsets of what is unknown.
+    // All subsets of the unknown signs.
     let mut subset = unknown;
     while subset != 0 {
         if open.inside(signs | subset) != first {

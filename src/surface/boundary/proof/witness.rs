@@ -1,5 +1,5 @@
-//! How far a triangle is from the boundary: a step along which all of it comes to lie inside, and one to
-//! outside. Between the two lies the boundary.
+//! Bounds of the distance of a triangle from the boundary: one step that moves the whole triangle inside, and
+//! another one that moves it outside. The boundary lies between the two.
 
 use super::super::edges::NONE;
 use super::super::figures::{dot, length, minus, shortest};
@@ -13,38 +13,38 @@ use crate::memory;
 use alloc::vec::Vec;
 use hashbrown::HashMap;
 
-/// How often a piece of a triangle is halved at most.
+/// The greatest number of halvings of a piece of a triangle.
 const HALVINGS: u32 = 6;
 
-/// Surfaces that steps take into account at most.
+/// The greatest number of surfaces that steps take into account.
 const MOST: usize = 3;
 
-/// Steps are a little longer than they need be.
+/// The factor by which steps are longer than necessary.
 const LONGER: f64 = 1.0 + 1.0 / 128.0;
 
-/// The longest steps are longer by this part of the tolerance.
+/// The extra length of the longest steps, as a part of the tolerance.
 const ASIDE: f64 = 0.02;
 
-/// What is added to each step (edges of the universe): places are off by some last digits.
+/// The length added to each step (edges of the universe), because places are inexact in some last digits.
 const SLACK: f64 = 1e-14;
 
-/// What looks for steps.
+/// The search for steps.
 pub(super) struct Witnesses<'t> {
     truth: &'t Truth<'t>,
     tolerance: f64,
-    /// How much may still be spent where the first step proves nothing: one for each piece that is halved,
-    /// and for each size of cube around one.
+    /// The remaining budget where the first step proves nothing: one for each piece that is halved, and for
+    /// each size of cube around a piece.
     budget: u32,
     is_spent: bool,
     near: Near,
-    /// Whether a surface may be next to the last piece.
+    /// Whether a surface may be near the last piece.
     is_near: bool,
     /// The leaves that a triangle meets.
     leaves: Vec<(Cell, Leaf)>,
     shifted: Vec<[f64; 3]>,
     steps: Vec<(f64, [f64; 3])>,
     cut: Vec<[f64; 3]>,
-    /// How far all of a cell in which nothing is known is from the boundary.
+    /// A bound of the distance of all points of a cell in which nothing is known from the boundary.
     of_cells: HashMap<u32, f64>,
 }
 
@@ -65,7 +65,7 @@ impl<'t> Witnesses<'t> {
         }
     }
 
-    /// Takes one off the budget. `false` if nothing is left.
+    /// Takes one unit off the budget. `false` if nothing is left.
     fn spend(&mut self) -> bool {
         let is_left = self.budget > 0;
         self.is_spent |= !is_left;
@@ -73,8 +73,8 @@ impl<'t> Witnesses<'t> {
         is_left
     }
 
-    /// Calls `told` for the parts of a triangle in all leaves, with what no point of the part is further from
-    /// the boundary than. All of them together may spend `budget`. The answer is whether that was not enough.
+    /// Calls `told` for the parts of a triangle in all leaves, each with a bound of the distance of the part
+    /// from the boundary. All parts together may spend `budget`. Returns whether the budget was too small.
     pub(super) fn triangle(
         &mut self,
         triangle: [[f64; 3]; 3],
@@ -177,17 +177,17 @@ impl<'t> Witnesses<'t> {
         Ok(f64::INFINITY)
     }
 
-    /// No step is longer.
+    /// The greatest length of a step.
     fn longest(&self) -> f64 {
         2.0 * self.tolerance + 4.0 * SLACK
     }
 
-    /// The steps that lead a part to certain sides of the surfaces next to it, the shortest first.
+    /// Finds the steps that move a part to certain sides of the surfaces near it, the shortest first.
     fn find_steps(&mut self, part: &[[f64; 3]], surface: u32) -> Result<(), Error> {
         self.steps.clear();
         let (truth, tolerance) = (self.truth, self.tolerance);
         let around = Around::of(part).grown(tolerance);
-        // The surface of the triangle, and those of the leaves around.
+        // The surface of the triangle, and the surfaces of the leaves around.
         let mut numbers = [surface; MOST];
         let mut found: [Option<(Local, [f64; 2])>; MOST] = [None; MOST];
         let (mut count, mut is_near) = (0, false);
@@ -227,7 +227,7 @@ impl<'t> Witnesses<'t> {
                 if sign != 0.0 {
                     let steep = local.steepness();
                     rows[count] = local.gradient().map(|c| sign * c / steep);
-                    // How far some of it lies on the wrong side.
+                    // The distance of the part from the wanted side.
                     let wrong = if sign > 0.0 { -low } else { *high };
                     let flattest = part.iter().fold(steep, |least, &p| least.min(local.steepness_at(p)));
                     shares[count] = wrong.max(0.0) / flattest + SLACK;
@@ -235,7 +235,7 @@ impl<'t> Witnesses<'t> {
                 }
             }
             let Some(step) = shortest(&rows[..count], &shares) else { continue };
-            // The last one for slivers in neighbouring cells, of which rounding hides the sides.
+            // The last length is for slivers in neighbouring cells, whose sides are hidden by rounding.
             let far = ASIDE * self.tolerance / length(step).max(SLACK);
             for longer in [LONGER, 1.25 * LONGER, LONGER + far] {
                 let step = step.map(|c| c * longer);
@@ -249,8 +249,8 @@ impl<'t> Witnesses<'t> {
         Ok(())
     }
 
-    /// How far all of a part is from the boundary, by points around it: infinite if they are all on one side,
-    /// or the budget is spent.
+    /// Bounds the distance of a part from the boundary by points around it: infinite if they are all on one
+    /// side, or the budget is spent.
     fn around(&mut self, part: &[[f64; 3]]) -> Result<f64, Error> {
         let centre = Around::of(part).centre();
         let radius = part.iter().fold(0.0, |most: f64, &p| most.max(length(minus(p, centre))));
@@ -265,8 +265,8 @@ impl<'t> Witnesses<'t> {
         Ok(f64::INFINITY)
     }
 
-    /// How far all points of a cell in which nothing is known are from the boundary, by points around it:
-    /// infinite if they are all on one side.
+    /// Bounds the distance of all points of a cell in which nothing is known from the boundary, by points
+    /// around it: infinite if they are all on one side.
     fn around_cell(&mut self, number: u32, cell: Cell) -> Result<f64, Error> {
         if let Some(&known) = self.of_cells.get(&number) {
             return Ok(known);
@@ -284,8 +284,8 @@ impl<'t> Witnesses<'t> {
         Ok(most)
     }
 
-    /// Whether some of the corners, of the middles of edges and faces and the centre of a cube lie inside and
-    /// others outside.
+    /// Tests the corners, the middles of edges and faces, and the centre of a cube. Returns whether some of
+    /// these points lie inside and others outside.
     fn are_apart(&mut self, centre: [f64; 3], half: f64) -> Result<bool, Error> {
         let mut known = [false; 2];
         // (Points at opposite ends come one after the other.)
