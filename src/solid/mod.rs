@@ -13,8 +13,6 @@
 //!
 //! | a worker that | gains |
 //! |---|---|
-//! | a worker that | gains |
-//! |---|---|
 //! | splits cells, and is [`FreeParts`] and [`OneByOne`] | octrees by [`Rule::Certified`](crate::Rule::Certified), `Inner` and `Outer`, points, boxes, rays, Booleans, pictures: all to the size of a cell. After N splits the error of a volume is of the order N^-½. |
 //! | answers [`Question::Centre`] | [`Rule::Sampled`](crate::Rule::Sampled), tri-dexel models, marching cubes of sampled cells |
 //! | answers [`Question::Enclosure`] | second order: volume, centroid and inertia to N^-1 (plane faces: N^-2), a bounding box in some hundred splits, rays and vertices to a curvature times a cell's square, octrees that end where the surface is known to a tolerance ([`Adaptive`]) |
@@ -371,7 +369,7 @@ pub trait Worker: Batch {
     /// [Those of every question](Worker#errors).
     fn answer(&mut self, cell: Cell, part: &Self::Part, question: Question<'_>) -> Result<(), Error>;
 
-    // ---- the same answers in less time: the defaults are correct ------------------------------------------------------------
+    // ---- the same answers in less time: the defaults are correct ------------------------------------------
 
     /// Splits two levels at once, which is the granularity of storage. Returns the tags of the 64
     /// grandchildren in Morton order. The parts of the grandchildren that can be split are appended to
