@@ -1,7 +1,6 @@
 //! The intersection of a plane with a cube, seen along an axis: a polygon in a square.
 
-/// The greatest number of corners of a square that two faces of the cube and two planes cut, with a margin
-/// for rounding.
+/// The greatest number of corners of a square that two faces of the cube and two planes cut.
 const CORNERS: usize = 8;
 
 /// A linear function of x and y, positive on one side of a line.
@@ -9,7 +8,8 @@ const CORNERS: usize = 8;
 pub(super) struct Line {
     pub(super) slope: [f64; 2],
     pub(super) constant: f64,
-    /// The derivative of the function along z, where the line is the intersection of a plane with a face.
+    /// The decrease of the function per unit of z. The line is the intersection of a plane with a face, and the
+    /// function is the slack of the face's inequality.
     pub(super) rise: f64,
 }
 
