@@ -8,8 +8,8 @@ const CORNERS: usize = 8;
 pub(super) struct Line {
     pub(super) slope: [f64; 2],
     pub(super) constant: f64,
-    /// The decrease of the function per unit of z. The line is the intersection of a plane with a face, and the
-    /// function is the slack of the face's inequality.
+    /// The decrease of the function per unit of z. The line is the intersection of a plane with a face, and
+    /// the function is the slack of the face's inequality.
     pub(super) rise: f64,
 }
 
