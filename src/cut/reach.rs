@@ -55,7 +55,7 @@ impl Halves {
         bound + magnitude(rest)
     }
 
-    /// Whether a point is proven to lie in all half-spaces, or in the interior of all of them.
+    /// Returns whether a point is proven to lie in all half-spaces, or in the interior of all of them.
     fn hold(&self, point: [f64; 3], strictly: bool) -> bool {
         self.as_slice().iter().all(|half| {
             let terms = axes(|i| Interval::exactly(half.normal[i]).times(Interval::exactly(point[i])));
@@ -156,7 +156,7 @@ fn greatest(halves: &Halves, direction: [f64; 3]) -> f64 {
     dual(halves, best.1, direction).min(magnitude(direction))
 }
 
-/// Whether multipliers prove that no point of the cube lies in all half-spaces (Farkas' lemma).
+/// Returns whether multipliers prove that no point of the cube lies in all half-spaces (Farkas' lemma).
 fn is_empty(halves: &Halves, rows: &[[f64; 3]]) -> bool {
     // The minors of four rows are the coefficients of their linear dependence.
     for set in (0u32..1 << rows.len()).filter(|set| set.count_ones() == 4) {

@@ -40,7 +40,7 @@ impl Section {
         Section { order, plane: [a, b, c] }
     }
 
-    /// Whether the plane is parallel to a face.
+    /// Returns whether the plane is parallel to a face.
     fn is_parallel(&self) -> bool {
         self.plane[..2] == [0.0; 2]
     }

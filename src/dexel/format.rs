@@ -62,7 +62,7 @@ impl DexelFormat {
         }
     }
 
-    /// Whether intervals consist of their ends only.
+    /// Returns whether intervals consist of their ends only.
     pub(crate) fn is_plain(&self) -> bool {
         self.normals == DexelNormals::None && !self.surfaces && !self.materials
     }

@@ -28,7 +28,8 @@ impl SetOp {
         }
     }
 
-    /// Whether the result contains places of the first operand only, and places of the second operand only.
+    /// Returns whether the result contains places of the first operand only, and places of the second operand
+    /// only.
     pub fn keeps(self) -> [bool; 2] {
         [self.holds(true, false), self.holds(false, true)]
     }

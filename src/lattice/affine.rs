@@ -116,8 +116,8 @@ impl Affine {
         (cofactors, determinant.estimate())
     }
 
-    /// Whether the linear part has one entry a row, and that entry is a power of two. Then neither the linear
-    /// part nor its inverse is rounded.
+    /// Returns whether the linear part has one entry a row, and that entry is a power of two. Then neither
+    /// the linear part nor its inverse is rounded.
     pub(crate) fn is_monomial(&self) -> bool {
         self.rows.iter().all(|[x, y, z, _]| {
             let mut entries = [x, y, z].into_iter().filter(|&&c| c != 0.0);

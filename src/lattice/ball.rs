@@ -115,7 +115,7 @@ impl Ball {
         (self.value.abs() + self.error) * SLACK
     }
 
-    /// Whether the number is positive (`true`) or negative (`false`); `None` if the sign is unknown.
+    /// Returns whether the number is positive (`true`) or negative (`false`); `None` if the sign is unknown.
     #[inline(always)]
     pub fn is_positive(self) -> Option<bool> {
         if self.value > self.error {

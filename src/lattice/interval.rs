@@ -223,7 +223,7 @@ fn quotient(a: f64, b: f64) -> Interval {
     rounded((value, rest as f64), is_splittable(a) && is_splittable(b) && is_splittable(value))
 }
 
-/// Whether the error of a product of such numbers is exact, if the product is such a number, too.
+/// Returns whether the error of a product of such numbers is exact, if the product is such a number, too.
 #[inline(always)]
 fn is_splittable(x: f64) -> bool {
     /// 2^900

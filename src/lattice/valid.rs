@@ -10,7 +10,7 @@ pub(crate) const SMALLEST: f64 = 1.0 / LARGEST;
 /// The message for numbers that [`is_moderate`] rejects.
 pub(crate) const IMMODERATE: &str = "every number must be zero or of a magnitude between 2^-256 and 2^256";
 
-/// Whether exact arithmetic accepts a number: zero, or a magnitude between 2^-256 and 2^256.
+/// Returns whether exact arithmetic accepts a number: zero, or a magnitude between 2^-256 and 2^256.
 #[inline]
 pub(crate) fn is_moderate(value: f64) -> bool {
     value == 0.0 || (SMALLEST..=LARGEST).contains(&value.abs())

@@ -18,7 +18,7 @@ use alloc::vec::Vec;
 /// [`Question::Centre`](super::Question::Centre). The parts in the verdicts of one call live together: the
 /// memory of one is not released before that of the others.
 pub trait Batch: Parts {
-    /// Whether answers are expensive, or cheaper in batches. A caller then gathers cells for
+    /// Returns whether answers are expensive, or cheaper in batches. A caller then gathers cells for
     /// [`split_many`](Self::split_many), and uses threads even for few cells.
     fn likes_many(&self) -> bool;
 

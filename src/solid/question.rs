@@ -83,8 +83,8 @@ impl LayersQuestion<'_> {
     /// tolerance.
     pub(crate) const SHARE: f64 = 0.7;
 
-    /// Whether a layer that alone bounds the solid in a cell is thin enough for a tolerance, in half edges of
-    /// the cell. (Storing the layer may make it a little thicker.)
+    /// Returns whether a layer that alone bounds the solid in a cell is thin enough for a tolerance, in half
+    /// edges of the cell. (Storing the layer may make it a little thicker.)
     pub(crate) fn admits(slab: &Slab, tolerance: f64) -> bool {
         let width = (slab.outer - slab.inner) / libm::sqrt(slab.normal.iter().map(|c| c * c).sum::<f64>());
         // (A comparison with NaN is false.)

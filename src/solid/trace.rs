@@ -42,7 +42,7 @@ impl RayTrace {
     pub const UNKNOWN: RayTrace =
         RayTrace { begins_inside: false, crossings: Vec::new(), until: f64::NEG_INFINITY };
 
-    /// Whether the ray is outside before and after some crossing, which may be a contact.
+    /// Returns whether the ray is outside before and after some crossing, which may be a contact.
     pub(crate) fn has_touches(&self) -> bool {
         let mut before = self.begins_inside;
         self.crossings.iter().any(|crossing| {

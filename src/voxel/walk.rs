@@ -296,7 +296,7 @@ impl<'a> Voxels<'a> {
         self.walk.least()
     }
 
-    /// Whether all boundary voxels so far are inside cells, which touch outside ones.
+    /// Returns whether all boundary voxels so far are inside cells, which touch outside ones.
     pub(super) fn boundary_is_inside(&self) -> bool {
         self.walk.boundary_is_inside
     }

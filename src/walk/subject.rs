@@ -23,7 +23,7 @@ impl<'s, C: Classifier> Subject<'s, C> {
         Ok(Subject { classifier, worker: classifier.worker()?, splits: 0, control, used: 0 })
     }
 
-    /// Whether the solid may extend, or extends, beyond the universe.
+    /// Returns whether the solid may extend, or extends, beyond the universe.
     pub(crate) fn is_clipped(&self) -> bool {
         self.classifier.exterior() != Tag::Empty
     }
@@ -45,13 +45,13 @@ impl<'s, C: Classifier> Subject<'s, C> {
         split_each(self.classifier, &mut self.worker, cells, threads, self.control)
     }
 
-    /// Whether most of the memory holds parts that are no longer in use.
+    /// Returns whether most of the memory holds parts that are no longer in use.
     pub(crate) fn is_wasteful(&self) -> bool {
         self.worker.mark() > 4 * self.used + 4096
     }
 
-    /// Whether the parts in memory take more than one in `share` of the bytes that the caller allows. (While
-    /// memory grows or is handed over there are two copies, and there may be another solid.)
+    /// Returns whether the parts in memory take more than one in `share` of the bytes that the caller allows.
+    /// (While memory grows or is handed over there are two copies, and there may be another solid.)
     pub(crate) fn takes(&self, share: u64) -> bool {
         self.control.max_bytes.is_some_and(|limit| self.worker.scratch_bytes() as u64 > limit / share)
     }

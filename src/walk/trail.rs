@@ -37,7 +37,7 @@ impl<W: Worker> Trail<W> {
         Ok(Trail { worker, root, cell: Cell::ROOT, steps, own: None, splits: 0 })
     }
 
-    /// Whether cells are better split in batches, each without the path to it.
+    /// Returns whether cells are better split in batches, each without the path to it.
     pub(crate) fn likes_many(&mut self) -> bool {
         let mark = self.worker.mark();
         let alone = self.worker.likes_many() && self.worker.recall(Cell::ROOT).is_some();
@@ -155,8 +155,8 @@ impl<W: Worker> Trail<W> {
         self.ask(cell, |worker, part| worker.crossing(cell, part, segment))
     }
 
-    /// Whether the centre of a finest `cell`, to whose parent the path leads, lies inside, if the solid can
-    /// decide.
+    /// Returns whether the centre of a finest `cell`, to whose parent the path leads, lies inside, if the
+    /// solid can decide.
     ///
     /// # Errors
     /// Those of the solid.

@@ -108,7 +108,7 @@ mod tests {
         &Dyadic::new(x.high) + &Dyadic::new(x.low)
     }
 
-    /// Whether the difference is at most `size` times the relative error.
+    /// Returns whether the difference is at most `size` times the relative error.
     fn is_near(found: DoubleDouble, expected: &Dyadic, size: f64) -> bool {
         let off = &exactly(found) - expected;
         off.rounded().abs() <= size * DoubleDouble::EPSILON

@@ -57,8 +57,8 @@ impl LatticeMap {
         map
     }
 
-    /// Whether the offset along an axis of a monomial map leaves every sum unrounded. Corrects the offset if
-    /// so.
+    /// Returns whether the offset along an axis of a monomial map leaves every sum unrounded. Corrects the
+    /// offset if so.
     fn offset_is_exact(
         &mut self,
         i: usize,
@@ -332,7 +332,7 @@ impl<'m> Point<'m> {
         Point { map, at: map.image(cell.at.map(|a| a as f64 + 0.5), 0.0).0 }
     }
 
-    /// Whether a cell contains the computed image; a face between two cells belongs to one of them.
+    /// Returns whether a cell contains the computed image; a face between two cells belongs to one of them.
     pub(super) fn is_in(&self, corner: [f64; 3], edge: f64) -> bool {
         (0..3).all(|axis| self.is_between(axis, corner[axis], corner[axis] + edge))
     }

@@ -312,8 +312,8 @@ impl<C: Classifier> TransformClassifier<C> {
         extent(&self.own, cell)
     }
 
-    /// Whether cells that are not EMPTY (not FULL, if `hollow`) may reach beyond the universe. Some cells
-    /// that do are split to find out.
+    /// Returns whether cells that are not EMPTY (not FULL, if `hollow`) may reach beyond the universe. Some
+    /// cells that do are split to find out.
     fn reaches_beyond(&self, hollow: bool) -> Result<bool, Error> {
         const MOST: usize = 512;
         let outward = self.maps.outward;
@@ -854,7 +854,7 @@ impl<W: Worker> Worker for TransformWorker<W> {
 }
 
 impl<W: Worker> TransformWorker<W> {
-    /// Whether the centre of a finest cell lies inside.
+    /// Returns whether the centre of a finest cell lies inside.
     fn contains_centre(&mut self, cell: Cell, part: TransformPart) -> Result<Option<bool>, Error> {
         let (inward, mark) = (self.maps.inward, self.inner.mark());
         let point = Point::centre(&inward, cell);

@@ -185,7 +185,7 @@ impl Polytope {
         [0, 1, 2].map(|axis| from[axis] + share * (to[axis] - from[axis]))
     }
 
-    /// Whether the body lies within `radius` of a straight line.
+    /// Returns whether the body lies within `radius` of a straight line.
     pub(super) fn is_needle(&self, radius: f64) -> bool {
         let corners = self.corners();
         let minus = |a: &[f64; 3], b: &[f64; 3]| [a[0] - b[0], a[1] - b[1], a[2] - b[2]];
@@ -206,7 +206,7 @@ impl Polytope {
     }
 }
 
-/// Whether a corner is cut off; a NaN cuts nothing off.
+/// Returns whether a corner is cut off; a NaN cuts nothing off.
 fn is_negative(value: f64) -> bool {
     value < 0.0
 }

@@ -72,8 +72,8 @@ impl Flat {
         }
     }
 
-    /// Whether this is a layer, and wherever in the cube its side is known, the other surface is known to be
-    /// on the same side.
+    /// Returns whether this is a layer, and wherever in the cube its side is known, the other surface is
+    /// known to be on the same side.
     pub(super) fn holds(&self, other: &Flat) -> bool {
         let Some(margin) = self.layer else { return false };
         let length = |flat: &Flat| {

@@ -12,8 +12,8 @@ pub(super) trait Splits<P> {
     /// The children of a cell; `None` if they are not known yet.
     fn children(&mut self, cell: Cell, part: &P) -> Result<Option<[Verdict<P>; 8]>, Error>;
 
-    /// Whether a cell must not be split because it is a function of surfaces: some of these may lie in faces
-    /// of its children.
+    /// Returns whether a cell must not be split because it is a function of surfaces: some of these may lie
+    /// in faces of its children.
     fn is_function(&mut self, _: Cell, _: &P) -> Result<bool, Error> {
         Ok(false)
     }

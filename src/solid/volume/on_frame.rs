@@ -114,7 +114,7 @@ impl<'a> VolumeOnFrame<'a> {
 }
 
 impl VolumeOnFrame<'_> {
-    /// Whether the centre of a finest cell lies in the solid.
+    /// Returns whether the centre of a finest cell lies in the solid.
     fn contains_centre(&self, cell: Cell) -> bool {
         let mut voxel = [0; 3];
         for axis in 0..3 {

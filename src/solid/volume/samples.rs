@@ -99,7 +99,7 @@ impl Samples<'_> {
         }
     }
 
-    /// Whether the array is borrowed.
+    /// Returns whether the array is borrowed.
     pub(super) fn is_borrowed(&self) -> bool {
         match self {
             Samples::Bits(words) => matches!(words, SampleArray::Borrowed(_)),

@@ -21,7 +21,7 @@ pub(super) trait Value: Copy + PartialOrd + Send + Sync + 'static {
     /// The least value of a block in which one sample is NaN: no comparison with it is true.
     const NONE: Self;
 
-    /// Whether the value is NaN.
+    /// Returns whether the value is NaN.
     fn is_nan(self) -> bool;
 }
 
