@@ -69,7 +69,7 @@ impl SurfaceAttribute {
 
     /// Makes the attribute of the values that [belong to the mesh](TriangleMesh::attributes) under this name.
     ///
-    /// Costs as [`new`](Self::new).
+    /// The cost is that of [`new`](Self::new).
     ///
     /// # Errors
     /// [`Error::Argument`] unless the mesh has an attribute of this name; [`Error::OutOfMemory`].

@@ -148,7 +148,7 @@ impl TriDexel {
     /// for [`union_of`](Self::union_of).
     ///
     /// # Errors
-    /// As [`union_of`](Self::union_of).
+    /// [`Error::Argument`] for an empty list; otherwise as [`TriDexelRef::union`].
     pub fn intersection_of(models: &[TriDexelRef<'_>], control: &Control<'_>) -> Result<TriDexel, Error> {
         combined_of(SetOp::Intersection, models, control)
     }
@@ -157,7 +157,7 @@ impl TriDexel {
     /// as for [`union_of`](Self::union_of).
     ///
     /// # Errors
-    /// As [`union_of`](Self::union_of).
+    /// [`Error::Argument`] for an empty list; otherwise as [`TriDexelRef::union`].
     pub fn difference_of(models: &[TriDexelRef<'_>], control: &Control<'_>) -> Result<TriDexel, Error> {
         match models {
             [first, others @ ..] if others.len() > 1 => {
@@ -174,7 +174,7 @@ impl TriDexel {
     /// [`union_of`](Self::union_of).
     ///
     /// # Errors
-    /// As [`union_of`](Self::union_of).
+    /// [`Error::Argument`] for an empty list; otherwise as [`TriDexelRef::union`].
     pub fn xor_of(models: &[TriDexelRef<'_>], control: &Control<'_>) -> Result<TriDexel, Error> {
         combined_of(SetOp::Xor, models, control)
     }

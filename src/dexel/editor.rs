@@ -123,7 +123,8 @@ impl DexelEditor {
     /// Removes the places that lie in `other`. O(rays of its window + intervals there).
     ///
     /// # Errors
-    /// As [`unite`](Self::unite).
+    /// As [`TriDexelRef::union`]. After [`Error::OutOfMemory`] and [`Error::Cancelled`] some rays are
+    /// changed, and the same operation can be repeated, as for [`unite`](Self::unite).
     pub fn subtract(&mut self, other: &TriDexelRef<'_>, control: &Control<'_>) -> Result<DexelChange, Error> {
         self.apply(SetOp::Difference, other, control)
     }
@@ -131,7 +132,8 @@ impl DexelEditor {
     /// Keeps only the places that also lie in `other`. O(rays of the lattice).
     ///
     /// # Errors
-    /// As [`unite`](Self::unite).
+    /// As [`TriDexelRef::union`]. After [`Error::OutOfMemory`] and [`Error::Cancelled`] some rays are
+    /// changed, and the same operation can be repeated, as for [`unite`](Self::unite).
     pub fn intersect(
         &mut self,
         other: &TriDexelRef<'_>,
@@ -144,7 +146,8 @@ impl DexelEditor {
     /// there).
     ///
     /// # Errors
-    /// As [`unite`](Self::unite).
+    /// As [`TriDexelRef::union`]. After [`Error::OutOfMemory`] and [`Error::Cancelled`] the editor can only
+    /// be dropped.
     pub fn xor(&mut self, other: &TriDexelRef<'_>, control: &Control<'_>) -> Result<DexelChange, Error> {
         self.apply(SetOp::Xor, other, control)
     }

@@ -35,7 +35,7 @@ pub(crate) trait Place:
     /// The gap.
     fn gap(self, depth: u8) -> u32;
 
-    /// Returns whether it has the same bits as all places that are equal to it.
+    /// Returns whether the place has the same bits as all places that are equal to it.
     fn is_plain(self) -> bool;
 }
 

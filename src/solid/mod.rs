@@ -273,7 +273,7 @@ pub trait Solid: Send + Sync {
         None
     }
 
-    /// The effect of moving the shape on its precision.
+    /// The precision of the shape under affine maps.
     fn motion(&self) -> Motion {
         Motion::Conservative
     }
@@ -289,7 +289,7 @@ pub trait Solid: Send + Sync {
 
 /// A shape on a frame: a cheap shared handle for threads, queries and poses.
 pub trait Classifier: Clone + Send + Sync {
-    /// The classifier with scratch memory.
+    /// The type of the workers: the classifier with scratch memory.
     type Worker: Worker;
 
     /// The frame.

@@ -1,4 +1,4 @@
-//! The effect of moving a solid on its precision.
+//! The precision of solids under affine maps.
 
 /// The precision of a solid under an affine map, from the best to the worst.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash)]

@@ -53,22 +53,22 @@ pub enum Question<'q> {
     Layers(LayersQuestion<'q>),
 
     /// The crossings of a ray with the boundary of the solid in the cell; for the root cell, in the universe.
-    /// Beyond the cell the trace need not be correct. Not answered before [`WholeQuestion::Direct`] has been
-    /// put.
+    /// Beyond the cell the trace need not be correct. Answered only after [`WholeQuestion::Direct`] has been
+    /// asked.
     Ray(RayQuestion<'q>),
 
-    /// The point of the whole boundary that is nearest to a point (model units). Only for the root cell. Not
-    /// answered before [`WholeQuestion::Direct`] has been put.
+    /// The point of the whole boundary that is nearest to a point (model units). Only for the root cell.
+    /// Answered only after [`WholeQuestion::Direct`] has been asked.
     Nearest([f64; 3], &'q mut Option<NearestSurface>),
 
-    /// The content of a box in the universe: in the solid, outside, or both. Only for the root cell. Not
-    /// answered before [`WholeQuestion::Direct`] has been put.
+    /// The position of a box in the universe: in the solid, outside, or both. Only for the root cell.
+    /// Answered only after [`WholeQuestion::Direct`] has been asked.
     Box(&'q Bounds, &'q mut Option<BoxContent>),
 }
 
 /// The greatest thickness of layers, with the places for the answer.
 pub struct LayersQuestion<'q> {
-    /// The greatest distance of a layer's points from the surface is twice this number (model units).
+    /// Half the greatest distance of a layer's points from the surface (model units).
     pub tolerance: f64,
     /// Layers for this cell alone are appended here: a surface with the number [`OpenSurfaces::OWN`] + i is
     /// number i of this list.
@@ -346,12 +346,12 @@ pub enum WholeQuestion<'q> {
     Direct(Direct, &'q mut bool),
 
     /// The triangles that make up the whole boundary, if such triangles are known and the whole boundary lies
-    /// in the universe. None of the triangles lies inside or outside the solid. The answer is the same for
-    /// the solid and its complement.
+    /// in the universe. No triangle lies in the interior of the solid or outside the solid. The answer is the
+    /// same for the solid and its complement.
     Facets(&'q mut Option<BoundaryFacets>),
 
-    /// As [`Facets`](Self::Facets), where triangles intersect: intersecting triangles are cut into pieces.
-    /// Pieces that meet other pieces have sides no longer than the given size (model units).
+    /// As [`Facets`](Self::Facets), for meshes whose triangles intersect: intersecting triangles are cut into
+    /// pieces. Pieces that meet other pieces have sides no longer than the given size (model units).
     Pieces(f64, &'q mut Option<BoundaryPieces>),
 
     /// The triangles of [`Facets`](Self::Facets), and further triangles beside those of the boundary. All of

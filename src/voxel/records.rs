@@ -69,8 +69,9 @@ impl VoxelRecords {
     /// O(records).
     ///
     /// # Errors
-    /// As [`Voxels::new`]; the errors of the attribute; [`Error::OutOfMemory`]; and the errors that `control`
-    /// causes: its limit of bytes applies to the arrays.
+    /// [`Error::Argument`] and [`Error::Damaged`] as [`Voxels::new`]; the errors of the attribute;
+    /// [`Error::OutOfMemory`]; and the errors that `control` causes: its limit of bytes applies to the
+    /// arrays.
     pub fn of(
         tree: &OctreeRef<'_>,
         options: &VoxelOptions,

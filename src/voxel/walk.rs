@@ -260,9 +260,10 @@ impl<'a> Voxels<'a> {
     /// ```
     ///
     /// # Errors
-    /// As [`VoxelOptions::frame`], and [`Error::Damaged`] if the options need neighbours of cells and links
-    /// of the tree are damaged. (Otherwise damage reads as boundary voxels.) Items are errors if the
-    /// attribute returns one.
+    /// [`Error::Argument`] if the detail's fine limit is below the edge of a cell of level 20
+    /// ([`VoxelOptions::frame`]); [`Error::Damaged`] if the options need neighbours of cells and links of the
+    /// tree are damaged. (Otherwise damage reads as boundary voxels.) Items are errors if the attribute
+    /// returns one.
     pub fn new(
         tree: &OctreeRef<'a>,
         options: &VoxelOptions,
