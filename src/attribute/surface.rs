@@ -132,7 +132,7 @@ impl Source {
 /// The index of an attribute among those of a mesh.
 fn place(mesh: &TriangleMesh, name: &str) -> Result<usize, Error> {
     let place = mesh.attributes().iter().position(|attribute| attribute.name() == name);
-    place.ok_or(Error::Argument { name: "name", problem: "must be that of an attribute of the mesh" })
+    place.ok_or(Error::Argument { name: "name", problem: "must be the name of an attribute of the mesh" })
 }
 
 /// The range of the values of some triangles.

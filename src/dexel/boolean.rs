@@ -75,7 +75,7 @@ impl TriDexelRef<'_> {
         self.sound()?;
         let depth = self.frame.depth();
         each_direction(self.frame, self.format, self.directions(), control, |axis, lot| {
-            let Some(rows) = &self.rays[axis] else { unreachable!("only directions that there are") };
+            let Some(rows) = &self.rays[axis] else { unreachable!("only directions that exist") };
             with_rows!(rows, rows => complemented(rows, depth, &self.format, lot))
         })
     }
@@ -89,7 +89,7 @@ impl TriDexelRef<'_> {
         self.sound()?;
         let depth = self.frame.depth();
         each_direction(self.frame, format, self.directions(), control, |axis, lot| {
-            let Some(rows) = &self.rays[axis] else { unreachable!("only directions that there are") };
+            let Some(rows) = &self.rays[axis] else { unreachable!("only directions that exist") };
             with_rows!(rows, rows => match format.ends {
                 DexelEnds::Fixed => converted::<_, FixedSpan>(rows, &format, depth, lot),
                 DexelEnds::Double => converted::<_, DoubleSpan>(rows, &format, depth, lot),
@@ -105,7 +105,7 @@ impl TriDexelRef<'_> {
         self.sound()?;
         let format = DexelFormat { materials: true, ..self.format };
         each_direction(self.frame, format, self.directions(), control, |axis, lot| {
-            let Some(rows) = &self.rays[axis] else { unreachable!("only directions that there are") };
+            let Some(rows) = &self.rays[axis] else { unreachable!("only directions that exist") };
             with_rows!(rows, rows => painted(rows, material, &format, lot))
         })
     }
@@ -239,7 +239,7 @@ fn combined(
         match (&a.rays[axis], &b.rays[axis]) {
             (Some(Rows::Fixed(a)), Some(Rows::Fixed(b))) => of_rows(op, a, b, &format, lot),
             (Some(Rows::Double(a)), Some(Rows::Double(b))) => of_rows(op, a, b, &format, lot),
-            _ => unreachable!("operands of one kind, and only directions that there are"),
+            _ => unreachable!("operands of one kind, and only directions that exist"),
         }
     })
 }

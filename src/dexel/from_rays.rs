@@ -122,7 +122,7 @@ impl Source<'_> {
         for dexel in list {
             let given = [self.given(&dexel.start), self.given(&dexel.end)];
             if !given[0].is_before(&given[1]) {
-                return refused("an interval must have an end that is behind its start");
+                return refused("the end of an interval must be greater than its start");
             }
             let mut ends = given.map(|end| end.place::<S::Place>());
             if let Some((reached, place)) = last {

@@ -77,7 +77,8 @@ impl VoxelRecordsRef<'_> {
             // The sum may have been rounded twice.
             let exact = |x: &f64| sign_of_sum(&[terms[0], terms[1], terms[2], -x]) == 0;
             let found = [near, near.next_down(), near.next_up()].into_iter().find(exact);
-            origin[axis] = found.ok_or(refused("moves the corner of the universe to what is no double"))?;
+            origin[axis] = found
+                .ok_or(refused("moves the corner of the universe to coordinates that are no doubles"))?;
         }
         let image = Frame::new(origin, scale * frame.edge(), frame.depth())?;
         self.turned_into(symmetry, image, control)
@@ -231,5 +232,8 @@ fn inverse(map: &Affine) -> Result<[[f64; 3]; 3], Error> {
     if rows.iter().flatten().all(|entry| entry.is_finite()) {
         return Ok(rows);
     }
-    Err(Error::Argument { name: "placement", problem: "too nearly singular for doubles to hold its inverse" })
+    Err(Error::Argument {
+        name: "placement",
+        problem: "so nearly singular that doubles cannot hold its inverse",
+    })
 }

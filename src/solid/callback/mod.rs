@@ -75,7 +75,7 @@ struct Functions<'a, F> {
 }
 
 /// The panic message for changes to a callback that is already shared.
-const SHARED: &str = "a callback is put on frames, and moved, only once it is complete";
+const SHARED: &str = "functions can be added to a callback only before it is put on a frame or moved";
 
 impl<'a, F: Fn([f64; 3], [f64; 3]) -> Result<Verdict<()>, Error> + Send + Sync> Callback<'a, F> {
     /// Makes a solid from a function that classifies the box `(min, max)` in model units. The box contains

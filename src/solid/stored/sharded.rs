@@ -68,7 +68,7 @@ impl ShardedOctree {
             }
             let is_there = cell.level <= top.frame().depth() && cell.at.iter().all(|&a| a >> cell.level == 0);
             if !is_there || *level.get_or_insert(cell.level) != cell.level {
-                return Err(wrong("must be of cells of one level of the frame"));
+                return Err(wrong("must belong to cells of one level of the frame"));
             }
             if exterior == Tag::Partial {
                 exterior = shard.view().exterior();
@@ -78,7 +78,7 @@ impl ShardedOctree {
         }
         list.sort_unstable_by_key(|(code, _)| *code);
         if list.windows(2).any(|pair| pair[0].0 == pair[1].0) {
-            return Err(wrong("must be of different cells"));
+            return Err(wrong("must belong to different cells"));
         }
         let level = level.unwrap_or(0);
         Ok(ShardedOctree(Arc::new(Pieces { top, level, shards: list, exterior, proof })))

@@ -221,7 +221,7 @@ impl<S: Solid> Transform<S> {
         let common = seen.and_then(|seen| seen.common(&bounds?)).or(seen).or(bounds);
         // (The intersection of both boxes may be flat.)
         let found = [common, seen].into_iter().flatten().find_map(|bounds| around(bounds).ok());
-        let problem = "takes the universe beyond what doubles can tell";
+        let problem = "moves the universe so far that doubles cannot resolve it";
         found.map(|(own, _)| own).ok_or(Error::Argument { name: "placement", problem })
     }
 }

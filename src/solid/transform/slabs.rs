@@ -74,7 +74,7 @@ pub(super) fn enclosure(
                     let known = known(direction);
                     (known.outer - known.inner, direction, known)
                 });
-                // (Of two equally good directions neither is used.)
+                // (If both directions are equally good, neither is used.)
                 let thinner = if plus.0 < minus.0 { plus } else { minus };
                 if plus.0 != minus.0 && thinner.0 < thinnest {
                     (best, thinnest) = (Some((thinner.1, thinner.2)), thinner.0);

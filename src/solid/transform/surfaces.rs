@@ -9,7 +9,7 @@
 //! does not suffice.
 //!
 //! Where there are layers, the intersections are convex bodies, and their values are distinguished state by
-//! state ([`regions`](super::regions)). Of the layers of one plane that contain each other, only the widest
+//! state ([`regions`](super::regions)). If layers of one plane contain each other, only the widest layer
 //! counts: its sides are known in fewer places. A surface that lies in a layer all over the target counts as
 //! that layer. That may not suffice if facets meet in a wall between two cells, each of which knows one
 //! facet. Then the wall itself becomes a surface, with one function on each side.
