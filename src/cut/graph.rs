@@ -58,7 +58,7 @@ impl Graph {
         let times = |p: [f64; 3]| {
             [0, 1, 2].map(|i| (q[PLACES[i][0]] * p[0] + q[PLACES[i][1]] * p[1]) + q[PLACES[i][2]] * p[2])
         };
-        // The tangent plane of the level set through a point, with f's value added to it.
+        // The plane where the linearisation of f at a point is 0, and the derivative along z.
         let tangent = |p: [f64; 3]| {
             let qp = times(p);
             let scale = g[2] + 2.0 * qp[2];

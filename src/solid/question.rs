@@ -68,7 +68,7 @@ pub enum Question<'q> {
 
 /// The greatest thickness of layers, with the places for the answer.
 pub struct LayersQuestion<'q> {
-    /// Half the greatest distance of a layer's points from the surface (model units).
+    /// Half the greatest distance that a layer's points may have from the surface (model units).
     pub tolerance: f64,
     /// Layers for this cell alone are appended here: a surface with the number [`OpenSurfaces::OWN`] + i is
     /// number i of this list.

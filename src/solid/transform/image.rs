@@ -411,8 +411,8 @@ pub(super) fn source_box(placement: &Affine, inverse: &[[f64; 3]; 3], bounds: &B
     [min, max]
 }
 
-/// The smallest factor by which the inverse map scales a length: approximately, the reciprocal of the longest
-/// column of the map.
+/// The length of the shortest column of the inverse: approximately, the smallest factor by which the inverse
+/// map scales a length.
 pub(super) fn shrinkage(inverse: &[[f64; 3]; 3]) -> f64 {
     let square = |j: usize| (0..3).map(|i| inverse[i][j] * inverse[i][j]).sum::<f64>();
     sqrt(square(0).min(square(1)).min(square(2)))
