@@ -1,4 +1,4 @@
-//! Channels of a solid that was made of others.
+//! Channels of a solid that was made of other solids.
 
 use super::fill::fill;
 use super::source::{Known, Source};
@@ -14,40 +14,42 @@ use crate::solid::stored::StoredPart;
 use alloc::string::String;
 use alloc::vec::Vec;
 
-/// Whose value a point has that lies in several operands.
+/// The rule for the value of a point that lies in several operands.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Default)]
 pub enum CarryRule {
-    /// The first operand's that has one.
+    /// The value of the first operand that has one.
     #[default]
     Left,
-    /// The last operand's that has one.
+    /// The value of the last operand that has one.
     Right,
-    /// The greatest of all, number by number.
+    /// The greatest of all values, component by component.
     Max,
-    /// The mean of all, number by number, rounded to the type.
+    /// The mean of all values, component by component, rounded to the type.
     Mean,
 }
 
 /// An operand of an operation on solids, with its channel.
 #[derive(Debug, Clone, Copy)]
 pub struct ChannelOperand<'a> {
-    /// The operand itself: its channel counts where it is not EMPTY.
+    /// The operand itself: its channel counts where the operand is not EMPTY.
     pub solid: &'a OctreeRef<'a>,
-    /// Its values.
+    /// The values of the operand.
     pub channel: &'a ChannelRef<'a>,
 }
 
-/// The channel of `result`, an octree that was made of operands in the same cube, whatever the operation: at
-/// each point the values of those operands count that are not EMPTY there, by `rule`. Where `result` is
-/// EMPTY, the channel says whatever takes the least memory.
+/// Computes the channel of `result`, an octree that was made of operands in the same cube by any operation.
+/// At each point the values of those operands count that are not EMPTY there, combined by `rule`. Where
+/// `result` is EMPTY, the channel has the values that take the least memory.
 ///
-/// It is as deep as the deepest of the operands' solids and channels, where solids that keep surfaces do not
-/// count: of these the cells to that depth are meant ([`plain`](crate::op::plain)). The same bits for any
-/// number of threads. Visits the cells at which solids or channels change.
+/// The channel is as deep as the deepest of the operands' solids and channels. The cuts of solids that keep
+/// surfaces do not count: such solids are used down to the depth of their cells
+/// ([`plain`](crate::op::plain)). The result has the same bits for any number of threads. The cost is
+/// proportional to the number of cells at which solids or channels change.
 ///
 /// # Errors
-/// [`Error::Argument`] if there is no operand, or values are not of one type; [`Error::FrameMismatch`] unless
-/// all lie in one cube; [`Error::Damaged`] for damaged links; what `control` asks for.
+/// [`Error::Argument`] if there is no operand, or if the values have different types;
+/// [`Error::FrameMismatch`] unless all lie in one cube; [`Error::Damaged`] for damaged links; and the errors
+/// that `control` causes.
 pub fn carry_channel(
     result: &OctreeRef<'_>,
     operands: &[ChannelOperand<'_>],
@@ -75,7 +77,7 @@ pub fn carry_channel(
         solid.check_links()?;
     }
     let frame = result.frame().with_depth(depth)?;
-    // Cells that keep surfaces are larger than what they describe.
+    // Cells that keep surfaces are larger than the details that they describe.
     let plain = |tree: &OctreeRef<'_>| match tree.cuts {
         Some(_) => build(tree, &frame, Rule::Certified, control).map(Some),
         None => Ok(None),
@@ -93,9 +95,9 @@ pub fn carry_channel(
     fill(&Carried { result, operands: &meant, rule, value_type }, &frame, value_type, control)
 }
 
-/// `result`, an octree that was made of `operands`, with their channels. Channels of one name become one, by
-/// the rule that `rule` says for that name; see [`carry_channel`]. A channel that only one operand has is
-/// shared as it is. Metadata are those of the first operand that has the channel.
+/// Attaches to `result`, an octree that was made of `operands`, their channels. Channels of one name become
+/// one channel, by the rule that `rule` returns for that name; see [`carry_channel`]. A channel of only one
+/// operand is shared unchanged. The metadata is that of the first operand that has the channel.
 ///
 /// # Errors
 /// As [`carry_channel`].
@@ -166,7 +168,7 @@ struct Carried<'a> {
     value_type: ValueType,
 }
 
-/// What is known of a cell of the result and of all operands.
+/// The state of a cell in the result and in all operands.
 #[derive(Clone)]
 struct Part {
     result: Verdict<StoredPart>,
@@ -184,7 +186,7 @@ impl Carried<'_> {
         }
     }
 
-    /// The value of all of a cell. A finest cell that an operand cuts lies in it.
+    /// The value of a whole cell. A finest cell that an operand cuts counts as inside the operand.
     fn value(&self, part: &Part, finest: bool) -> Result<Option<Bits>, Unsettled> {
         let mut bearing = part.operands.iter().filter(|(verdict, _)| !matches!(verdict, Verdict::Empty));
         let one = |(verdict, spot): &(Verdict<StoredPart>, Spot)| match (verdict, spot) {
@@ -216,14 +218,14 @@ impl Carried<'_> {
                     return Ok(None);
                 }
                 let mean = if self.rule == CarryRule::Mean { sum.map(|sum| sum / count) } else { sum };
-                // What lies between legal values is legal.
+                // A value between valid values is valid.
                 Ok(self.value_type.encode(mean).ok())
             }
         }
     }
 }
 
-/// Operands or channels change in the cell.
+/// The error for a cell in which operands or channels change.
 struct Unsettled;
 
 impl Source for Carried<'_> {

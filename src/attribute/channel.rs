@@ -6,7 +6,7 @@ use crate::lattice::{Affine, Bounds, Cell, Cube, Window};
 use crate::octree::channel::Spot;
 use crate::octree::{Channel, ChannelRef};
 
-/// Cells that are looked at before a range is given up.
+/// The greatest number of cells that are visited for a range.
 const MOST_CELLS: u32 = 512;
 
 impl Attribute for ChannelRef<'_> {
@@ -19,7 +19,7 @@ impl Attribute for ChannelRef<'_> {
         Ok(())
     }
 
-    /// Of the values of all cells that the box meets; unknown if they are very many.
+    /// The range of the values of all cells that the box meets; unknown if there are too many cells.
     fn range(&self, bounds: &Bounds) -> Result<ValueRange, Error> {
         let Some((window, outside)) = Window::new(self.frame(), bounds.min, bounds.max)? else {
             return Ok(ValueRange::Nowhere);
@@ -51,7 +51,7 @@ impl Attribute for Channel {
     }
 }
 
-/// What was met in a window so far.
+/// The values found in a window so far.
 struct Met<'a> {
     channel: &'a ChannelRef<'a>,
     window: Window,
@@ -96,10 +96,11 @@ impl Met<'_> {
     }
 }
 
-/// An attribute in another place: its value at a point is that of another attribute at the point's image
+/// An attribute in another place: its value at a point is that of another attribute at the image of the point
 /// under a map.
 ///
-/// To carry a channel along with a solid that was moved by a placement, `back` is the placement's inverse.
+/// To carry a channel along with a solid that was moved by a placement, `back` is the inverse of the
+/// placement.
 #[derive(Debug, Clone, Copy)]
 pub struct MovedAttribute<A> {
     attribute: A,
@@ -107,7 +108,7 @@ pub struct MovedAttribute<A> {
 }
 
 impl<A: Attribute> MovedAttribute<A> {
-    /// The attribute whose value at p is that of `attribute` at `back` applied to p.
+    /// Makes the attribute whose value at p is that of `attribute` at `back` applied to p.
     pub fn new(attribute: A, back: Affine) -> MovedAttribute<A> {
         MovedAttribute { attribute, back }
     }
@@ -137,7 +138,7 @@ impl<A: Attribute> Attribute for MovedAttribute<A> {
         // A point of the box may be rounded out of the exact image, so the image is a little larger.
         match bounds.placed(&self.back) {
             Some(image) => {
-                // Summands that cancel each other round by more than the image is large.
+                // Summands that cancel have rounding errors that may exceed the size of the image.
                 let reach = |axis: usize| bounds.min[axis].abs().max(bounds.max[axis].abs());
                 let summands = |row: &[f64; 4]| {
                     (0..3).fold(row[3].abs(), |sum, axis| sum + row[axis].abs() * reach(axis))

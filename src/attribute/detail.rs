@@ -1,24 +1,24 @@
-//! How finely an attribute is followed inside a solid.
+//! The resolution at which an attribute is followed inside a solid.
 
 use super::{Attribute, ValueRange};
 use crate::error::Error;
 use crate::lattice::Bounds;
 use crate::lattice::axes;
 
-/// What makes a cell fine enough, once it is no longer than the coarse limit.
+/// The criterion by which a cell no longer than the coarse limit is fine enough.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
 pub enum Criterion {
     /// The variance of the values at the eight corners is at most the square of the tolerance (Zhu, Tang and
-    /// Dong 2002). The variance of several numbers is the sum of their variances. A detail between the
-    /// corners is missed.
+    /// Dong 2002). The variance of several components is the sum of their variances. Details between the
+    /// corners are missed.
     Variance,
-    /// The attribute's range over the cell is proven to be no wider than the tolerance in any component.
-    /// Nothing is missed. A cell whose range is unknown is split, whatever the tolerance.
+    /// The attribute's range over the cell is proven to be no wider than the tolerance in any component. No
+    /// detail is missed. A cell whose range is unknown is split, whatever the tolerance is.
     Range,
 }
 
-/// How finely an attribute is followed inside a solid: a cell is split until its edge is at most `coarse`
-/// *and* the attribute hardly changes in it, or until its edge is at most `fine`.
+/// The resolution at which an attribute is followed inside a solid. A cell is split until its edge is at most
+/// `coarse` *and* the attribute hardly changes in it, or until its edge is at most `fine`.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Detail {
     coarse: f64,
@@ -28,7 +28,7 @@ pub struct Detail {
 }
 
 impl Detail {
-    /// The rule with edges `coarse` and `fine` in model units, and `tolerance` in the attribute's units.
+    /// Makes a rule with edges `coarse` and `fine` in model units, and `tolerance` in the attribute's units.
     ///
     /// # Errors
     /// [`Error::Argument`] unless 0 < fine ≤ coarse and 0 ≤ tolerance; `coarse` and `tolerance` may be
@@ -45,7 +45,7 @@ impl Detail {
         Ok(Detail { coarse, fine, tolerance, criterion })
     }
 
-    /// Uniform cells: those of which the edge is at most `edge`, whatever the attribute.
+    /// Makes the rule for uniform cells: the edge is at most `edge`, whatever the attribute is.
     ///
     /// # Errors
     /// [`Error::Argument`] unless `edge` is positive.
@@ -53,7 +53,7 @@ impl Detail {
         Detail::new(edge, edge, f64::INFINITY, Criterion::Variance)
     }
 
-    /// The fine limit in model units: no cell whose edge is at most this is split.
+    /// The fine limit in model units: no cell with this edge or a shorter one is split.
     pub fn fine(&self) -> f64 {
         self.fine
     }
@@ -63,10 +63,10 @@ impl Detail {
         self.coarse
     }
 
-    /// Whether a cell of this edge, with these bounds, need not be split.
+    /// Returns whether a cell of this edge, with these bounds, need not be split.
     ///
     /// # Errors
-    /// What the attribute reports.
+    /// Those of the attribute.
     pub fn is_fine(&self, attribute: &dyn Attribute, bounds: &Bounds, edge: f64) -> Result<bool, Error> {
         if edge <= self.fine {
             return Ok(true);
@@ -94,7 +94,7 @@ impl Detail {
         attribute.values(&points, &mut values)?;
         let known = values.iter().flatten().count();
         if known < values.len() {
-            // A cell that has a value at some of its corners changes.
+            // A cell with values at some of its corners only is not even.
             return Ok(known == 0);
         }
         let mut variance = 0.0;

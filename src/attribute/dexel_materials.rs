@@ -8,16 +8,16 @@ use crate::error::Error;
 use crate::lattice::{Bounds, axes};
 use crate::octree::{Channel, OctreeRef, ScalarType, ValueType};
 
-/// The channel `material` of an octree of a tri-dexel model: in each cell the number of the material at its
-/// centre, by the rays that decide about centres ([`TriDexelRef::contains_cell`]); 0 where nothing was said.
-/// Cells whose centre lies outside have no value, and where the octree is EMPTY the channel says whatever
-/// takes the least memory. `None` if the model stores no materials.
+/// Computes the channel `material` of an octree of a tri-dexel model. In each cell it is the number of the
+/// material at the cell's centre, by the rays that decide about centres ([`TriDexelRef::contains_cell`]); 0
+/// where the material is unknown. Cells whose centre lies outside have no value. Where the octree is EMPTY,
+/// the channel has the values that take the least memory. `None` if the model stores no materials.
 ///
 /// Cells are as large as rays of one material allow.
 ///
 /// # Errors
 /// [`Error::FrameMismatch`] if the octree lies in another cube than the model; [`Error::Damaged`] for damaged
-/// arrays or links; and what `control` asks for.
+/// arrays or links; and the errors that `control` causes.
 ///
 /// ```
 /// use leafless::attribute::dexel_materials;
@@ -78,7 +78,7 @@ impl Attribute for Materials<'_> {
             return Ok(ValueRange::Unknown);
         };
         let cells = [x, y, z];
-        // What sticks out of the universe is not known.
+        // The materials beyond the universe are unknown.
         if cells.iter().any(|&(.., sticks_out)| sticks_out) {
             return Ok(ValueRange::Unknown);
         }

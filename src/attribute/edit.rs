@@ -1,4 +1,4 @@
-//! Setting the values in a region.
+//! Sets the values in a region.
 
 use super::fill::fill;
 use super::source::{Known, Source};
@@ -11,13 +11,13 @@ use crate::solid::Verdict;
 use crate::solid::stored::StoredPart;
 
 impl ChannelRef<'_> {
-    /// The channel with `value` wherever `region` is not EMPTY, and as it is elsewhere; `None` takes values
-    /// away. It is as deep as the deeper of the two. (For a box, build the region from
-    /// [`Csg::cuboid`](crate::Csg::cuboid).) The result has no metadata.
+    /// The channel with `value` wherever `region` is not EMPTY, and unchanged elsewhere. `None` removes
+    /// values. The result is as deep as the deeper of the two, and has no metadata. (For a box, build the
+    /// region from [`Csg::cuboid`](crate::Csg::cuboid).)
     ///
     /// # Errors
     /// [`Error::Argument`] if the value is beyond the type's range; [`Error::FrameMismatch`] unless both lie
-    /// in one cube; [`Error::Damaged`] for damaged links; what `control` asks for.
+    /// in one cube; [`Error::Damaged`] for damaged links; and the errors that `control` causes.
     pub fn with_value_in(
         &self,
         region: &OctreeRef<'_>,
@@ -66,7 +66,7 @@ impl Source for Edited<'_> {
         Ok(verdicts.map(|verdict| self.known((verdict, spots.next().unwrap_or(Spot::Settled(None))))))
     }
 
-    /// At the finest level, neither is cut: of links that are sound nothing is left.
+    /// If the links are sound, neither of the two is cut at the finest level, and no cell is left open.
     fn settle(&self, cells: &[(Cell, Part)], values: &mut [Option<Bits>]) -> Result<(), Error> {
         for (value, (_, (verdict, spot))) in values.iter_mut().zip(cells) {
             *value = match (verdict, spot) {

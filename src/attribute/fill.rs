@@ -1,4 +1,4 @@
-//! From any source of values to a channel.
+//! Fills a channel from any source of values.
 
 use super::source::{Known, Source};
 use crate::control::{Control, Job, WHOLE};
@@ -12,8 +12,8 @@ use crate::parallel::each;
 use alloc::vec::Vec;
 use core::sync::atomic::{AtomicUsize, Ordering::Relaxed};
 
-/// The channel of all values that `source` has on the lattice of `frame`. The same bits for any number of
-/// threads.
+/// Fills a channel with all values of `source` on the lattice of `frame`. The result has the same bits for
+/// any number of threads.
 pub(super) fn fill<S: Source>(
     source: &S,
     frame: &Frame,
@@ -45,18 +45,18 @@ struct Filler<'s, S> {
     levels: usize,
     #[cfg_attr(not(feature = "parallel"), allow(dead_code))]
     parallel: bool,
-    /// Parts of the whole that were reported as done.
+    /// The parts of the whole that were reported as done.
     advanced: &'s AtomicUsize,
 }
 
-/// What a cell of the root element counts for in the progress.
+/// The share of a cell of the root element in the progress.
 const PART: usize = WHOLE / 64;
 
-/// Open cells of an element, each with its place in it.
+/// The open cells of an element, each with its place in the element.
 type Open<P> = Vec<(usize, Cell, P)>;
 
 impl<S: Source> Filler<'_, S> {
-    /// Writes what is below an open cell, which element level `e` describes.
+    /// Writes everything below an open cell, which element level `e` describes.
     fn cell(
         &self,
         e: usize,

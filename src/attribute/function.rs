@@ -4,7 +4,7 @@ use super::{Attribute, ValueRange};
 use crate::error::Error;
 use crate::lattice::{Bounds, Interval};
 
-/// One value everywhere.
+/// An attribute with one value everywhere.
 #[derive(Debug, Clone, Copy)]
 pub struct ConstantAttribute {
     components: usize,
@@ -12,7 +12,7 @@ pub struct ConstantAttribute {
 }
 
 impl ConstantAttribute {
-    /// The attribute that is `value` everywhere.
+    /// Makes the attribute that is `value` everywhere.
     ///
     /// # Errors
     /// [`Error::Argument`] unless there are 1 to 4 numbers.
@@ -39,7 +39,7 @@ impl Attribute for ConstantAttribute {
     }
 }
 
-/// A function of position, and what is known of its range.
+/// A function of position, with bounds of its range, if they are known.
 ///
 /// ```
 /// use leafless::{Interval, attribute::{Attribute, FunctionAttribute, ValueRange}};
@@ -55,9 +55,9 @@ pub struct FunctionAttribute<F, R = fn(&Bounds) -> ValueRange> {
 }
 
 impl<F: Fn([f64; 3]) -> Option<[f64; 4]> + Sync> FunctionAttribute<F> {
-    /// The attribute whose value at a point is what `function` says: numbers beyond the first `components`
-    /// do not count, `None` is no value. Nothing is known of its range, so whoever looks for details must
-    /// look everywhere.
+    /// Makes the attribute whose value at a point is the result of `function`. Numbers beyond the first
+    /// `components` do not count, and `None` means no value. The range is unknown, so that an algorithm that
+    /// searches for details must search everywhere.
     ///
     /// # Errors
     /// [`Error::Argument`] unless `components` is 1 to 4.
@@ -65,8 +65,7 @@ impl<F: Fn([f64; 3]) -> Option<[f64; 4]> + Sync> FunctionAttribute<F> {
         Ok(FunctionAttribute { components: checked(components)?, function, range: |_| ValueRange::Unknown })
     }
 
-    /// The same with a function that bounds the values in a box; it must be
-    /// [true](Attribute::range).
+    /// Adds a function that bounds the values in a box. The bounds must be [true](Attribute::range).
     pub fn with_range<R: Fn(&Bounds) -> ValueRange + Sync>(self, range: R) -> FunctionAttribute<F, R> {
         FunctionAttribute { components: self.components, function: self.function, range }
     }

@@ -11,7 +11,7 @@ use crate::query::{MassProperties, Tolerance, measure};
 use crate::solid::Solid;
 use alloc::vec::Vec;
 
-/// Most different values of a channel whose regions are measured.
+/// The greatest number of different values of a channel whose regions are measured.
 const MOST_MATERIALS: usize = 4096;
 
 /// Volume, centroid and inertia of the part of a solid that has one value.
@@ -19,17 +19,17 @@ const MOST_MATERIALS: usize = 4096;
 pub struct MaterialProperties {
     /// The value.
     pub value: [f64; 4],
-    /// Measures of the points of the solid that have the value, of density 1.
+    /// The measures of the points of the solid that have the value, for density 1.
     pub properties: MassProperties,
 }
 
 /// Measures the parts of `solid` in which `channel` has one value, each as by [`measure`], with its
-/// tolerance: one for each value of the channel that the solid may have somewhere, in ascending order of the
-/// values. The channel is taken as it is; its cells decide what is which material.
+/// tolerance. There is one result for each value of the channel that may occur in the solid, in ascending
+/// order of the values. The cells of the channel decide the material; the channel is not resampled.
 ///
 /// # Errors
 /// [`Error::Limit`] if the channel has more than 4096 different values; [`Error::FrameMismatch`] unless
-/// `frame` is of the channel's cube; as [`measure`] and [`ValueRegion::new`].
+/// `frame` lies in the channel's cube; and the errors of [`measure`] and [`ValueRegion::new`].
 ///
 /// ```
 /// use leafless::{

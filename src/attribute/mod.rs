@@ -1,8 +1,9 @@
-//! Attributes: what has a value at every point, or at some.
+//! Attributes: values at every point of space, or at some points.
 //!
 //! A colour, a temperature, the material of the nearest body, the samples of a volume, a channel of a stored
-//! octree: all of them are an [`Attribute`]. Whoever wants values (a channel that is filled, the records of
-//! voxels) asks it for the values at points, and for the range of the values in a box.
+//! octree: all of them are an [`Attribute`]. An algorithm that needs values (to fill a channel, or to make
+//! the records of voxels) queries the attribute for the values at points, and for the range of the values in
+//! a box.
 
 mod carry;
 mod channel;
@@ -37,32 +38,32 @@ pub use volume::{Interpolation, VolumeAttribute};
 use crate::error::Error;
 use crate::lattice::{Bounds, Interval};
 
-/// What is known of the values of an attribute in the interior of a box.
+/// The range of an attribute's values in the interior of a box.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum ValueRange {
-    /// Nothing.
+    /// Nothing is known.
     Unknown,
     /// No point has a value.
     Nowhere,
-    /// Every point has a value, and component k of it lies in interval k. Intervals beyond the components do
-    /// not count.
+    /// Every point has a value, whose component k lies in interval k. Intervals beyond the components do not
+    /// count.
     Within([Interval; 4]),
 }
 
 impl ValueRange {
-    /// The range of a value that is the same everywhere in the box.
+    /// Makes the range of a value that is the same everywhere in the box.
     pub fn exactly(value: Option<[f64; 4]>) -> ValueRange {
         value.map_or(ValueRange::Nowhere, |value| ValueRange::Within(value.map(Interval::exactly)))
     }
 
-    /// The width of the widest of the first `components` intervals; 0 if nothing has a value, ∞ if nothing
+    /// The width of the widest of the first `components` intervals; 0 if no point has a value, ∞ if nothing
     /// is known.
     pub fn width(&self, components: usize) -> f64 {
         match self {
             ValueRange::Unknown => f64::INFINITY,
             ValueRange::Nowhere => 0.0,
             ValueRange::Within(ranges) => {
-                // A width that is not a number is that of an unbounded interval.
+                // A NaN width belongs to an unbounded interval.
                 let widths = ranges.iter().take(components).map(Interval::width);
                 widths.fold(0.0, |most, width| if width <= most { most } else { width.max(most) })
             }
@@ -70,37 +71,38 @@ impl ValueRange {
     }
 }
 
-/// Something that has a value of one to four numbers at points of model space.
+/// A function that has values of one to four numbers at points of model space.
 ///
-/// A value has four places; those beyond the attribute's components are 0. Threads may ask at once. The same
-/// question must always get the same answer.
+/// A value has four places; those beyond the attribute's components are 0. Several threads may query the
+/// attribute at once. The same query must always give the same answer.
 pub trait Attribute: Sync {
-    /// How many numbers a value has: 1 to 4.
+    /// The number of components of a value: 1 to 4.
     fn components(&self) -> usize;
 
-    /// Writes the values at `points` to `values`, which is as long; `None` where there is no value.
+    /// Writes the values at `points` to `values`, which has the same length; `None` where there is no value.
     ///
     /// # Errors
-    /// What the source of the values reports.
+    /// Those of the source of the values.
     fn values(&self, points: &[[f64; 3]], values: &mut [Option<[f64; 4]>]) -> Result<(), Error>;
 
-    /// What is known of the values in the interior of a box. The answer must be proven: a wrong range hides
-    /// details that nobody looks for any more. By default nothing is known.
+    /// Returns the range of the values in the interior of a box. The answer must be proven: a wrong range
+    /// hides details from every later search. By default nothing is known.
     ///
     /// # Errors
-    /// What the source of the values reports.
+    /// Those of the source of the values.
     fn range(&self, bounds: &Bounds) -> Result<ValueRange, Error> {
         let _ = bounds;
         Ok(ValueRange::Unknown)
     }
 
-    /// About how many bytes of memory (or of mapped files) the attribute keeps alive: its own, and those of
-    /// the meshes, channels and samples that it shares with others. 0, the default, if nobody knows.
+    /// The approximate number of bytes of memory (or of mapped files) that the attribute keeps alive: its
+    /// own, and those of the meshes, channels and samples that it shares with others. 0, the default, means
+    /// unknown.
     fn kept_bytes(&self) -> u64 {
         0
     }
 
-    /// The value at one point.
+    /// Returns the value at one point.
     ///
     /// # Errors
     /// As [`values`](Self::values).

@@ -1,4 +1,4 @@
-//! Channels of any attribute, by its values at the centres of cells.
+//! Fills a channel with the values of any attribute at the centres of cells.
 
 use super::fill::fill;
 use super::source::{Known, Source};
@@ -12,35 +12,35 @@ use crate::octree::{Channel, OctreeRef, ValueType};
 use crate::solid::Verdict;
 use crate::solid::stored::StoredPart;
 
-/// How a channel is filled.
+/// The options for filling a channel.
 #[derive(Debug, Clone, Copy)]
 pub struct FillOptions<'a> {
-    /// What a value is; it has as many numbers as the attribute.
+    /// The type of a value; it has as many components as the attribute.
     pub value_type: ValueType,
-    /// Where the channel lies: the cube of the solid that it is for, and a depth of its own.
+    /// The frame of the channel: the cube of the solid that it is for, and a depth of its own.
     pub frame: Frame,
-    /// The solid inside which values matter: where it is EMPTY, the channel says whatever takes the least
-    /// memory. `None`: values matter everywhere.
+    /// The solid inside which values matter. Where it is EMPTY, the channel has the values that take the
+    /// least memory. `None` means that values matter everywhere.
     pub solid: Option<&'a OctreeRef<'a>>,
-    /// How finely the attribute is followed. `None`: to the finest cells, wherever it is not proven that all
-    /// of a cell has one value.
+    /// The resolution at which the attribute is followed. `None` means down to the finest cells, except where
+    /// a whole cell is proven to have one value.
     pub detail: Option<Detail>,
 }
 
-/// The channel of `attribute`: each cell has the attribute's value at its centre, rounded to the type of the
-/// values; a cell whose centre has no value has none. Cells are as large as proven ranges and the options'
-/// detail allow. Nameless; see [`Channel::with_name`].
+/// Fills a channel with the values of `attribute`. Each cell has the attribute's value at its centre, rounded
+/// to the type of the values, or no value if the centre has none. Cells are as large as proven ranges and the
+/// options' detail allow. The channel has no name; see [`Channel::with_name`].
 ///
-/// Without a detail the result is that of asking for every finest cell. A cell of which all values round to
-/// one is known by the attribute's [range](Attribute::range); an attribute without ranges is asked at every
-/// finest centre, 8^depth times, or as often as the solid has cells there.
+/// Without a detail the result is the same as that of sampling every finest cell. The attribute's
+/// [range](Attribute::range) shows whether all values in a cell round to one. An attribute without ranges is
+/// evaluated at every finest centre: 8^depth times, or as often as the solid has cells there.
 ///
 /// The result is the same bit for bit for any number of threads.
 ///
 /// # Errors
 /// [`Error::Argument`] if the attribute has another number of components than the type, or a value is beyond
 /// the type's range; [`Error::FrameMismatch`] if the solid lies in another cube; [`Error::Damaged`] for a
-/// solid with damaged links; what the attribute reports, and what `control` asks for.
+/// solid with damaged links; the errors of the attribute; and the errors that `control` causes.
 ///
 /// ```
 /// use leafless::{
@@ -84,7 +84,7 @@ struct Sampled<'a> {
     detail: Option<Detail>,
 }
 
-/// Where the solid describes the cell; `None` if it is not EMPTY anywhere in it.
+/// The solid's description of the cell; `None` if the solid is EMPTY nowhere in the cell.
 type Part = Option<StoredPart>;
 
 impl Sampled<'_> {

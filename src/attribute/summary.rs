@@ -1,4 +1,4 @@
-//! What the values of a channel amount to in a box and a solid.
+//! Statistics of the values of a channel in a box and a solid.
 
 use crate::control::{Control, Job};
 use crate::error::Error;
@@ -8,9 +8,9 @@ use crate::octree::{ChannelRef, OctreeRef};
 use crate::solid::Verdict;
 use crate::solid::stored::StoredPart;
 
-/// What the values of a channel amount to in a region, component by component; places beyond the components
-/// are 0. All intervals contain the truth, as far as the cells of the solid and of the channel tell it, and
-/// no rounding is left out.
+/// Statistics of the values of a channel in a region, component by component. Places beyond the components
+/// are 0. All intervals contain the true values, as far as the cells of the solid and of the channel
+/// determine them. Rounding errors are included.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct ChannelSummary {
     /// The least value of any cell that may belong to the region.
@@ -19,7 +19,7 @@ pub struct ChannelSummary {
     pub greatest: [f64; 4],
     /// The volume of the region that has values, in cubic model units.
     pub volume: Interval,
-    /// The integral of the value over that volume: of a density, the mass.
+    /// The integral of the value over that volume; for a density, the mass.
     pub integral: [Interval; 4],
     /// The mean value.
     pub mean: [Interval; 4],
@@ -28,16 +28,16 @@ pub struct ChannelSummary {
 }
 
 impl ChannelRef<'_> {
-    /// Least, greatest, mean and integral of the values in the part of `solid` that lies in the box `bounds`
-    /// (model units). Without a solid it is all of the box, without a box all of the cube. `None` if nothing
-    /// of that may have a value.
+    /// Computes least and greatest value, mean and integral of the values in the part of `solid` that lies in
+    /// the box `bounds` (model units). Without a solid the region is the whole box, without a box the whole
+    /// cube. `None` if no point of the region may have a value.
     ///
     /// FULL cells of the solid bound volume and integral on one side, FULL and PARTIAL cells on the other.
     /// The faces of the box may lie anywhere. O(cells that the box meets), no allocation.
     ///
     /// # Errors
-    /// [`Error::Argument`] if a coordinate of the box is not a number, or min > max; [`Error::FrameMismatch`]
-    /// if the solid lies in another cube; [`Error::Damaged`] for damaged links; [`Error::Cancelled`].
+    /// [`Error::Argument`] if a coordinate of the box is NaN, or min > max; [`Error::FrameMismatch`] if the
+    /// solid lies in another cube; [`Error::Damaged`] for damaged links; [`Error::Cancelled`].
     pub fn summary(
         &self,
         solid: Option<&OctreeRef<'_>>,
@@ -56,7 +56,7 @@ impl ChannelRef<'_> {
         if let Some(bounds) = bounds {
             valid::ordered("bounds", bounds.min, bounds.max)?;
         }
-        // Faces that lie outside say nothing, and infinite ones least.
+        // Faces outside the cube do not matter, infinite ones least of all.
         let bounds = match bounds.map(|bounds| bounds.common(&Bounds::of(self.frame()))) {
             None => None,
             Some(Some(common)) if (0..3).all(|axis| common.min[axis] < common.max[axis]) => Some(common),
@@ -70,9 +70,9 @@ impl ChannelRef<'_> {
         Ok(sums.found.map(|mut found| {
             found.volume_without = without;
             found.mean = core::array::from_fn(|k| {
-                // Values may be no numbers.
+                // Values may be NaN.
                 let known = Interval::new(found.least[k], found.greatest[k]).unwrap_or(Interval::ALL);
-                // Where the volume may be 0 the quotient tells nothing.
+                // If the volume may be 0, the quotient is unbounded.
                 found.integral[k].over(found.volume).common(known).unwrap_or(known)
             });
             found
@@ -133,7 +133,7 @@ impl Sums<'_> {
                     return None;
                 }
                 let distance = |x: f64, plane: i64| self.frame.rounded_offset(axis, x, plane);
-                // From the lower plane to the end, and to the beginning.
+                // The distances from the lower plane to the end, and to the beginning.
                 let end = if side(max, last) < 0 { distance(max, first) } else { edge };
                 let start = if side(min, first) > 0 { distance(min, first) } else { ZERO };
                 length = end.minus(start);

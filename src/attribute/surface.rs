@@ -1,4 +1,4 @@
-//! Data on a mesh as an attribute of space: what the nearest point of the surface bears.
+//! Data on a mesh as an attribute of space: the value at the nearest point of the surface.
 
 use alloc::sync::Arc;
 use alloc::vec::Vec;
@@ -10,18 +10,18 @@ use crate::lattice::{Bounds, Interval};
 use crate::memory;
 use crate::mesh::{MeshAttribute, NearVisitor, NearestPoint, TriangleMesh};
 
-/// The attribute whose value at a point is that of a mesh at the point of its surface that is nearest.
+/// The attribute whose value at a point is the value of a mesh at the nearest point of its surface.
 ///
 /// * With a value for each triangle, it is the value of the nearest triangle. If the triangles of a body
 ///   share a value, that is the value of the nearest body.
 /// * With a value for each corner, it is interpolated linearly between the corners of the nearest triangle,
 ///   at the nearest point.
 ///
-/// Of triangles that are equally near the first one counts; distances are computed in doubles, and for
-/// vertices and edges that triangles share they are equal. A point whose nearest triangle has no value has
-/// none, and neither has a point that is not finite. The mesh need not be closed.
+/// If several triangles are equally near, the first one counts. Distances are computed in doubles; for shared
+/// vertices and edges they are equal. A point has no value if its nearest triangle has none, or if the point
+/// is not finite. The mesh need not be closed.
 ///
-/// [`range`](Attribute::range) is proven: it looks at every triangle that can be nearest to a point of the
+/// [`range`](Attribute::range) is proven: it includes every triangle that can be nearest to a point of the
 /// box.
 ///
 /// ```
@@ -39,23 +39,24 @@ use crate::mesh::{MeshAttribute, NearVisitor, NearestPoint, TriangleMesh};
 pub struct SurfaceAttribute {
     mesh: Arc<TriangleMesh>,
     source: Source,
-    /// What is known of the values in each node of the tree.
+    /// The ranges of the values in each node of the tree.
     summaries: Arc<Vec<Summary>>,
 }
 
-/// Where the values are.
+/// The place of the values.
 #[derive(Clone)]
 enum Source {
-    /// The attribute of the mesh with this place.
+    /// The attribute of the mesh with this index.
     OfMesh(usize),
     Given(Arc<MeshAttribute>),
 }
 
 impl SurfaceAttribute {
-    /// What `attribute` says of the triangles of a mesh, which is shared (an `Arc`) or taken over.
+    /// Makes the attribute of the values of `attribute` on the triangles of a mesh, which is shared (an
+    /// `Arc`) or moved.
     ///
-    /// O(t log t) unless the mesh has a tree of its triangles already; 36 bytes a triangle for that and up to
-    /// 24 for ranges.
+    /// O(t log t), unless the mesh has a tree of its triangles already. The tree takes 36 bytes a triangle,
+    /// and the ranges take up to 24.
     ///
     /// # Errors
     /// [`Error::Argument`] unless the attribute has as many triangles as the mesh; [`Error::OutOfMemory`].
@@ -66,9 +67,9 @@ impl SurfaceAttribute {
         Self::on(mesh.into(), Source::Given(Arc::new(attribute)))
     }
 
-    /// What the attribute of this name says, which [belongs to the mesh](TriangleMesh::attributes).
+    /// Makes the attribute of the values that [belong to the mesh](TriangleMesh::attributes) under this name.
     ///
-    /// Costs as [`new`](Self::new).
+    /// The cost is that of [`new`](Self::new).
     ///
     /// # Errors
     /// [`Error::Argument`] unless the mesh has an attribute of this name; [`Error::OutOfMemory`].
@@ -78,7 +79,7 @@ impl SurfaceAttribute {
         Self::on(mesh, Source::OfMesh(place))
     }
 
-    /// Another attribute of the same mesh, which shares the tree of its triangles. O(t).
+    /// Makes another attribute of the same mesh, which shares the tree of its triangles. O(t).
     ///
     /// # Errors
     /// As [`new`](Self::new).
@@ -86,7 +87,8 @@ impl SurfaceAttribute {
         Self::on(self.mesh.clone(), Source::Given(Arc::new(attribute)))
     }
 
-    /// Another attribute that belongs to the same mesh, which shares the tree of its triangles. O(t).
+    /// Makes another attribute of the values that belong to the same mesh, which shares the tree of its
+    /// triangles. O(t).
     ///
     /// # Errors
     /// As [`of_mesh`](Self::of_mesh).
@@ -127,13 +129,13 @@ impl Source {
     }
 }
 
-/// The place of an attribute among those of a mesh.
+/// The index of an attribute among those of a mesh.
 fn place(mesh: &TriangleMesh, name: &str) -> Result<usize, Error> {
     let place = mesh.attributes().iter().position(|attribute| attribute.name() == name);
-    place.ok_or(Error::Argument { name: "name", problem: "must be that of an attribute of the mesh" })
+    place.ok_or(Error::Argument { name: "name", problem: "must be the name of an attribute of the mesh" })
 }
 
-/// What is known of the values of some triangles.
+/// The range of the values of some triangles.
 #[derive(Debug, Clone, Copy, PartialEq)]
 struct Summary {
     low: [f64; 4],
@@ -143,7 +145,7 @@ struct Summary {
 }
 
 impl Summary {
-    /// Of no triangle.
+    /// The summary of no triangles.
     const NOTHING: Summary = Summary { low: [f64::INFINITY; 4], high: [f64::NEG_INFINITY; 4], lacks: false };
 
     fn of(attribute: &MeshAttribute, triangle: u32) -> Summary {
@@ -163,12 +165,12 @@ impl Summary {
         }
     }
 
-    /// Whether a triangle has a value.
+    /// Returns whether some triangle has a value.
     fn has(&self) -> bool {
         self.low[0] <= self.high[0]
     }
 
-    /// Whether nothing more can be learnt: some have values, some have none.
+    /// Returns whether some triangles have values and some have none; then further triangles change nothing.
     fn is_mixed(&self) -> bool {
         self.lacks && self.has()
     }
@@ -176,7 +178,7 @@ impl Summary {
     fn range(&self) -> ValueRange {
         match (self.has(), self.lacks) {
             (true, false) => {
-                // Numbers that are none have no range.
+                // NaN values have no range.
                 let ranges = [0, 1, 2, 3].map(|k| Interval::new(self.low[k], self.high[k]));
                 match ranges {
                     [Some(a), Some(b), Some(c), Some(d)] => ValueRange::Within([a, b, c, d]),
@@ -189,7 +191,7 @@ impl Summary {
     }
 }
 
-/// Joins what is known of triangles that may be nearest.
+/// Joins the summaries of triangles that may be nearest.
 struct Joined<'a> {
     attribute: &'a MeshAttribute,
     summaries: &'a [Summary],
@@ -215,7 +217,7 @@ impl NearVisitor for Joined<'_> {
 }
 
 impl Attribute for SurfaceAttribute {
-    /// The mesh, the tree over its triangles, and the values.
+    /// Counts the mesh, the tree over its triangles, and the values.
     fn kept_bytes(&self) -> u64 {
         let given = match &self.source {
             Source::OfMesh(_) => 0,
@@ -230,7 +232,7 @@ impl Attribute for SurfaceAttribute {
 
     fn values(&self, points: &[[f64; 3]], values: &mut [Option<[f64; 4]>]) -> Result<(), Error> {
         let (attribute, tree) = (self.attribute(), self.mesh.triangle_tree(&Control::threads(1))?);
-        // The triangle of one point is often that of the next.
+        // Consecutive points often have the same nearest triangle.
         let mut last = None;
         for (value, point) in values.iter_mut().zip(points) {
             let nearest = tree.nearest(point, last);
@@ -248,7 +250,7 @@ impl Attribute for SurfaceAttribute {
     }
 }
 
-/// The value at a point of a triangle, which lies between those of the corners.
+/// The value at a point of a triangle, between the values at the corners.
 fn interpolated(attribute: &MeshAttribute, at: &NearestPoint) -> Option<[f64; 4]> {
     let [a, b, c] = attribute.corners(at.triangle as usize)?;
     let [u, v, w] = at.weights;

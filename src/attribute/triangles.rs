@@ -1,4 +1,4 @@
-//! Any attribute on the triangles of a surface.
+//! Samples any attribute on the triangles of a surface.
 
 use super::Attribute;
 use crate::control::{Control, Job};
@@ -10,27 +10,27 @@ use crate::mesh::{MeshAttribute, TriangleMesh};
 use alloc::vec::Vec;
 use hashbrown::HashMap;
 
-/// Triangles that are asked for together.
+/// The number of triangles that are sampled together.
 const CHUNK: usize = 1024;
 
-/// Points of a triangle at which a value is looked for, in the order in which they count: that many depths
-/// behind its centroid.
+/// The points at which a triangle's value is searched, in order of preference: their distances behind the
+/// centroid, as multiples of the depth.
 const DEPTHS: [f64; 4] = [1.0, 0.25, 2.0, 0.0];
 
-/// The values of `attribute` on the triangles of a surface, under a name: that of a triangle is the value
-/// just inside of it, `depth` (model units) behind its centroid. If there is none, it is that at a quarter of
-/// the depth, at twice the depth, or at the centroid itself, and otherwise the triangle has no value. A
-/// triangle without area is asked at its centroid.
+/// Samples `attribute` on the triangles of a surface, and stores the values under a name. The value of a
+/// triangle is the value just inside it, `depth` (model units) behind its centroid. If there is none, it is
+/// the value at a quarter of the depth, at twice the depth, or at the centroid itself. Otherwise the triangle
+/// has no value. A triangle without area is sampled at its centroid.
 ///
-/// So a surface that was made of a solid bears what the solid's channels say, such as its colours and
-/// materials: half the edge of the channel's cells is a good depth, for it leads from a vertex that lies
-/// somewhere in a cell to the solid behind it. Triangles with one value share a row of the table.
+/// So a surface that was made of a solid receives the values of the solid's channels, such as colours and
+/// materials. Half the edge of the channel's cells is a good depth: a vertex lies anywhere in a cell, and
+/// that depth leads to the solid behind it. Triangles with the same value share a row of the table.
 ///
-/// O(t) questions. The result is the same for any number of threads.
+/// O(t) queries. The result is the same for any number of threads.
 ///
 /// # Errors
 /// [`Error::Argument`] unless the depth is finite and not negative, and the attribute has 1 to 4 components;
-/// what the attribute reports; [`Error::Cancelled`] or [`Error::OutOfMemory`].
+/// the errors of the attribute; [`Error::Cancelled`] or [`Error::OutOfMemory`].
 ///
 /// ```
 /// use leafless::attribute::{ConstantAttribute, sample_triangles};
@@ -107,11 +107,11 @@ fn values_of(
     Ok(values)
 }
 
-/// The point so far behind a triangle's centroid.
+/// The point `depth` behind a triangle's centroid.
 fn point_of(mesh: &TriangleMesh, triangle: &[u32; 3], depth: f64) -> [f64; 3] {
     let [a, b, c] = triangle.map(|vertex| mesh.vertices()[vertex as usize]);
     let third = |k: usize| a[k] / 3.0 + b[k] / 3.0 + c[k] / 3.0;
-    // (Scaled, lest squares overflow or vanish.)
+    // (Scaled, so that squares neither overflow nor underflow.)
     let unit = |v: [f64; 3]| {
         let most = v.iter().fold(0.0, |most: f64, c| most.max(c.abs()));
         let v = v.map(|c| c / most);
@@ -123,6 +123,6 @@ fn point_of(mesh: &TriangleMesh, triangle: &[u32; 3], depth: f64) -> [f64; 3] {
         let (i, j) = ((k + 1) % 3, (k + 2) % 3);
         u[i] * v[j] - u[j] * v[i]
     }));
-    // Of what has no area the normal is no number.
+    // A triangle without area has a NaN normal.
     if normal.iter().all(|c| c.is_finite()) { axes(|k| third(k) - depth * normal[k]) } else { axes(third) }
 }

@@ -10,11 +10,11 @@ use crate::op::{Rule, build};
 use crate::solid::{Batch, Classifier, Direct, Parts, Question, Solid, Verdict, WholeQuestion, Worker};
 use alloc::vec::Vec;
 
-/// The part of a solid in which the values of a channel lie in a band: a material of a part, all that is
-/// hotter than a limit. It is a solid itself, and lies in the channel's cube.
+/// The part of a solid in which the values of a channel lie in a band: one material of a part, or everything
+/// hotter than a limit. The region is a solid itself, and lies in the channel's cube.
 ///
-/// Where the channel has one value, the region knows of the solid what the solid itself knows: a region of a
-/// solid with [enclosures](crate::solid::Enclosure) is measured as fast as that.
+/// Where the channel has one value, the region gives the solid's own answers. So a region of a solid with
+/// [enclosures](crate::solid::Enclosure) is measured as fast as the solid.
 #[derive(Debug, Clone, Copy)]
 pub struct ValueRegion<'a, S> {
     solid: S,
@@ -39,11 +39,12 @@ impl Band {
 }
 
 impl<'a, S: Solid> ValueRegion<'a, S> {
-    /// The points of `solid` at which every number of the value lies between those of `low` and `high`, both
-    /// included. Numbers beyond the components do not count. Where there is no value, there is no region.
+    /// Makes the region of the points of `solid` at which every component of the value lies between those of
+    /// `low` and `high`, both included. Numbers beyond the components do not count. Points without a value do
+    /// not belong to the region.
     ///
     /// # Errors
-    /// [`Error::Argument`] if a bound is not a number; [`Error::Damaged`] for a channel with damaged links.
+    /// [`Error::Argument`] if a bound is NaN; [`Error::Damaged`] for a channel with damaged links.
     pub fn new(
         solid: S,
         channel: &'a ChannelRef<'a>,
@@ -60,12 +61,12 @@ impl<'a, S: Solid> ValueRegion<'a, S> {
 }
 
 impl ChannelRef<'_> {
-    /// The cells whose values lie between `low` and `high`, number by number, both included, as a binary
-    /// octree of the channel's own frame. See [`ValueRegion`]. What the cells prove concerns the values in
-    /// the channel, and not what the channel was filled from.
+    /// Builds the region of the cells whose values lie between `low` and `high`, component by component, both
+    /// included, as a binary octree of the channel's own frame. See [`ValueRegion`]. The cells' proofs
+    /// concern the values in the channel, not the source from which the channel was filled.
     ///
     /// # Errors
-    /// As [`ValueRegion::new`], and what `control` asks for.
+    /// Those of [`ValueRegion::new`], and the errors that `control` causes.
     pub fn region(&self, low: [f64; 4], high: [f64; 4], control: &Control<'_>) -> Result<Octree, Error> {
         let all = Octree::uniform(*self.frame(), Tag::Full, Tag::Empty)?;
         build(&ValueRegion::new(all.view(), self, low, high)?, self.frame(), Rule::Certified, control)
@@ -91,13 +92,13 @@ impl<'a, S: Solid> Solid for ValueRegion<'a, S> {
         Some(*self.channel.frame())
     }
 
-    /// The solid's: the channel is borrowed.
+    /// Counts the solid only: the channel is borrowed.
     fn kept_bytes(&self) -> u64 {
         self.solid.kept_bytes()
     }
 }
 
-/// A region on a frame: handle and worker.
+/// A region on a frame: both handle and worker.
 #[derive(Debug, Clone)]
 pub struct RegionOnFrame<'a, C> {
     solid: C,
@@ -116,7 +117,7 @@ impl<'a, C: Classifier> Classifier for RegionOnFrame<'a, C> {
         Ok(RegionOnFrame { solid: self.solid.worker()?, channel: self.channel, band: self.band })
     }
 
-    /// A channel has no values outside of its cube.
+    /// A channel has no values outside its cube.
     fn exterior(&self) -> Tag {
         Tag::Empty
     }
@@ -125,7 +126,8 @@ impl<'a, C: Classifier> Classifier for RegionOnFrame<'a, C> {
         self.solid.proof()
     }
 
-    /// What is known of the solid says nothing of its values, but that points lie outside.
+    /// The solid's answers do not take values into account. Only its answer that a point lies outside holds
+    /// for the region.
     fn answer_whole(&self, question: WholeQuestion<'_>, control: &Control<'_>) -> Result<(), Error> {
         match question {
             WholeQuestion::Direct(Direct::Points, _) => self.solid.answer_whole(question, control),
@@ -138,18 +140,18 @@ impl<'a, C: Classifier> Classifier for RegionOnFrame<'a, C> {
     }
 }
 
-/// What is remembered about a cell of a region.
+/// The data about a cell of a region.
 #[derive(Clone)]
 pub enum RegionPart<P> {
     /// All values lie in the band, and the solid is open.
     Solid(P),
-    /// The solid is FULL, or (`true`) not decided and not to be split, and the values change.
+    /// The solid is FULL, or (`true`) undecided and not to be split, and the values change.
     Values(ChannelSpot, bool),
-    /// Both.
+    /// Both are open.
     Both(P, ChannelSpot),
 }
 
-/// Where a channel describes a cell.
+/// The place of a cell's description in a channel.
 #[derive(Clone, Copy)]
 pub struct ChannelSpot(Spot);
 
@@ -213,7 +215,7 @@ impl<W: Worker> Batch for RegionOnFrame<'_, W> {
         let mut found = found.into_iter();
         for (_, part) in cells {
             let solids = match part.of_solid().map(|_| found.next()) {
-                // The solid ended early.
+                // The solid's answers ended early.
                 Some(None) => break,
                 Some(Some(verdicts)) => Some(verdicts),
                 None => None,
@@ -250,21 +252,21 @@ impl<W: Worker> Batch for RegionOnFrame<'_, W> {
         done
     }
 
-    /// A point of the solid may have any value.
+    /// A point of the solid may have any value, so that only the answer "outside" is kept.
     fn inside(&mut self, points: &[[f64; 3]], answers: &mut [Option<bool>]) -> Result<(), Error> {
         self.solid.inside(points, answers)?;
         answers.iter_mut().for_each(|answer| *answer = answer.filter(|&inside| !inside));
         Ok(())
     }
 
-    /// Where a channel describes a cell is known on the way to it.
+    /// The channel's description of a cell needs the path to it.
     fn recall(&mut self, _: Cell) -> Option<Self::Part> {
         None
     }
 }
 
 impl<P> RegionPart<P> {
-    /// The solid's part.
+    /// The part of the solid.
     fn of_solid(&self) -> Option<&P> {
         match self {
             RegionPart::Solid(part) | RegionPart::Both(part, _) => Some(part),
@@ -274,7 +276,7 @@ impl<P> RegionPart<P> {
 }
 
 impl<W: Worker> RegionOnFrame<'_, W> {
-    /// The children of a cell, given those of the solid if it is open there.
+    /// The children of a cell; `solid` holds those of the solid if it is open there.
     fn children(
         &self,
         part: &RegionPart<W::Part>,

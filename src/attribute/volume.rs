@@ -6,21 +6,22 @@ use crate::lattice::axes;
 use crate::lattice::{Bounds, Interval};
 use crate::solid::{Solid, Volume};
 
-/// Samples that are looked at before a range is given up.
+/// The greatest number of samples that are visited for a range.
 const MOST_SAMPLES: u64 = 4096;
 
-/// What lies between the samples of a volume.
+/// The value between the samples of a volume.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Default)]
 pub enum Interpolation {
-    /// The sample of the voxel that contains the point; on a face between voxels, that of the upper one.
+    /// The sample of the voxel that contains the point. A point on a face between voxels belongs to the upper
+    /// one.
     Nearest,
     /// The trilinear interpolation of the eight samples around the point; see [`Volume::value_at`].
     #[default]
     Trilinear,
 }
 
-/// The samples of a [`Volume`] as an attribute of one number. There is no value outside of the grid, nor
-/// where a sample that counts is not a number. The volume's band does not matter.
+/// The samples of a [`Volume`] as an attribute of one number. There is no value outside the grid, or where a
+/// sample that counts is NaN. The volume's band does not matter.
 #[derive(Debug, Clone)]
 pub struct VolumeAttribute<'a> {
     volume: Volume<'a>,
@@ -28,7 +29,7 @@ pub struct VolumeAttribute<'a> {
 }
 
 impl<'a> VolumeAttribute<'a> {
-    /// The attribute of a volume's samples.
+    /// Makes the attribute of a volume's samples.
     pub fn new(volume: Volume<'a>, interpolation: Interpolation) -> VolumeAttribute<'a> {
         VolumeAttribute { volume, interpolation }
     }
@@ -56,14 +57,14 @@ impl Attribute for VolumeAttribute<'_> {
         Ok(())
     }
 
-    /// Of all samples that count in the box; unknown if they are very many, or one is not a number.
+    /// The range of all samples that count in the box; unknown if there are too many, or if one is NaN.
     fn range(&self, bounds: &Bounds) -> Result<ValueRange, Error> {
         let grid = self.volume.grid();
         let Some(common) = bounds.common(&grid.bounds()) else { return Ok(ValueRange::Nowhere) };
         if common != *bounds {
             return Ok(ValueRange::Unknown);
         }
-        // The points lie before the upper faces of the box.
+        // The points lie strictly below the upper faces of the box.
         let last = axes(|axis| bounds.max[axis].next_down().max(bounds.min[axis]));
         let (Some(mut first), Some(mut last)) = (grid.voxel_of(bounds.min), grid.voxel_of(last)) else {
             return Ok(ValueRange::Unknown);
@@ -92,11 +93,11 @@ impl Attribute for VolumeAttribute<'_> {
             }
         }
         if self.interpolation == Interpolation::Trilinear {
-            // Seven means, each of two products and a sum that are rounded.
+            // Seven interpolations, each of two products and a sum that are rounded.
             let rounding = 32.0 * f64::EPSILON * lower.abs().max(upper.abs());
             (lower, upper) = (lower - rounding, upper + rounding);
         }
-        // Infinite samples have no means.
+        // Infinite samples have no mean.
         let Some(range) = Interval::new(lower, upper) else { return Ok(ValueRange::Unknown) };
         let zero = Interval::exactly(0.0);
         Ok(ValueRange::Within([range, zero, zero, zero]))

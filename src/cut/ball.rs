@@ -1,11 +1,11 @@
-//! A ball that lies in a solid, in a cell of which the enclosure is known.
+//! Finds a ball that lies in a solid, in a cell whose enclosure is known.
 
 use super::{Enclosure, Slab, SlabJoin, middle};
 use crate::lattice::Interval;
 use crate::lattice::axes;
 
-/// A point of the cube and a radius: all of the ball around it lies in the cube and, that is proven, in the
-/// solid. `None` if none is found. It is not the largest one.
+/// Returns a point of the cube and a radius. The ball around the point lies in the cube and, provably, in the
+/// solid. `None` if none is found. It need not be the largest such ball.
 pub(crate) fn ball(enclosure: &Enclosure) -> Option<([f64; 3], f64)> {
     let known = enclosure.slabs.iter().filter(|slab| slab.normal != [0.0; 3]);
     match enclosure.join {
@@ -16,7 +16,7 @@ pub(crate) fn ball(enclosure: &Enclosure) -> Option<([f64; 3], f64)> {
     }
 }
 
-/// A ball on the inner sides of all slabs.
+/// Finds a ball on the inner sides of all slabs.
 fn within(slabs: impl Iterator<Item = Slab> + Clone) -> Option<([f64; 3], f64)> {
     let mut halves = [([0.0; 3], 0.0); 3];
     let mut count = 0;
@@ -27,14 +27,14 @@ fn within(slabs: impl Iterator<Item = Slab> + Clone) -> Option<([f64; 3], f64)> 
     let at = middle(&halves[..count])??;
     let room = halves[..count].iter().map(|&(normal, end)| room(normal, end, at));
     let radius = at.iter().map(|c| (1.0 - c.abs()).next_down()).chain(room).fold(1.0, f64::min);
-    // (What is no number is not greater.)
+    // (A comparison with NaN is false.)
     (radius > 0.0).then_some((at, radius))
 }
 
-/// No more than the distance from a point to the plane n · x = end, before which the point lies; less than 0
-/// if that is not sure.
+/// A lower bound of the distance from a point to the plane n · x = end, where the point lies before the
+/// plane. Negative if the position of the point is uncertain.
 fn room(normal: [f64; 3], end: f64, at: [f64; 3]) -> f64 {
-    // Lengths are of a normal that is neither huge nor tiny.
+    // Lengths are computed only for a normal that is neither huge nor tiny.
     let size = normal.iter().fold(0.0, |most: f64, c| most.max(c.abs()));
     if !(1e-100..1e100).contains(&size) {
         return -1.0;
@@ -63,12 +63,12 @@ mod tests {
         );
         let none = all([slab([1.0, 0.0, 0.0], -0.5), slab([-1.0, 0.0, 0.0], 0.5 - 1e-12), Slab::NONE]);
         assert_eq!(ball(&none), None);
-        // All of the cube.
+        // The whole cube.
         let (at, radius) = ball(&all([slab([0.0, 2.0, 0.0], 3.0), Slab::NONE, Slab::NONE])).unwrap();
         assert!(at.iter().all(|c| c.abs() < 1e-12) && radius > 0.99);
         let nothing = all([slab([0.0, 2.0, 0.0], f64::NEG_INFINITY), Slab::NONE, Slab::NONE]);
         assert_eq!(ball(&nothing), None);
-        // Of a union the best.
+        // The best ball of a union.
         let any = Enclosure {
             slabs: [slab([1.0, 0.0, 0.0], -0.9), slab([0.0, -3.0, 0.0], 0.0), Slab::NONE],
             join: SlabJoin::Any,

@@ -1,20 +1,21 @@
 //! A cube clipped by up to three planes.
 //!
-//! Faces are closed polygons, and each edge of theirs belongs to another face the other way round. That is so
-//! however corners are rounded: both faces of an edge find the same point on it, and the edges that a plane
-//! leaves without a second face make up loops, which become faces. So the surface stays closed, its corners
-//! are off by roundings, and its moments too, even where planes are nearly parallel and rounding bends a face
-//! so that a line crosses its outline four times.
+//! Faces are closed polygons, and each edge of a face belongs to another face in the opposite direction. That
+//! holds however corners are rounded: both faces of an edge find the same point on it. The edges that a plane
+//! leaves without a second face make loops, which become faces. So the surface stays closed. Its corners have
+//! rounding errors only, and so have its moments, even where planes are nearly parallel and rounding bends a
+//! face so that a line crosses its outline four times.
 
 use super::Half;
 use crate::lattice::axes;
 use crate::lattice::{CubeMoments, PAIRS};
 
-/// A face of the cube has four corners, a section six; each further plane adds one. Bent faces may have more.
+/// The greatest number of corners of a face. A face of the cube has four, a section six, and each further
+/// plane adds one. Bent faces may have more.
 const CORNERS: usize = 10;
-/// Six faces, and one for each plane; more of bent ones.
+/// The greatest number of faces: six, and one for each plane. Bent faces need more.
 const FACES: usize = 12;
-/// Each face leaves a piece of the section's boundary, bent ones two.
+/// The greatest number of pieces of a section's boundary: one for each face, two for a bent face.
 const PIECES: usize = 16;
 
 /// A polygon, counter-clockwise as seen from outside.
@@ -27,7 +28,7 @@ struct Polygon {
 impl Polygon {
     const EMPTY: Polygon = Polygon { corners: [[0.0; 3]; CORNERS], count: 0 };
 
-    /// Adds a corner that is not the one before; `None` if there is no place.
+    /// Appends a corner unless it equals the last one; `None` if there is no space.
     fn push(&mut self, corner: [f64; 3]) -> Option<()> {
         if self.count > 0 && self.corners[self.count - 1] == corner {
             return Some(());
@@ -53,7 +54,7 @@ impl Pieces {
         Some(())
     }
 
-    /// Takes a loop of edges out.
+    /// Removes a loop of edges and returns it.
     fn take_loop(&mut self) -> Option<Polygon> {
         let mut polygon = Polygon::EMPTY;
         self.count = self.count.checked_sub(1)?;
@@ -70,8 +71,8 @@ impl Pieces {
     }
 }
 
-/// Moments of the points of [-1, 1]³ with n · x ≤ offset for all `halves`; `None` if rounding makes more
-/// faces than there is place for.
+/// Returns the moments of the points of [-1, 1]³ with n · x ≤ offset for all `halves`; `None` if rounding
+/// makes more faces than there is space for.
 pub(super) fn moments(halves: &[Half]) -> Option<CubeMoments> {
     let Clipped { faces, count } = clipped(halves)?;
     let mut sum = CubeMoments::EMPTY;
@@ -83,7 +84,8 @@ pub(super) fn moments(halves: &[Half]) -> Option<CubeMoments> {
     Some(sum)
 }
 
-/// The mean of the corners of the same points; nothing if there are none. `None` as above.
+/// Returns the mean of the corners of the same set; `Some(None)` if the set is empty. `None` as for
+/// `moments`.
 pub(super) fn middle(halves: &[Half]) -> Option<Option<[f64; 3]>> {
     let Clipped { faces, count } = clipped(halves)?;
     let (mut sum, mut corners) = ([0.0; 3], 0);
@@ -128,15 +130,15 @@ fn clipped(halves: &[Half]) -> Option<Clipped> {
     Some(Clipped { faces, count })
 }
 
-/// The part of a polygon on the inner side of a plane. Where its outline goes along the plane, the same way
-/// back lacks a face.
+/// Returns the part of a polygon on the inner side of a plane. Where the outline runs along the plane, the
+/// reverse edge lacks a face and goes to `pieces`.
 fn clip(face: &Polygon, half: &Half, pieces: &mut Pieces) -> Option<Polygon> {
     let value = |p: [f64; 3]| {
         let [a, b, c] = half.normal;
         ((a * p[0] + b * p[1]) + c * p[2]) - half.offset
     };
     let mut clipped = Polygon::EMPTY;
-    // Where the outline left last, and where it first came in without having left.
+    // The point where the outline left last, and the point where it entered first without having left.
     let (mut left, mut entered) = (None, None);
     for k in 0..face.count {
         let (p, q) = (face.corners[k], face.corners[(k + 1) % face.count]);

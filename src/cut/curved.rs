@@ -1,10 +1,10 @@
 //! A cube that one curved surface and up to two planes cut: moments to third order.
 //!
-//! In the cell the function is f = c + g · x + xᵀ Q x, and Q is small beside g. The surface then is a graph
-//! z*(x, y) along the axis z of the greatest slope. A plane z₀(x, y) near it cuts off a polyhedron, whose
-//! moments are known. The rest is what lies between plane and surface: the integral over the plane's section
-//! of what there is in a column, and wedges along the section's outline, where columns end at other faces.
-//! Both are had to second order in z* − z₀, and what is left is bounded.
+//! In the cell the function is f = c + g · x + xᵀ Q x, and Q is small compared with g. So the surface is a
+//! graph z*(x, y) along the axis z with the greatest component of g. A plane z₀(x, y) near the surface cuts
+//! off a polyhedron with known moments. The rest lies between plane and surface. It consists of the integral
+//! over the plane's section of each column between them, and of wedges along the section's outline, where
+//! columns end at other faces. Both are computed to second order in z* − z₀, and the remainder is bounded.
 
 use super::graph::Graph;
 use super::polygon::{Line, Polygon};
@@ -13,8 +13,8 @@ use super::surplus::Surplus;
 use super::{ERROR, Half};
 use crate::lattice::{CellMoments, CubeMoments, PAIRS, PLACES};
 
-/// Moments of { x in [-1, 1]³ : f(x) ≥ 0 } on the inner sides of up to two planes, of which `flat` gives
-/// those where another plane takes the place of f; `None` if they are not known to third order.
+/// Returns the moments of { x in [-1, 1]³ : f(x) ≥ 0 } on the inner sides of up to two planes; `None` if they
+/// are not known to third order. `flat` returns the moments with a further plane in place of f.
 #[inline(always)]
 pub(super) fn moments(
     f: &Quadratic,
@@ -61,13 +61,13 @@ pub(super) fn moments(
     for ((i, j), more) in PAIRS.into_iter().zip([xx, yy, zz, xy, xz, yz]) {
         moments.second[PLACES[axes[i]][axes[j]]] += sign * more;
     }
-    // The error of the function moves the surface by this much along z. Where that is little, a weight has
-    // one sign in the part of a column that is concerned, or is small.
+    // The error of the function moves the surface by this much along z. If that is little, a weight has one
+    // sign in the affected part of a column, or is small.
     let moved = f.error / (graph.scale.abs() * (1.0 - graph.steepest));
     if moved.is_nan() || moved > 0.125 {
         return None;
     }
-    // (Sums were rounded, too.)
+    // (The sums were rounded, too.)
     let error = (surplus.error + 4.0 * moved) * (1.0 + 1e-9) + 16.0 * graph.rounding + ERROR;
     Some(CellMoments { moments, error })
 }

@@ -1,8 +1,9 @@
-//! Cubes that a curved surface cuts against integration along columns.
+//! Compares cubes that a curved surface cuts with integration along columns.
 //!
-//! The oracle goes along the axis of the greatest slope, where the surface is met once: a column's share is a
-//! difference of powers. Along the second axis the columns' ends are analytic between places that are roots
-//! of polynomials of degree two, and along the third halving finds what is not smooth.
+//! The oracle integrates along the axis with the greatest component of the gradient, where a line meets the
+//! surface once: a column's share is a difference of powers. Along the second axis the ends of columns are
+//! analytic between break points, which are roots of quadratic polynomials. Along the third axis bisection
+//! finds the break points.
 
 extern crate std;
 
@@ -13,12 +14,12 @@ use crate::lattice::axes;
 use alloc::vec::Vec;
 use std::println;
 
-/// What the oracle may be off by.
+/// The greatest error of the oracle.
 const ORACLE: f64 = 2e-9;
 
 type Ten = [f64; 10];
 
-/// x, y, z, xx, yy, zz, xy, xz, yz after the volume.
+/// The volume, then x, y, z, xx, yy, zz, xy, xz, yz.
 fn ten(moments: &CubeMoments) -> Ten {
     let [x, y, z] = moments.first;
     let [xx, yy, zz, xy, xz, yz] = moments.second;
@@ -61,12 +62,12 @@ fn roots(a: f64, b: f64, c: f64) -> Vec<f64> {
     if q == 0.0 { std::vec![0.0] } else { std::vec![q / a, c / q] }
 }
 
-/// The points of a cube where f ≥ 0 and within planes; f's slope along the last axis has one sign.
+/// The points of a cube where f ≥ 0 and within planes. The derivative of f along the last axis has one sign.
 struct Columns {
     value: f64,
     gradient: [f64; 3],
     squares: [[f64; 3]; 3],
-    /// n · x ≤ offset.
+    /// The half-spaces n · x ≤ offset.
     planes: Vec<([f64; 3], f64)>,
     order: [usize; 3],
     nodes: Vec<(f64, f64)>,
@@ -137,7 +138,7 @@ impl Columns {
 
     /// The moments per length along the first axis.
     fn slice(&self, x: f64) -> Ten {
-        // Where a column's end comes to another face: of two of them, or of one and the surface.
+        // The places where a column's end changes between two faces, or between a face and the surface.
         let mut faces: Vec<([f64; 3], f64)> = std::vec![([0.0, 0.0, 1.0], 1.0), ([0.0, 0.0, -1.0], 1.0)];
         faces.extend(self.planes.iter().copied());
         let mut breaks: Vec<f64> = Vec::new();
@@ -173,7 +174,7 @@ impl Columns {
         sum
     }
 
-    /// The integral of slices over an interval, of which `known` is the same with the plain rule.
+    /// The integral of slices over an interval; `known` is the result of the plain rule on the same interval.
     fn halved(&self, low: f64, high: f64, known: Ten, depth: u32) -> Ten {
         let middle = 0.5 * (low + high);
         let halves = [(low, middle), (middle, high)].map(|(a, b)| (a, b, self.plain(a, b)));
@@ -193,8 +194,8 @@ impl Columns {
         self.nodes[..].iter().fold([0.0; 10], step)
     }
 
-    /// Where along the first axis the slices may change: where three faces meet, or two and the surface, or
-    /// where the surface touches a face along the second axis.
+    /// The places along the first axis where the slices may change: where three faces meet, or two faces and
+    /// the surface, or where the surface touches a face along the second axis.
     fn breaks(&self) -> Vec<f64> {
         let mut faces: Vec<([f64; 3], f64)> = self.planes.clone();
         for sign in [-1.0, 1.0] {
@@ -203,7 +204,7 @@ impl Columns {
         let mut breaks = std::vec![-1.0, 1.0];
         for (i, (n, o)) in faces.iter().enumerate() {
             for (j, (m, p)) in faces[..i].iter().enumerate() {
-                // The line in which both meet, as (x, y, z) = from + x d.
+                // The line of intersection, as (x, y, z) = from + x d.
                 let det = n[1] * m[2] - n[2] * m[1];
                 let solve = |a: f64, b: f64| [(a * m[2] - b * n[2]) / det, (n[1] * b - m[1] * a) / det];
                 let ([y, z], [dy, dz]) = (solve(*o, *p), solve(-n[0], -m[0]));
@@ -246,7 +247,8 @@ impl Columns {
 
 #[test]
 fn the_oracle_knows_simple_solids() {
-    // A paraboloid z ≥ x² + y² − 1 over the square has the volume ∫ (2 − x² − y²) less what is below 0: none.
+    // The volume of a paraboloid z ≥ x² + y² − 1 over the square is ∫ (2 − x² − y²) minus the part below 0,
+    // which is empty.
     let f = Quadratic {
         value: 0.25,
         gradient: [0.0, 0.0, 1.0],
@@ -256,13 +258,13 @@ fn the_oracle_knows_simple_solids() {
     // z from (x² + y² − 1)/4 to 1.
     let found = Columns::new(&f, &[]).moments();
     assert!((found[0] - (5.0 - 2.0 / 3.0)).abs() < ORACLE, "{found:?}");
-    // A plane alone, with a plane: an eighth.
+    // A plane alone, then with two further planes: an eighth.
     let plane = Quadratic { value: 0.0, gradient: [1.0, 0.0, 0.0], squares: [0.0; 6], error: 0.0 };
     let eighth = [([0.0, 1.0, 0.0], 0.0), ([0.0, 0.0, -3.0], 0.0)];
     let found = Columns::new(&plane, &eighth).moments();
     let known = [1.0, 0.5, -0.5, 0.5, 1.0 / 3.0, 1.0 / 3.0, 1.0 / 3.0, -0.25, 0.25, -0.25];
     assert!((0..10).all(|i| (found[i] - known[i]).abs() < ORACLE), "{found:?}");
-    // A quarter of a cylinder of radius 1 about an edge, less the part that slopes the other way.
+    // A quarter of a cylinder of radius 1 about an edge, without the part that slopes the other way.
     let cylinder = Quadratic {
         value: 3.0,
         gradient: [2.0, 2.5, 0.0],
@@ -282,7 +284,7 @@ impl Random {
         let mut gradient = self.normal(&[]);
         let range: f64 = gradient.iter().map(|c| c.abs()).sum();
         let mut value = -self.offset(gradient, range);
-        // The curvature: from nothing to what fits the cube.
+        // The curvature: from zero to the greatest that fits the cube.
         let much = 10f64.powf(-6.0 * self.unit().abs().powi(2))
             * gradient.iter().fold(0.0f64, |m, c| m.max(c.abs()));
         let mut squares = [0.0; 6];
@@ -322,8 +324,8 @@ impl Random {
     }
 }
 
-/// The volume in doubt is less than that of the slab, and holds what the oracle finds; how often it is known,
-/// and the greatest difference as a share of the error.
+/// Checks that the volume in doubt is less than that of the slab, and contains the oracle's result. Prints
+/// how often the moments are known, and the greatest difference as a share of the error.
 fn moments_hold(seed: u64, count: u64) {
     let mut random = Random(seed);
     let (mut known, mut good, mut most, mut sum) = ([0u32; 3], 0, 0.0f64, 0.0);
@@ -343,7 +345,7 @@ fn moments_hold(seed: u64, count: u64) {
         }
         let Some(found) = curved(&f, &slabs) else { continue };
         assert!(found.error >= ERROR);
-        // The true function and the true planes are anywhere within their bounds.
+        // The true function and the true planes lie anywhere within their bounds.
         let mut truth = f;
         let of = random.below(4);
         let off = f.error * random.unit();

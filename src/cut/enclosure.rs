@@ -1,24 +1,24 @@
-//! What may be known of a PARTIAL cell beyond its verdict: where the boundary lies in it, to second order.
+//! Enclosures of the boundary in a PARTIAL cell, to second order.
 
-/// What lies on one side of a plane belongs to the solid, and what lies on the other side of a parallel one
-/// does not.
+/// A region between two parallel planes that contains the boundary. All points of the cell on one side belong
+/// to the solid, and no point on the other side does.
 ///
 /// x is measured from the cell's centre, in half edges of the cell, so that the cell is [-1, 1]³.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Slab {
-    /// The direction n that leads out of the solid, of any length. Zero: there is no slab.
+    /// The direction n out of the solid, of any length. Zero means that there is no slab.
     pub normal: [f64; 3],
-    /// Where n · x is less, x lies in the solid. It may be −∞, and is at most `outer`.
+    /// The inner bound: a point x with n · x < inner lies in the solid. It may be −∞, and is at most `outer`.
     pub inner: f64,
-    /// Where n · x is greater, x lies outside. It may be ∞.
+    /// The outer bound: a point x with n · x > outer lies outside the solid. It may be ∞.
     pub outer: f64,
 }
 
 impl Slab {
-    /// No slab.
+    /// The absent slab.
     pub(crate) const NONE: Slab = Slab { normal: [0.0; 3], inner: f64::NEG_INFINITY, outer: f64::INFINITY };
 
-    /// An offset in units of the greatest one that a point of the cell has.
+    /// The offset as a share of the greatest offset of a point of the cell.
     fn share(&self, offset: f64) -> f64 {
         offset / self.normal.iter().map(|c| c.abs()).sum::<f64>()
     }
@@ -30,12 +30,12 @@ impl Slab {
     }
 }
 
-/// How slabs are joined.
+/// The way in which slabs are joined.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum SlabJoin {
-    /// A point is inside if all slabs say so, and outside if one does.
+    /// A point is inside if it is inside all slabs, and outside if it is outside one slab.
     All,
-    /// A point is inside if one slab says so, and outside if all do.
+    /// A point is inside if it is inside one slab, and outside if it is outside all slabs.
     Any,
 }
 
@@ -47,17 +47,17 @@ pub enum SlabJoin {
 /// change places.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Enclosure {
-    /// The slabs; those of normal zero do not count.
+    /// The slabs. A slab with normal zero does not count.
     pub slabs: [Slab; 3],
-    /// How they are joined.
+    /// The way in which the slabs are joined.
     pub join: SlabJoin,
-    /// Every normal of the boundary in the cell lies within this angle (radians) of that of the first slab; ∞
-    /// if nothing is known.
+    /// The greatest angle (radians) between a normal of the boundary in the cell and the normal of the first
+    /// slab; ∞ if it is unknown.
     pub cone: f64,
 }
 
 impl Enclosure {
-    /// One slab with its cone; `None` if it says nothing, or is none.
+    /// The enclosure by one slab with its cone; `None` if the slab is invalid or encloses nothing.
     pub(crate) fn of_one(slab: Slab, cone: f64) -> Option<Enclosure> {
         let Slab { normal, inner, outer } = slab;
         let is_slab = normal.iter().all(|c| c.is_finite()) && normal != [0.0; 3] && inner <= outer;
@@ -66,9 +66,8 @@ impl Enclosure {
         (is_slab && is_known).then_some(Enclosure { slabs, join: SlabJoin::All, cone })
     }
 
-    /// What is known of an intersection by what is known of its operands. An operand of which nothing is
-    /// known leaves the inner side open; so do more slabs than three, of which those are kept that cut off
-    /// most.
+    /// The enclosure of an intersection, from the enclosures of its operands. An operand without an enclosure
+    /// leaves the inner side open. So do more than three slabs: then the slabs that cut off most are kept.
     pub(crate) fn of_intersection(operands: impl Iterator<Item = Option<Enclosure>>) -> Option<Enclosure> {
         let mut slabs = [Slab::NONE; 3];
         let (mut count, mut is_whole) = (0, true);
@@ -81,8 +80,8 @@ impl Enclosure {
             let mut own = known.slabs;
             is_whole &= own.iter().any(is_slab);
             if known.join == SlabJoin::Any && own.iter().filter(|slab| is_slab(slab)).count() > 1 {
-                // Each slab of a union tells of points that lie inside. That one counts which holds most of
-                // them.
+                // Each slab of a union proves that some points lie inside. The slab with most of these points
+                // is kept.
                 let best = own
                     .into_iter()
                     .filter(is_slab)
@@ -123,29 +122,29 @@ impl Enclosure {
     }
 }
 
-/// A straight way between two points, in model units.
+/// A segment between two points, in model units.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Segment {
-    /// Where it begins.
+    /// The first end point.
     pub from: [f64; 3],
-    /// Where it ends.
+    /// The second end point.
     pub to: [f64; 3],
 }
 
-/// Where a segment crosses the boundary of a solid.
+/// A crossing of a segment with the boundary of a solid.
 ///
 /// # Law
-/// The bits are the same from whichever cell the crossing is asked.
+/// The bits of the crossing are the same whichever cell is queried for it.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Crossing {
-    /// The point from + t (to − from), 0 ≤ t ≤ 1.
+    /// The parameter of the point from + t (to − from), 0 ≤ t ≤ 1.
     pub t: f64,
-    /// A direction that leads out of the solid there, of any length.
+    /// A direction out of the solid at that point, of any length.
     pub normal: [f64; 3],
 }
 
 impl Crossing {
-    /// The crossing as the complement has it.
+    /// The crossing with the complement.
     #[must_use]
     pub fn complement(&self) -> Crossing {
         Crossing { t: self.t, normal: self.normal.map(|c| -c) }

@@ -1,7 +1,7 @@
-//! The area that surfaces have in a cube where several of them meet.
+//! The area of surfaces in a cube where several of them meet.
 //!
-//! A face is the part of a surface that lies within the half-spaces of the others. Seen along an axis it is a
-//! convex figure in the plane, of which the sides are known as slabs are.
+//! A face is the part of a surface that lies within the half-spaces of the other surfaces. Its projection
+//! along an axis is a convex figure in the plane, whose sides are known as slabs are.
 
 use super::flux::{ROUNDING, area_of_surface};
 use super::polygon::{Line, Polygon};
@@ -23,8 +23,8 @@ pub(crate) fn area_of_faces(surfaces: &[Option<Taylor>; 3]) -> Interval {
     sum
 }
 
-/// Bounds of the area that a surface has in regions that do not overlap. Each region is where the functions
-/// of some others are ≥ 0.
+/// Bounds of the area of a surface in regions that do not overlap. Each region is the set where the functions
+/// of some other surfaces are ≥ 0.
 pub(crate) fn area_within(surface: &Taylor, regions: impl Iterator<Item = [Option<Taylor>; 3]>) -> Interval {
     let own = area_of_surface(surface);
     let whole = Interval::between(0.0, own.upper);
@@ -44,8 +44,7 @@ pub(crate) fn area_within(surface: &Taylor, regions: impl Iterator<Item = [Optio
     Interval::between(lower.clamp(0.0, upper), upper)
 }
 
-/// Bounds of the area that a surface has within the half-spaces of others; `None` if it is no graph over a
-/// wall.
+/// Bounds of the area of a surface within the half-spaces of others; `None` if it is no graph over a wall.
 fn area_of_face<'a>(surface: &Taylor, others: impl Iterator<Item = &'a Taylor>) -> Option<Interval> {
     let f = &surface.f;
     let size = f.gradient.map(f64::abs);
@@ -56,8 +55,8 @@ fn area_of_face<'a>(surface: &Taylor, others: impl Iterator<Item = &'a Taylor>) 
     if !is_graph {
         return None;
     }
-    // Each point of the wall sees at most one of the surface, about where the linear function is 0. By how
-    // much f may differ from that:
+    // Above each point of the wall lies at most one point of the surface, near the zero of the linear
+    // function. The greatest difference of f from that function is:
     let off = |f: &Quadratic| f.curvature() + f.error + 16.0 * f64::EPSILON * f.size();
     let axes = [(axis + 1) % 3, (axis + 2) % 3, axis];
     let [a, b, fall] = axes.map(|axis| f.gradient[axis]);

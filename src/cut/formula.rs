@@ -1,18 +1,18 @@
-//! A cube and one plane.
+//! Moments of a cube cut by one plane, in closed form.
 
 use super::Half;
 use crate::lattice::axes;
 use crate::lattice::{CubeMoments, PAIRS};
 
-/// Terms of the sum that are larger than this would cancel. (Moments are off by less than 2^-45 of the
-/// largest.)
+/// The greatest accepted term of the sum; larger terms would cancel. (The errors of moments are below 2^-45
+/// of the largest term.)
 const LARGEST_TERM: f64 = 24.0;
 
-/// Moments of { x in [-1, 1]³ : n · x ≤ offset }, the magnitudes of n adding up to 1; `None` if their error
-/// would be too great, as the plane is nearly but not quite parallel to an axis.
+/// Returns the moments of { x in [-1, 1]³ : n · x ≤ offset }, where the magnitudes of n add up to 1. `None`
+/// if their error would be too great, because the plane is nearly but not quite parallel to an axis.
 ///
-/// In coordinates u in [0, 1]³ that grow along n the set is a simplex at the origin less those at the corners
-/// that it reaches beyond, and so on: by inclusion and exclusion a sum over corners.
+/// In coordinates u in [0, 1]³ that grow along n, the set is a simplex at the origin, minus the simplices at
+/// the corners that it reaches beyond, and so on: a sum over corners by inclusion and exclusion.
 #[inline]
 pub(super) fn below(half: &Half) -> Option<CubeMoments> {
     let m = half.normal.map(f64::abs);
@@ -23,7 +23,7 @@ pub(super) fn below(half: &Half) -> Option<CubeMoments> {
     if alpha <= 0.0 {
         return Some(if upper { CubeMoments::FULL } else { CubeMoments::EMPTY });
     }
-    // Written out for each choice of axes on which the plane depends.
+    // Specialised for each choice of axes on which the plane depends.
     let is_used = |axis: usize| ((m[axis] > 0.0) as usize) << axis;
     let (volume, first, second) = match is_used(0) | is_used(1) | is_used(2) {
         0b001 => sums::<0b001>(&m, alpha),
@@ -34,7 +34,7 @@ pub(super) fn below(half: &Half) -> Option<CubeMoments> {
         0b110 => sums::<0b110>(&m, alpha),
         _ => sums::<0b111>(&m, alpha),
     }?;
-    // x = ±(2u − 1), and the other way round for the upper half.
+    // x = ±(2u − 1), with the opposite sign for the upper half.
     let flip = half.normal.map(|c| if (c < 0.0) != upper { -1.0 } else { 1.0 });
     let mut moments = CubeMoments {
         volume: 8.0 * volume,
@@ -48,8 +48,8 @@ pub(super) fn below(half: &Half) -> Option<CubeMoments> {
     Some(if upper { moments.complement() } else { moments })
 }
 
-/// Volume, first and second moments of { u in [0, 1]³ : m · u ≤ α }, where α ≤ ½ and the m of the axes in
-/// `USED` (a bit each) are positive, those of the others 0.
+/// Returns volume, first and second moments of { u in [0, 1]³ : m · u ≤ α }, where α ≤ ½. The m of the axes
+/// in `USED` (a bit each) are positive, the others are 0.
 #[inline(always)]
 fn sums<const USED: usize>(m: &[f64; 3], alpha: f64) -> Option<(f64, [f64; 3], [f64; 6])> {
     let is_used = |axis: usize| USED >> axis & 1 != 0;
@@ -64,7 +64,7 @@ fn sums<const USED: usize>(m: &[f64; 3], alpha: f64) -> Option<(f64, [f64; 3], [
     let unit = 1.0 / ([1.0, 1.0, 2.0, 6.0][count as usize] * product);
     let k = count as f64;
     let (per_first, per_second) = (1.0 / (k + 1.0), 1.0 / ((k + 1.0) * (k + 2.0)));
-    // The largest of all terms is that of the greatest simplex.
+    // The largest of all terms is that of the largest simplex.
     let largest_edge = alpha * inverse[0].max(inverse[1]).max(inverse[2]);
     if power(alpha) * unit * (1.0 + 2.0 * per_second * largest_edge * largest_edge) > LARGEST_TERM {
         return None;
@@ -81,7 +81,7 @@ fn sums<const USED: usize>(m: &[f64; 3], alpha: f64) -> Option<(f64, [f64; 3], [
         }
         let v = power(rest) * if corner.count_ones() % 2 == 0 { unit } else { -unit };
         volume += v;
-        // Edges of the simplex, and its centroid.
+        // The edges of the simplex, and its centroid.
         let edge = inverse.map(|i| rest * i);
         for i in (0..3).filter(|&i| is_used(i)) {
             first[i] += v * (at[i] + per_first * edge[i]);

@@ -5,38 +5,40 @@ use super::quadratic::Quadratic;
 use crate::lattice::{PAIRS, PLACES};
 use wide::f64x4;
 
-/// A function whose surface is a graph z*(x, y) over the square, divided by its slope along z: z − z₀ + R,
-/// where z₀ = −(a x + b y + c) is a plane. z is the axis of the greatest slope.
+/// A function whose surface is a graph z*(x, y) over the square, divided by its derivative along z: z − z₀ +
+/// R, where z₀ = −(a x + b y + c) is a plane. z is the axis with the greatest component of the gradient.
 pub(super) struct Graph {
-    /// The axes of the cube that are x, y and z.
+    /// The axes of the cube that are called x, y and z.
     pub(super) axes: [usize; 3],
-    /// What the function was divided by; positive if the solid is above.
+    /// The divisor of the function; positive if the solid is above.
     pub(super) scale: f64,
     /// a, b and c.
     pub(super) plane: [f64; 3],
-    /// v, which is R on the plane: coefficients of 1, x, y, x², y² and x y.
+    /// v, the value of R on the plane: coefficients of 1, x, y, x², y² and x y.
     v: [f64; 6],
-    /// R's slope along z on the plane: coefficients of 1, x and y; and half its second derivative along z.
+    /// R's derivative along z on the plane: coefficients of 1, x and y. `bend` is half its second derivative
+    /// along z.
     slope: [f64; 3],
     pub(super) bend: f64,
-    /// R's slope along z is at most this as far as an edge beyond the cube.
+    /// A bound of R's derivative along z, in the cube and up to an edge beyond it.
     pub(super) steepest: f64,
-    /// Where z₀ or z* is in the cube, they are at most this apart; and anywhere at most |v| / (1 −
-    /// `steepest`).
+    /// The greatest distance of z₀ from z* where one of them is in the cube; it is also at most |v| / (1 −
+    /// `steepest`) everywhere.
     pub(super) most: f64,
-    /// More than what values are off by.
+    /// A bound of the rounding errors of values.
     pub(super) rounding: f64,
 }
 
-/// v on the plane at some points, and R's slope along z.
+/// v on the plane at some points, and R's derivative along z.
 pub(super) struct Values {
     pub(super) v: f64x4,
     pub(super) slope: f64x4,
 }
 
 impl Graph {
-    /// The graph of f = 0, with a plane that is near it in the cube; `None` if f's gradient varies too much
-    /// there. `section` is what the plane with these axes has in common with the cube and the planes.
+    /// Builds the graph of f = 0, with a plane that is near it in the cube; `None` if f's gradient varies too
+    /// much there. `section` returns the intersection of the plane (with these axes) with the cube and the
+    /// planes.
     #[inline(always)]
     pub(super) fn new(
         f: &Quadratic,
@@ -56,7 +58,7 @@ impl Graph {
         let times = |p: [f64; 3]| {
             [0, 1, 2].map(|i| (q[PLACES[i][0]] * p[0] + q[PLACES[i][1]] * p[1]) + q[PLACES[i][2]] * p[2])
         };
-        // The tangential plane of the level set through a point of which f is given.
+        // The plane where the linearisation of f at a point is 0, and the derivative along z.
         let tangent = |p: [f64; 3]| {
             let qp = times(p);
             let scale = g[2] + 2.0 * qp[2];
@@ -65,7 +67,7 @@ impl Graph {
             let plane = [(g[0] + 2.0 * qp[0]) * inverse, (g[1] + 2.0 * qp[1]) * inverse, constant * inverse];
             (plane, scale)
         };
-        // About the point next to the centre at first, and then about the middle of the section.
+        // Around the point nearest to the centre at first, then around the middle of the section.
         let square = (g[0] * g[0] + g[1] * g[1]) + g[2] * g[2];
         let mut p = g.map(|slope| (-f.value / square * slope).clamp(-1.0, 1.0));
         let ([a, b, c], scale) = tangent(p);
@@ -74,7 +76,7 @@ impl Graph {
         if let Some(([x, y], [xx, yy, xy])) = polygon.spread() {
             p = [x, y, (-((a * x + b * y) + c)).clamp(-1.0, 1.0)];
             let [h, i, j] = bends(&q, a, b);
-            // About the mean of R along the section's outline.
+            // Centred on the mean of R along the section's outline.
             shift = 0.5 * ((h * xx + i * yy) + 2.0 * j * xy) / scale;
         }
         let ([a, b, c], scale) = tangent(p);
@@ -90,7 +92,7 @@ impl Graph {
             (f.value.abs() + (gx + gy) + gz) * inverse.abs() + 4.0 * ((xx + yy + zz) + 2.0 * (xy + xz + yz));
         let rounding = 128.0 * f64::EPSILON * size;
         let most = (squares + shift.abs()) / (1.0 - steepest) + rounding;
-        // (Not so of what is no number.)
+        // (A comparison with NaN is false.)
         if !(steepest <= 0.5 && most <= 1.0 && a.abs() <= 2.0 && b.abs() <= 2.0) {
             return None;
         }
@@ -116,7 +118,7 @@ impl Graph {
         })
     }
 
-    /// v and R's slope along z.
+    /// Returns v and R's derivative along z.
     #[inline(always)]
     pub(super) fn at(&self, x: f64x4, y: f64x4) -> Values {
         let [one, by_x, by_y, xx, yy, xy] = self.v;
@@ -127,24 +129,24 @@ impl Graph {
         }
     }
 
-    /// v's slope on the plane along x.
+    /// v's derivative along x on the plane.
     pub(super) fn rise(&self, x: f64x4, y: f64x4) -> f64x4 {
         let [_, by_x, _, xx, _, xy] = self.v;
         (x * (2.0 * xx) + y * xy) + by_x
     }
 
-    /// Half of v's second derivatives along x and y, and that along both.
+    /// Half of v's second derivatives along x and along y, and its mixed second derivative.
     pub(super) fn bends(&self) -> [f64; 3] {
         let [.., xx, yy, xy] = self.v;
         [xx, yy, xy]
     }
 
-    /// What R's slope along z changes by with x on the plane.
+    /// The derivative along x, on the plane, of R's derivative along z.
     pub(super) fn turn(&self) -> f64 {
         self.slope[1]
     }
 
-    /// With x and y exchanged.
+    /// The graph with x and y exchanged.
     pub(super) fn exchanged(&self) -> Graph {
         let ([i, j, k], [a, b, c]) = (self.axes, self.plane);
         let ([one, x, y, xx, yy, xy], [slope, by_x, by_y]) = (self.v, self.slope);

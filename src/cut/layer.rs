@@ -1,50 +1,51 @@
-//! How far the boundary may be from a point of a slab in the cube.
+//! The greatest distance of the boundary from points of a slab in the cube.
 
 use super::Slab;
 
-/// The corners of what a slab has in common with the cube, to rounding.
+/// The corners of the intersection of a slab with the cube, up to rounding.
 pub(crate) fn corners(slab: &Slab) -> impl Iterator<Item = [f64; 3]> + Clone {
     let Slab { normal, inner, outer } = *slab;
     let of_cube = (0..8usize).map(|k| [0, 1, 2].map(|axis| end(k >> axis & 1)));
     let met = [inner, outer].into_iter().flat_map(move |level| {
-        // Where the edges of the cube meet a side.
+        // The points where the edges of the cube meet a side.
         (0..12usize).filter_map(move |edge| {
             let axis = edge / 4;
             let mut p = [0.0; 3];
             (p[(axis + 1) % 3], p[(axis + 2) % 3]) = (end(edge & 1), end(edge >> 1 & 1));
             p[axis] = (level - dot(normal, p)) / normal[axis];
-            // (What is no number is not less.)
+            // (A comparison with NaN is false.)
             (p[axis].abs() <= 1.0).then_some(p)
         })
     });
     of_cube.filter(move |p| (inner..=outer).contains(&dot(normal, *p))).chain(met)
 }
 
-/// If one side of a slab lies in a solid and the other does not, no point of the slab in the cube is further
-/// than that from the boundary, to rounding; infinite if the cube does not reach to both sides.
+/// The greatest distance of a point of the slab in the cube from the boundary, up to rounding, if one side of
+/// the slab lies in a solid and the other side does not. Infinite if the cube does not reach both sides.
 ///
-/// The straight way from a point to the nearest point of one side, or to that of the other, meets the
-/// boundary. The distance from a side is a convex function, so that it is greatest in a corner.
+/// The segment from a point to the nearest point of one side, or to that of the other, meets the boundary.
+/// The distance from a side is a convex function, so that its maximum is at a corner.
 pub(crate) fn stray(slab: &Slab) -> f64 {
     let [behind, before] = sides(slab);
     behind.max(before)
 }
 
-/// How far the points of the slab in the cube are from the cube's points behind it at the most, and from
-/// those in front of it, to rounding; infinite if there are none.
+/// The greatest distances of the points of the slab in the cube from the cube's points behind the slab, and
+/// from those in front of it, up to rounding. Infinite if there are no such points.
 pub(crate) fn sides(slab: &Slab) -> [f64; 2] {
     let behind = |p| distance(p, slab.normal, slab.inner);
     let before = |p| distance(p, slab.normal.map(|c| -c), -slab.outer);
     corners(slab).fold([0.0, 0.0], |[a, b], p| [f64::max(a, behind(p)), f64::max(b, before(p))])
 }
 
-/// How far a point of the cube is from the cube's points with n · x ≤ offset; infinite if there are none.
+/// The distance of a point of the cube from the cube's points with n · x ≤ offset; infinite if there are
+/// none.
 fn distance(p: [f64; 3], normal: [f64; 3], offset: f64) -> f64 {
     if dot(normal, p) <= offset {
         return 0.0;
     }
-    // The nearest point is p − λ n, moved into the cube: axes along which it would leave are fixed, one after
-    // the other.
+    // The nearest point is p − λ n, moved into the cube. Axes along which it would leave the cube are fixed,
+    // one after the other.
     let mut nearest = p;
     let mut is_free = normal.map(|c| c != 0.0);
     loop {
@@ -87,7 +88,7 @@ mod tests {
         dot(a, a).sqrt()
     }
 
-    /// Beside a dense lattice of points: the greatest over the slab of the least over a side.
+    /// Compares with a dense lattice of points: the maximum over the slab of the minimum over a side.
     #[test]
     fn no_point_strays_further() {
         const STEPS: i32 = 40;
@@ -117,8 +118,8 @@ mod tests {
                     most = most.max(lattice().filter(beyond).map(off).fold(f64::INFINITY, f64::min));
                 }
             }
-            // (Points of the lattice are 0.1 apart, so that its nearest one is up to a diagonal of that too
-            // far.)
+            // (Points of the lattice are 0.1 apart, so that the nearest one is up to a diagonal of 0.1 too
+            // far away.)
             assert!((own - 0.2..own + 0.18).contains(&most), "{slab:?} {own} {most}");
             assert!(own >= (outer - inner) / length(normal) - 1e-12);
         }

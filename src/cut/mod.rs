@@ -1,13 +1,14 @@
-//! Volume, moments and area of what planes and curved surfaces cut off a cube.
+//! Volume, moments and area of the part of a cube that planes and curved surfaces cut off.
 //!
 //! The cube is [-1, 1]³: a cell, measured from its centre in half edges.
 //!
-//! - For one plane, closed forms give the moments (for the volume: Scardovelli and Zaleski, J. Comput. Phys.
-//!   164 (2000) 228–237; the others follow in the same way). Where these would cancel, and for two or three
-//!   planes, the cube is clipped and integrated over its faces. Moments are off by less than [`ERROR`].
-//! - For one curved surface and up to two planes, a plane near the surface stands for it, and what lies
-//!   between both is integrated. Moments are known to third order, with a bound of their error.
-//! - A plane and the cube have a polygon in common; slabs bound how much of it belongs to a solid.
+//! - For one plane, closed forms give the moments. (For the volume: Scardovelli and Zaleski, J. Comput. Phys.
+//!   164 (2000) 228–237; the others follow in the same way.) Where these would cancel, and for two or three
+//!   planes, the cube is clipped and integrated over its faces. The errors of moments are below [`ERROR`].
+//! - For one curved surface and up to two planes, a plane near the surface replaces it, and the region
+//!   between the two is integrated. Moments are known to third order, with an error bound.
+//! - The intersection of a plane with the cube is a polygon; slabs bound the part of it that belongs to a
+//!   solid.
 //! - The area of one surface is the flux through the walls of the cube, to third order. Where surfaces meet,
 //!   each is projected to a wall.
 
@@ -42,8 +43,8 @@ pub(crate) use quadratic::Quadratic;
 pub(crate) use section::{SETTLED, Section};
 pub(crate) use taylor::Taylor;
 
-/// More than the error of any moment. (Twice what comes of the largest term that the formula admits; clipping
-/// is off by a tenth of that.)
+/// A bound of the error of any moment. (It is twice the error from the largest term that the formula admits;
+/// clipping has a tenth of that error.)
 pub(crate) const ERROR: f64 = 1.0 / (1u64 << 39) as f64;
 
 /// The points of the cube with n · x ≤ offset.
@@ -53,8 +54,8 @@ struct Half {
     offset: f64,
 }
 
-/// Sets that lie in a solid, and that contain it, in a cell of which the enclosure is known: their moments in
-/// the coordinates of the cell.
+/// Returns the moments of a set that lies in a solid, and of a set that contains it, in a cell whose
+/// enclosure is known, in the coordinates of the cell.
 pub(crate) fn bounds(enclosure: &Enclosure) -> (CubeMoments, CubeMoments) {
     let of = |outer: bool| match enclosure.join {
         SlabJoin::All => intersection(&enclosure.slabs, outer).unwrap_or(if outer {
@@ -62,24 +63,25 @@ pub(crate) fn bounds(enclosure: &Enclosure) -> (CubeMoments, CubeMoments) {
         } else {
             CubeMoments::EMPTY
         }),
-        // The union is what lies outside of the complements' intersection.
+        // The union is the complement of the complements' intersection.
         SlabJoin::Any => intersection(&enclosure.slabs.map(|slab| slab.complement()), !outer)
             .map_or(if outer { CubeMoments::FULL } else { CubeMoments::EMPTY }, |m| m.complement()),
     };
     (of(false), of(true))
 }
 
-/// The moments of a solid in a cell of which the enclosure is known.
+/// Returns the moments of a solid in a cell whose enclosure is known.
 pub(crate) fn between(enclosure: &Enclosure) -> CellMoments {
     let (inner, outer) = bounds(enclosure);
-    // No moment of what lies between both sets, or of a part of that, is greater than the volume between
-    // them.
+    // No moment of the region between both sets, or of a part of it, is greater than the volume of the
+    // region.
     let error = 0.5 * (outer.volume - inner.volume).max(0.0) + 2.0 * ERROR;
     CellMoments { moments: inner.mean(&outer), error }
 }
 
-/// A point inside of the points of the cell with n · x ≤ offset for up to three `halves`, where that is more
-/// than rounding makes; nothing if there are none. `None` if rounding hinders.
+/// Returns a point inside the set of the cell's points with n · x ≤ offset for up to three `halves`, if the
+/// set is larger than rounding errors; `Some(None)` if the set is empty. `None` if rounding prevents an
+/// answer.
 pub(crate) fn middle(halves: &[([f64; 3], f64)]) -> Option<Option<[f64; 3]>> {
     let mut own = [Half { normal: [0.0; 3], offset: 0.0 }; 3];
     for (own, &(normal, offset)) in own.iter_mut().zip(halves) {
@@ -88,8 +90,8 @@ pub(crate) fn middle(halves: &[([f64; 3], f64)]) -> Option<Option<[f64; 3]>> {
     clip::middle(&own[..halves.len().min(3)])
 }
 
-/// Moments of { x in the cell : f(x) ≥ 0 } on the inner sides of up to two planes, of which slabs tell all
-/// but what rounding leaves open; `None` if they are not known to third order.
+/// Returns the moments of { x in the cell : f(x) ≥ 0 } on the inner sides of up to two planes; `None` if they
+/// are not known to third order. The planes are slabs that are as thin as rounding allows.
 pub(crate) fn curved(f: &Quadratic, planes: &[Slab]) -> Option<CellMoments> {
     let mut halves = [Half { normal: [0.0; 3], offset: 0.0 }; 3];
     let (mut count, mut error) = (0, 0.0);
@@ -99,7 +101,7 @@ pub(crate) fn curved(f: &Quadratic, planes: &[Slab]) -> Option<CellMoments> {
         if !(range > 0.0 && range.is_finite() && (0.0..1.0).contains(&open)) {
             return None;
         }
-        // Seen along the axis to which the normal is nearest, the section is at most a face.
+        // Seen along the axis nearest to the normal, the section is at most a face.
         error += 12.0 * open;
         if *inner < range {
             halves[count] = Half { normal: normal.map(|c| c / range), offset: inner / range };
@@ -118,7 +120,7 @@ pub(crate) fn curved(f: &Quadratic, planes: &[Slab]) -> Option<CellMoments> {
     (error < 8.0).then_some(CellMoments { error, ..known })
 }
 
-/// More than the volume, of 8, between the sets of [`bounds`]; cheap, and about right.
+/// An upper bound of the volume, at most 8, between the sets of [`bounds`]; cheap, and approximately right.
 pub(crate) fn doubt(enclosure: &Enclosure) -> f64 {
     let (mut doubt, mut is_known) = (0.0, false);
     for Slab { normal, inner, outer } in &enclosure.slabs {
@@ -126,8 +128,8 @@ pub(crate) fn doubt(enclosure: &Enclosure) -> f64 {
         let (high, rest) = (a.max(b), a.min(b));
         let (most, middle, least) = (high.max(c), high.min(c).max(rest), rest.min(c));
         if most > 0.0 {
-            // Seen along the axis to which the normal is nearest, a section is at most a face; near an edge
-            // or a corner of the cube it is smaller.
+            // Seen along the axis nearest to the normal, a section is at most a face. Near an edge or a
+            // corner of the cube it is smaller.
             let range = (a + b) + c;
             if !range.is_finite() {
                 return 8.0;
@@ -138,17 +140,17 @@ pub(crate) fn doubt(enclosure: &Enclosure) -> f64 {
             let face = 4.0 / most;
             let edge = 2.0 * (reach / most) / middle;
             let corner = 0.5 * (reach / most) * (reach / middle) / least;
-            // (No number, where components are 0, is not less.)
+            // (`min` ignores the NaN that components of 0 give.)
             doubt += (outer - inner).max(0.0) * face.min(edge).min(corner);
             is_known = true;
         }
     }
-    // (What is no number is no less than that.)
+    // (`min` ignores a NaN.)
     if is_known { 8.0f64.min(doubt) } else { 8.0 }
 }
 
-/// Moments of the cube's points that lie on the inner side of all planes, of the outer ends of the slabs or
-/// of the inner ends; `None` if they are not had.
+/// The moments of the cube's points on the inner side of all planes, at the outer or the inner ends of the
+/// slabs; `None` if they cannot be computed.
 fn intersection(slabs: &[Slab; 3], outer: bool) -> Option<CubeMoments> {
     let mut halves = [Half { normal: [0.0; 3], offset: 0.0 }; 3];
     let (mut count, mut is_known) = (0, false);

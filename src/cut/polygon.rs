@@ -1,6 +1,6 @@
-//! What a plane and a cube have in common, seen along an axis: a polygon in a square.
+//! The intersection of a plane with a cube, seen along an axis: a polygon in a square.
 
-/// A square that two faces of the cube and two planes, or what is near them, cut.
+/// The greatest number of corners of a square that two faces of the cube and two planes cut.
 const CORNERS: usize = 8;
 
 /// A linear function of x and y, positive on one side of a line.
@@ -8,14 +8,14 @@ const CORNERS: usize = 8;
 pub(super) struct Line {
     pub(super) slope: [f64; 2],
     pub(super) constant: f64,
-    /// The line is where a plane meets a face, and the function what the face allows: so much is taken of it
-    /// along z.
+    /// The decrease of the function per unit of z. The line is the intersection of a plane with a face, and
+    /// the function is the slack of the face's inequality.
     pub(super) rise: f64,
 }
 
 impl Line {
-    /// The points of the plane z = −(a x + b y + c) on the inner side of n · x ≤ offset, `axes` of the cube
-    /// being x, y and z.
+    /// The line that bounds the points of the plane z = −(a x + b y + c) on the inner side of n · x ≤ offset;
+    /// `axes` are the axes of the cube that are called x, y and z.
     pub(super) fn new(axes: &[usize; 3], [a, b, c]: &[f64; 3], normal: &[f64; 3], offset: f64) -> Line {
         let n = axes.map(|axis| normal[axis]);
         Line { slope: [n[2] * a - n[0], n[2] * b - n[1]], constant: offset + n[2] * c, rise: n[2] }
@@ -34,7 +34,7 @@ pub(super) struct Polygon {
 }
 
 impl Polygon {
-    /// All of the square.
+    /// The whole square.
     pub(super) const SQUARE: Polygon = {
         let mut corners = [[0.0; 2]; CORNERS];
         (corners[0], corners[1], corners[2], corners[3]) =
@@ -43,7 +43,7 @@ impl Polygon {
     };
 
     /// The part of the square where no line is negative; `None` if rounding makes more corners than there is
-    /// place for.
+    /// space for.
     pub(super) fn new(lines: impl Iterator<Item = Line>) -> Option<Polygon> {
         let mut polygon = Polygon::SQUARE;
         for line in lines {
@@ -52,13 +52,13 @@ impl Polygon {
         Some(polygon)
     }
 
-    /// Counter-clockwise.
+    /// The corners, counter-clockwise.
     pub(super) fn corners(&self) -> &[[f64; 2]] {
         &self.corners[..self.count]
     }
 
     /// Keeps the part where the line is not negative; `None` if rounding makes more corners than there is
-    /// place for.
+    /// space for.
     pub(super) fn clip(&mut self, line: &Line) -> Option<()> {
         let mut values = [0.0; CORNERS];
         let mut outside = 0;
@@ -97,7 +97,7 @@ impl Polygon {
         0.5 * others.iter().zip(others.iter().skip(1)).map(cross).sum::<f64>()
     }
 
-    /// The mean of the corners, and those of x², y² and x y about it; `None` if there is no polygon.
+    /// The mean of the corners, and the means of x², y² and x y about it; `None` if there is no polygon.
     pub(super) fn spread(&self) -> Option<([f64; 2], [f64; 3])> {
         if self.count < 3 {
             return None;
@@ -116,7 +116,7 @@ impl Polygon {
         Some(([x, y], squares))
     }
 
-    /// The lower and the upper corner of the rectangle around.
+    /// The lower and the upper corner of the bounding rectangle.
     pub(super) fn bounds(&self) -> [[f64; 2]; 2] {
         self.corners().iter().fold([[1.0; 2], [-1.0; 2]], |[low, high], corner| {
             [[0, 1].map(|i| low[i].min(corner[i])), [0, 1].map(|i| high[i].max(corner[i]))]

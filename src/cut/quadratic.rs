@@ -5,18 +5,18 @@ use crate::lattice::exact::sqrt;
 /// A function over the cube [-1, 1]³ to second order: a cell, measured from its centre in half edges.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct Quadratic {
-    /// At the centre.
+    /// The value at the centre.
     pub(crate) value: f64,
     pub(crate) gradient: [f64; 3],
     /// Half the second derivatives: xx, yy, zz, xy, xz, yz.
     pub(crate) squares: [f64; 6],
-    /// The function differs by at most this from value + gradient · x + xᵀ squares x. Infinite, or no number:
-    /// nothing is known.
+    /// The greatest difference between the function and value + gradient · x + xᵀ squares x. Infinite or NaN
+    /// means unknown.
     pub(crate) error: f64,
 }
 
 impl Quadratic {
-    /// The negative.
+    /// The negated function.
     pub(crate) fn complement(&self) -> Quadratic {
         Quadratic {
             value: -self.value,
@@ -26,13 +26,13 @@ impl Quadratic {
         }
     }
 
-    /// The greatest magnitudes of the terms of second order in the cube.
+    /// The greatest magnitudes of the second-order terms in the cube.
     fn seconds(&self) -> [f64; 6] {
         let [xx, yy, zz, xy, xz, yz] = self.squares.map(f64::abs);
         [xx, yy, zz, 2.0 * xy, 2.0 * xz, 2.0 * yz]
     }
 
-    /// The sum of the greatest magnitudes of the terms of second order.
+    /// The sum of the greatest magnitudes of the second-order terms.
     pub(super) fn curvature(&self) -> f64 {
         self.seconds().iter().sum()
     }
@@ -42,7 +42,8 @@ impl Quadratic {
         self.gradient.map(f64::abs).iter().chain(&self.seconds()).sum::<f64>() + self.value.abs()
     }
 
-    /// No gradient in the cube is further from that at the centre. Some last places are for what is rounded.
+    /// A bound of the difference between any gradient in the cube and the gradient at the centre, with a
+    /// margin for rounding.
     pub(crate) fn bend(&self) -> f64 {
         let [xx, yy, zz, xy, xz, yz] = self.squares.map(f64::abs);
         let rows = [(xx + xy) + xz, (xy + yy) + yz, (xz + yz) + zz];

@@ -1,14 +1,14 @@
-//! How far a solid reaches in a cell of which the enclosure is known.
+//! The extent of a solid in a cell whose enclosure is known.
 //!
 //! Both answers are linear programs over the cube [-1, 1]³ and one to three half-spaces. Plain doubles choose
-//! a solution among all bases, and intervals prove it: any multipliers that are not negative bound the
+//! a solution among all bases, and intervals prove it. Any multipliers that are not negative bound the
 //! program from above (weak duality), and any point that satisfies the constraints bounds it from below.
 
 use super::{Enclosure, SlabJoin};
 use crate::lattice::Interval;
 use crate::lattice::axes;
 
-/// How far offsets are moved inward, as a share of the normal's range.
+/// The distances by which offsets are moved inward, as shares of the normal's range.
 const MARGINS: [f64; 3] = [1.0 / (1u64 << 50) as f64, 1.0 / (1u64 << 46) as f64, 1.0 / (1u64 << 30) as f64];
 
 /// The points with n · x ≤ offset.
@@ -16,7 +16,7 @@ const MARGINS: [f64; 3] = [1.0 / (1u64 << 50) as f64, 1.0 / (1u64 << 46) as f64,
 struct Half {
     normal: [f64; 3],
     offset: f64,
-    /// The sum of the normal's magnitudes.
+    /// The sum of the magnitudes of the normal's components.
     range: f64,
 }
 
@@ -45,7 +45,7 @@ impl Halves {
         &self.all[..self.count]
     }
 
-    /// What [`dual`] proves, to rounding.
+    /// The bound that [`dual`] proves, up to rounding.
     fn estimate(&self, rows: &[[f64; 3]], multipliers: [f64; 3], direction: [f64; 3]) -> f64 {
         let (mut bound, mut rest) = (0.0, direction);
         for (k, half) in self.as_slice().iter().enumerate() {
@@ -55,7 +55,7 @@ impl Halves {
         bound + magnitude(rest)
     }
 
-    /// Whether a point is proven to lie in all of them, or inside of all of them.
+    /// Returns whether a point is proven to lie in all half-spaces, or in the interior of all of them.
     fn hold(&self, point: [f64; 3], strictly: bool) -> bool {
         self.as_slice().iter().all(|half| {
             let terms = axes(|i| Interval::exactly(half.normal[i]).times(Interval::exactly(point[i])));
@@ -64,7 +64,7 @@ impl Halves {
         })
     }
 
-    /// The rows of the program's constraints, to a length of 1: the half-spaces, then the axes.
+    /// The rows of the program's constraints, normalised to length 1: the half-spaces, then the axes.
     fn rows(&self) -> ([[f64; 3]; 6], usize) {
         let mut rows = [[0.0; 3]; 6];
         for (row, half) in rows.iter_mut().zip(self.as_slice()) {
@@ -77,9 +77,9 @@ impl Halves {
     }
 }
 
-/// An upper bound of `direction` · x over the points of the solid in a cell, x being measured from the cell's
-/// centre in half edges. It is at most the sum of the direction's magnitudes, and −∞ if the cell has no point
-/// of the solid.
+/// Returns an upper bound of `direction` · x over the points of the solid in a cell. x is measured from the
+/// cell's centre in half edges. The bound is at most the sum of the direction's magnitudes, and −∞ if the
+/// cell contains no point of the solid.
 pub(crate) fn upper(enclosure: &Enclosure, direction: [f64; 3]) -> f64 {
     let known = slabs(enclosure, true);
     match enclosure.join {
@@ -93,14 +93,14 @@ pub(crate) fn upper(enclosure: &Enclosure, direction: [f64; 3]) -> f64 {
                 let halves = if half.offset.is_finite() { Halves::one(half) } else { Halves::NONE };
                 greatest(&halves, direction)
             };
-            // No slab says nothing.
+            // Without a slab nothing is known.
             known.map(of).reduce(f64::max).unwrap_or_else(|| greatest(&Halves::NONE, direction))
         }
     }
 }
 
-/// A point of the closed cell, as far along `direction` as a search by doubles finds one, that is a limit of
-/// points of the solid in the open cell.
+/// Returns a point of the closed cell that is a limit of points of the solid in the open cell. It lies as far
+/// along `direction` as a search in doubles finds.
 pub(crate) fn witness(enclosure: &Enclosure, direction: [f64; 3]) -> Option<[f64; 3]> {
     let mut known = slabs(enclosure, false).peekable();
     known.peek()?;
@@ -127,7 +127,7 @@ pub(crate) fn witness(enclosure: &Enclosure, direction: [f64; 3]) -> Option<[f64
     }
 }
 
-/// The half-spaces of the outer ends of an enclosure's slabs, or of the inner ends.
+/// The half-spaces of the outer or of the inner ends of an enclosure's slabs.
 fn slabs(enclosure: &Enclosure, outer: bool) -> impl Iterator<Item = Half> {
     enclosure.slabs.into_iter().filter(|slab| slab.normal != [0.0; 3]).map(move |slab| Half {
         normal: slab.normal,
@@ -136,7 +136,7 @@ fn slabs(enclosure: &Enclosure, outer: bool) -> impl Iterator<Item = Half> {
     })
 }
 
-/// An upper bound of `direction` · x over the cube's points in all half-spaces, −∞ if there are none.
+/// An upper bound of `direction` · x over the cube's points in all half-spaces; −∞ if there are none.
 fn greatest(halves: &Halves, direction: [f64; 3]) -> f64 {
     let (rows, count) = halves.rows();
     let mut best = (magnitude(direction), [0.0; 3]);
@@ -156,9 +156,9 @@ fn greatest(halves: &Halves, direction: [f64; 3]) -> f64 {
     dual(halves, best.1, direction).min(magnitude(direction))
 }
 
-/// Whether multipliers prove that no point of the cube lies in all half-spaces (Farkas' lemma).
+/// Returns whether multipliers prove that no point of the cube lies in all half-spaces (Farkas' lemma).
 fn is_empty(halves: &Halves, rows: &[[f64; 3]]) -> bool {
-    // Four rows depend on each other by their minors.
+    // The minors of four rows are the coefficients of their linear dependence.
     for set in (0u32..1 << rows.len()).filter(|set| set.count_ones() == 4) {
         let mut of = [0; 4];
         (0..rows.len()).filter(|row| set >> row & 1 != 0).zip(&mut of).for_each(|(row, place)| *place = row);
@@ -179,9 +179,8 @@ fn is_empty(halves: &Halves, rows: &[[f64; 3]]) -> bool {
     false
 }
 
-/// Proven: an upper bound of `direction` · x over the cube's points in all half-spaces, as these multipliers
-/// have it, that go with normals of the range 1. It is below 0 for the direction 0 only if there are no such
-/// points.
+/// A proven upper bound of `direction` · x over the cube's points in all half-spaces, by these multipliers of
+/// normals with range 1. For the direction 0, the bound is negative only if there are no such points.
 fn dual(halves: &Halves, multipliers: [f64; 3], direction: [f64; 3]) -> f64 {
     let (mut bound, mut rest) = (Interval::exactly(0.0), direction.map(Interval::exactly));
     for (half, multiplier) in halves.as_slice().iter().zip(multipliers) {
@@ -201,25 +200,25 @@ fn dual(halves: &Halves, multipliers: [f64; 3], direction: [f64; 3]) -> f64 {
     bound.upper
 }
 
-/// A point of the cube that is a limit of points inside of all half-spaces, as far along `direction` as one
-/// is found.
+/// A point of the cube that is a limit of interior points of all half-spaces, as far along `direction` as the
+/// search finds.
 fn farthest(halves: &Halves, direction: [f64; 3]) -> Option<[f64; 3]> {
-    // Offsets are moved inward by more than what a solution is off by: where planes are nearly parallel, by
+    // Offsets are moved inward by more than the error of a solution; where planes are nearly parallel, by
     // more.
     let inside = MARGINS
         .into_iter()
         .find_map(|margin| vertex(halves, direction, margin).filter(|p| halves.hold(*p, true)))?;
-    // The set is convex and has an inside, so each of its points is such a limit.
+    // The set is convex with a non-empty interior, so that each of its points is such a limit.
     let on = vertex(halves, direction, 0.0).filter(|p| halves.hold(*p, false));
     Some(on.unwrap_or(inside))
 }
 
-/// The vertex that is farthest along `direction`, to rounding, of the cube's part in all half-spaces with
-/// their offsets moved inward.
+/// The farthest vertex along `direction`, up to rounding, of the cube's part in all half-spaces with their
+/// offsets moved inward.
 fn vertex(halves: &Halves, direction: [f64; 3], margin: f64) -> Option<[f64; 3]> {
     let (rows, count) = halves.rows();
     let offsets = halves.all.map(|half| half.offset / half.range - margin);
-    // What is rounded may lie a little outside; the proof comes later.
+    // A rounded vertex may lie slightly outside; the proof comes later.
     let slack = 0.5 * margin.max(MARGINS[0]);
     let mut best: Option<(f64, [f64; 3])> = None;
     bases(&rows[..count], |basis, columns| {
@@ -236,7 +235,7 @@ fn vertex(halves: &Halves, direction: [f64; 3], margin: f64) -> Option<[f64; 3]>
             let point = point.map(|c| if c.abs() <= 1.0 + slack { c.clamp(-1.0, 1.0) } else { f64::NAN });
             let is_inside = |row: usize| dot(rows[row], point) <= offsets[row] + slack;
             let reach = dot(point, direction);
-            // (What is no number is not greater.)
+            // (A comparison with NaN is false.)
             if reach > best.map_or(f64::NEG_INFINITY, |best| best.0) && (0..halves.count).all(is_inside) {
                 best = Some((reach, point));
             }
@@ -245,7 +244,7 @@ fn vertex(halves: &Halves, direction: [f64; 3], margin: f64) -> Option<[f64; 3]>
     best.map(|best| best.1)
 }
 
-/// Calls `visit` with every three rows that do not depend on each other, and the columns of their inverse.
+/// Calls `visit` with every three linearly independent rows, and the columns of their inverse.
 fn bases(rows: &[[f64; 3]], mut visit: impl FnMut([usize; 3], [[f64; 3]; 3])) {
     for i in 0..rows.len() {
         for j in i + 1..rows.len() {
@@ -260,7 +259,7 @@ fn bases(rows: &[[f64; 3]], mut visit: impl FnMut([usize; 3], [[f64; 3]; 3])) {
     }
 }
 
-/// The greatest product with a point of the cube.
+/// The greatest dot product with a point of the cube.
 fn magnitude(a: [f64; 3]) -> f64 {
     a[0].abs() + a[1].abs() + a[2].abs()
 }
@@ -278,7 +277,7 @@ mod tests {
     use super::*;
     use crate::cut::Slab;
 
-    /// Integers, so that all sums below are exact and planes meet in all degenerate ways.
+    /// Random integers, so that all sums below are exact and planes meet in all degenerate ways.
     struct Random(u64);
 
     impl Random {
@@ -288,7 +287,7 @@ mod tests {
         }
     }
 
-    /// The law of an enclosure at one point: whether it is inside for sure, and whether it may be.
+    /// The law of an enclosure at one point: whether it is certainly inside, and whether it may be inside.
     fn at(enclosure: &Enclosure, point: [f64; 3]) -> (bool, bool) {
         let known = || enclosure.slabs.iter().filter(|slab| slab.normal != [0.0; 3]);
         let (inside, outside) =
@@ -346,11 +345,11 @@ mod tests {
                     inside = inside.max(reach);
                 }
             }
-            // No point that is inside for sure lies farther than the witness.
+            // No point that is certainly inside lies farther than the witness.
             let reach = found.map_or(f64::NEG_INFINITY, |point| dot(point, direction));
             assert!(inside <= reach + 1e-7 && reach <= bound, "{enclosure:?} {direction:?} {found:?}");
             if let Some(point) = found {
-                // A little towards the inside all is strict.
+                // Slightly further inside, all inequalities are strict.
                 let loose = Enclosure {
                     slabs: slabs.map(|s| Slab { inner: s.inner + 1e-12, outer: f64::INFINITY, ..s }),
                     ..enclosure
@@ -367,7 +366,7 @@ mod tests {
                     empty += 1;
                     assert_eq!(found, None, "{enclosure:?}");
                 } else if found.is_none() {
-                    // A set without inside: with planes moved inward a little it is proven empty.
+                    // A set without interior is proven empty once its planes are moved slightly inward.
                     let less = slabs.map(|s| Slab { outer: s.outer - 1e-6, ..s });
                     assert_eq!(upper(&Enclosure { slabs: less, ..enclosure }, direction), f64::NEG_INFINITY);
                 } else {

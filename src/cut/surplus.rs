@@ -1,30 +1,30 @@
-//! What lies between a plane and a surface near it, in columns across the plane.
+//! The region between a plane and a surface near it, in columns across the plane.
 
 use super::graph::Graph;
 use super::polygon::Polygon;
 use wide::f64x4;
 
-/// Nodes of a quadrature over a triangle and their weights, exact for polynomials of degree five (Radon,
-/// 1948): the centroid, and points on the medians, of which the share of two corners is given.
+/// Nodes and weights of a quadrature over a triangle, exact for polynomials of degree five (Radon, 1948): the
+/// centroid, and points on the medians, each given by the share of two corners.
 const CENTROID: f64 = 0.225;
 const MEDIANS: [(f64, f64); 2] = [
     (0.101_286_507_323_456_34, 0.125_939_180_544_827_16),
     (0.470_142_064_105_115_1, 0.132_394_152_788_506_17),
 ];
 
-/// What the moments of the points above a surface have more than those above a plane.
+/// The moments of the points above a surface, minus those of the points above a plane.
 pub(super) struct Surplus {
-    /// Of 1, x, y, z, xx, yy, zz, xy, xz, yz.
+    /// The integrals of 1, x, y, z, xx, yy, zz, xy, xz, yz.
     pub(super) moments: [f64; 10],
-    /// What they may be off by.
+    /// A bound of the error of each moment.
     pub(super) error: f64,
 }
 
 impl Surplus {
-    /// What lies in columns that meet the plane in the cube, if they did not end there.
+    /// The surplus in the columns that meet the plane in the cube, as if the columns did not end at faces.
     ///
     /// The surface is at z₀ + τ, where τ = −v to first order, −v (1 − slope) to second. The integral of a
-    /// weight w from z₀ to there is w τ + w' τ²/2 + w'' τ³/6.
+    /// weight w from z₀ to the surface is w τ + w' τ²/2 + w'' τ³/6.
     #[inline(always)]
     pub(super) fn over(polygon: &Polygon, graph: &Graph) -> Surplus {
         let corners = polygon.corners();
@@ -68,7 +68,7 @@ impl Surplus {
             k += 4;
         }
         let [one, x, y, xx, yy, xy, square, square_x, square_y, area] = lanes.map(sum);
-        // On the plane z is a sum of the others.
+        // On the plane, z is a linear function of x and y.
         let z = |one: f64, x: f64, y: f64| -((a * x + b * y) + c * one);
         let (xz, yz) = (z(x, xx, xy), z(y, xy, yy));
         let moments = [
@@ -86,9 +86,9 @@ impl Surplus {
         Surplus { moments, error: Surplus::error(polygon, graph, square.max(0.0), area.max(0.0)) }
     }
 
-    /// With D the greatest distance, d the local one and r a bound of R's slope along z, τ is off by at most
-    /// r² d + (1 + r) bend d²; and with weights of at most 1, whose derivatives are at most 2, the integral
-    /// by 2 r d² + d³/3 beside.
+    /// A bound of the error. With D the greatest distance, d the local one and r a bound of R's derivative
+    /// along z, the error of τ is at most r² d + (1 + r) bend d². With weights of at most 1, whose
+    /// derivatives are at most 2, the integral has a further error of 2 r d² + d³/3.
     fn error(polygon: &Polygon, graph: &Graph, square: f64, area: f64) -> f64 {
         let (mut v, mut slope) = (0.0f64, 0.0f64);
         for &[x, y] in polygon.corners() {
@@ -96,7 +96,7 @@ impl Surplus {
             v = v.max(at.v.to_array()[0].abs());
             slope = slope.max(at.slope.to_array()[0].abs());
         }
-        // Between corners v departs from what is linear by its second derivatives.
+        // Between corners v differs from a linear function by its second derivatives.
         let [low, high] = polygon.bounds();
         let [wx, wy] = [0, 1].map(|i| 0.5 * (high[i] - low[i]));
         let [xx, yy, xy] = graph.bends().map(f64::abs);

@@ -1,21 +1,21 @@
-//! Surfaces of which Taylor's formula tells where they are.
+//! Surfaces that are bounded by Taylor's formula.
 
 use super::quadratic::Quadratic;
 use crate::lattice::exact::sqrt;
 
-/// The surface in a cell on which a function is 0.
+/// The zero set of a function in a cell.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct Taylor {
     /// The function.
     pub(crate) f: Quadratic,
-    /// No gradient in the cell is further from that at the centre.
+    /// A bound of the difference between any gradient in the cell and the gradient at the centre.
     pub(crate) bend: f64,
-    /// A line that does not lie in the surface meets it no more often.
+    /// The greatest number of intersections with a line that does not lie in the surface.
     pub(crate) degree: u32,
 }
 
 impl Taylor {
-    /// The same surface, with the negative of the function.
+    /// The same surface, with the function negated.
     pub(crate) fn complement(&self) -> Taylor {
         Taylor { f: self.f.complement(), ..*self }
     }
@@ -26,16 +26,17 @@ impl Taylor {
         sqrt((x * x + y * y) + z * z)
     }
 
-    /// More than the sine of the angle between the gradient at the centre and any other; 1 and more, or no
-    /// number, if nothing is known.
+    /// A bound of the sine of the angle between the gradient at the centre and any other gradient; 1 or more,
+    /// or NaN, if it is unknown.
     pub(super) fn sine(&self) -> f64 {
         self.bend / self.steepness() * (1.0 + 16.0 * f64::EPSILON)
     }
 
-    /// No gradient in the cell is further from that at the centre than this angle; ∞ if nothing is known.
+    /// A bound of the angle between the gradient at the centre and any other gradient in the cell; ∞ if it is
+    /// unknown.
     pub(crate) fn cone(&self) -> f64 {
         let sine = self.sine();
-        // (The arc sine is off by less than a last place.)
+        // (The error of the arc sine is below a unit in the last place.)
         if sine < 1.0 {
             (libm::asin(sine) + f64::EPSILON) * (1.0 + 4.0 * f64::EPSILON)
         } else {

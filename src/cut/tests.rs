@@ -1,8 +1,8 @@
-//! Cut cubes against exact arithmetic.
+//! Compares cut cubes with exact arithmetic.
 //!
-//! The oracle cuts the cube into tetrahedra and these by one plane after the other. Corners are integers over
-//! a common denominator, so that nothing is rounded before the last sums, which have 200 bits behind the
-//! point.
+//! The oracle divides the cube into tetrahedra and cuts these by one plane after the other. Corners are
+//! integers over a common denominator, so that nothing is rounded before the last sums, which have 200
+//! fractional bits.
 
 extern crate std;
 
@@ -14,7 +14,7 @@ use num_bigint::BigInt;
 use num_traits::{Signed, ToPrimitive, Zero};
 use std::println;
 
-/// Bits behind the point of sums.
+/// The number of fractional bits of sums.
 const POINT: usize = 200;
 
 /// x, y and z times w, and w > 0.
@@ -49,7 +49,7 @@ fn clip_tetrahedron(plane: &[BigInt; 4], corners: [Corner; 4], out: &mut Vec<[Co
         let at = value(&p);
         if at.is_positive() { outer.push((p, at)) } else { inner.push((p, at)) }
     }
-    // The inner end has a value ≤ 0 and the outer one a value > 0, both times the corner's w.
+    // The inner end has a value ≤ 0 and the outer one a value > 0, both multiplied by the corner's w.
     let between = |a: usize, b: usize| {
         let ((p, at_p), (q, at_q)) = (&inner[a], &outer[b]);
         [0, 1, 2, 3].map(|i| at_q * &p[i] - at_p * &q[i])
@@ -75,7 +75,7 @@ fn clip_tetrahedron(plane: &[BigInt; 4], corners: [Corner; 4], out: &mut Vec<[Co
     }
 }
 
-/// Volume, first and second moments, in 2^-[`POINT`].
+/// Volume, first and second moments, in units of 2^-[`POINT`].
 #[derive(Clone)]
 struct Exactly([BigInt; 10]);
 
@@ -86,7 +86,7 @@ impl Exactly {
         [moments.volume, x, y, z, xx, yy, zz, xy, xz, yz]
     }
 
-    /// Of the cube's points on the inner sides of planes.
+    /// The moments of the cube's points on the inner sides of planes.
     fn cut(halves: &[Half]) -> Exactly {
         let planes: Vec<[BigInt; 4]> = halves
             .iter()
@@ -95,7 +95,7 @@ impl Exactly {
                 integers([a, b, c, half.offset])
             })
             .collect();
-        // A path along the edges from one corner to the opposite for each order of the axes.
+        // For each order of the axes, a path along the edges from one corner to the opposite one.
         let mut pieces = Vec::new();
         for order in [[0, 1, 2], [0, 2, 1], [1, 0, 2], [1, 2, 0], [2, 0, 1], [2, 1, 0]] {
             let mut corner = [-1, -1, -1, 1];
@@ -145,17 +145,17 @@ impl Exactly {
         difference(0.0, &self.0[0]).abs()
     }
 
-    /// The greatest difference to what was computed.
+    /// The greatest difference from the computed moments.
     fn error(&self, moments: &CubeMoments) -> f64 {
         let errors = Exactly::of(moments).into_iter().zip(&self.0).map(|(a, b)| difference(a, b).abs());
         errors.fold(0.0, f64::max)
     }
 }
 
-/// a − b, b in 2^-[`POINT`].
+/// a − b, with b in units of 2^-[`POINT`].
 fn difference(a: f64, b: &BigInt) -> f64 {
     let [a, one] = integers([a, 1.0]);
-    // (The smaller of the two exponents belongs to `one` or to `a`; only their proportion counts.)
+    // (The smaller of the two exponents belongs to `one` or to `a`; only their ratio counts.)
     let scaled: BigInt = (a << POINT) / one - b;
     (scaled.clone() >> (POINT - 120)).to_f64().unwrap_or(f64::NAN) / 2f64.powi(120)
 }
@@ -222,7 +222,7 @@ impl Random {
         let mut normal = [self.component(), self.component(), self.component()];
         if let Some(other) = others.last() {
             match self.below(8) {
-                // Parallel, equal, nearly parallel, turned.
+                // Parallel, equal, nearly parallel, rotated.
                 0 => normal = other.normal,
                 1 => normal = other.normal.map(|c| -c),
                 2 => normal = other.normal.map(|c| c * (1.0 + self.unit() * self.tiny())),
@@ -234,7 +234,7 @@ impl Random {
         normal
     }
 
-    /// Where a plane of this normal lies.
+    /// An offset for a plane with this normal.
     pub(super) fn offset(&mut self, normal: [f64; 3], range: f64) -> f64 {
         let sign = |random: &mut Self| [1.0, -1.0, 0.0][random.below(3) as usize];
         let signs = [sign(self), sign(self), sign(self)];
@@ -293,14 +293,14 @@ impl Random {
     }
 }
 
-/// Moments of the points that an enclosure says are inside, and of those that it does not say are outside.
+/// The moments of the points that are inside by an enclosure, and of the points that are not outside by it.
 fn exact_bounds(enclosure: &Enclosure) -> (Exactly, Exactly) {
     let of = |slabs: [Slab; 3], outer: bool| {
         let (mut halves, mut is_known) = (Vec::new(), false);
         for Slab { normal, inner, outer: last } in slabs.into_iter().filter(|s| s.normal != [0.0; 3]) {
             is_known = true;
             let offset = if outer { last } else { inner };
-            // Nothing is less than no number, nor greater.
+            // No number is less or greater than NaN.
             let is_nothing = if outer { false } else { offset.is_nan() };
             if is_nothing || offset == f64::NEG_INFINITY {
                 return None;
@@ -322,7 +322,7 @@ fn exact_bounds(enclosure: &Enclosure) -> (Exactly, Exactly) {
     }
 }
 
-/// The greatest errors by the number of slabs.
+/// Checks enclosures, and prints the greatest errors by the number of slabs.
 fn bounds_hold(seed: u64, count: u64, make: fn(&mut Random) -> Enclosure) {
     let mut random = Random(seed);
     let mut greatest = [0.0f64; 4];
@@ -337,7 +337,7 @@ fn bounds_hold(seed: u64, count: u64, make: fn(&mut Random) -> Enclosure) {
             greatest[known] = greatest[known].max(error);
             assert!(error <= ERROR / 2.0, "{error}: {at}");
         } else {
-            // Less is known.
+            // Bounds may be too wide, but not too narrow.
             assert!(difference(low.volume, &inner.0[0]) <= ERROR, "{at}");
             assert!(difference(high.volume, &outer.0[0]) >= -ERROR, "{at}");
         }
@@ -352,7 +352,7 @@ fn bounds_hold(seed: u64, count: u64, make: fn(&mut Random) -> Enclosure) {
     println!("{count} enclosures: greatest errors by the number of slabs {greatest:?}");
 }
 
-/// Three planes through about one point, two or all of them nearly parallel: rounding bends faces.
+/// Three planes near one point, two or all of them nearly parallel: rounding bends faces.
 fn nearly_parallel(random: &mut Random) -> Enclosure {
     let point = [random.unit(), random.unit(), random.unit()];
     let first = [random.component(), random.component(), random.component()];

@@ -17,7 +17,7 @@ const SIDES: [Line; 2] = [
     Line { slope: [-1.0, 0.0], constant: 1.0, rise: 0.0 },
 ];
 
-/// A line on which a plane leaves through a face, seen along z, and what is near it.
+/// The line where a plane leaves through a face, seen along z, and the lines around it.
 struct Edge<'a> {
     graph: &'a Graph,
     lines: &'a [Line],
@@ -25,12 +25,12 @@ struct Edge<'a> {
 }
 
 impl Surplus {
-    /// Counts what columns have less, or more, as they end at the face of line `own`: columns where the face
-    /// lies between the plane and the surface. `None` if the plane is nearly parallel to a face next to it.
+    /// Adds the correction for columns that end at the face of line `own`: columns where the face lies
+    /// between the plane and the surface. `None` if the plane is nearly parallel to a neighbouring face.
     ///
-    /// Where t is the distance from the plane up to the face, and τ that to the surface, these are the
-    /// columns with t between 0 and τ, and they have ∫ |τ − t| dt = τ²/2 too much or too little, if τ does
-    /// not depend on t.
+    /// Let t be the distance from the plane up to the face, and τ the distance to the surface. These columns
+    /// are those with t between 0 and τ. Their excess or deficit is ∫ |τ − t| dt = τ²/2, if τ does not depend
+    /// on t.
     #[inline(always)]
     pub(super) fn add_wedge(&mut self, graph: &Graph, lines: &[Line], own: usize) -> Option<()> {
         let Line { slope: [sx, sy], constant, rise } = lines[own];
@@ -53,7 +53,7 @@ impl Surplus {
     fn add(&mut self, edge: &Edge<'_>, order: impl Fn(f64x4, f64x4) -> (f64x4, f64x4)) -> Option<()> {
         let Edge { graph, lines, own } = *edge;
         let Line { slope: [sx, sy], constant, rise } = lines[own];
-        // What x changes by where the distance from the face does.
+        // The change of x for a change in the distance from the face.
         let steep = rise.abs() / sx.abs();
         if steep.is_nan() || graph.most * steep > 1.0 {
             return None;
@@ -63,7 +63,7 @@ impl Surplus {
             return Some(());
         }
         let x_at = |y: f64x4| (y * -sy - constant) * (1.0 / sx);
-        // Bounds along the line, on which v is of degree two and slopes are linear.
+        // Bounds along the line, where v is quadratic and derivatives are linear.
         let y = f64x4::new([low, 0.5 * (low + high), high, high]);
         let at = graph.at(x_at(y), y);
         let [v0, v1, v2, _] = at.v.to_array();
@@ -72,7 +72,7 @@ impl Surplus {
             let [a, _, _, b] = lanes.abs().to_array();
             a.max(b)
         };
-        // By how much τ changes with t.
+        // The change of τ with t.
         let per = 1.0 / (1.0 - graph.steepest);
         let bend = 2.0 * graph.bends()[0].abs() * (graph.most * steep);
         let turn = graph.turn().abs();
@@ -111,12 +111,12 @@ impl Surplus {
         let (vx, vy, vz) = (one * x, one * y, one * z);
         let terms = [one, vx, vy, vz, vx * x, vy * y, vz * z, vx * y, vx * z, vy * z];
         self.moments.iter_mut().zip(terms).for_each(|(moment, term)| *moment += sum(term));
-        // At the ends any part of the wedge may be there.
+        // At the ends, any part of the wedge may be present.
         let (x, y, weight) = nodes(inner);
         let v = graph.at(x, y).v;
         let ends = (all - sum(weight * v * v)).max(0.0);
-        // Else τ changes with t, it differs from −v by the slope, and weights change by at most twice the
-        // distances, of which the mean is a third (and along another plane more).
+        // Elsewhere τ changes with t, and differs from −v by the slope. Weights change by at most twice the
+        // distances, whose mean is a third (and more along another plane).
         let reach = if own < 2 { steep.max(1.0) } else { 3.0 + 3.0 * steep };
         let weights = 2.0 / 3.0 * most * reach * (spread * spread);
         self.error += full * (spread * ends + (change * spread + 2.0 * slope + weights) * all);
@@ -125,8 +125,8 @@ impl Surplus {
 }
 
 impl Edge<'_> {
-    /// Ranges of y on the line: where the wedge surely is in its whole width, where the line bounds the
-    /// section, and where there may be some of the wedge, which extends by `dx` and `dz` at most.
+    /// Ranges of y on the line: where the wedge certainly has its whole width, where the line bounds the
+    /// section, and where there may be a part of the wedge, which extends by at most `dx` and `dz`.
     fn chords(&self, dx: f64, dz: f64) -> [(f64, f64); 3] {
         let mut ends = [(-1.0f64, 1.0f64); 3];
         let own = &self.lines[self.own];

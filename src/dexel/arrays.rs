@@ -1,4 +1,4 @@
-//! The arrays of a model in memory.
+//! The owned arrays of a model.
 
 use super::columns::Columns;
 use super::format::DexelFormat;
@@ -21,14 +21,14 @@ impl<S: Span> RowArrays<S> {
     }
 }
 
-/// The same in one of the two forms of ends.
+/// The owned rays of one direction, in one of the two forms of ends.
 #[derive(Debug)]
 pub(crate) enum OwnedRows {
     Fixed(RowArrays<FixedSpan>),
     Double(RowArrays<DoubleSpan>),
 }
 
-/// Forms of ends that arrays can be told of.
+/// The forms of ends, as types that convert to and from the enums.
 pub(crate) trait Form: Span {
     fn own(rows: RowArrays<Self>) -> OwnedRows;
 
@@ -61,7 +61,7 @@ impl Form for DoubleSpan {
     }
 }
 
-/// A whole model.
+/// The arrays of a whole model.
 #[derive(Debug)]
 pub(crate) struct ModelArrays {
     pub frame: Frame,

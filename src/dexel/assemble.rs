@@ -1,5 +1,5 @@
-//! Models from rows of rays, in one canonical form: the window of each direction is the least that holds the
-//! rays that are not empty.
+//! Assembles models from rows of rays, in one canonical form: the window of each direction is the least that
+//! contains all rays that are not empty.
 
 use super::arrays::RowArrays;
 use super::columns::Columns;
@@ -15,29 +15,29 @@ use core::ops::Range;
 /// Consecutive whole rows of a window.
 #[derive(Debug)]
 pub(crate) struct Piece<S> {
-    /// For each ray the number of its first interval, and behind the last the number of all.
+    /// For each ray, the index of its first interval; then the number of all intervals.
     starts: Vec<u32>,
     pub columns: Columns<S>,
 }
 
 impl<S: Span> Piece<S> {
-    /// No ray yet, with room for this many.
+    /// Makes an empty piece, with room for `rays` rays.
     pub fn new(format: &DexelFormat, rays: usize) -> Result<Piece<S>, Error> {
         let mut starts = memory::with_capacity(rays + 1)?;
         starts.push(0);
         Ok(Piece { starts, columns: Columns::new(format) })
     }
 
-    /// The number of the next ray's first interval.
+    /// The index of the next ray's first interval.
     #[inline(always)]
     pub fn begin(&self) -> usize {
         self.starts.last().map_or(0, |&start| start as usize)
     }
 
-    /// Ends a ray: all intervals that were added since the last one are its own.
+    /// Ends a ray. It consists of all intervals that were added since the previous ray.
     #[inline(always)]
     pub fn end_ray(&mut self) -> Result<(), Error> {
-        // (A number that is too large for this is refused once all is put together.)
+        // (`assembled` rejects a number that is too large for u32.)
         memory::push(&mut self.starts, self.columns.spans.len() as u32)
     }
 
@@ -48,7 +48,7 @@ impl<S: Span> Piece<S> {
         Ok(())
     }
 
-    /// Appends rays as they are, given by their numbers in the window of rows that were checked.
+    /// Appends rays unchanged, given by their indices in the window of rows that were checked.
     pub fn copy(&mut self, from: &RowsRef<'_, S>, rays: Range<usize>) -> Result<(), Error> {
         let base = self.columns.spans.len() as u32;
         let starts = &from.starts[rays.start..=rays.end];
@@ -58,8 +58,8 @@ impl<S: Span> Piece<S> {
         self.columns.copy(&from.columns, first as usize..end as usize)
     }
 
-    /// Appends an interval of the present ray: nothing if it is empty; one that touches the interval before
-    /// is joined to that, unless both have materials that differ.
+    /// Appends an interval to the current ray, unless the interval is empty. An interval that touches the
+    /// previous one is joined to it, unless both have materials that differ.
     #[inline]
     pub fn add(&mut self, item: &Item<S::Place>) -> Result<(), Error> {
         if item.ends[0] >= item.ends[1] {
@@ -80,7 +80,7 @@ impl<S: Span> Piece<S> {
         columns.push(item)
     }
 
-    /// Makes one of pieces that follow on one another.
+    /// Concatenates consecutive pieces.
     fn concatenated(format: &DexelFormat, mut pieces: Vec<Piece<S>>) -> Result<Piece<S>, Error> {
         if pieces.len() == 1 {
             return Ok(pieces.swap_remove(0));
@@ -95,12 +95,12 @@ impl<S: Span> Piece<S> {
         Ok(all)
     }
 
-    /// Leaves away the rays outside of the least window that holds those that are not empty.
+    /// Removes the rays outside the least window that contains all rays that are not empty.
     fn trim(&mut self, window: Window) -> Window {
         let starts = &mut self.starts;
         let trimmed = least(window, starts);
         if trimmed != window {
-            // What is left away is empty, so that numbers of intervals stay as they are.
+            // The removed rays are empty, so that the indices of intervals do not change.
             let (mut to, width) = (0, trimmed.size[0] as usize);
             for row in trimmed.range(1) {
                 if let Some(from) = window.index([trimmed.first[0], row]) {
@@ -115,7 +115,7 @@ impl<S: Span> Piece<S> {
     }
 }
 
-/// The rays of a window from pieces that follow on one another.
+/// Assembles the rays of a window from consecutive pieces.
 ///
 /// # Errors
 /// [`Error::Limit`] for 2^32 rays or intervals, and [`Error::OutOfMemory`].
@@ -137,7 +137,7 @@ pub(crate) fn assembled<S: Span>(
     Ok(RowArrays { window, starts: piece.starts, columns: piece.columns })
 }
 
-/// The least window that holds the rays that are not empty.
+/// The least window that contains all rays that are not empty.
 fn least(window: Window, starts: &[u32]) -> Window {
     let width = window.size[0] as usize;
     let (mut low, mut high) = (width, 0);

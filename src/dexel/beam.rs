@@ -1,4 +1,4 @@
-//! What a solid is asked to fill: a bundle of rays through the centres of cells.
+//! A bundle of rays through the centres of cells, which a solid fills with intervals.
 
 use super::assemble::Piece;
 use super::item::{Item, Mark, NO_SURFACE};
@@ -10,35 +10,35 @@ use crate::memory;
 use alloc::vec::Vec;
 use core::ops::Range;
 
-/// A place where a ray enters or leaves a solid.
+/// A point where a ray enters or leaves a solid.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct BeamEnd {
-    /// Where, in finest cells from the universe's lower face.
+    /// The position in finest cells from the universe's lower face.
     pub(crate) at: f64,
     pub(crate) mark: Mark,
 }
 
 impl BeamEnd {
-    /// An end about `at` cells from the universe's lower face, of which is known that cell `above` is the
-    /// first whose centre does not lie below it (0 to the cells of an axis). It is moved into the gap that
-    /// this says it lies in.
+    /// Makes an end at about `at` cells from the universe's lower face. `above` (0 to the number of cells of
+    /// an axis) is the first cell whose centre does not lie below the end. The end is moved into the gap that
+    /// `above` determines.
     pub fn new(at: f64, above: u32, cells: u32) -> BeamEnd {
         let at = within(at, above.min(cells) as i32, f64::from(cells));
         BeamEnd { at: if at.is_nan() { 0.0 } else { at }, mark: Mark::NONE }
     }
 
-    /// An end in the plane between cells `above` − 1 and `above`.
+    /// Makes an end in the plane between cells `above` − 1 and `above`.
     pub fn between(above: u32) -> BeamEnd {
         BeamEnd { at: f64::from(above), mark: Mark::NONE }
     }
 
-    /// The same of the complement.
+    /// The same end in the complement.
     fn flipped(self) -> BeamEnd {
         BeamEnd { mark: self.mark.flipped(), ..self }
     }
 
-    /// The same on a surface of the solid with this outward normal (of any length; without direction for
-    /// none).
+    /// The same end on a surface of the solid with this outward normal, of any length; a normal without
+    /// direction counts as none.
     #[must_use]
     pub fn on(self, surface: u32, normal: [f64; 3]) -> BeamEnd {
         BeamEnd { mark: Mark { surface, normal: encoded(normal) }, ..self }
@@ -48,31 +48,30 @@ impl BeamEnd {
 /// An interval of a ray.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct Chord {
-    /// The ray's number in the window.
+    /// The index of the ray in the window.
     pub ray: u32,
-    /// In finest cells from the universe's lower face.
+    /// The ends, in finest cells from the universe's lower face.
     pub ends: [f64; 2],
 }
 
-/// Parallel rays through the centres of finest cells, inside of one cell: what a [`Worker`](crate::Worker)
-/// fills that knows where they enter and leave.
+/// Parallel rays through the centres of finest cells, within one cell. A [`Worker`](crate::Worker) that knows
+/// the intervals of the rays fills them in.
 pub struct Beam {
     axis: usize,
     depth: u8,
-    /// All rays that are asked for, one cell after the other.
+    /// All rays that are requested, one cell after the other.
     window: Window,
-    /// Those of the present cell, and how far they reach.
+    /// The rays of the current cell, and their range along the axis.
     rays: Window,
     span: Range<u32>,
     marked: bool,
     chords: Vec<Chord>,
-    /// What lies at their ends, if that is wanted.
+    /// The marks of the ends, if they are requested.
     marks: Vec<[Mark; 2]>,
 }
 
 impl Beam {
-    /// Rays of a universe of 2^depth cells along an axis; nothing is known yet. `marked`: surfaces and
-    /// normals are wanted.
+    /// Makes empty rays along an axis of a universe of 2^depth cells. `marked` requests surfaces and normals.
     pub(crate) fn new(axis: usize, depth: u8, window: Window, marked: bool) -> Beam {
         Beam {
             axis,
@@ -86,45 +85,45 @@ impl Beam {
         }
     }
 
-    /// Goes on to other rays, in the memory of these.
+    /// Starts again with other rays, in the same memory.
     pub(crate) fn restart(&mut self, window: Window) {
         self.chords.clear();
         self.marks.clear();
         (self.window, self.rays) = (window, window);
     }
 
-    /// Asks for the part of the rays in a cell.
+    /// Requests the part of the rays in a cell.
     pub(crate) fn enter(&mut self, rays: Window, span: Range<u32>) {
         (self.rays, self.span) = (rays, span);
     }
 
-    /// The axis that the rays run along.
+    /// The axis along which the rays run.
     pub fn axis(&self) -> usize {
         self.axis
     }
 
-    /// The universe's depth.
+    /// The depth of the universe.
     pub fn depth(&self) -> u8 {
         self.depth
     }
 
-    /// Which rays are asked for: indices of finest cells on the other two axes, the lower axis first.
+    /// The rays that are requested: indices of finest cells on the other two axes, the lower axis first.
     pub fn rays(&self) -> [Range<u32>; 2] {
         [self.rays.range(0), self.rays.range(1)]
     }
 
-    /// Between which planes of the lattice intervals are asked for.
+    /// The planes of the lattice between which intervals are requested.
     pub fn span(&self) -> Range<u32> {
         self.span.clone()
     }
 
-    /// Whether surfaces and normals at ends are wanted.
+    /// Returns whether surfaces and normals at ends are requested.
     pub fn is_marked(&self) -> bool {
         self.marked
     }
 
-    /// Adds an interval. Those of a ray must come in ascending order. An interval reaches no farther than the
-    /// span; one that goes on beyond it ends there, [between](BeamEnd::between) cells.
+    /// Appends an interval. The intervals of a ray must come in ascending order. No interval may reach beyond
+    /// the span; one that continues beyond it must end there, [between](BeamEnd::between) cells.
     ///
     /// # Errors
     /// [`Error::OutOfMemory`].
@@ -141,19 +140,19 @@ impl Beam {
         }
     }
 
-    /// How many intervals there are.
+    /// The number of intervals.
     pub(crate) fn len(&self) -> usize {
         self.chords.len()
     }
 
-    /// An interval's end.
+    /// One end of an interval.
     fn end(&self, i: usize, side: usize) -> BeamEnd {
         let mark = self.marks.get(i).map_or(Mark::NONE, |marks| marks[side]);
         BeamEnd { at: self.chords[i].ends[side], mark }
     }
 
-    /// Puts in the place of the intervals from the one numbered `first` on, which are those of the present
-    /// rays in the present cell, what they leave of it.
+    /// Replaces the intervals from index `first` on by their complement. These intervals are those of the
+    /// current rays in the current cell.
     pub(crate) fn complement(&mut self, first: usize) -> Result<(), Error> {
         let count = self.chords.len() - first;
         let mut own = memory::with_capacity(count)?;
@@ -233,7 +232,7 @@ impl Beam {
         }
     }
 
-    /// Appends the rays to a piece of a model, once they are joined, without intervals that rounding empties.
+    /// Appends the joined rays to a piece of a model, without intervals that rounding empties.
     ///
     /// # Errors
     /// [`Error::OutOfMemory`].
@@ -244,7 +243,7 @@ impl Beam {
             while let Some((i, chord)) = chords.next_if(|(_, chord)| chord.ray == ray) {
                 let ends = chord.ends.map(|end| S::Place::rounded(end, self.depth));
                 let marks = if self.marked { [self.faced(i, 0), self.faced(i, 1)] } else { [Mark::NONE; 2] };
-                // What was rounded may touch, or be empty.
+                // Rounded intervals may touch, or be empty.
                 piece.add(&Item { ends, marks, material: 0 })?;
             }
             piece.end_ray()?;
@@ -252,7 +251,7 @@ impl Beam {
         Ok(())
     }
 
-    /// The mark of an end. In a plane between cells the surface is this plane.
+    /// The mark of an end. For an end in a plane between cells, the surface is this plane.
     fn faced(&self, i: usize, side: usize) -> Mark {
         let end = self.end(i, side);
         let Mark { surface, normal } = end.mark;
@@ -270,14 +269,14 @@ impl Beam {
 #[derive(Default)]
 pub(crate) struct Scratch {
     starts: Vec<u32>,
-    /// Where each chord goes.
+    /// The new index of each chord.
     places: Vec<u32>,
     chords: Spare<Chord>,
     marks: Spare<[Mark; 2]>,
 }
 
 impl Scratch {
-    /// Where chords go if they are sorted by rays; those of a ray stay in the order in which they came.
+    /// Computes the indices of chords that are sorted by rays. The chords of a ray keep their order.
     fn order(&mut self, chords: &[Chord], rays: usize) -> Result<(), Error> {
         self.starts.clear();
         self.starts.try_reserve(rays + 1)?;
@@ -299,7 +298,7 @@ impl Scratch {
     }
 }
 
-/// A second list, for items that change their places.
+/// A second list, for items that are reordered.
 struct Spare<T>(Vec<T>);
 
 impl<T> Default for Spare<T> {
@@ -309,7 +308,7 @@ impl<T> Default for Spare<T> {
 }
 
 impl<T: Copy> Spare<T> {
-    /// Moves each item of a list, if there are any, to its place.
+    /// Moves each item of a list to its new index, if there are items.
     fn move_in(&mut self, list: &mut Vec<T>, places: &[u32]) -> Result<(), Error> {
         self.0.clear();
         self.0.try_reserve(list.len())?;

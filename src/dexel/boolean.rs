@@ -1,8 +1,9 @@
 //! The set algebra of models on one lattice.
 //!
 //! Half-open intervals on a ray are closed under the set operations, so that all laws of sets hold exactly,
-//! as for point sets. What intervals carry follows: an end keeps its surface and normal, turned about where a
-//! subtraction shows its other side; where both operands hold a place, the first one's material counts.
+//! as for point sets. The data of intervals follows: an end keeps its surface and normal, and a subtraction
+//! that shows the other side reverses the normal. Where both operands contain a place, the first one's
+//! material counts.
 
 use super::arrays::{Form, ModelArrays, OwnedRows};
 use super::assemble::{Piece, assembled};
@@ -19,24 +20,27 @@ use crate::memory;
 use crate::parallel::each;
 use core::ops::Range;
 
-/// Rows of rays that a thread works on at a time.
+/// The number of rows of rays in one task of a thread.
 const ROWS: u32 = 64;
 
 impl TriDexelRef<'_> {
-    /// What lies in this model or in `other`. O(rays + intervals). The same for any number of threads.
+    /// Computes the union: the places that lie in this model, in `other`, or in both. O(rays + intervals).
+    /// The result is the same for any number of threads.
     ///
     /// # Errors
-    /// [`Error::FrameMismatch`] if the models lie on different lattices; [`Error::Argument`] if they have
-    /// different directions; [`Error::Limit`] for 2^32 intervals in one direction, and for 2^32 rays between
-    /// the outermost ones of the result, as where two models lie far apart at a depth of 16 or more;
-    /// [`Error::TooLarge`] where these rays alone take more than `control.max_bytes`; [`Error::DamagedRays`]
-    /// if a model is one of a file that nobody has verified, and is damaged; [`Error::OutOfMemory`];
-    /// [`Error::Cancelled`].
+    /// - [`Error::FrameMismatch`] if the models lie on different lattices.
+    /// - [`Error::Argument`] if they have different directions.
+    /// - [`Error::Limit`] for 2^32 intervals in one direction, and for 2^32 rays in the window of the result,
+    ///   as where two models lie far apart at a depth of 16 or more.
+    /// - [`Error::TooLarge`] if these rays alone take more than `control.max_bytes`.
+    /// - [`Error::DamagedRays`] if a model comes from an unverified file and is damaged.
+    /// - [`Error::OutOfMemory`]; [`Error::Cancelled`].
     pub fn union(&self, other: &TriDexelRef<'_>, control: &Control<'_>) -> Result<TriDexel, Error> {
         combined(SetOp::Union, self, other, control)
     }
 
-    /// What lies in both. Else as [`union`](Self::union).
+    /// Computes the intersection: the places that lie in both models. Cost and materials as for
+    /// [`union`](Self::union).
     ///
     /// # Errors
     /// As [`union`](Self::union).
@@ -44,7 +48,8 @@ impl TriDexelRef<'_> {
         combined(SetOp::Intersection, self, other, control)
     }
 
-    /// What lies in this one, and not in `other`. Else as [`union`](Self::union).
+    /// Computes the difference: the places that lie in this model and not in `other`. Cost and materials as
+    /// for [`union`](Self::union).
     ///
     /// # Errors
     /// As [`union`](Self::union).
@@ -52,7 +57,8 @@ impl TriDexelRef<'_> {
         combined(SetOp::Difference, self, other, control)
     }
 
-    /// What lies in one of them, and not in both. Else as [`union`](Self::union).
+    /// Computes the symmetric difference: the places that lie in exactly one of the models. Cost and
+    /// materials as for [`union`](Self::union).
     ///
     /// # Errors
     /// As [`union`](Self::union).
@@ -60,7 +66,8 @@ impl TriDexelRef<'_> {
         combined(SetOp::Xor, self, other, control)
     }
 
-    /// What lies in the universe, and not in this model. Else as [`union`](Self::union).
+    /// Computes the complement: the places in the universe that do not lie in this model. Cost as for
+    /// [`union`](Self::union).
     ///
     /// # Errors
     /// As [`union`](Self::union).
@@ -68,12 +75,13 @@ impl TriDexelRef<'_> {
         self.sound()?;
         let depth = self.frame.depth();
         each_direction(self.frame, self.format, self.directions(), control, |axis, lot| {
-            let Some(rows) = &self.rays[axis] else { unreachable!("only directions that there are") };
+            let Some(rows) = &self.rays[axis] else { unreachable!("only directions that exist") };
             with_rows!(rows, rows => complemented(rows, depth, &self.format, lot))
         })
     }
 
-    /// The same model with other things stored. What it has not is unknown: no surface, no normal, material 0.
+    /// Converts the model to another format. Data that this model does not store is unknown in the result: no
+    /// surface, no normal, material 0.
     ///
     /// # Errors
     /// [`Error::DamagedRays`], [`Error::OutOfMemory`], [`Error::Cancelled`].
@@ -81,7 +89,7 @@ impl TriDexelRef<'_> {
         self.sound()?;
         let depth = self.frame.depth();
         each_direction(self.frame, format, self.directions(), control, |axis, lot| {
-            let Some(rows) = &self.rays[axis] else { unreachable!("only directions that there are") };
+            let Some(rows) = &self.rays[axis] else { unreachable!("only directions that exist") };
             with_rows!(rows, rows => match format.ends {
                 DexelEnds::Fixed => converted::<_, FixedSpan>(rows, &format, depth, lot),
                 DexelEnds::Double => converted::<_, DoubleSpan>(rows, &format, depth, lot),
@@ -89,7 +97,7 @@ impl TriDexelRef<'_> {
         })
     }
 
-    /// The same model, all of it of one material.
+    /// Sets the material of the whole model.
     ///
     /// # Errors
     /// As [`to_format`](Self::to_format).
@@ -97,12 +105,12 @@ impl TriDexelRef<'_> {
         self.sound()?;
         let format = DexelFormat { materials: true, ..self.format };
         each_direction(self.frame, format, self.directions(), control, |axis, lot| {
-            let Some(rows) = &self.rays[axis] else { unreachable!("only directions that there are") };
+            let Some(rows) = &self.rays[axis] else { unreachable!("only directions that exist") };
             with_rows!(rows, rows => painted(rows, material, &format, lot))
         })
     }
 
-    /// Whether all that is stored is equal, bit for bit. O(n).
+    /// Returns whether all stored data is equal, bit for bit. O(n).
     pub(crate) fn equals(&self, other: &TriDexelRef<'_>) -> bool {
         fn same<S: Span>(a: &RowsRef<'_, S>, b: &RowsRef<'_, S>) -> bool {
             let count = a.columns.spans.len();
@@ -126,27 +134,30 @@ impl TriDexelRef<'_> {
 }
 
 impl TriDexel {
-    /// What lies in any of the models; nothing of no model is an error, as its lattice is not known. Where
-    /// several hold a place, the first one's material counts. O(rays + intervals · log models).
+    /// Computes the union of several models: the places that lie in any of them. Where several models contain
+    /// a place, the first one's material counts. An empty list is an error, because its lattice is unknown.
+    /// O(rays + intervals · log models).
     ///
     /// # Errors
-    /// [`Error::Argument`] for no model, else as [`TriDexelRef::union`].
+    /// [`Error::Argument`] for an empty list; otherwise as [`TriDexelRef::union`].
     pub fn union_of(models: &[TriDexelRef<'_>], control: &Control<'_>) -> Result<TriDexel, Error> {
         combined_of(SetOp::Union, models, control)
     }
 
-    /// What lies in all of the models. Else as [`union_of`](Self::union_of).
+    /// Computes the intersection of several models: the places that lie in all of them. Cost and materials as
+    /// for [`union_of`](Self::union_of).
     ///
     /// # Errors
-    /// As [`union_of`](Self::union_of).
+    /// [`Error::Argument`] for an empty list; otherwise as [`TriDexelRef::union`].
     pub fn intersection_of(models: &[TriDexelRef<'_>], control: &Control<'_>) -> Result<TriDexel, Error> {
         combined_of(SetOp::Intersection, models, control)
     }
 
-    /// What lies in the first of the models, and in none of the others. Else as [`union_of`](Self::union_of).
+    /// Computes the places that lie in the first of the models and in none of the others. Cost and materials
+    /// as for [`union_of`](Self::union_of).
     ///
     /// # Errors
-    /// As [`union_of`](Self::union_of).
+    /// [`Error::Argument`] for an empty list; otherwise as [`TriDexelRef::union`].
     pub fn difference_of(models: &[TriDexelRef<'_>], control: &Control<'_>) -> Result<TriDexel, Error> {
         match models {
             [first, others @ ..] if others.len() > 1 => {
@@ -159,16 +170,17 @@ impl TriDexel {
         }
     }
 
-    /// What lies in an odd number of the models. Else as [`union_of`](Self::union_of).
+    /// Computes the places that lie in an odd number of the models. Cost and materials as for
+    /// [`union_of`](Self::union_of).
     ///
     /// # Errors
-    /// As [`union_of`](Self::union_of).
+    /// [`Error::Argument`] for an empty list; otherwise as [`TriDexelRef::union`].
     pub fn xor_of(models: &[TriDexelRef<'_>], control: &Control<'_>) -> Result<TriDexel, Error> {
         combined_of(SetOp::Xor, models, control)
     }
 }
 
-/// Neighbours two by two, until one is left: of n operands each interval is copied log n times.
+/// Combines neighbours in pairs until one model is left: for n operands each interval is copied log n times.
 fn combined_of(op: SetOp, models: &[TriDexelRef<'_>], control: &Control<'_>) -> Result<TriDexel, Error> {
     match models {
         [] => Err(Error::Argument { name: "models", problem: "must be at least one" }),
@@ -185,12 +197,12 @@ fn combined_of(op: SetOp, models: &[TriDexelRef<'_>], control: &Control<'_>) -> 
     }
 }
 
-/// Refuses operands that do not fit, before any work is done.
+/// Rejects operands that do not fit, before any work is done.
 fn check_all(models: &[TriDexelRef<'_>]) -> Result<(), Error> {
     models.iter().try_for_each(|model| check_operands(&models[0].frame, models[0].directions(), model))
 }
 
-/// Refuses an operand that does not fit.
+/// Rejects an operand that does not fit.
 pub(crate) fn check_operands(
     frame: &Frame,
     directions: [bool; 3],
@@ -227,7 +239,7 @@ fn combined(
         match (&a.rays[axis], &b.rays[axis]) {
             (Some(Rows::Fixed(a)), Some(Rows::Fixed(b))) => of_rows(op, a, b, &format, lot),
             (Some(Rows::Double(a)), Some(Rows::Double(b))) => of_rows(op, a, b, &format, lot),
-            _ => unreachable!("operands of one kind, and only directions that there are"),
+            _ => unreachable!("operands of one kind, and only directions that exist"),
         }
     })
 }
@@ -236,11 +248,11 @@ fn combined(
 struct Lot<'a> {
     job: &'a Job<'a>,
     parallel: bool,
-    /// What it counts for in the progress.
+    /// Its share of the progress.
     parts: usize,
 }
 
-/// A model whose directions `work` makes, one after the other.
+/// Makes a model; `work` makes its directions, one after the other.
 fn each_direction(
     frame: Frame,
     format: DexelFormat,
@@ -271,7 +283,7 @@ fn bytes(rows: &OwnedRows, format: &DexelFormat) -> usize {
     4 * starts + count * format.bytes_per_interval()
 }
 
-/// The rays of a window, made row by row: `begin` is told of each range of rows before `work` makes them.
+/// Makes the rays of a window row by row. `begin` is called with each range of rows before `work` makes them.
 fn by_rows<S: Form>(
     window: Window,
     format: &DexelFormat,
@@ -284,7 +296,7 @@ fn by_rows<S: Form>(
     if window.count() > MOST {
         return Err(Error::Limit { what: "rays in one direction", limit: MOST });
     }
-    // Each ray has the number of its first interval.
+    // Each ray stores the index of its first interval.
     job.control().afford("the rays", window.count() * size_of::<u32>() as u64)?;
     let rows = window.range(1);
     let each_row = parts.checked_div(rows.len()).unwrap_or(0);
@@ -346,7 +358,7 @@ fn of_rows<S: Form>(
     })
 }
 
-/// A row cut where the windows of the operands begin and end; with which of them each run lies in.
+/// Divides a row at the ends of the operands' windows. Each run comes with the windows that contain it.
 fn runs<S>(
     all: Range<u32>,
     v: u32,
@@ -421,7 +433,7 @@ fn both<S: Span>(
     Ok(())
 }
 
-/// Rows with another form of ends and other columns.
+/// Converts rows to another form of ends and to other columns.
 fn converted<S: Span, T: Form>(
     rows: &RowsRef<'_, S>,
     format: &DexelFormat,
@@ -431,7 +443,7 @@ fn converted<S: Span, T: Form>(
     by_rows(rows.window, format, lot, nothing, |v, piece: &mut Piece<T>| {
         for u in rows.window.range(0) {
             for item in rows.items([u, v]) {
-                // Without materials, or rounded, intervals may touch that did not.
+                // Without materials, or after rounding, intervals may touch that did not touch before.
                 let ends = item.ends.map(|end| T::Place::rounded(end.cells(depth), depth));
                 piece.add(&Item { ends, marks: item.marks, material: item.material })?;
             }
@@ -441,7 +453,7 @@ fn converted<S: Span, T: Form>(
     })
 }
 
-/// What lies outside of all rays' intervals.
+/// The complement of all rays.
 fn complemented<S: Form>(
     rows: &RowsRef<'_, S>,
     depth: u8,
@@ -457,7 +469,8 @@ fn complemented<S: Form>(
     })
 }
 
-/// Rows of one material. Intervals touch only where their materials differ, so that these are joined.
+/// Rows of one material. Intervals touch only where their materials differ, so that touching intervals are
+/// joined.
 fn painted<S: Form>(
     rows: &RowsRef<'_, S>,
     material: u32,

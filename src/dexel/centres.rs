@@ -1,26 +1,26 @@
-//! Which centres of cells lie inside, 64 at a time.
+//! The centres of cells that lie inside, 64 at a time.
 //!
-//! Rays of three directions may say three things of one centre, if their arrays come from elsewhere. One
-//! direction decides for all: the highest axis that has rays.
+//! If their arrays come from elsewhere, rays of three directions may disagree about a centre. One direction
+//! decides for all: the highest axis that has rays.
 
 use super::item::Item;
 use super::place::{Place, Span};
 use super::view::{OTHERS, Rows, RowsRef, TriDexelRef, with_rows};
 use core::ops::Range;
 
-/// Edge of a block of cells.
+/// The edge of a block of cells.
 pub(crate) const BLOCK: u32 = 64;
 
-/// What rays say of a box of finest cells.
+/// The position of rays relative to a box of finest cells.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(crate) enum Passage {
-    /// No ray is inside anywhere in it.
+    /// No ray is inside anywhere in the box.
     Outside,
-    /// Every ray is inside all the way through it, in one material.
+    /// Every ray is inside all the way through the box, in one material.
     Inside(u32),
-    /// Every ray is inside all the way through it, in several materials.
+    /// Every ray is inside all the way through the box, in several materials.
     Mixed,
-    /// A ray begins or ends in it, or one is inside and another one outside.
+    /// A ray begins or ends in the box, or one ray is inside and another one outside.
     Crossed,
 }
 
@@ -37,8 +37,9 @@ impl Passage {
 }
 
 impl TriDexelRef<'_> {
-    /// What the rays along an axis say of the cells in these ranges; `None` without rays. An end in a face of
-    /// the box is not in it. O(rays in the box · log intervals of a ray), less where the first rays differ.
+    /// The position of the rays along an axis relative to the cells in these ranges; `None` without rays. An
+    /// end in a face of the box does not count as in the box. O(rays in the box · log intervals of a ray),
+    /// less where the first rays differ.
     pub(crate) fn passage(&self, axis: usize, cells: &[Range<u32>; 3]) -> Option<Passage> {
         let rows = self.rays.get(axis)?.as_ref()?;
         let ([u, v], depth) = (OTHERS[axis], self.frame.depth());
@@ -56,7 +57,7 @@ impl TriDexelRef<'_> {
         found
     }
 
-    /// The same of the rays along all axes; `None` without any.
+    /// The position of the rays along all axes; `None` without any rays.
     pub(crate) fn passages(&self, cells: &[Range<u32>; 3]) -> Option<Passage> {
         let mut found: Option<Passage> = None;
         for axis in 0..3 {
@@ -70,8 +71,8 @@ impl TriDexelRef<'_> {
         found
     }
 
-    /// Whether the centre of a finest cell lies inside. Where the directions differ, as those of arrays from
-    /// elsewhere may, the highest axis that has rays decides. A cell outside of the universe does not lie
+    /// Returns whether the centre of a finest cell lies inside. Where the directions differ, as in arrays
+    /// from elsewhere, the highest axis that has rays decides. A cell outside the universe does not lie
     /// inside. O(log intervals of a ray).
     pub fn contains_cell(&self, cell: [u32; 3]) -> bool {
         let Some((axis, rows)) = self.deciding() else { return false };
@@ -79,8 +80,8 @@ impl TriDexelRef<'_> {
         with_rows!(rows, rows => find(rows, [cell[u], cell[v]], cell[axis], self.frame.depth())).is_some()
     }
 
-    /// What a finest cell is made of, by the rays that decide whether its centre lies inside; 0 if that lies
-    /// outside, or nothing was said.
+    /// The material of a finest cell, by the rays that decide whether its centre lies inside; 0 if the centre
+    /// lies outside, or no material is stored.
     pub(crate) fn material_of_cell(&self, cell: [u32; 3]) -> u32 {
         let Some((axis, rows)) = self.deciding() else { return 0 };
         let [u, v] = OTHERS[axis];
@@ -90,9 +91,9 @@ impl TriDexelRef<'_> {
         })
     }
 
-    /// How many intervals in all directions hold no centre of a cell, those that touch counted as one: what
-    /// is thinner than the lattice there is in no octree and in no surface of the model. O(rays of the
-    /// windows + intervals).
+    /// The number of intervals, in all directions, that contain no centre of a cell; intervals that touch
+    /// count as one. Such parts are thinner than the lattice, and do not appear in any octree or surface of
+    /// the model. O(rays of the windows + intervals).
     pub fn without_centres(&self) -> u64 {
         let depth = self.frame.depth();
         self.rays.iter().flatten().map(|rows| with_rows!(rows, rows => without_centres(rows, depth))).sum()
@@ -103,17 +104,16 @@ impl TriDexelRef<'_> {
         (0..3).rev().find_map(|axis| Some((axis, self.rays[axis].as_ref()?)))
     }
 
-    /// Which of 64³ centres from cell `first` on lie inside, as bit columns along an axis: bit k of
-    /// `words[p + 64 q]` is cell k along `along`, cell p along the lower and cell q along the higher one of
-    /// the other two axes. The answer is whether any centre may lie inside; if not, the words are left as
-    /// they are.
+    /// Computes which of the 64³ centres from cell `first` on lie inside, as bit columns along an axis. Bit k
+    /// of `words[p + 64 q]` is cell k along `along`, cell p along the lower and cell q along the higher one
+    /// of the other two axes. Returns whether any centre may lie inside; if not, the words do not change.
     pub(crate) fn fill_centres(&self, first: [u32; 3], along: usize, words: &mut [u64; 4096]) -> bool {
         let Some((axis, rows)) = self.deciding() else { return false };
         with_rows!(rows, rows => fill(rows, axis, first, along, self.frame.depth(), words))
     }
 }
 
-/// How many runs of intervals that touch hold no centre.
+/// The number of runs of touching intervals that contain no centre.
 fn without_centres<S: Span>(rows: &RowsRef<'_, S>, depth: u8) -> u64 {
     let mut count = 0;
     for index in 0..rows.window.count() as usize {
@@ -128,7 +128,7 @@ fn without_centres<S: Span>(rows: &RowsRef<'_, S>, depth: u8) -> u64 {
     count
 }
 
-/// What a ray says of the cells in a range.
+/// The position of a ray relative to the cells in a range.
 fn passage<S: Span>(rows: &RowsRef<'_, S>, ray: [u32; 2], cells: &Range<u32>, depth: u8) -> Passage {
     let range = rows.ray(ray);
     let [low, high] = [cells.start, cells.end].map(|plane| S::Place::rounded(f64::from(plane), depth));
@@ -144,7 +144,7 @@ fn passage<S: Span>(rows: &RowsRef<'_, S>, ray: [u32; 2], cells: &Range<u32>, de
     let material =
         |i: usize| rows.columns.materials.and_then(|m| m.get(range.start + i)).copied().unwrap_or(0);
     let mut found = Passage::Inside(material(first));
-    // Intervals of several materials touch.
+    // Intervals of different materials may touch.
     let mut next = first + 1;
     while end < high {
         match list.get(next).map(|span| span.ends()) {
@@ -158,7 +158,7 @@ fn passage<S: Span>(rows: &RowsRef<'_, S>, ray: [u32; 2], cells: &Range<u32>, de
     found
 }
 
-/// The interval of the ray that holds the centre of cell k.
+/// The interval of the ray that contains the centre of cell k.
 fn find<S: Span>(rows: &RowsRef<'_, S>, ray: [u32; 2], k: u32, depth: u8) -> Option<usize> {
     let range = rows.ray(ray);
     let list = &rows.columns.spans[range.clone()];
@@ -195,7 +195,7 @@ fn fill<S: Span>(
         }
         return true;
     }
-    // The words run along the rays. Planes that hold both axes are turned about.
+    // Here the words run along the rays. Planes that contain both axes are transposed.
     let mut block = [[0; 64]; 64];
     for (v, line) in (0..BLOCK).zip(&mut block) {
         row(v, line);
@@ -209,7 +209,7 @@ fn fill<S: Span>(
         }
         turn(&mut matrix);
         for (r, &word) in matrix.iter().enumerate() {
-            // The other two axes of `along` are that of the rays and the third one.
+            // The other two axes of `along` are the axis of the rays and the third axis.
             let place = if axis < third { r + 64 * t } else { t + 64 * r };
             words[place] = word;
         }
@@ -217,7 +217,7 @@ fn fill<S: Span>(
     true
 }
 
-/// Which of 64 centres from cell `first` on the intervals of a ray hold.
+/// The bits of the 64 centres from cell `first` on that the intervals of a ray contain.
 #[inline(always)]
 fn column<S: Span>(spans: &[S], first: u32, depth: u8) -> u64 {
     let last = first + BLOCK;
@@ -238,7 +238,7 @@ fn column<S: Span>(spans: &[S], first: u32, depth: u8) -> u64 {
     word
 }
 
-/// Makes bit j of word i bit i of word j. (Warren, Hacker's Delight, 7-3.)
+/// Transposes a bit matrix: bit j of word i becomes bit i of word j. (Warren, Hacker's Delight, 7-3.)
 fn turn(matrix: &mut [u64; 64]) {
     let (mut width, mut mask) = (32, 0x0000_0000_FFFF_FFFF_u64);
     while width != 0 {

@@ -1,22 +1,22 @@
-//! What a change in place took away and added.
+//! The effect of a change in place: the removed and the added parts.
 
 use super::merge::SetOp;
 use super::place::{Place, Span};
 use super::view::OTHERS;
 use crate::lattice::Frame;
 
-/// What a change of a [`DexelEditor`](super::DexelEditor) did to its rays.
+/// The effect of a change by a [`DexelEditor`](super::DexelEditor) on its rays.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct DexelChange {
-    /// Rays of all directions whose intervals begin or end elsewhere than before.
+    /// The number of rays, in all directions, whose intervals changed.
     pub rays: u64,
-    /// For each axis the volume that the rays along it lost (cubic model units): the sum of the lengths, each
-    /// times the area of a cell's face. So it is an estimate, not a bound, and differs from axis to axis by
-    /// what rays beside each other do not see. 0 for an axis without rays.
+    /// For each axis, the volume that the rays along it lost (cubic model units): the sum of the lengths,
+    /// times the area of a cell's face. It is an estimate, not a bound. It differs between the axes, because
+    /// rays do not see what lies between them. 0 for an axis without rays.
     pub removed: [f64; 3],
-    /// The volume that the rays along each axis gained.
+    /// For each axis, the volume that the rays along it gained.
     pub added: [f64; 3],
-    /// The box of finest cells that the changed parts of rays run through: its first cell, and the first one
+    /// The box of finest cells that contains the changed parts of rays: its first cell, and the first cell
     /// beyond it on each axis. `None` if no ray changed.
     pub cells: Option<[[u32; 3]; 2]>,
 }
@@ -26,7 +26,7 @@ impl DexelChange {
     pub(super) const NONE: DexelChange =
         DexelChange { rays: 0, removed: [0.0; 3], added: [0.0; 3], cells: None };
 
-    /// Adds what happened along an axis.
+    /// Adds the changes along an axis.
     pub(super) fn add(&mut self, axis: usize, tally: &Tally, frame: &Frame) {
         if tally.rays == 0 {
             return;
@@ -50,7 +50,7 @@ impl DexelChange {
     }
 }
 
-/// What happened to rays along one axis, in cells.
+/// The changes of the rays along one axis, in cells.
 pub(super) struct Tally {
     rays: u64,
     removed: f64,
@@ -83,15 +83,16 @@ impl Tally {
     }
 }
 
-/// What happened to one ray, in cells.
+/// The change of one ray, in cells.
 pub(super) struct Part {
     pub removed: f64,
     pub added: f64,
-    /// From where to where it is another.
+    /// The range in which the ray differs.
     pub along: [f64; 2],
 }
 
-/// What an operation did to a ray that was `own`, with `other` it became `made`; `None` if nothing.
+/// The change of a ray by an operation with `other`: it was `own` and became `made`. `None` if it did not
+/// change.
 #[inline]
 pub(super) fn part<S: Span>(op: SetOp, own: &[S], other: &[S], made: &[S], depth: u8) -> Option<Part> {
     let first = (0..).find(|&k| end(own, k) != end(made, k) || end(own, k).is_none())?;
@@ -103,7 +104,7 @@ pub(super) fn part<S: Span>(op: SetOp, own: &[S], other: &[S], made: &[S], depth
     })?;
     let at = |list: &[S], k: usize| end(list, k).map(|at| at.cells(depth));
     let behind = |list: &[S], k: usize| (2 * list.len()).checked_sub(k + 1).and_then(|k| at(list, k));
-    // Where both lists have ended nothing differs.
+    // Beyond the ends of both lists nothing differs.
     let low = [at(own, first), at(made, first)].into_iter().flatten().reduce(f64::min)?;
     let high = [behind(own, last), behind(made, last)].into_iter().flatten().reduce(f64::max)?;
     let length = |list: &[S]| {
@@ -113,7 +114,7 @@ pub(super) fn part<S: Span>(op: SetOp, own: &[S], other: &[S], made: &[S], depth
     let (removed, added) = match op {
         SetOp::Union => (0.0, after - before),
         SetOp::Intersection | SetOp::Difference => (before - after, 0.0),
-        // What both hold is in neither's part of the result.
+        // The common part is in neither operand's share of the result.
         SetOp::Xor => {
             let common = (before + length(other) - after) / 2.0;
             (common, length(other) - common)

@@ -1,12 +1,12 @@
-//! Whether arrays are those of a model.
+//! Checks of a model's arrays.
 
 use super::place::{Place, Span};
 use super::view::{RowsRef, TriDexelRef, carries, with_rows};
 use crate::error::Error;
 
 impl TriDexelRef<'_> {
-    /// Refuses arrays that nobody has checked yet, and that are damaged. Every operation that meets all rays
-    /// asks for this first: merges rely on ascending ends, and on rays that have no interval in common.
+    /// Rejects arrays that are unchecked and damaged. Every operation that reads all rays calls this first:
+    /// merges rely on ascending ends, and on rays that share no interval.
     ///
     /// # Errors
     /// [`Error::DamagedRays`].
@@ -14,9 +14,9 @@ impl TriDexelRef<'_> {
         if self.checked { Ok(()) } else { self.check() }
     }
 
-    /// Checks all that the arrays must say: rays in order, intervals that are not empty, disjoint, inside of
-    /// the universe, and that touch only where their materials differ; normals that are codes; windows that
-    /// are not larger than needed. Whether the directions agree is not checked. O(n).
+    /// Checks the whole model. Rays must be in order. Intervals must be non-empty, disjoint and inside the
+    /// universe, and may touch only where their materials differ. Normals must be valid codes, and windows
+    /// must be no larger than needed. Agreement between the directions is not checked. O(n).
     ///
     /// # Errors
     /// [`Error::DamagedRays`].
@@ -65,7 +65,7 @@ impl TriDexelRef<'_> {
                 let apart = last.is_none_or(|(end, material)| {
                     end < start || end == start && self.format.materials && material != item.material
                 });
-                // (Comparisons with what is not a number are false.)
+                // (Comparisons with NaN are false.)
                 let inside = S::Place::LOW <= start && start < end && end <= S::Place::high(depth);
                 if !(apart && inside && start.is_plain() && rows.columns.has_codes(i)) {
                     return Err(damage(ray as u64));

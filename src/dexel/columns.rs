@@ -1,4 +1,4 @@
-//! Arrays of intervals: one for the ends, one for each thing that they carry.
+//! Arrays of intervals: one for the ends, and one for each kind of data.
 
 use super::format::{DexelFormat, DexelNormals};
 use super::item::{Item, Mark, NO_SURFACE};
@@ -17,7 +17,7 @@ pub(crate) enum NormalsRef<'a> {
     Bits32(&'a [[u32; 2]]),
 }
 
-/// Borrowed arrays, all of one length.
+/// Borrowed arrays, all of the same length.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct ColumnsRef<'a, S> {
     pub spans: &'a [S],
@@ -27,7 +27,7 @@ pub(crate) struct ColumnsRef<'a, S> {
 }
 
 impl<S: Span> ColumnsRef<'_, S> {
-    /// Whether the normals of interval i, which there is, are codes.
+    /// Returns whether the normals of interval i, which must exist, are valid codes.
     pub fn has_codes(&self, i: usize) -> bool {
         match self.normals {
             NormalsRef::None => true,
@@ -40,7 +40,7 @@ impl<S: Span> ColumnsRef<'_, S> {
         }
     }
 
-    /// Interval i, which there is.
+    /// Interval i, which must exist.
     #[inline]
     pub fn item(&self, i: usize) -> Item<S::Place> {
         let surfaces = self.surfaces.and_then(|s| s.get(i)).copied().unwrap_or([NO_SURFACE; 2]);
@@ -57,7 +57,7 @@ impl<S: Span> ColumnsRef<'_, S> {
     }
 }
 
-/// Codes of normals that are owned.
+/// Owned codes of normals.
 #[derive(Debug, Clone, PartialEq)]
 pub(crate) enum Normals {
     None,
@@ -65,7 +65,7 @@ pub(crate) enum Normals {
     Bits32(Vec<[u32; 2]>),
 }
 
-/// Arrays that are owned.
+/// Owned arrays.
 #[derive(Debug, Clone, PartialEq)]
 pub(crate) struct Columns<S> {
     pub spans: Vec<S>,
@@ -75,7 +75,7 @@ pub(crate) struct Columns<S> {
 }
 
 impl<S: Span> Columns<S> {
-    /// Empty ones.
+    /// Makes empty columns.
     pub fn new(format: &DexelFormat) -> Columns<S> {
         Columns {
             spans: Vec::new(),
@@ -166,7 +166,7 @@ impl<S: Span> Columns<S> {
         Ok(())
     }
 
-    /// Appends intervals as they are. What `from` does not carry is unknown.
+    /// Appends intervals unchanged. Data that `from` does not have is unknown.
     #[inline]
     pub fn copy(&mut self, from: &ColumnsRef<'_, S>, range: Range<usize>) -> Result<(), Error> {
         self.reserve(range.len(), false)?;
@@ -212,7 +212,7 @@ impl<S: Span> Columns<S> {
         }
     }
 
-    /// Empty columns that carry the same.
+    /// Empty columns with the same kinds of data.
     pub fn empty_copy(&self) -> Columns<S> {
         Columns {
             spans: Vec::new(),
@@ -226,7 +226,7 @@ impl<S: Span> Columns<S> {
         }
     }
 
-    /// Puts intervals, of columns that carry the same, in the place of those from `first` on.
+    /// Overwrites the intervals from index `first` on by those of `from`, which has the same kinds of data.
     #[inline]
     pub fn overwrite(&mut self, first: usize, from: &Columns<S>) {
         let range = first..first + from.spans.len();

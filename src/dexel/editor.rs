@@ -1,8 +1,8 @@
 //! Changes in place: rows with slack.
 //!
-//! Every ray has a slot in one array of intervals, as large as it once needed. A ray that outgrows its slot
-//! moves to the end, and the array is packed when most of it is no longer used. So a cut costs what it
-//! touches.
+//! Every ray has a slot in one array of intervals, as large as the ray once needed. A ray that outgrows its
+//! slot moves to the end. The array is packed when most of it is unused. So the cost of a cut is proportional
+//! to the part that it touches.
 
 use super::arrays::{Form, ModelArrays, OwnedRows};
 use super::assemble::{Piece, assembled};
@@ -21,10 +21,10 @@ use crate::memory;
 use alloc::vec::Vec;
 use core::ops::Range;
 
-/// A tri-dexel model that is changed in place, in time proportional to what the second operand's rays touch:
-/// for machining.
+/// A tri-dexel model that is changed in place, for machining. The time of a change is proportional to the
+/// number of rays and intervals that the second operand touches.
 ///
-/// It takes 12 bytes for each ray of the lattice beside the intervals.
+/// The editor takes 12 bytes for each ray of the lattice, beside the intervals.
 ///
 /// ```
 /// use leafless::{Control, Csg, Frame, dexelize, dexel::DexelEditor, op::DexelOptions};
@@ -52,7 +52,7 @@ enum Rays {
     Double([Option<Slots<DoubleSpan>>; 3]),
 }
 
-/// A place for the intervals of one ray.
+/// The slot of one ray's intervals.
 #[derive(Debug, Clone, Copy, Default)]
 struct Slot {
     first: u32,
@@ -66,18 +66,18 @@ impl Slot {
     }
 }
 
-/// The rays of one direction, all of the universe's.
+/// The rays of one direction: all rays of the universe.
 struct Slots<S> {
     window: Window,
     slots: Vec<Slot>,
     columns: Columns<S>,
-    /// Intervals that are in no slot any more.
+    /// The number of intervals that belong to no slot any more.
     lost: usize,
     scratch: Columns<S>,
 }
 
 impl DexelEditor {
-    /// A copy that can be changed. O(rays + intervals).
+    /// Makes a copy that can be changed. O(rays + intervals).
     ///
     /// # Errors
     /// [`Error::Limit`] for 2^32 rays in one direction (a depth of 16), [`Error::OutOfMemory`],
@@ -96,13 +96,13 @@ impl DexelEditor {
         &self.frame
     }
 
-    /// What of each interval is stored: that of the model which was copied. What more an operand has is left
-    /// out.
+    /// The stored data of each interval: the format of the model that was copied. Further data of an operand
+    /// is dropped.
     pub fn format(&self) -> DexelFormat {
         self.format
     }
 
-    /// Which directions have rays: x, y, z.
+    /// For each axis, x, y and z, whether there are rays along it.
     pub fn directions(&self) -> [bool; 3] {
         match &self.rays {
             Rays::Fixed(all) => all.each_ref().map(Option::is_some),
@@ -110,28 +110,30 @@ impl DexelEditor {
         }
     }
 
-    /// Adds what lies in `other`. O(rays of its window + intervals there).
+    /// Adds the places that lie in `other`. O(rays of its window + intervals there).
     ///
     /// # Errors
     /// As [`TriDexelRef::union`]. After [`Error::OutOfMemory`] and [`Error::Cancelled`] some rays are changed
-    /// and others not: the same operation can be done again, or the editor dropped. (After [`xor`](Self::xor)
-    /// it can only be dropped.)
+    /// and others are not. The same operation can then be repeated, or the editor dropped. (After
+    /// [`xor`](Self::xor) it can only be dropped.)
     pub fn unite(&mut self, other: &TriDexelRef<'_>, control: &Control<'_>) -> Result<DexelChange, Error> {
         self.apply(SetOp::Union, other, control)
     }
 
-    /// Takes away what lies in `other`. O(rays of its window + intervals there).
+    /// Removes the places that lie in `other`. O(rays of its window + intervals there).
     ///
     /// # Errors
-    /// As [`unite`](Self::unite).
+    /// As [`TriDexelRef::union`]. After [`Error::OutOfMemory`] and [`Error::Cancelled`] some rays are
+    /// changed, and the same operation can be repeated, as for [`unite`](Self::unite).
     pub fn subtract(&mut self, other: &TriDexelRef<'_>, control: &Control<'_>) -> Result<DexelChange, Error> {
         self.apply(SetOp::Difference, other, control)
     }
 
-    /// Leaves what lies in `other`, too. O(rays of the lattice).
+    /// Keeps only the places that also lie in `other`. O(rays of the lattice).
     ///
     /// # Errors
-    /// As [`unite`](Self::unite).
+    /// As [`TriDexelRef::union`]. After [`Error::OutOfMemory`] and [`Error::Cancelled`] some rays are
+    /// changed, and the same operation can be repeated, as for [`unite`](Self::unite).
     pub fn intersect(
         &mut self,
         other: &TriDexelRef<'_>,
@@ -140,15 +142,17 @@ impl DexelEditor {
         self.apply(SetOp::Intersection, other, control)
     }
 
-    /// Takes away what lies in both, and adds the rest of `other`. O(rays of its window + intervals there).
+    /// Removes the places that lie in both, and adds the rest of `other`. O(rays of its window + intervals
+    /// there).
     ///
     /// # Errors
-    /// As [`unite`](Self::unite).
+    /// As [`TriDexelRef::union`]. After [`Error::OutOfMemory`] and [`Error::Cancelled`] the editor can only
+    /// be dropped.
     pub fn xor(&mut self, other: &TriDexelRef<'_>, control: &Control<'_>) -> Result<DexelChange, Error> {
         self.apply(SetOp::Xor, other, control)
     }
 
-    /// How many intervals there are in all directions. O(rays).
+    /// The number of intervals in all directions. O(rays).
     pub fn interval_count(&self) -> u64 {
         fn of<S>(all: &[Option<Slots<S>>]) -> u64 {
             all.iter().flatten().flat_map(|slots| &slots.slots).map(|slot| u64::from(slot.count)).sum()
@@ -159,7 +163,7 @@ impl DexelEditor {
         }
     }
 
-    /// Bytes that it takes.
+    /// The number of bytes of the editor.
     pub fn bytes(&self) -> u64 {
         fn of<S: Span>(all: &[Option<Slots<S>>], format: &DexelFormat) -> u64 {
             let one = |slots: &Slots<S>| {
@@ -173,7 +177,7 @@ impl DexelEditor {
         }
     }
 
-    /// The model as it is now, in dense arrays. O(rays + intervals).
+    /// Makes a model of the current state, in dense arrays. O(rays + intervals).
     ///
     /// # Errors
     /// [`Error::OutOfMemory`], [`Error::Cancelled`].
@@ -263,7 +267,7 @@ fn frozen<S: Form>(
     Ok(rays)
 }
 
-/// Changes the rays along one axis, which are `parts` of the work.
+/// Changes the rays along one axis. `parts` is their share of the progress.
 fn changed<S: Form>(
     op: SetOp,
     slots: &mut Option<Slots<S>>,
@@ -278,7 +282,7 @@ fn changed<S: Form>(
     }
 }
 
-/// Rows of rays after which progress is told, and cancelling heard.
+/// The number of rows of rays between reports of progress and checks for cancellation.
 const STEP: u32 = 64;
 
 impl<S: Span> Slots<S> {
@@ -316,7 +320,7 @@ impl<S: Span> Slots<S> {
     ) -> Result<Tally, Error> {
         let (mut tally, depth) = (Tally::NONE, self.window.size[0].trailing_zeros() as u8);
         if op == SetOp::Intersection {
-            // Nothing is left outside of the other's window.
+            // Everything outside the other model's window is removed.
             for v in self.window.range(1) {
                 for u in self.window.range(0) {
                     if other.ray([u, v]).is_empty()
@@ -384,7 +388,7 @@ impl<S: Span> Slots<S> {
         Ok(tally)
     }
 
-    /// Makes what lies in the scratch memory the intervals of a ray.
+    /// Stores the intervals of the scratch memory as those of a ray.
     #[inline]
     fn put(&mut self, index: usize) -> Result<(), Error> {
         let count = self.scratch.spans.len();
@@ -423,8 +427,8 @@ impl<S: Span> Slots<S> {
     }
 }
 
-/// Takes one interval away from those in a slot, and says what that did; `None`, and nothing done, if there
-/// is no room for what is left.
+/// Removes one interval from the intervals in a slot, and returns the change. `None`, without a change, if
+/// there is no room for the remaining intervals.
 #[inline]
 fn cut<S: Span>(
     spans: &mut [S],
@@ -434,7 +438,7 @@ fn cut<S: Span>(
 ) -> Option<Option<Part>> {
     let own = &mut spans[slot.first as usize..(slot.first + slot.room) as usize];
     let count = slot.count as usize;
-    // The intervals that are met: `first..end`.
+    // The intervals that overlap the removed one: `first..end`.
     let mut first = 0;
     while first < count && own[first].ends()[1] <= low {
         first += 1;

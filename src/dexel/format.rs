@@ -1,43 +1,43 @@
-//! What of intervals is stored.
+//! The data that is stored for each interval.
 
-/// How the ends of intervals are stored.
+/// The representation of the ends of intervals.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Default)]
 pub enum DexelEnds {
-    /// Start and length in units of 2^-31 edges of the universe, 8 bytes an interval. An end is off by at
-    /// most one unit.
+    /// Start and length in units of 2^-31 edges of the universe, 8 bytes an interval. The error of an end is
+    /// at most one unit.
     #[default]
     Fixed,
     /// Start and end as doubles, 16 bytes an interval.
     Double,
 }
 
-/// How unit normals at the ends of intervals are stored: in an octahedral code.
+/// The representation of the unit normals at the ends of intervals: an octahedral code.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Default, PartialOrd, Ord)]
 pub enum DexelNormals {
-    /// Not at all.
+    /// No normals are stored.
     #[default]
     None,
-    /// In 16 bits, 4 bytes an interval, within a degree.
+    /// 16 bits a normal, 4 bytes an interval; the error is below a degree.
     Bits16,
-    /// In 32 bits, 8 bytes an interval, within 0.005 degrees.
+    /// 32 bits a normal, 8 bytes an interval; the error is below 0.005 degrees.
     Bits32,
 }
 
-/// What of each interval is stored. The least is 8 bytes an interval, the most 36.
+/// The data that is stored for each interval: 8 to 36 bytes.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Default)]
 pub struct DexelFormat {
-    /// Where it starts and ends.
+    /// The start and the end.
     pub ends: DexelEnds,
     /// The unit normals of the solid's surface at its ends.
     pub normals: DexelNormals,
-    /// On which of the source's surfaces its ends lie, 8 bytes an interval.
+    /// Whether the number of the source's surface at each end is stored, 8 bytes an interval.
     pub surfaces: bool,
-    /// What it is made of, 4 bytes an interval.
+    /// Whether the material is stored, 4 bytes an interval.
     pub materials: bool,
 }
 
 impl DexelFormat {
-    /// Bytes that an interval takes.
+    /// The number of bytes of an interval.
     pub const fn bytes_per_interval(&self) -> usize {
         let ends = match self.ends {
             DexelEnds::Fixed => 8,
@@ -51,7 +51,7 @@ impl DexelFormat {
         ends + normals + if self.surfaces { 8 } else { 0 } + if self.materials { 4 } else { 0 }
     }
 
-    /// The least format that holds what both do.
+    /// The least format that stores all data of both formats.
     #[must_use]
     pub fn join(self, other: DexelFormat) -> DexelFormat {
         DexelFormat {
@@ -62,7 +62,7 @@ impl DexelFormat {
         }
     }
 
-    /// Whether intervals have nothing but their ends.
+    /// Returns whether intervals consist of their ends only.
     pub(crate) fn is_plain(&self) -> bool {
         self.normals == DexelNormals::None && !self.surfaces && !self.materials
     }

@@ -1,4 +1,4 @@
-//! Models from intervals that a host program brings along.
+//! Models from intervals that a host program provides.
 
 use super::arrays::{Form, ModelArrays, OwnedRows};
 use super::assemble::{Piece, assembled};
@@ -16,24 +16,22 @@ use crate::memory;
 use alloc::vec::Vec;
 
 impl TriDexel {
-    /// A model of intervals that are handed in, ray by ray: those of another program, of a machine, of a
-    /// test.
+    /// Makes a model of given intervals, ray by ray: those of another program, of a machine, of a test.
     ///
-    /// For each axis of `directions` and each ray, `dexels` is called with the axis, with the ray's indices
-    /// of cells on the other two axes (the lower axis first, which runs faster), and with an empty list. It
-    /// appends the ray's intervals in model units: in ascending order, disjoint. What reaches beyond the
-    /// universe is cut off. What `format` does not store is left out.
+    /// For each axis of `directions` and each ray, `dexels` is called with the axis, the indices of the ray's
+    /// cells on the other two axes (the lower axis first, which varies faster), and an empty list. `dexels`
+    /// appends the ray's intervals in model units, in ascending order and disjoint. Parts beyond the universe
+    /// are cut off. Data that `format` does not store is dropped.
     ///
-    /// Ends are rounded as the format says, and keep their side of every centre of a cell. That is the real
-    /// number origin + (k + ½) · edge / 2^depth, and the side is decided exactly. An end on a centre is on
-    /// this centre: intervals are half-open, and a start there holds the centre, while an end does not.
-    /// Intervals that are empty after rounding are left out; those that touch are joined, unless both have
-    /// materials and these differ.
+    /// Ends are rounded to the format, and keep their side of every centre of a cell. A centre is the real
+    /// number origin + (k + ½) · edge / 2^depth, and the side is decided exactly. An end on a centre stays on
+    /// this centre: intervals are half-open, so that a start there includes the centre, while an end does
+    /// not. Intervals that are empty after rounding are dropped. Intervals that touch are joined, unless both
+    /// have materials and these differ.
     ///
-    /// An end that [`DexelRays::dexels`](crate::dexel::DexelRays::dexels) handed out goes back to the place
-    /// where it was, since it [tells this place](DexelEnd::cells): a model of all intervals of another one,
-    /// on the same frame and in the same format, is equal to that one. [`DexelEnd::in_cells`] makes such
-    /// ends.
+    /// An end from [`DexelRays::dexels`](crate::dexel::DexelRays::dexels) returns to its original place,
+    /// because it [stores this place](DexelEnd::cells). So a model of all intervals of another model, on the
+    /// same frame and in the same format, is equal to that model. [`DexelEnd::in_cells`] makes such ends.
     ///
     /// The directions are not compared with each other. Where they disagree about a centre, the highest axis
     /// decides ([`TriDexelRef::contains_cell`](crate::dexel::TriDexelRef::contains_cell)).
@@ -41,9 +39,9 @@ impl TriDexel {
     /// O(rays + intervals), by the calling thread.
     ///
     /// # Errors
-    /// [`Error::Argument`] if an interval's end is not a number or not behind its start, or if an interval
-    /// begins before the one before it ends; [`Error::Limit`] for 2^32 rays (a depth of 16) or intervals in
-    /// one direction; [`Error::OutOfMemory`]; [`Error::Cancelled`]; and those of `dexels`.
+    /// [`Error::Argument`] if an interval's end is NaN or not greater than its start, or if an interval
+    /// begins before the previous one ends; [`Error::Limit`] for 2^32 rays (a depth of 16) or intervals in
+    /// one direction; [`Error::OutOfMemory`]; [`Error::Cancelled`]; and the errors of `dexels`.
     ///
     /// ```
     /// use leafless::{Control, Frame, TriDexel, dexel::{Dexel, DexelEnd, DexelFormat}};
@@ -80,7 +78,7 @@ impl TriDexel {
     }
 }
 
-/// One direction, to be read.
+/// One direction to be read.
 struct Source<'a> {
     frame: &'a Frame,
     format: &'a DexelFormat,
@@ -124,19 +122,19 @@ impl Source<'_> {
         for dexel in list {
             let given = [self.given(&dexel.start), self.given(&dexel.end)];
             if !given[0].is_before(&given[1]) {
-                return refused("an interval must have an end that is behind its start");
+                return refused("the end of an interval must be greater than its start");
             }
             let mut ends = given.map(|end| end.place::<S::Place>());
             if let Some((reached, place)) = last {
                 if given[0].is_before(&reached) {
                     return refused("the intervals of a ray must be in ascending order and disjoint");
                 }
-                // Ends that are given in two ways may be rounded past each other, but not past a centre.
+                // Ends that are given in two forms may be rounded past each other, but not past a centre.
                 if ends[0] < place {
                     ends[0] = place;
                 }
             }
-            // (So may the two of one interval, which is empty then.)
+            // (So may the two ends of one interval, which is then empty.)
             let end = if ends[1] < ends[0] { ends[0] } else { ends[1] };
             last = Some((given[1], end));
             let marks = [dexel.start, dexel.end].map(mark);
@@ -152,17 +150,17 @@ impl Source<'_> {
     }
 }
 
-/// An end as it was given.
+/// An end in its given form.
 #[derive(Clone, Copy)]
 struct Given<'a> {
     line: Line<'a>,
     at: f64,
-    /// The place, if it is known and has this coordinate.
+    /// The place in cells, if it is known and agrees with the coordinate.
     cells: Option<f64>,
 }
 
 impl Given<'_> {
-    /// (What is not a number is not before another one.)
+    /// Returns whether this end comes before the other one. (A NaN is not before another number.)
     fn is_before(&self, other: &Given<'_>) -> bool {
         match (self.cells, other.cells) {
             (Some(cells), Some(others)) => cells < others,
@@ -226,7 +224,7 @@ mod tests {
             assert_eq!(said, [(-1.0, -0.25, 4), (0.5, 1.0, 7), (1.0, 2.0, 8)]);
             assert_eq!((list[0].start.surface, list[1].end.normal), (Some(3), Some([0.0, 0.0, 1.0])));
         }
-        // What touches is one, and what lies outside of the universe is nothing.
+        // Touching intervals become one, and parts outside the universe are dropped.
         let plain = DexelFormat::default();
         let list = one_ray(plain, &[(-9.0, -4.0, 0), (0.5, 1.0, 7), (1.0, 2.0, 8), (7.0, 9.0, 0)]).unwrap();
         assert_eq!(list.len(), 1);
@@ -246,7 +244,7 @@ mod tests {
             let error = one_ray(DexelFormat::default(), bad).unwrap_err();
             assert!(matches!(error, Error::Argument { name: "dexels", .. }), "{bad:?}: {error}");
         }
-        // From end to end is no mistake.
+        // An interval from −∞ to ∞ is valid.
         assert_eq!(
             one_ray(DexelFormat::default(), &[(f64::NEG_INFINITY, f64::INFINITY, 0)]).unwrap().len(),
             1

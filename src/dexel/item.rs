@@ -1,17 +1,17 @@
-//! An interval with all that it may carry.
+//! An interval with all its data.
 
 use super::normal::{NO_NORMAL, flipped};
 use super::place::Place;
 
-/// No surface is known.
+/// The number that stands for an unknown surface.
 pub(crate) const NO_SURFACE: u32 = u32::MAX;
 
-/// An end of an interval.
+/// The data of one end of an interval.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(crate) struct Mark {
-    /// The surface on which it lies.
+    /// The surface of the end.
     pub surface: u32,
-    /// The outward normal there, in 32 bits.
+    /// The outward normal at the end, as a code of 32 bits.
     pub normal: u32,
 }
 
@@ -34,7 +34,7 @@ pub(crate) struct Item<P> {
 }
 
 impl<P: Place> Item<P> {
-    /// With nothing but its ends.
+    /// An interval without further data.
     #[inline(always)]
     pub fn plain(ends: [P; 2]) -> Item<P> {
         Item { ends, marks: [Mark::NONE; 2], material: 0 }

@@ -8,7 +8,7 @@ use crate::memory;
 use alloc::vec::Vec;
 use core::ops::Range;
 
-/// A set operation of two operands, neither of which holds anything outside of both.
+/// A set operation of two operands. The result lies in the union of the operands.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(crate) enum SetOp {
     Union,
@@ -28,13 +28,14 @@ impl SetOp {
         }
     }
 
-    /// Whether the result holds what only the first operand, or only the second one, holds.
+    /// Returns whether the result contains places of the first operand only, and places of the second operand
+    /// only.
     pub fn keeps(self) -> [bool; 2] {
         [self.holds(true, false), self.holds(false, true)]
     }
 }
 
-/// Appends the result on one ray of two intervals that carry nothing: what most rays have.
+/// Appends the result on one ray of two intervals without data, the most frequent case.
 #[inline(always)]
 pub(crate) fn merge_single<S: Span>(op: SetOp, a: S, b: S, out: &mut Vec<S>) -> Result<(), Error> {
     fn lower<P: Place>(x: P, y: P) -> P {
@@ -66,12 +67,12 @@ pub(crate) fn merge_single<S: Span>(op: SetOp, a: S, b: S, out: &mut Vec<S>) -> 
     }
 }
 
-/// Appends the result on one ray, of intervals that carry nothing. O(intervals).
+/// Appends the result on one ray of intervals without data. O(intervals).
 #[inline(always)]
 pub(crate) fn merge_plain<S: Span>(op: SetOp, a: &[S], b: &[S], out: &mut Vec<S>) -> Result<(), Error> {
     out.try_reserve(a.len() + b.len())?;
     let (mut i, mut j) = (0, 0);
-    // Even: the next end is a start.
+    // An even index: the next end is a start.
     let (last_a, last_b) = (2 * a.len(), 2 * b.len());
     let end = |list: &[S], k: usize| list[k / 2].ends()[k % 2];
     let (mut inside, mut start) = (false, S::Place::LOW);
@@ -84,7 +85,7 @@ pub(crate) fn merge_plain<S: Span>(op: SetOp, a: &[S], b: &[S], out: &mut Vec<S>
             let (x, y) = (end(a, i), end(b, j));
             if y < x { y } else { x }
         };
-        // Of intervals that touch both ends are passed.
+        // Where intervals touch, both ends are passed.
         while i < last_a && end(a, i) <= at {
             i += 1;
         }
@@ -104,11 +105,11 @@ pub(crate) fn merge_plain<S: Span>(op: SetOp, a: &[S], b: &[S], out: &mut Vec<S>
     Ok(())
 }
 
-/// What a ray is made of at a place.
+/// The material of a ray at a place, if the place lies inside.
 type Matter = Option<u32>;
 
-/// Appends the result on one ray. Where both operands hold a place, the first one says of what it is made,
-/// and which end lies there.
+/// Appends the result on one ray. Where both operands contain a place, material and mark are those of the
+/// first one.
 pub(crate) fn merge<S: Span>(
     op: SetOp,
     (a, range_a): (&ColumnsRef<'_, S>, Range<usize>),
@@ -119,7 +120,7 @@ pub(crate) fn merge<S: Span>(
     let mut matter: Matter = None;
     let mut open = Item::plain([S::Place::LOW; 2]);
     while let Some(at) = least(ways[0].next(), ways[1].next()) {
-        // Which ends lie here: of each operand the last start or end of what goes on after it.
+        // The ends at this place: for each operand its last start or end here.
         let marks = [ways[0].pass(at), ways[1].pass(at)];
         let [first, second] = [ways[0].matter, ways[1].matter];
         let now = if op.holds(first.is_some(), second.is_some()) { first.or(second) } else { None };
@@ -131,7 +132,8 @@ pub(crate) fn merge<S: Span>(
             if let Some(passed) = wanted {
                 return passed.marks[side];
             }
-            // An end that is a start in the result shows its other side.
+            // An end that becomes a start in the result, or a start that becomes an end, shows its other
+            // side.
             let other = marks.iter().flatten().find(|passed| passed.has[1 - side]);
             other.map_or(Mark::NONE, |passed| passed.marks[1 - side].flipped())
         };
@@ -154,18 +156,18 @@ fn least<P: Place>(a: Option<P>, b: Option<P>) -> Option<P> {
     }
 }
 
-/// The ends of one operand that lie at a place.
+/// The ends of one operand at a place.
 #[derive(Clone, Copy)]
 struct Passed {
     has: [bool; 2],
     marks: [Mark; 2],
 }
 
-/// The way along a ray through one operand.
+/// A cursor along a ray of one operand.
 struct Way<'c, 'a, S: Span> {
     columns: &'c ColumnsRef<'a, S>,
     range: Range<usize>,
-    /// The interval that comes next, or in which the way is.
+    /// The interval that comes next, or that contains the cursor.
     item: Option<Item<S::Place>>,
     matter: Matter,
 }
@@ -180,7 +182,7 @@ impl<'c, 'a, S: Span> Way<'c, 'a, S> {
         self.item.map(|item| item.ends[usize::from(self.matter.is_some())])
     }
 
-    /// Passes all ends at a place, the end of one interval and the start of the next one if they touch.
+    /// Passes all ends at a place: the end of one interval, and the start of the next one if they touch.
     fn pass(&mut self, at: S::Place) -> Option<Passed> {
         let mut passed = None;
         while let Some(item) = self.item {
@@ -201,8 +203,8 @@ impl<'c, 'a, S: Span> Way<'c, 'a, S> {
     }
 }
 
-/// Appends the complement of one ray of a universe: what lies between its lower and its upper face outside of
-/// the intervals. Its material is 0.
+/// Appends the complement of one ray of a universe: the range between the lower and the upper face of the
+/// universe, without the intervals. Its material is 0.
 pub(crate) fn complement<S: Span>(
     columns: &ColumnsRef<'_, S>,
     range: Range<usize>,

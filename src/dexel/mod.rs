@@ -1,23 +1,24 @@
-//! Tri-directional dexel models: along lattice rays, the intervals that lie inside of a solid.
+//! Tri-directional dexel models: intervals along lattice rays that lie inside a solid.
 //!
 //! The rays run through the centres of finest cells, along x, y and z. A ray holds sorted, disjoint
-//! intervals, so that Booleans are merges of short lists, and a crossing of the surface is known as finely as
-//! a fixed-point number can tell. (Van Hook 1986; in three directions Benouamer and Michelucci 1997, Gao,
-//! Zhang and Hou 2007.)
+//! intervals, so that Booleans are merges of short lists, and a crossing of the surface is as exact as a
+//! fixed-point number. (Van Hook 1986; in three directions Benouamer and Michelucci 1997, Gao, Zhang and Hou
+//! 2007.)
 //!
-//! **Half-open intervals.** An interval holds its start and not its end. The centre of a cell lies inside if
-//! an interval holds it; of three directions that of the highest axis. Whoever makes intervals moves an end
-//! by at most one unit, so that it says of the centres beside it what the source does; then the three
-//! directions agree on all centres, and go on agreeing through every Boolean.
+//! **Half-open intervals.** An interval contains its start and not its end. The centre of a cell lies inside
+//! if an interval contains it; if there are rays in several directions, the highest axis decides. An
+//! algorithm that makes intervals moves an end by at most one unit, so that the centres beside the end are on
+//! the same side as in the source. Then the three directions agree on all centres, and remain in agreement
+//! through every Boolean.
 //!
 //! From the bottom up, each file uses only files named before it: `place` (positions on a ray), `normal`
-//! (unit vectors in 16 or 32 bits), `line` (places in model units), `format` (what is stored), `item` (an
-//! interval with all that it may carry), `columns` (arrays of intervals), `view` (borrowed arrays, on which
-//! all reading is written), `centres` (which centres of cells lie inside), `occupied` (in which blocks any
-//! does), `check` (whether arrays are sound), `arrays` (owned ones), `model` (the tri-dexel model),
-//! `assemble` (models from rows of rays), `from_rays` (models from a host's intervals), `beam` (what a solid
-//! is asked to fill), `merge` (two rays), `boolean` (models), `change` (what a change in place did), `editor`
-//! (changes in place), `statistics`.
+//! (unit vectors in 16 or 32 bits), `line` (places in model units), `format` (the stored data), `item` (an
+//! interval with all its data), `columns` (arrays of intervals), `view` (borrowed arrays, for all reading),
+//! `centres` (the centres of cells that lie inside), `occupied` (the blocks that contain such centres),
+//! `check` (checks of arrays), `arrays` (owned arrays), `model` (the tri-dexel model), `assemble` (models
+//! from rows of rays), `from_rays` (models from a host's intervals), `beam` (rays that a solid fills),
+//! `merge` (two rays), `boolean` (models), `change` (the effect of a change in place), `editor` (changes in
+//! place), `statistics`.
 
 mod arrays;
 mod assemble;

@@ -10,14 +10,14 @@ use yoke::erased::ErasedArcCart;
 
 /// A solid as intervals along the rays of a lattice, in one to three directions.
 ///
-/// Rays run through the centres of the finest cells of a frame. Each has the sorted, disjoint intervals in
-/// which it runs inside of the solid; an interval holds its start, not its end. All directions agree about
+/// Rays run through the centres of the finest cells of a frame. Each ray has the sorted, disjoint intervals
+/// in which it runs inside the solid. An interval contains its start, not its end. All directions agree about
 /// the centres of cells.
 ///
-/// **Directions.** Rays along one axis see nothing of what lies beside the outermost of them. Of a sphere in
-/// its bounding box four caps are lost to rays along y, two to rays along x and y, and none to rays along all
-/// three axes but for what lies behind the rays nearest to the poles. (Figure 2 of Gao, Zhang and Hou 2007.
-/// Parts of the volume that are lost; a test makes this table.)
+/// **Directions.** Rays along one axis do not see the parts of a solid beside the outermost rays. For a
+/// sphere in its bounding box, rays along y lose four caps, rays along x and y lose two, and rays along all
+/// three axes lose only the parts beyond the rays nearest to the poles. The table shows the parts of the
+/// volume that are lost. (Figure 2 of Gao, Zhang and Hou 2007; a test makes this table.)
 ///
 /// | rays to an axis | y | x, y | x, y, z |
 /// |---|---|---|---|
@@ -29,9 +29,9 @@ use yoke::erased::ErasedArcCart;
 /// | 256 | 0.004572 % | 0.002286 % | 0.000000 % |
 /// | 512 | 0.001144 % | 0.000572 % | 0.000000 % |
 ///
-/// It is immutable, a clone costs two reference counts, and any number of threads may read it at once. All
-/// reading is done through its [`view`](TriDexel::view); [`DexelEditor`](crate::dexel::DexelEditor) changes a
-/// copy in place.
+/// A model is immutable, a clone costs two reference counts, and any number of threads may read it at once.
+/// All reading is done through its [`view`](TriDexel::view). [`DexelEditor`](crate::dexel::DexelEditor)
+/// changes a copy in place.
 #[derive(Clone)]
 pub struct TriDexel {
     arrays: Yoke<TriDexelRef<'static>, ErasedArcCart>,
@@ -47,7 +47,7 @@ impl TriDexel {
         TriDexel { arrays: attached.erase_arc_cart(), metadata: Arc::new(Metadata::default()) }
     }
 
-    /// A model whose arrays lie in `owner`, wherever that has them.
+    /// Makes a model whose arrays lie in `owner`, anywhere in it.
     pub(crate) fn attach<C: Send + Sync + 'static, E>(
         owner: Arc<C>,
         metadata: Metadata,
@@ -59,7 +59,7 @@ impl TriDexel {
         })
     }
 
-    /// The view that all reading goes through. Free.
+    /// The view for all reading. Free.
     pub fn view(&self) -> &TriDexelRef<'_> {
         self.arrays.get()
     }
@@ -69,7 +69,7 @@ impl TriDexel {
         self.view().frame()
     }
 
-    /// Facts about the solid that its file carries along. Names in use: `name`, `units`.
+    /// Facts about the solid that are stored in its file. Names in use: `name`, `units`.
     pub fn metadata(&self) -> &Metadata {
         &self.metadata
     }
@@ -92,7 +92,7 @@ impl core::fmt::Debug for TriDexel {
     }
 }
 
-/// Equal in all that is stored, bit for bit. Metadata does not count. O(n).
+/// Models are equal if all stored data is equal, bit for bit. Metadata is not compared. O(n).
 impl PartialEq for TriDexel {
     fn eq(&self, other: &TriDexel) -> bool {
         self.view().equals(other.view())

@@ -1,22 +1,22 @@
 //! Unit vectors as two small integers: the octahedral code (Meyer et al. 2010, Cigolle et al. 2014).
 //!
-//! A vector is scaled so that the sum of its coordinates' magnitudes is M; two coordinates are stored, and
-//! where the third is negative they are folded outward. The least number of a component, −M − 1, is left for
-//! "no normal".
+//! A vector is scaled so that the sum of its coordinates' magnitudes is M. Two coordinates are stored; where
+//! the third is negative they are folded outward. The least number of a component, −M − 1, stands for "no
+//! normal".
 
-/// Components of 16 bits: a code takes 32.
+/// M for components of 16 bits; a code takes 32.
 pub(crate) const FINE: i32 = 0x7FFF;
 
-/// Components of 8 bits: a code takes 16.
+/// M for components of 8 bits; a code takes 16.
 pub(crate) const COARSE: i32 = 0x7F;
 
-/// No normal, in 32 bits.
+/// The code of no normal, in 32 bits.
 pub(crate) const NO_NORMAL: u32 = 0x8000_8000;
 
-/// No normal, in 16 bits.
+/// The code of no normal, in 16 bits.
 pub(crate) const NO_NORMAL_16: u16 = 0x8080;
 
-/// The code of a vector of any length; of one without direction that of no normal.
+/// The code of a vector of any length; a vector without direction gives the code of no normal.
 pub(crate) fn encoded(vector: [f64; 3]) -> u32 {
     let sum = vector.iter().map(|c| c.abs()).sum::<f64>();
     if !(sum > 0.0 && sum < f64::INFINITY) {
@@ -33,17 +33,17 @@ pub(crate) fn encoded(vector: [f64; 3]) -> u32 {
     packed([a, b].map(|c| libm::rint(c) as i32))
 }
 
-/// Whether these 32 bits are a code, or say that there is no normal.
+/// Returns whether these 32 bits are a code, or the code of no normal.
 pub(crate) fn is_code(code: u32) -> bool {
     code == NO_NORMAL || unpacked(code).iter().all(|&c| c >= -FINE)
 }
 
-/// Whether these 16 bits are a code, or say that there is no normal.
+/// Returns whether these 16 bits are a code, or the code of no normal.
 pub(crate) fn is_code_16(code: u16) -> bool {
     code == NO_NORMAL_16 || code.to_le_bytes().iter().all(|&c| i32::from(c as i8) >= -COARSE)
 }
 
-/// Without the sign of zero.
+/// The sign of a number, as 1 or −1; zero counts as positive.
 fn signed(x: f64) -> f64 {
     if x < 0.0 { -1.0 } else { 1.0 }
 }
@@ -56,7 +56,7 @@ fn unpacked(code: u32) -> [i32; 2] {
     [code as u16 as i16, (code >> 16) as u16 as i16].map(i32::from)
 }
 
-/// The octahedron's point: the sum of its coordinates' magnitudes is `most`.
+/// The point of the octahedron: the sum of its coordinates' magnitudes is `most`.
 fn point([a, b]: [i32; 2], most: i32) -> [i32; 3] {
     let z = most - a.abs() - b.abs();
     if z >= 0 {
@@ -81,12 +81,11 @@ pub(crate) fn decoded(code: u32) -> Option<[f64; 3]> {
     }
     let [x, y, z] = point(unpacked(code), FINE).map(f64::from);
     let length = crate::lattice::exact::sqrt(x * x + y * y + z * z);
-    // (A code from a file may be none of ours; the point then lies off the octahedron, but not at its
-    // centre.)
+    // (A code from a file may be invalid; the point then lies off the octahedron, but not at its centre.)
     (length > 0.0).then(|| [x / length, y / length, z / length])
 }
 
-/// The code of the opposite vector. Twice is the same code again.
+/// The code of the opposite vector. Applied twice, it gives the same code again.
 pub(crate) fn flipped(code: u32) -> u32 {
     if code == NO_NORMAL {
         return code;
@@ -94,7 +93,7 @@ pub(crate) fn flipped(code: u32) -> u32 {
     packed(folded(point(unpacked(code), FINE).map(|c| -c), FINE))
 }
 
-/// A code in 16 bits.
+/// Converts a code of 32 bits to one of 16 bits.
 pub(crate) fn coarse(code: u32) -> u16 {
     if code == NO_NORMAL {
         return NO_NORMAL_16;
@@ -112,13 +111,13 @@ pub(crate) fn coarse(code: u32) -> u16 {
     u16::from(a as u8) | u16::from(b as u8) << 8
 }
 
-/// A code of 16 bits in 32.
+/// Converts a code of 16 bits to one of 32 bits.
 pub(crate) fn fine(code: u16) -> u32 {
     if code == NO_NORMAL_16 {
         return NO_NORMAL;
     }
     let [x, y, z] = point([code as u8 as i8, (code >> 8) as u8 as i8].map(i32::from), COARSE);
-    // 32767 is 258 · 127 + 1: the sum's magnitude stays by giving the one to the greatest.
+    // 32767 is 258 · 127 + 1: adding the one to the greatest component keeps the sum of magnitudes.
     let mut fine = [x, y, z].map(|c| c * (FINE / COARSE));
     let greatest = (0..3).max_by_key(|&axis| (fine[axis].abs(), axis)).unwrap_or(0);
     let rest = FINE - fine.iter().map(|c| c.abs()).sum::<i32>();

@@ -1,5 +1,5 @@
-//! Which blocks of cells hold centres that lie inside: what whoever asks for all centres looks at, and
-//! nothing else.
+//! The blocks of cells that contain centres inside. Algorithms that visit all such centres skip the other
+//! blocks.
 
 use super::centres::BLOCK;
 use super::place::{Place, Span};
@@ -9,16 +9,16 @@ use crate::memory;
 use alloc::vec::Vec;
 use core::ops::Range;
 
-/// Blocks of 64³ cells in which centres lie inside, by the rays that decide about centres.
+/// Blocks of 64³ cells that contain centres inside, by the rays that decide about centres.
 pub(crate) struct Occupied {
-    /// Their Morton codes, ascending.
+    /// The Morton codes of the blocks, ascending.
     codes: Vec<u64>,
-    /// Levels of the lattice of blocks.
+    /// The number of levels of the lattice of blocks.
     levels: u8,
 }
 
 impl Occupied {
-    /// Those of a model that was checked. A lattice of fewer cells is one block.
+    /// Finds the blocks of a model that was checked. A lattice of fewer cells is one block.
     ///
     /// O(rays of the window + intervals · 2^depth / 4096 + b log b) for b blocks.
     ///
@@ -46,7 +46,7 @@ impl Occupied {
                 };
                 let (columns, mut any) = (within(tile_u, &us), false);
                 for v in within(tile_v, &vs) {
-                    // The intervals of all these rays are in a row.
+                    // The intervals of all these rays are contiguous.
                     let Some(first) = rows.window.index([columns.start, v]) else { continue };
                     let spans = rows.starts[first] as usize..rows.starts[first + columns.len()] as usize;
                     for span in &rows.columns.spans[spans] {
@@ -65,7 +65,7 @@ impl Occupied {
         Ok(())
     }
 
-    /// Takes in the blocks of a tile of rays.
+    /// Adds the blocks of a tile of rays.
     fn take(&mut self, along: &mut [u64], tile: [u32; 2], axis: usize) -> Result<(), Error> {
         let [u, v] = OTHERS[axis];
         for (first, word) in (0..).step_by(64).zip(along) {
@@ -80,7 +80,7 @@ impl Occupied {
         Ok(())
     }
 
-    /// All blocks, by their places in the lattice of blocks.
+    /// Returns all blocks, by their places in the lattice of blocks.
     ///
     /// # Errors
     /// [`Error::OutOfMemory`].
@@ -88,7 +88,7 @@ impl Occupied {
         memory::collected(self.codes.iter().map(|&code| place(code)))
     }
 
-    /// Whether a centre in a cell of a level, 0 to that of blocks, lies inside.
+    /// Returns whether a centre in a cell of a level, 0 to that of blocks, lies inside.
     pub fn meets(&self, level: u8, at: [u32; 3]) -> bool {
         let shift = 3 * u32::from(self.levels.saturating_sub(level));
         let first = code(at) << shift;
@@ -110,7 +110,7 @@ fn set(words: &mut [u64], first: u32, last: u32) {
     words[high] |= to;
 }
 
-/// The bits of three numbers below 2^21 in turn, those of x lowest.
+/// Interleaves the bits of three numbers below 2^21; those of x are the lowest.
 fn code(at: [u32; 3]) -> u64 {
     let spread = |x: u32| {
         let x = u64::from(x);

@@ -1,15 +1,15 @@
 //! Positions along a ray.
 //!
-//! A position lies in a *gap*: gap g reaches from the centre of cell g − 1, which it does not hold, to that
-//! of cell g, which it holds. A position and its gap together say which centres lie below it; rounding keeps
-//! the gap.
+//! A position lies in a *gap*: gap g reaches from the centre of cell g − 1, which it excludes, to the centre
+//! of cell g, which it includes. The gap of a position determines the centres below the position. Rounding
+//! keeps the gap.
 
 use bytemuck::{Pod, Zeroable};
 
-/// Units to an edge of the universe, in fixed point.
+/// The number of fixed-point units in an edge of the universe.
 pub(crate) const EDGE_UNITS: u32 = 1 << 31;
 
-/// A position along a ray, from the universe's lower face.
+/// A position along a ray, measured from the universe's lower face.
 pub(crate) trait Place:
     Copy + PartialOrd + PartialEq + Send + Sync + core::fmt::Debug + 'static
 {
@@ -19,34 +19,33 @@ pub(crate) trait Place:
     /// The upper face of a universe of 2^depth cells.
     fn high(depth: u8) -> Self;
 
-    /// The place nearest to `x` cells from the lower face (0 to those of an axis) that lies in a gap, which
-    /// is that of `x` or, as far as `x` was rounded, one beside it.
+    /// The place nearest to `x` cells from the lower face (0 to the number of cells of an axis) in a gap.
+    /// `gap` is the gap of `x` or, as far as `x` was rounded, a neighbouring one.
     fn rounded_in(x: f64, gap: u32, depth: u8) -> Self;
 
-    /// The place nearest to `x` cells from the lower face that lies in the same gap.
+    /// The place nearest to `x` cells from the lower face in the same gap.
     #[inline(always)]
     fn rounded(x: f64, depth: u8) -> Self {
         Self::rounded_in(x, gap(x) as u32, depth)
     }
 
-    /// Cells from the lower face.
+    /// The distance from the lower face, in cells.
     fn cells(self, depth: u8) -> f64;
 
     /// The gap.
     fn gap(self, depth: u8) -> u32;
 
-    /// Whether it is spelled as all places that are equal to it.
+    /// Returns whether the place has the same bits as all places that are equal to it.
     fn is_plain(self) -> bool;
 }
 
-/// The gap of a position in cells: the first cell whose centre is not below it.
+/// The gap of a position in cells: the first cell whose centre is not below the position.
 #[inline(always)]
 pub(crate) fn gap(x: f64) -> i64 {
     -crate::lattice::exact::floor(0.5 - x)
 }
 
-/// The position nearest to `x` cells that lies in a gap of a universe of so many cells, and not outside of
-/// it.
+/// The position nearest to `x` cells in a gap of a universe of `cells` cells, and not outside it.
 #[inline(always)]
 pub(crate) fn within(x: f64, gap: i32, cells: f64) -> f64 {
     let centre = f64::from(gap) + 0.5;
@@ -80,7 +79,7 @@ impl Place for f64 {
 
     #[inline(always)]
     fn gap(self, _: u8) -> u32 {
-        // (Arrays from a file may say anything.)
+        // (Arrays from a file may contain any numbers.)
         gap(self.clamp(0.0, f64::from(EDGE_UNITS))) as u32
     }
 
@@ -102,7 +101,7 @@ impl Place for u32 {
     fn rounded_in(x: f64, beyond: u32, depth: u8) -> u32 {
         let unit = 1u32 << (31 - depth);
         let nearest = (x * f64::from(unit) + 0.5) as u32;
-        // Only a position beside a centre may leave its gap.
+        // Only a position next to a centre may leave its gap.
         let low = if beyond == 0 { 0 } else { (beyond * unit).wrapping_sub(unit / 2) + 1 };
         let high = if beyond >> depth != 0 { EDGE_UNITS } else { beyond * unit + unit / 2 };
         nearest.clamp(low, high)
@@ -117,7 +116,7 @@ impl Place for u32 {
     fn gap(self, depth: u8) -> u32 {
         // The first k with (2 k + 1) half cells at least as high.
         let half = 1u32 << (30 - depth);
-        // (Arrays from a file may say anything.)
+        // (Arrays from a file may contain any numbers.)
         self.saturating_add(half - 1) >> (31 - depth)
     }
 
@@ -127,7 +126,7 @@ impl Place for u32 {
     }
 }
 
-/// The part of a ray between two places, as it is stored.
+/// The stored form of the part of a ray between two places.
 pub(crate) trait Span: Pod + Send + Sync + core::fmt::Debug + PartialEq {
     type Place: Place;
 
@@ -144,7 +143,7 @@ pub(crate) struct FixedSpan {
     pub length: u32,
 }
 
-/// Start and end in cells. (Of start and length the end could not be had again exactly.)
+/// Start and end in cells. (Start and length would not determine the end exactly.)
 #[derive(Debug, Clone, Copy, PartialEq, Pod, Zeroable)]
 #[repr(C)]
 pub(crate) struct DoubleSpan {
@@ -162,7 +161,7 @@ impl Span for FixedSpan {
 
     #[inline(always)]
     fn ends(self) -> [u32; 2] {
-        // Arrays from a file may say anything.
+        // Arrays from a file may contain any numbers.
         [self.start, self.start.wrapping_add(self.length)]
     }
 }

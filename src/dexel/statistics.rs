@@ -1,28 +1,28 @@
-//! How much a model holds, direction by direction.
+//! Statistics of a model, direction by direction.
 
 use super::line::Line;
 use super::place::{Place, Span};
 use super::view::{OTHERS, RowsRef, TriDexelRef, with_rows};
 
-/// What the rays of one direction hold.
+/// Statistics of the rays of one direction.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct DexelStatistics {
-    /// Rays that cross the solid.
+    /// The number of rays that cross the solid.
     pub rays: u64,
-    /// Intervals.
+    /// The number of intervals.
     pub intervals: u64,
-    /// Bytes of the arrays.
+    /// The number of bytes of the arrays.
     pub bytes: u64,
-    /// The sum of the lengths of all intervals, each times the area of a cell's face: an estimate of the
-    /// volume (cubic model units), not a bound.
+    /// The sum of the lengths of all intervals, times the area of a cell's face: an estimate of the volume
+    /// (cubic model units), not a bound.
     pub volume: f64,
-    /// The least and the greatest coordinate on each axis of what the rays cross (model units); the first is
-    /// greater than the second if they cross nothing.
+    /// The least and the greatest coordinate, on each axis, of the part that the rays cross (model units).
+    /// The first is greater than the second if the rays cross nothing.
     pub extent: [[f64; 2]; 3],
 }
 
 impl TriDexelRef<'_> {
-    /// What the rays along an axis hold; `None` if the model has none. O(n).
+    /// The statistics of the rays along an axis; `None` if the model has none. O(n).
     pub fn statistics(&self, axis: usize) -> Option<DexelStatistics> {
         let rows = self.rays.get(axis)?.as_ref()?;
         Some(with_rows!(rows, rows => self.count(axis, rows)))
@@ -39,10 +39,10 @@ impl TriDexelRef<'_> {
             extent: [[f64::INFINITY, f64::NEG_INFINITY]; 3],
         };
         let [u, v] = OTHERS[axis];
-        // Rays of a damaged file may have intervals in common: each is met once.
+        // Rays of a damaged file may share intervals: each interval counts once.
         let mut met = 0;
         for row in 0..rows.window.size[1] as usize {
-            // Row by row, so that sums of many small numbers stay exact to rounding.
+            // Row by row, so that sums of many small numbers are exact up to rounding.
             let mut length = 0.0;
             for column in 0..rows.window.size[0] as usize {
                 let range = rows.at(row * rows.window.size[0] as usize + column);

@@ -1,4 +1,4 @@
-//! The borrowed view of a tri-dexel model, on which all reading is written.
+//! The borrowed view of a tri-dexel model, for all reading.
 
 use super::columns::{ColumnsRef, NormalsRef};
 use super::format::{DexelEnds, DexelFormat, DexelNormals};
@@ -13,7 +13,7 @@ use yoke::Yokeable;
 /// The other two axes of each axis, ascending.
 pub(crate) const OTHERS: [[usize; 2]; 3] = [[1, 2], [0, 2], [0, 1]];
 
-/// Rays of one direction, as indices on the other two axes: those outside of it are empty.
+/// A rectangle of rays of one direction, by indices on the other two axes. Rays outside it are empty.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 pub(crate) struct Window {
     pub first: [u32; 2],
@@ -21,7 +21,7 @@ pub(crate) struct Window {
 }
 
 impl Window {
-    /// All rays of a universe.
+    /// The window of all rays of a universe.
     pub fn all(depth: u8) -> Window {
         Window { first: [0; 2], size: [1 << depth; 2] }
     }
@@ -38,7 +38,7 @@ impl Window {
         self.first[i]..self.first[i] + self.size[i]
     }
 
-    /// How many rays.
+    /// The number of rays.
     pub fn count(&self) -> u64 {
         u64::from(self.size[0]) * u64::from(self.size[1])
     }
@@ -47,14 +47,14 @@ impl Window {
         self.count() == 0
     }
 
-    /// The number of a ray in it.
+    /// The index of a ray in the window.
     #[inline(always)]
     pub fn index(&self, [u, v]: [u32; 2]) -> Option<usize> {
         let (u, v) = (u.wrapping_sub(self.first[0]), v.wrapping_sub(self.first[1]));
         (u < self.size[0] && v < self.size[1]).then(|| v as usize * self.size[0] as usize + u as usize)
     }
 
-    /// The ray with a number in it.
+    /// The ray with an index in the window.
     pub fn ray(&self, index: usize) -> [u32; 2] {
         let width = (self.size[0] as usize).max(1);
         [self.first[0] + (index % width) as u32, self.first[1] + (index / width) as u32]
@@ -67,7 +67,7 @@ impl Window {
         }))
     }
 
-    /// The least window that holds both.
+    /// The least window that contains both.
     pub fn hull(&self, other: &Window) -> Window {
         if self.is_empty() || other.is_empty() {
             return if self.is_empty() { *other } else { *self };
@@ -83,16 +83,16 @@ impl Window {
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct RowsRef<'a, S> {
     pub window: Window,
-    /// For each ray of the window the number of its first interval, and behind the last the number of all.
+    /// For each ray of the window, the index of its first interval; then the number of all intervals.
     pub starts: &'a [u32],
     pub columns: ColumnsRef<'a, S>,
 }
 
 impl<S: Span> RowsRef<'_, S> {
-    /// The intervals of the ray with this number in the window.
+    /// The intervals of the ray with this index in the window.
     #[inline(always)]
     pub fn at(&self, index: usize) -> Range<usize> {
-        // Arrays from a file may say anything.
+        // Arrays from a file may contain any numbers.
         match self.starts.get(index..).and_then(|rest| rest.get(..2)) {
             Some(&[first, end]) if first <= end && end as usize <= self.columns.spans.len() => {
                 first as usize..end as usize
@@ -128,7 +128,7 @@ pub(crate) enum Rows<'a> {
     Double(RowsRef<'a, DoubleSpan>),
 }
 
-/// `$body` for the rows of whichever form.
+/// Evaluates `$body` for the rows in either form.
 macro_rules! with_rows {
     ($rows:expr, $name:ident => $body:expr) => {
         match $rows {
@@ -144,38 +144,38 @@ pub(crate) use with_rows;
 pub struct DexelEnd {
     /// The coordinate along the ray, in model units.
     ///
-    /// An end that is handed out lies on the side of every centre of a cell that is stored: of the doubles on
-    /// this side it is the nearest, up to an ulp. Far from the origin there may be no double between two
-    /// centres; then it is the nearest double of all, and only `cells` tells the side.
+    /// An end that the library returns lies on the stored side of every centre of a cell. It is the nearest
+    /// double on this side, up to an ulp. Far from the origin there may be no double between two centres.
+    /// Then it is the nearest double of all, and only `cells` determines the side.
     pub at: f64,
     /// The same place in finest cells from the universe's lower face, exactly as it is stored: 0 to 2^depth.
     /// The centre of cell k lies at k + ½.
     ///
-    /// An end that is handed out has it always. Of an end that is handed in, `cells` counts if `at` is the
-    /// coordinate that would be handed out for it on that frame; else, and if it is `None`, `at` counts
-    /// alone. So an end whose `at` is changed lies where that says.
+    /// An end that the library returns always has this number. For an end that the host provides, `cells`
+    /// counts if `at` is the coordinate that the library would return for it on that frame. Otherwise, and if
+    /// `cells` is `None`, only `at` counts. So changing `at` moves an end to that coordinate.
     pub cells: Option<f64>,
-    /// On which of the source's surfaces it lies: a triangle of a mesh, a half-space of an expression. `None`
-    /// if it is not known.
+    /// The number of the source's surface at the end: a triangle of a mesh, a half-space of an expression.
+    /// `None` if it is unknown.
     pub surface: Option<u32>,
-    /// The outward unit normal there, if it is known.
+    /// The outward unit normal at the end, if it is known.
     pub normal: Option<[f64; 3]>,
 }
 
 impl DexelEnd {
-    /// An end at a coordinate (model units), of which no surface and no normal is known.
+    /// Makes an end at a coordinate (model units), without a surface or a normal.
     pub const fn new(at: f64) -> DexelEnd {
         DexelEnd { at, cells: None, surface: None, normal: None }
     }
 
-    /// An end so many finest cells behind the universe's lower face (0 to 2^depth), along an axis, of which
-    /// no surface and no normal is known. The centre of cell k lies at k + ½. `None` for an axis greater than
-    /// 2 and for a place outside of the universe.
+    /// Makes an end along an axis, `cells` finest cells from the universe's lower face (0 to 2^depth),
+    /// without a surface or a normal. The centre of cell k lies at k + ½. `None` for an axis greater than 2
+    /// and for a place outside the universe.
     ///
     /// ```
     /// use leafless::{Frame, dexel::DexelEnd};
     /// let frame = Frame::new([0.1; 3], 0.7, 3)?;
-    /// // On the centre of cell 4, and as little as possible behind it.
+    /// // On the centre of cell 4, and as little as possible above it.
     /// let centre = DexelEnd::in_cells(&frame, 0, 4.5).unwrap();
     /// let behind = DexelEnd::in_cells(&frame, 0, 4.5f64.next_up()).unwrap();
     /// assert!(centre.at < behind.at);
@@ -188,14 +188,14 @@ impl DexelEnd {
     }
 }
 
-/// An interval of a ray that lies inside of the solid.
+/// An interval of a ray that lies inside the solid.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Dexel {
-    /// Where it begins.
+    /// The start.
     pub start: DexelEnd,
-    /// Where it ends, which is behind its start (in cells; far from the origin both may have one coordinate).
+    /// The end, which is greater than the start (in cells; far from the origin both may have one coordinate).
     pub end: DexelEnd,
-    /// What it is made of; 0 where nothing was said.
+    /// The material; 0 if it is unknown.
     pub material: u32,
 }
 
@@ -208,24 +208,25 @@ pub struct DexelRays<'a> {
 }
 
 impl<'a> DexelRays<'a> {
-    /// The axis that the rays run along.
+    /// The axis along which the rays run.
     pub fn axis(&self) -> usize {
         self.axis
     }
 
-    /// Rays outside of these are empty: indices of cells on the other two axes, the lower axis first.
+    /// The window of the rays: indices of cells on the other two axes, the lower axis first. Rays outside it
+    /// are empty.
     pub fn window(&self) -> [Range<u32>; 2] {
         let window = with_rows!(&self.rows, rows => rows.window);
         [window.range(0), window.range(1)]
     }
 
-    /// How many intervals there are.
+    /// The number of intervals.
     pub fn interval_count(&self) -> u64 {
         with_rows!(&self.rows, rows => rows.columns.spans.len()) as u64
     }
 
     /// The intervals of the ray through the centres of cells with these indices on the other two axes, the
-    /// lower axis first; in ascending order, disjoint. A ray outside of the universe has none.
+    /// lower axis first. They are in ascending order and disjoint. A ray outside the universe has none.
     pub fn dexels(&self, ray: [u32; 2]) -> impl ExactSizeIterator<Item = Dexel> + 'a {
         let &DexelRays { frame, axis, rows } = self;
         let range = with_rows!(&rows, rows => rows.ray(ray));
@@ -247,13 +248,13 @@ fn dexel<P: Place>(frame: &Frame, axis: usize, item: Item<P>) -> Dexel {
     Dexel { start: end(0), end: end(1), material: item.material }
 }
 
-/// A borrowed tri-dexel model. Copying it copies no interval.
+/// A borrowed tri-dexel model. A copy shares the intervals.
 #[derive(Debug, Clone, Copy, Yokeable)]
 pub struct TriDexelRef<'a> {
     pub(crate) frame: Frame,
     pub(crate) format: DexelFormat,
     pub(crate) rays: [Option<Rows<'a>>; 3],
-    /// Whether the arrays are known to be sound: those of a file that nobody has verified are not.
+    /// Whether the arrays are known to be sound. The arrays of an unverified file are not.
     pub(crate) checked: bool,
 }
 
@@ -263,12 +264,12 @@ impl<'a> TriDexelRef<'a> {
         &self.frame
     }
 
-    /// What of each interval is stored.
+    /// The data that is stored for each interval.
     pub fn format(&self) -> DexelFormat {
         self.format
     }
 
-    /// Which directions have rays: x, y, z.
+    /// For each axis, x, y and z, whether there are rays along it.
     pub fn directions(&self) -> [bool; 3] {
         self.rays.map(|rays| rays.is_some())
     }
@@ -279,25 +280,25 @@ impl<'a> TriDexelRef<'a> {
         Some(DexelRays { frame: self.frame, axis, rows })
     }
 
-    /// How many intervals there are in all directions.
+    /// The number of intervals in all directions.
     pub fn interval_count(&self) -> u64 {
         (0..3).filter_map(|axis| self.rays(axis)).map(|rays| rays.interval_count()).sum()
     }
 
-    /// Bytes that the arrays take.
+    /// The number of bytes of the arrays.
     pub fn bytes(&self) -> u64 {
         let starts = |rows: &Rows<'_>| with_rows!(rows, rows => size_of_val(rows.starts)) as u64;
         let starts = self.rays.iter().flatten().map(starts).sum::<u64>();
         starts + self.interval_count() * self.format.bytes_per_interval() as u64
     }
 
-    /// The rays as of one form of ends; of directions that the model has not none.
+    /// The form of the ends of all intervals.
     pub(crate) fn kind(&self) -> DexelEnds {
         self.format.ends
     }
 }
 
-/// Whether formats agree with arrays.
+/// Returns whether a format agrees with the arrays.
 pub(crate) fn carries<S: Span>(columns: &ColumnsRef<'_, S>, format: &DexelFormat) -> bool {
     let count = columns.spans.len();
     let normals = match (columns.normals, format.normals) {

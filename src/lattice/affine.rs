@@ -4,29 +4,29 @@ use super::axes;
 use super::exact::{Expansion, product_up, sign_of_products, sqrt, two_product};
 use crate::error::Error;
 
-/// Entries beyond ±2^64 are refused, and so are those but zero below 2^-64.
+/// Entries beyond ±2^64 are rejected, and so are entries below 2^-64 in magnitude, except zero.
 const LARGEST: f64 = 18_446_744_073_709_551_616.0;
 
-/// The invertible affine map p ↦ M p + t, which places a shape: row i of `[M | t]` gives coordinate i of the
-/// image. The map is that of exactly these doubles; nothing is normalised or rounded.
+/// An invertible affine map p ↦ M p + t, which places a shape. Row i of `[M | t]` gives coordinate i of the
+/// image. The map has exactly these doubles as coefficients; nothing is normalised or rounded.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Affine {
     rows: [[f64; 4]; 3],
 }
 
 impl Affine {
-    /// The map that moves nothing.
+    /// The identity map.
     pub const IDENTITY: Affine =
         Affine { rows: [[1.0, 0.0, 0.0, 0.0], [0.0, 1.0, 0.0, 0.0], [0.0, 0.0, 1.0, 0.0]] };
 
-    /// The problem that [`new`](Self::new) has with matrices that are not invertible.
+    /// The message of [`new`](Self::new) for matrices that are not invertible.
     pub(crate) const SINGULAR: &str = "the matrix is singular";
 
-    /// The map with the rows of `[M | t]`.
+    /// Makes the map with the rows of `[M | t]`.
     ///
     /// # Errors
-    /// [`Error::Argument`] if an entry is not zero and not of a magnitude between 2^-64 and 2^64, or M is
-    /// singular (which is decided exactly).
+    /// [`Error::Argument`] if an entry is neither zero nor of a magnitude between 2^-64 and 2^64, or if M is
+    /// singular (decided exactly).
     pub fn new(rows: [[f64; 4]; 3]) -> Result<Affine, Error> {
         let refuse = |problem| Err(Error::Argument { name: "placement", problem });
         if !rows.iter().flatten().all(|&c| c == 0.0 || (1.0 / LARGEST..=LARGEST).contains(&c.abs())) {
@@ -39,7 +39,7 @@ impl Affine {
         Ok(map)
     }
 
-    /// The map that moves everything by `offset`.
+    /// Makes the translation by `offset`.
     ///
     /// # Errors
     /// As [`new`](Self::new).
@@ -56,28 +56,28 @@ impl Affine {
         &self.rows
     }
 
-    /// Whether this is the map that moves nothing.
+    /// Returns whether this is the identity map.
     pub fn is_identity(&self) -> bool {
         *self == Affine::IDENTITY
     }
 
-    /// How far apart along an axis, at the most, the images of two points are that are `distance` apart along
-    /// each; rounded upward.
+    /// The greatest distance along any axis between the images of two points whose distance along each axis
+    /// is `distance`; rounded upward.
     pub(crate) fn stretched(&self, distance: f64) -> f64 {
         let stretch = self.rows.iter().map(|[x, y, z, _]| x.abs() + y.abs() + z.abs()).fold(0.0, f64::max);
         product_up(stretch * (1.0 + 2.0 * f64::EPSILON), distance)
     }
 
-    /// A bound of the length of images of vectors that are no longer than `length`. Of turns, and of maps
-    /// that stretch along axes, it is hardly more than needed, and nowhere √3 times as much.
+    /// A bound of the length of images of vectors that are no longer than `length`. For rotations, and for
+    /// maps that scale along axes, the bound is nearly tight. It is never as much as √3 times too large.
     pub(crate) fn lengthened(&self, length: f64) -> f64 {
         let is_translation =
             (0..3).all(|i| (0..3).all(|j| self.rows[i][j] == if i == j { 1.0 } else { 0.0 }));
         if length == 0.0 || is_translation {
             return length;
         }
-        // The square of the norm is the greatest eigenvalue of MᵀM: no more than a sum of magnitudes in a
-        // row.
+        // The square of the norm is the greatest eigenvalue of MᵀM. An eigenvalue is no greater than the sum
+        // of magnitudes in some row.
         let entry = |i: usize, j: usize| {
             let parts = self.rows.map(|row| row[i] * row[j]);
             let size = parts.iter().map(|part| part.abs()).sum::<f64>();
@@ -87,10 +87,10 @@ impl Affine {
         product_up(sqrt(most) * (1.0 + 16.0 * f64::EPSILON), length).next_up()
     }
 
-    /// 1 if the map keeps orientation, −1 if it mirrors, 0 if M is singular: the exact sign of the
-    /// determinant.
+    /// The exact sign of the determinant: 1 if the map keeps orientation, −1 if it mirrors, 0 if M is
+    /// singular.
     pub fn orientation(&self) -> i32 {
-        // Six products of three doubles, four terms each, none of which leaves the range of doubles.
+        // Six products of three doubles, with four terms each. No term leaves the range of doubles.
         let m = &self.rows;
         let parts = axes(|i| {
             let (j, k) = ((i + 1) % 3, (i + 2) % 3);
@@ -116,8 +116,8 @@ impl Affine {
         (cofactors, determinant.estimate())
     }
 
-    /// Whether the linear part has one entry a row, and that a power of two: then nothing of it or of its
-    /// inverse is rounded.
+    /// Returns whether the linear part has one entry a row, and that entry is a power of two. Then neither
+    /// the linear part nor its inverse is rounded.
     pub(crate) fn is_monomial(&self) -> bool {
         self.rows.iter().all(|[x, y, z, _]| {
             let mut entries = [x, y, z].into_iter().filter(|&&c| c != 0.0);
@@ -126,20 +126,20 @@ impl Affine {
         })
     }
 
-    /// The inverse of the linear part, each entry off by 5 · 2^-53 of itself at the most: quotients of a
-    /// minor and the determinant, both of which come from exact sums.
+    /// The inverse of the linear part. The relative error of each entry is at most 5 · 2^-53: it is the
+    /// quotient of a minor and the determinant, both of which come from exact sums.
     pub(crate) fn inverse_linear(&self) -> [[f64; 3]; 3] {
         let (cofactors, determinant) = self.cofactors();
         axes(|i| axes(|j| cofactors[j][i].estimate() / determinant))
     }
 
-    /// The map that leads back, rounded: each entry is off by 5 · 2^-53 of itself at the most, but those of
-    /// magnitudes below 2^-64 become 0. Of a map that permutes and mirrors axes, stretches them by powers of
-    /// two, and moves, it is exact.
+    /// The inverse map, rounded. The relative error of each entry is at most 5 · 2^-53, but entries below
+    /// 2^-64 in magnitude become 0. The inverse is exact for a map that permutes and mirrors axes, scales
+    /// them by powers of two, and translates.
     ///
     /// # Errors
-    /// [`Error::Argument`] if an entry is beyond 2^64, or what is left is singular: maps that stretch, or
-    /// shrink, by that much.
+    /// [`Error::Argument`] if an entry exceeds 2^64, or if the rounded matrix is singular: the map scales up
+    /// or down by too much.
     ///
     /// ```
     /// let quarter = leafless::Affine::new([[0.0, -1.0, 0.0, 3.0], [1.0, 0.0, 0.0, 5.0], [0.0, 0.0, 2.0, 1.0]])?;
@@ -158,8 +158,8 @@ impl Affine {
         Affine::new(rows.map(|row| row.map(|c| if c.abs() < 1.0 / LARGEST { 0.0 } else { c })))
     }
 
-    /// The image of a point, rounded: each coordinate is off by at most 2^-50 times the sum of the magnitudes
-    /// of its four summands.
+    /// The image of a point, rounded. The error of each coordinate is at most 2^-50 times the sum of the
+    /// magnitudes of its four summands.
     pub fn apply(&self, p: [f64; 3]) -> [f64; 3] {
         self.rows.map(|[x, y, z, t]| ((x * p[0] + y * p[1]) + z * p[2]) + t)
     }
@@ -185,7 +185,8 @@ mod tests {
 
     #[test]
     fn inverses() {
-        // A turn by a quarter, as libraries compute it: what is left of zero does not matter.
+        // A rotation by a quarter turn, as libraries compute it: the residue in place of zero does not
+        // matter.
         let c = 6.123233995736766e-17;
         let quarter =
             Affine::new([[c, -1.0, 0.0, 1e-5], [1.0, c, 0.0, -3.0], [0.0, 0.0, -0.5, 7.0]]).unwrap();
@@ -194,7 +195,8 @@ mod tests {
             let there_and_back = back.apply(quarter.apply(p));
             assert!((0..3).all(|k| (there_and_back[k] - p[k]).abs() < 1e-12), "{there_and_back:?}");
         }
-        // Two of three directions are nearly one: rows of cofactors are differences of almost equal products.
+        // Two of three directions are nearly equal: rows of cofactors are differences of almost equal
+        // products.
         let e = f64::EPSILON;
         let thin =
             Affine::new([[1.0, 1.0, 0.0, 0.0], [1.0, 1.0 + e, 0.0, 0.0], [0.0, 0.0, 1.0, 0.0]]).unwrap();
@@ -206,7 +208,7 @@ mod tests {
             small.rows[2][3] = -1.0 / LARGEST;
             small
         });
-        // The way back would be longer than a map can be.
+        // The translation of the inverse would exceed the limits of a map.
         let far = Affine::new([[1e-10, 0.0, 0.0, 1e19], [0.0, 1.0, 0.0, 0.0], [0.0, 0.0, 1.0, 0.0]]).unwrap();
         assert!(far.inverse().is_err());
     }

@@ -1,25 +1,25 @@
-//! Numbers with a bound on their error, where speed matters more than tightness.
+//! Numbers with an error bound, where speed matters more than tightness.
 
 use super::exact::sqrt;
 
-/// A real number that is at most `error` from `value`.
+/// A real number that differs from `value` by at most `error`.
 ///
-/// An operation takes about as long as two of plain doubles (an [`Interval`](super::Interval) meets exact
-/// bounds, and takes ten times as long). Where a result leaves the range of doubles, the error is infinite or
-/// not a number, and the sign is not known.
+/// An operation takes about as long as two operations on plain doubles. (An [`Interval`](super::Interval)
+/// keeps exact bounds, and takes ten times as long.) Where a result leaves the range of doubles, the error is
+/// infinite or NaN, and the sign is unknown.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct Ball {
     pub value: f64,
     pub error: f64,
 }
 
-/// More than the relative error of a rounded result.
+/// A bound of the relative error of a rounded result.
 const ROUNDING: f64 = f64::EPSILON;
 
-/// What errors are multiplied by, because up to eight roundings make them.
+/// The factor that covers the up to eight roundings in the computation of an error.
 const SLACK: f64 = 1.0 + 8.0 * f64::EPSILON;
 
-/// More than the error of a result that is too small for a double of full length.
+/// A bound of the error of a subnormal result.
 const TINY: f64 = f64::MIN_POSITIVE;
 
 impl Ball {
@@ -64,13 +64,13 @@ impl Ball {
         Ball::rounded(self.value * other.value, error + TINY)
     }
 
-    /// Up to `radius` more or less.
+    /// The number with `radius` added to its error.
     #[inline(always)]
     pub fn widened(self, radius: f64) -> Ball {
         Ball { value: self.value, error: (self.error + radius) * SLACK }
     }
 
-    /// One divided by the number; any number if that may be 0.
+    /// The reciprocal; an unknown number if the divisor may be 0.
     #[inline(always)]
     pub fn reciprocal(self) -> Ball {
         let least = self.value.abs() * (1.0 - 2.0 * ROUNDING) - self.error;
@@ -80,7 +80,7 @@ impl Ball {
         Ball::rounded(value, error)
     }
 
-    /// The root of a number that is not negative.
+    /// The square root of a number that is not negative.
     #[inline(always)]
     pub fn root(self) -> Ball {
         let largest = self.value + self.error;
@@ -88,13 +88,13 @@ impl Ball {
             let value = sqrt(self.value);
             Ball::rounded(value, self.error / value + TINY)
         } else {
-            // Anything from 0 on.
+            // Any number from 0 to the root of the largest value.
             let half = 0.5 * sqrt(largest.max(0.0) * SLACK) * SLACK;
             Ball { value: half, error: half + TINY }
         }
     }
 
-    /// To a power of 1 to 64.
+    /// The power with an exponent of 1 to 64.
     #[inline]
     pub fn power(self, exponent: u32) -> Ball {
         let mut product = self;
@@ -109,13 +109,13 @@ impl Ball {
         product
     }
 
-    /// The largest magnitude.
+    /// The largest possible magnitude.
     #[inline(always)]
     pub fn magnitude(self) -> f64 {
         (self.value.abs() + self.error) * SLACK
     }
 
-    /// Whether the number is positive, or negative; `None` if that is not known.
+    /// Returns whether the number is positive (`true`) or negative (`false`); `None` if the sign is unknown.
     #[inline(always)]
     pub fn is_positive(self) -> Option<bool> {
         if self.value > self.error {
@@ -134,7 +134,8 @@ mod tests {
     use crate::lattice::Interval;
     use alloc::vec::Vec;
 
-    /// Each operation against intervals that are known to be right: the centres and ends of the operands.
+    /// Compares each operation with intervals that are known to be correct, for the centres and ends of the
+    /// operands.
     #[test]
     fn results_contain_what_the_numbers_give() {
         let values = [0.0, 1.0, -1.0, 0.1, -3.7, 1e-300, -1e-160, 1e160, 7.0 / 3.0, 1e15 + 0.5, 2.2e-308];
@@ -143,14 +144,14 @@ mod tests {
         for value in values {
             balls.extend(errors.map(|error| Ball { value, error }));
         }
-        // (An end that is rounded to a number beyond it is not one of the ball.)
+        // (An end that is rounded outward does not lie in the ball.)
         let points = |ball: &Ball| {
             let ends = [ball.value - 0.99 * ball.error, ball.value + 0.99 * ball.error];
             let is_within = |x: f64| (x - ball.value).abs() <= ball.error;
             [ball.value, ends[0], ends[1]].map(|x| if is_within(x) { x } else { ball.value })
         };
         let holds = |ball: Ball, truth: Interval| {
-            // (What is not finite says nothing.)
+            // (A result that is not finite promises nothing.)
             let [low, high] = [ball.value - ball.error, ball.value + ball.error];
             let is_silent = !(low.is_finite() && high.is_finite());
             is_silent || low.next_down() <= truth.lower && truth.upper <= high.next_up()
@@ -178,7 +179,7 @@ mod tests {
                     let truth = (1..n).fold(ix, |all, _| all.times(ix));
                     if truth.lower.is_finite() && truth.upper.is_finite() {
                         let own = a.power(n);
-                        // Both bounds contain the truth: they must meet.
+                        // Both bounds contain the true result, so that they must overlap.
                         let meets =
                             own.value - own.error <= truth.upper && truth.lower <= own.value + own.error;
                         assert!(meets || !own.error.is_finite() || own.value.is_nan(), "{a:?} {x:e} {n}");

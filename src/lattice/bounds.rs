@@ -15,13 +15,14 @@ pub struct Bounds {
 }
 
 impl Bounds {
-    /// The box between two corners; `None` unless all coordinates are finite and min ≤ max on every axis.
+    /// Makes the box between two corners; `None` unless all coordinates are finite and min ≤ max on every
+    /// axis.
     pub fn new(min: [f64; 3], max: [f64; 3]) -> Option<Bounds> {
         let good = |axis: usize| min[axis] <= max[axis] && min[axis].is_finite() && max[axis].is_finite();
         (0..3).all(good).then_some(Bounds { min, max })
     }
 
-    /// A box that contains the universe of a frame: it, rounded outward.
+    /// The universe of a frame, rounded outward to a box.
     pub fn of(frame: &Frame) -> Bounds {
         let max = frame.origin().map(|low| match two_sum(low, frame.edge()) {
             (sum, error) if error > 0.0 => sum.next_up(),
@@ -30,14 +31,14 @@ impl Bounds {
         Bounds { min: frame.origin(), max }
     }
 
-    /// The eight corners, x running fastest and z slowest.
+    /// The eight corners; x varies fastest and z slowest.
     pub fn corners(&self) -> [[f64; 3]; 8] {
         core::array::from_fn(|k| {
             axes(|axis| if k >> axis & 1 == 0 { self.min[axis] } else { self.max[axis] })
         })
     }
 
-    /// The least box that contains both.
+    /// The least box that contains both boxes.
     #[must_use]
     pub fn hull(&self, other: &Bounds) -> Bounds {
         Bounds {
@@ -46,7 +47,7 @@ impl Bounds {
         }
     }
 
-    /// What both have in common, which may be a face; `None` if there is nothing.
+    /// The intersection of both boxes, which may be a face; `None` if it is empty.
     pub fn common(&self, other: &Bounds) -> Option<Bounds> {
         Bounds::new(
             axes(|axis| self.min[axis].max(other.min[axis])),
@@ -54,7 +55,7 @@ impl Bounds {
         )
     }
 
-    /// The same with `margin` more on every side, rounded outward.
+    /// The box enlarged by `margin` on every side, rounded outward.
     #[must_use]
     pub fn grown(&self, margin: f64) -> Bounds {
         if margin == 0.0 {
@@ -66,12 +67,13 @@ impl Bounds {
         }
     }
 
-    /// A box around the image under a map, rounded outward; `None` beyond the doubles.
+    /// A box around the image under a map, rounded outward; `None` if it exceeds the range of doubles.
     pub fn placed(&self, placement: &Affine) -> Option<Bounds> {
         self.under(&placement.into())
     }
 
-    /// A box around the image under maps after each other, rounded outward; `None` beyond the doubles.
+    /// A box around the image under a composition of maps, rounded outward; `None` if it exceeds the range of
+    /// doubles.
     pub(crate) fn under(&self, map: &Composed) -> Option<Bounds> {
         let (mut min, mut max) = ([0.0; 3], [0.0; 3]);
         for (i, (row, errors)) in map.rows.iter().zip(&map.errors).enumerate() {
@@ -91,7 +93,7 @@ impl Bounds {
         Bounds::new(min, max)
     }
 
-    /// Whether the box lies in the universe of a frame; exact.
+    /// Returns whether the box lies in the universe of a frame; exact.
     pub fn is_within(&self, frame: &Frame) -> bool {
         (0..3).all(|axis| {
             let origin = frame.origin()[axis];

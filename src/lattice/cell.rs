@@ -1,7 +1,7 @@
 //! Octants of the universe as integers.
 
-/// An octant of the universe: at `level` the universe is cut into 2^level cells per axis, and this is the
-/// one at the integer position `at` (0 ≤ at < 2^level). Level 0 is the universe itself.
+/// An octant of the universe. At `level` the universe is divided into 2^level cells per axis, and this cell
+/// has the integer position `at` (0 ≤ at < 2^level). Level 0 is the universe itself.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
 pub struct Cell {
     /// 0 for the universe, at most [`MAX_DEPTH`](crate::lattice::MAX_DEPTH).
@@ -22,7 +22,7 @@ impl Cell {
         Cell { level: self.level + 1, at: [2 * x + (o & 1), 2 * y + (o >> 1 & 1), 2 * z + (o >> 2 & 1)] }
     }
 
-    /// The parent; the universe is its own.
+    /// The parent. The universe is its own parent.
     #[inline]
     pub fn parent(self) -> Cell {
         Cell { level: self.level.saturating_sub(1), at: self.at.map(|a| a >> 1) }
@@ -35,34 +35,34 @@ impl Cell {
         Cell { level, at: self.at.map(|a| a >> (self.level - level)) }
     }
 
-    /// The place of the cell among those of its level in Morton order: the octants from the universe down,
-    /// three bits each.
+    /// The index of the cell among the cells of its level in Morton order: the octants from the universe
+    /// down, three bits each.
     #[inline]
     pub fn morton(self) -> u64 {
         (1..=self.level).fold(0, |code, level| code << 3 | u64::from(self.ancestor(level).octant()))
     }
 
-    /// The cell of a level at a place in Morton order; `None` unless `code` < 8^level and the level is at
+    /// The cell of a level with an index in Morton order; `None` unless `code` < 8^level and the level is at
     /// most [`MAX_DEPTH`](crate::lattice::MAX_DEPTH).
     pub fn from_morton(level: u8, code: u64) -> Option<Cell> {
         let is_there = level <= super::MAX_DEPTH && code >> (3 * level) == 0;
         is_there.then(|| (0..level).rev().fold(Cell::ROOT, |cell, k| cell.child((code >> (3 * k) & 7) as u8)))
     }
 
-    /// Whether the cell lies in another one, or is it.
+    /// Returns whether the cell lies in another one, or equals it.
     #[inline]
     pub(crate) fn is_in(self, other: Cell) -> bool {
         self.level >= other.level && self.ancestor(other.level) == other
     }
 
-    /// Which child of its parent this cell is.
+    /// The octant of this cell in its parent.
     #[inline]
     pub fn octant(self) -> u8 {
         let [x, y, z] = self.at;
         ((x & 1) | (y & 1) << 1 | (z & 1) << 2) as u8
     }
 
-    /// The first cell of `level` (at least this cell's own) inside this one.
+    /// The first cell of `level` (at least this cell's own level) inside this one.
     #[inline]
     pub fn first_at(self, level: u8) -> Cell {
         debug_assert!(level >= self.level);

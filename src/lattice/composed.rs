@@ -1,16 +1,16 @@
-//! Affine maps after each other, in doubles.
+//! Compositions of affine maps, in doubles.
 
 use super::Affine;
 use super::exact::{two_product, two_sum};
 
-/// The composition of affine maps, rounded, with a bound of what each entry of `[M | t]` may be off.
+/// The rounded composition of affine maps, with an error bound for each entry of `[M | t]`.
 ///
-/// A box under a composition is as small as the maps together leave it; a box under one map after the other
-/// grows with each.
+/// The image of a box under the composition is as small as the composed map allows. Mapping a box by one map
+/// after the other enlarges it with each map.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct Composed {
     pub(super) rows: [[f64; 4]; 3],
-    /// Zero where nothing was rounded.
+    /// The error bounds of the entries; zero where nothing was rounded.
     pub(super) errors: [[f64; 4]; 3],
 }
 
@@ -20,12 +20,12 @@ impl Composed {
         &self.rows
     }
 
-    /// What each entry may be off.
+    /// The error bounds of the entries.
     pub(crate) fn errors(&self) -> &[[f64; 4]; 3] {
         &self.errors
     }
 
-    /// `inner` first, then this.
+    /// The composition that applies `inner` first, then this map.
     pub(crate) fn after(&self, inner: &Affine) -> Composed {
         let (mut rows, mut errors) = ([[0.0; 4]; 3], [[0.0; 4]; 3]);
         for (i, (row, error)) in self.rows.iter().zip(&self.errors).enumerate() {
@@ -35,7 +35,7 @@ impl Composed {
                 let sum = RoundedSum::of([row[0], row[1], row[2]], column, constant);
                 let carried: f64 = (0..3).map(|k| error[k] * column[k].abs()).sum();
                 let carried = carried + if j == 3 { error[3] } else { 0.0 };
-                // The sum of the carried errors is rounded itself, and so is what is added to it.
+                // The sum of the carried errors is rounded itself, and so is the term that is added to it.
                 (rows[i][j], errors[i][j]) = (sum.value, carried * (1.0 + 1e-12) + sum.error);
             }
         }
@@ -49,7 +49,8 @@ impl From<&Affine> for Composed {
     }
 }
 
-/// A sum of three products and a constant, and a bound of its error: zero where nothing was rounded.
+/// A sum of three products and a constant, and a bound of its error. The bound is zero where nothing was
+/// rounded.
 pub(super) struct RoundedSum {
     pub(super) value: f64,
     pub(super) error: f64,
@@ -58,7 +59,7 @@ pub(super) struct RoundedSum {
 impl RoundedSum {
     pub(super) fn of(a: [f64; 3], b: [f64; 3], constant: f64) -> RoundedSum {
         let (mut value, mut size) = (constant, constant.abs());
-        // In numbers this small errors get lost.
+        // The errors of very small numbers would underflow.
         let is_tellable = |c: &f64| *c == 0.0 || c.abs() > 1e-100;
         let mut is_exact = a.iter().chain(&b).all(is_tellable);
         for axis in 0..3 {

@@ -3,12 +3,12 @@
 use super::axes;
 use super::{Cell, Frame, Interval};
 
-/// A cell as a piece of model space: what a solid is asked about.
+/// A cell as a piece of model space, with the frame that places it.
 #[derive(Debug, Clone, Copy)]
 pub struct Cube<'f> {
-    /// Where the universe lies.
+    /// The frame of the universe.
     pub frame: &'f Frame,
-    /// Which octant of it.
+    /// The octant of the universe.
     pub cell: Cell,
 }
 
@@ -19,8 +19,8 @@ impl<'f> Cube<'f> {
         Cube { frame: self.frame, cell: self.cell.child(octant) }
     }
 
-    /// The finest lattice planes that bound the cube: `(lower, upper)` per axis, in cells of the frame's
-    /// depth. A cube at the frame's depth has `upper = lower + 1`.
+    /// The lattice planes that bound the cube: `(lower, upper)` per axis, counted in finest cells of the
+    /// frame. A cube at the frame's depth has `upper = lower + 1`.
     #[inline]
     pub fn planes(&self) -> ([u32; 3], [u32; 3]) {
         let shift = self.frame.depth() - self.cell.level;
@@ -40,7 +40,7 @@ impl<'f> Cube<'f> {
         (min, max)
     }
 
-    /// Half the edge in model units, exactly.
+    /// Half the edge in model units, exact.
     pub fn half_edge(&self) -> f64 {
         0.5 * self.frame.edge() / (1u64 << self.cell.level) as f64
     }

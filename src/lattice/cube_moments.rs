@@ -4,7 +4,7 @@
 /// edges.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct CubeMoments {
-    /// At most 8.
+    /// The volume; at most 8.
     pub volume: f64,
     /// ∫ x.
     pub first: [f64; 3],
@@ -12,24 +12,24 @@ pub struct CubeMoments {
     pub second: [f64; 6],
 }
 
-/// Which two axes each second moment is of.
+/// The two axes of each second moment.
 pub(crate) const PAIRS: [(usize, usize); 6] = [(0, 0), (1, 1), (2, 2), (0, 1), (0, 2), (1, 2)];
 
-/// Where the product of two axes is in [`PAIRS`].
+/// The index in [`PAIRS`] of the product of two axes.
 pub(crate) const PLACES: [[usize; 3]; 3] = [[0, 3, 4], [3, 1, 5], [4, 5, 2]];
 
 impl CubeMoments {
-    /// Those of nothing.
+    /// The moments of the empty set.
     pub const EMPTY: CubeMoments = CubeMoments { volume: 0.0, first: [0.0; 3], second: [0.0; 6] };
 
-    /// Those of the whole cube.
+    /// The moments of the whole cube.
     pub const FULL: CubeMoments = CubeMoments {
         volume: 8.0,
         first: [0.0; 3],
         second: [8.0 / 3.0, 8.0 / 3.0, 8.0 / 3.0, 0.0, 0.0, 0.0],
     };
 
-    /// Those of the rest of the cube.
+    /// The moments of the rest of the cube.
     #[must_use]
     pub fn complement(&self) -> CubeMoments {
         let mut rest = CubeMoments::FULL;
@@ -39,7 +39,7 @@ impl CubeMoments {
         rest
     }
 
-    /// Those half-way between these and others.
+    /// The mean of these moments and others.
     #[must_use]
     pub(crate) fn mean(&self, other: &CubeMoments) -> CubeMoments {
         let mean = |a: f64, b: f64| 0.5 * (a + b);
@@ -51,17 +51,17 @@ impl CubeMoments {
     }
 }
 
-/// What is known of the moments of a solid in a cell.
+/// The moments of a solid in a cell, with an error bound.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct CellMoments {
-    /// Near the truth.
+    /// Approximate moments.
     pub moments: CubeMoments,
-    /// No moment is further from the truth than that. Not negative; 8 and more say nothing.
+    /// The greatest error of any moment. Not negative; 8 or more means that nothing is known.
     pub error: f64,
 }
 
 impl CellMoments {
-    /// What is known of the union with a set in the same cell that this one does not overlap.
+    /// The moments of the union with another set in the same cell that this one does not overlap.
     #[must_use]
     pub(crate) fn plus(&self, other: &CellMoments) -> CellMoments {
         let (own, theirs) = (&self.moments, &other.moments);
@@ -77,7 +77,7 @@ impl CellMoments {
         }
     }
 
-    /// What is known of the complement.
+    /// The moments of the complement.
     #[must_use]
     pub fn complement(&self) -> CellMoments {
         // The subtraction is rounded.

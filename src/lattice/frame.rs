@@ -1,11 +1,12 @@
-//! Where the lattice lies in model space.
+//! The position of the lattice in model space.
 
 use super::axes;
 use super::exact::{DoubleDouble, Expansion, floor, sign_of_sum, two_diff, two_product, two_sum};
 use super::{Interval, MAX_DEPTH, valid};
 use crate::error::{Error, MeshError};
 
-/// Where a tree lies: the cube `[origin, origin + edge]³` in model units, cut into 2^depth cells per axis.
+/// The position of a tree: the cube `[origin, origin + edge]³` in model units, divided into 2^depth cells per
+/// axis.
 ///
 /// The lattice planes are the *real* numbers origin + i·edge/2^depth, whether or not they are representable;
 /// comparisons with them are exact.
@@ -23,15 +24,15 @@ pub struct Frame {
     origin: [f64; 3],
     edge: f64,
     depth: u8,
-    // Derived from the two above, kept because every query needs them.
+    // Derived from the two numbers above, and kept because every query needs them.
     cell: f64,
     per_unit: f64,
 }
 
 impl Frame {
-    /// A universe with its lower corner at `origin` (model units; each coordinate zero or of a magnitude
-    /// between 2^-256 and 2^256), of edge length `edge` (2^-256 to 2^256) and `depth` (1 to [`MAX_DEPTH`])
-    /// levels.
+    /// Makes a universe with its lower corner at `origin` (model units; each coordinate is zero or of a
+    /// magnitude between 2^-256 and 2^256), the edge length `edge` (2^-256 to 2^256) and `depth` (1 to
+    /// [`MAX_DEPTH`]) levels.
     ///
     /// # Errors
     /// [`Error::Argument`] names the parameter that is out of range.
@@ -45,27 +46,27 @@ impl Frame {
         Ok(Frame { origin: origin.map(|c| c + 0.0), edge, depth, cell: edge / cells, per_unit: cells / edge })
     }
 
-    /// The cube of edge L·(1 + 1/32) around the centre of a shape with the bounds `min`, `max`, L being its
-    /// longest extent; the same universe at every depth. For parts with round dimensions
-    /// [`aligned`](Self::aligned) is better.
+    /// Makes a frame around a shape with the bounds `min`, `max`: a cube of edge L·(1 + 1/32) with the same
+    /// centre, where L is the longest extent of the shape. The universe is the same at every depth. For parts
+    /// with round dimensions [`aligned`](Self::aligned) is better.
     ///
     /// # Errors
-    /// [`MeshError::NoExtent`] if L is zero; [`Error::Argument`] if min > max on an axis, if a bound is not a
-    /// finite number in range, or lies so far from the origin that the cube around it cannot be told in
-    /// doubles.
+    /// [`MeshError::NoExtent`] if L is zero; [`Error::Argument`] if min > max on an axis, or if a bound is
+    /// not a finite number in range. Also [`Error::Argument`] if a bound lies so far from the origin that
+    /// doubles cannot resolve the cube around it.
     pub fn around(min: [f64; 3], max: [f64; 3], depth: u8) -> Result<Frame, Error> {
         let edge = longest_extent(min, max)? * (1.0 + 1.0 / 32.0);
         let frame = Frame::new(axes(|axis| centred(min[axis], max[axis], edge)), edge, depth)?;
         if frame.holds(min, max) { Ok(frame) } else { Err(UNRESOLVED) }
     }
 
-    /// The frame [`around`](Self::around) a shape whose finest cells are no longer than a tolerance: the
-    /// greater of `absolute` (model units) and `relative` times the longest extent. It has the least such
-    /// depth. Where 20 levels do not suffice it has 20; so it has for a tolerance of zero, which is right for
-    /// [`build_extended`](crate::build_extended) of exact surfaces: their cells end at any size.
+    /// Makes the frame [`around`](Self::around) a shape whose finest cells are no longer than a tolerance:
+    /// the greater of `absolute` (model units) and `relative` times the longest extent. The frame has the
+    /// least such depth. Where 20 levels do not suffice, it has 20. A tolerance of zero also gives 20 levels,
+    /// which suits [`build_extended`](crate::build_extended) of exact surfaces: their cells end at any size.
     ///
     /// # Errors
-    /// As [`around`](Self::around); [`Error::Argument`] if a tolerance is negative or no number.
+    /// As [`around`](Self::around); [`Error::Argument`] if a tolerance is negative or NaN.
     ///
     /// ```
     /// use leafless::Frame;
@@ -84,17 +85,18 @@ impl Frame {
         frame.with_depth((1..MAX_DEPTH).find(|&depth| fits(depth)).unwrap_or(MAX_DEPTH))
     }
 
-    /// A frame whose lattice planes are round numbers, around a shape with the bounds `min`, `max`: cells are
-    /// powers of two, and the origin is a multiple of as great a power of two as possible. Faces at 25, 12.5
+    /// Makes a frame with round lattice planes around a shape with the bounds `min`, `max`. The cell size is
+    /// a power of two, and the origin is a multiple of as great a power of two as possible. Faces at 25, 12.5
     /// or −0.75 then lie on lattice planes. Such a face needs no cells along it, and the certified volume is
-    /// exact there. A part of 100 × 60 × 30 with four bores and four rounded edges is an octree of 30 820
-    /// nodes at depth 9, and its volume to 2 % takes 419 splits; with [`around`](Self::around) it is 208 377
-    /// nodes, and 2 177 splits. (For solids without slabs, as octrees, the splits differ by a factor of a
-    /// hundred.)
+    /// exact there. For example, a part of 100 × 60 × 30 with four bores and four rounded edges is an octree
+    /// of 30 820 nodes at depth 9, and its volume to 2 % takes 419 splits. With [`around`](Self::around) it
+    /// takes 208 377 nodes and 2 177 splits. (For solids without slabs, such as octrees, the splits differ by
+    /// a factor of a hundred.)
     ///
-    /// The edge is the smallest power of two that holds the bounds, so it is up to twice their longest extent
-    /// L, and cells are up to twice as long as those of [`around`](Self::around). On each axis a 128th of the
-    /// edge is left free on both sides where there is room. The universe is the same at every depth.
+    /// The edge is the smallest power of two whose cube can hold the bounds. So the edge is up to twice their
+    /// longest extent, and cells are up to twice as long as those of [`around`](Self::around). On each axis a
+    /// 128th of the edge is left free on both sides where there is room. The universe is the same at every
+    /// depth.
     ///
     /// # Errors
     /// As [`around`](Self::around).
@@ -108,8 +110,8 @@ impl Frame {
     pub fn aligned(min: [f64; 3], max: [f64; 3], depth: u8) -> Result<Frame, Error> {
         let longest = longest_extent(min, max)?;
         let mut edge = power_of_two_from(longest);
-        // Bounds that are as long as the edge may have no origin on the lattice; those of twice the edge
-        // have.
+        // If the bounds are as long as the edge, no origin on the lattice may fit. With twice the edge one
+        // does.
         for _ in 0..2 {
             if let Some(origin) = aligned_origin(min, max, edge) {
                 let frame = Frame::new(origin, edge, depth)?;
@@ -122,11 +124,11 @@ impl Frame {
         Err(UNRESOLVED)
     }
 
-    /// A frame with cells of the edge length `cell` (model units, 2^-256 to 2^256) around a shape with the
-    /// bounds `min`, `max`, its origin a multiple of `cell` times as great a power of two as possible. The
-    /// depth is the least that holds the bounds, so edge = cell · 2^depth. With `cell` = 0.25 the lattice
-    /// planes are the multiples of 0.25. (A double is a sum of powers of two: the planes of a `cell` of 0.1
-    /// are multiples of the double next to 0.1, which are not the doubles next to 0.3 or 0.7.)
+    /// Makes a frame with cells of the edge length `cell` (model units, 2^-256 to 2^256) around a shape with
+    /// the bounds `min`, `max`. Its origin is a multiple of `cell` times as great a power of two as possible.
+    /// The depth is the least that holds the bounds, so edge = cell · 2^depth. With `cell` = 0.25 the lattice
+    /// planes are the multiples of 0.25. (Doubles are binary fractions: with a `cell` of 0.1 the planes are
+    /// multiples of the double nearest to 0.1, and these are not the doubles nearest to 0.3 or 0.7.)
     ///
     /// # Errors
     /// As [`around`](Self::around); [`Error::Argument`] if `cell` is out of range, or if more than 2^20 cells
@@ -152,9 +154,10 @@ impl Frame {
         Err(Error::Argument { name: "cell", problem: "so small that the bounds take more than 2^20 cells" })
     }
 
-    /// The frame that suits a shape with the bounds `min`, `max`, as the program `leafless` takes it where
-    /// none is given: [`aligned`](Self::aligned) if all bounds are multiples of 2^-12 of its edge, as those
-    /// of parts that people draw, else [`around`](Self::around). The same universe at every depth.
+    /// Makes the frame that suits a shape with the bounds `min`, `max`, the default of the program
+    /// `leafless`. It is [`aligned`](Self::aligned) if all bounds are multiples of 2^-12 of its edge, as is
+    /// common for parts that people draw; otherwise it is [`around`](Self::around). The universe is the same
+    /// at every depth.
     ///
     /// # Errors
     /// As [`around`](Self::around).
@@ -168,13 +171,13 @@ impl Frame {
         Frame::around(min, max, depth)
     }
 
-    /// Whether the universe contains the box from `min` to `max`; exact.
+    /// Returns whether the universe contains the box from `min` to `max`; exact.
     fn holds(&self, min: [f64; 3], max: [f64; 3]) -> bool {
         let top = 2 * self.cells() as i64;
         (0..3).all(|axis| self.side(axis, min[axis], 0) >= 0 && self.side(axis, max[axis], top) <= 0)
     }
 
-    /// The refusal of two frames that should be one.
+    /// The error for two frames that should be equal.
     pub(crate) fn mismatch(&self, other: &Frame) -> Error {
         Error::FrameMismatch {
             origins: [self.origin, other.origin],
@@ -183,7 +186,7 @@ impl Frame {
         }
     }
 
-    /// The same universe with another depth.
+    /// Makes a frame of the same universe with another depth.
     ///
     /// # Errors
     /// [`Error::Argument`] if `depth` is not 1 to [`MAX_DEPTH`].
@@ -191,41 +194,42 @@ impl Frame {
         Frame::new(self.origin, self.edge, depth)
     }
 
-    /// Lower corner of the universe, in model units.
+    /// The lower corner of the universe, in model units.
     pub fn origin(&self) -> [f64; 3] {
         self.origin
     }
 
-    /// Edge length of the universe, in model units.
+    /// The edge length of the universe, in model units.
     pub fn edge(&self) -> f64 {
         self.edge
     }
 
-    /// Levels below the universe; the finest lattice has 2^depth cells per axis.
+    /// The number of levels below the universe; the finest lattice has 2^depth cells per axis.
     #[inline]
     pub fn depth(&self) -> u8 {
         self.depth
     }
 
-    /// Cells per axis of the finest level, 2^depth.
+    /// The number of finest cells per axis, 2^depth.
     #[inline]
     pub fn cells(&self) -> u32 {
         1 << self.depth
     }
 
-    /// Edge length of a finest cell, in model units: edge / 2^depth, exactly.
+    /// The edge length of a finest cell, in model units: edge / 2^depth, exact.
     pub fn cell_size(&self) -> f64 {
         self.cell
     }
 
-    /// Whether both lie on one universe; the depths may differ.
+    /// Returns whether both frames have the same universe; the depths may differ.
     pub fn same_universe(&self, other: &Frame) -> bool {
         self.origin == other.origin && self.edge == other.edge
     }
 
     /// The tightest interval of doubles that contains lattice plane `i` (0 ≤ i ≤ 2^depth) of `axis`.
     pub fn plane(&self, axis: usize, i: u32) -> Interval {
-        // `i` has at most 21 bits, so the product has an error term; three doubles make up the plane.
+        // `i` has at most 21 bits, so that the product has an error term: the plane is the sum of three
+        // doubles.
         let (product, product_error) = two_product(i as f64, self.cell);
         let (sum, sum_error) = two_sum(self.origin[axis], product);
         let rounded = sum + (sum_error + product_error);
@@ -236,25 +240,24 @@ impl Frame {
         }
     }
 
-    /// `x − (origin + k·cell/2)` on an axis: how far a coordinate lies from a lattice plane (even k) or a
-    /// plane of cell centres (odd k).
+    /// `x − (origin + k·cell/2)` on an axis: the distance of a coordinate from a lattice plane (even k) or
+    /// from a plane of cell centres (odd k).
     pub(crate) fn offset(&self, axis: usize, x: f64, k: i64) -> Expansion {
         Expansion::sum(self.offset_terms(axis, x, k))
     }
 
-    /// Exact sign of `x − (origin + k·cell/2)` on `axis`: even k are lattice planes, odd k cell centres.
+    /// The exact sign of `x − (origin + k·cell/2)` on `axis`: even k are lattice planes, odd k cell centres.
     pub(crate) fn side(&self, axis: usize, x: f64, k: i64) -> i32 {
         sign_of_sum(&self.offset_terms(axis, x, k))
     }
 
-    /// The same number as [`offset`](Self::offset), rounded outward: next to nothing if `x` lies near the
-    /// plane.
+    /// As [`offset`](Self::offset), rounded outward. The width is tiny if `x` lies near the plane.
     pub(crate) fn rounded_offset(&self, axis: usize, x: f64, k: i64) -> Interval {
         let [a, b, c, d] = self.offset_terms(axis, x, k).map(Interval::exactly);
         c.plus(d).plus(a.plus(b))
     }
 
-    /// The same number in about 106 bits.
+    /// As [`offset`](Self::offset), in about 106 bits.
     #[inline]
     pub(crate) fn near_offset(&self, axis: usize, x: f64, k: i64) -> DoubleDouble {
         let [low, error, high, product] = self.offset_terms(axis, x, k);
@@ -280,7 +283,7 @@ impl Frame {
         length * self.per_unit
     }
 
-    /// Index along `axis` of the finest cell that contains the model coordinate `x`; the universe's upper
+    /// The index along `axis` of the finest cell that contains the model coordinate `x`. The universe's upper
     /// face belongs to the last cell. `None` outside the universe and for NaN. Exact for every double.
     #[inline]
     pub fn cell_at(&self, axis: usize, x: f64) -> Option<u32> {
@@ -288,29 +291,30 @@ impl Frame {
         if sure && cell < self.cells() as u64 { Some(cell as u32) } else { self.cell_at_exactly(axis, x) }
     }
 
-    /// Indices of the finest cell that contains a model point; see [`cell_at`](Self::cell_at).
+    /// The indices of the finest cell that contains a model point; see [`cell_at`](Self::cell_at).
     #[inline(always)]
     pub fn cell_of(&self, point: [f64; 3]) -> Option<[u32; 3]> {
         let (x, x_sure) = self.cell_nearby(0, point[0]);
         let (y, y_sure) = self.cell_nearby(1, point[1]);
         let (z, z_sure) = self.cell_nearby(2, point[2]);
-        // Their number is a power of two, so one comparison tells whether all three are cells.
+        // The number of cells is a power of two, so that one comparison decides whether all three indices are
+        // cells.
         if x_sure & y_sure & z_sure && (x | y | z) < self.cells() as u64 {
             return Some([x as u32, y as u32, z as u32]);
         }
         self.cell_of_exactly(point)
     }
 
-    /// First and last finest cell along `axis` whose interior meets `[min, max]` (numbers, min ≤ max), and
-    /// whether some of that lies outside of the universe; `None` if all of it does.
+    /// The first and the last finest cell along `axis` whose interior meets `[min, max]` (numbers, min ≤
+    /// max), and whether a part of the range lies outside the universe. `None` if the whole range does.
     pub(crate) fn cells_between(&self, axis: usize, min: f64, max: f64) -> Option<(u32, u32, bool)> {
         let cells = self.cells();
-        // Far outside the comparison with a plane needs no exactness, and must not overflow.
+        // Far outside, the comparison with a plane needs no exactness, but must not overflow.
         const FAR: f64 = f64::from_bits((1023 + 400) << 52);
         let (min, max) = (min.clamp(-FAR, FAR), max.clamp(-FAR, FAR));
         let (low, high) = (0, 2 * cells as i64);
-        // What has thickness and only touches the universe has no cell in common with it; what has none may
-        // lie in the face.
+        // A range with thickness that only touches the universe shares no cell with it. A range without
+        // thickness may lie in the face.
         let thick = (min < max) as i32;
         if self.side(axis, max, low) < thick || self.side(axis, min, high) > -thick {
             return None;
@@ -324,11 +328,11 @@ impl Frame {
         Some((first, last, below || above))
     }
 
-    /// The rounded-down lattice coordinate of `x`, and whether rounding errors cannot have changed it. What
-    /// is outside of the universe comes out as a number that is no cell, or as unsure.
+    /// The lattice coordinate of `x`, rounded down, and whether rounding errors cannot have changed it. A
+    /// coordinate outside the universe gives a number that is no cell, or an unsure one.
     #[inline(always)]
     fn cell_nearby(&self, axis: usize, x: f64) -> (u64, bool) {
-        // Adding this leaves the nearest integer in the low bits (and NaN and the far outside elsewhere).
+        // Adding this leaves the nearest integer in the low bits. (NaN and far coordinates give other bits.)
         const SHIFT: f64 = (3u64 << 51) as f64;
         // Inside the universe the scaled coordinate is at most 2^20 and its error below 2^-31.
         const SURE: f64 = 0.5 - 1.0 / (1u64 << 30) as f64;
@@ -364,14 +368,14 @@ impl Frame {
 const UNRESOLVED: Error =
     Error::Argument { name: "bounds", problem: "so far from the origin that doubles cannot resolve them" };
 
-/// The longest extent of a box, which must have one.
+/// The longest extent of a box; an error if it is zero.
 fn longest_extent(min: [f64; 3], max: [f64; 3]) -> Result<f64, Error> {
     valid::ordered("bounds", min, max)?;
     let longest = (0..3).fold(0.0, |longest: f64, axis| longest.max(max[axis] - min[axis]));
     if longest == 0.0 { Err(MeshError::NoExtent.into()) } else { Ok(longest) }
 }
 
-/// The origin of an edge that has the middle between `min` and `max` in its middle.
+/// The origin of an edge whose middle is the middle between `min` and `max`.
 fn centred(min: f64, max: f64, edge: f64) -> f64 {
     (min + (max - min) / 2.0) - edge / 2.0
 }
@@ -382,8 +386,8 @@ fn power_of_two_from(x: f64) -> f64 {
     if power < x { 2.0 * power } else { power }
 }
 
-/// The origin of a universe of this edge around a box: on each axis the multiple of edge / 2^k with the least
-/// k, at most [`MAX_DEPTH`]. `None` if there is none on an axis.
+/// The origin of a universe of this edge around a box. On each axis it is the multiple of edge / 2^k with the
+/// least k, at most [`MAX_DEPTH`]. `None` if an axis has no such multiple.
 fn aligned_origin(min: [f64; 3], max: [f64; 3], edge: f64) -> Option<[f64; 3]> {
     let mut origin = [0.0; 3];
     for axis in 0..3 {
@@ -395,8 +399,8 @@ fn aligned_origin(min: [f64; 3], max: [f64; 3], edge: f64) -> Option<[f64; 3]> {
     Some(origin)
 }
 
-/// Between `least` and `greatest` the multiple of edge / 2^k with the least k; of several the one next to the
-/// middle.
+/// The multiple of edge / 2^k between `least` and `greatest` with the least k. If there are several, the one
+/// nearest to the middle.
 fn nearest_multiple(least: f64, greatest: f64, edge: f64) -> Option<f64> {
     let middle = least + (greatest - least) / 2.0;
     let mut step = edge;

@@ -1,11 +1,11 @@
-//! Intervals that contain the truth.
+//! Intervals that contain a true value.
 
 use super::exact::{sign_of_sum, sqrt, two_product, two_sum};
 
 /// A closed interval `[lower, upper]` of doubles that contains a real quantity.
 ///
 /// The bounds are read as fields, `interval.lower` and `interval.upper` ([`IntervalEnds`]), and cannot be
-/// changed. They are numbers or infinities, and `lower <= upper`: [`new`](Interval::new) refuses anything
+/// changed. They are numbers or infinities, and `lower <= upper`: [`new`](Interval::new) rejects anything
 /// else.
 ///
 /// ```
@@ -25,9 +25,9 @@ pub struct Interval(IntervalEnds);
 /// The bounds of an [`Interval`], for reading.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct IntervalEnds {
-    /// Nothing below is possible.
+    /// The lower bound.
     pub lower: f64,
-    /// Nothing above is possible.
+    /// The upper bound.
     pub upper: f64,
 }
 
@@ -47,30 +47,30 @@ impl core::fmt::Debug for Interval {
 }
 
 impl Interval {
-    /// All numbers: nothing is known.
+    /// The interval of all numbers: nothing is known.
     pub const ALL: Interval = Interval::between(f64::NEG_INFINITY, f64::INFINITY);
 
-    /// The interval from `lower` to `upper`. `None` if `lower > upper`, or if one of them is not a number.
+    /// Makes the interval from `lower` to `upper`. `None` if `lower > upper`, or if one of them is NaN.
     pub const fn new(lower: f64, upper: f64) -> Option<Interval> {
         if lower <= upper { Some(Interval(IntervalEnds { lower, upper })) } else { None }
     }
 
-    /// The interval between bounds that are known to be in order. Bounds that somebody else hands over, or
-    /// that two sources of knowledge tell, may contradict each other: they go through [`new`](Interval::new).
+    /// Makes the interval between bounds that are known to be in order. Bounds from a caller, or from two
+    /// different sources, may contradict each other: use [`new`](Interval::new) for those.
     #[inline(always)]
     pub(crate) const fn between(lower: f64, upper: f64) -> Interval {
         debug_assert!(lower <= upper, "an interval's bounds are in order");
         Interval(IntervalEnds { lower, upper })
     }
 
-    /// The interval of a number that is known exactly. If `value` is not a number, nothing is known:
+    /// The interval of a number that is known exactly. If `value` is NaN, nothing is known:
     /// [`ALL`](Interval::ALL).
     #[inline(always)]
     pub const fn exactly(value: f64) -> Interval {
         if value.is_nan() { Interval::ALL } else { Interval::between(value, value) }
     }
 
-    /// Whether `value` lies in the interval.
+    /// Returns whether `value` lies in the interval.
     pub fn contains(&self, value: f64) -> bool {
         self.lower <= value && value <= self.upper
     }
@@ -81,9 +81,9 @@ impl Interval {
     }
 }
 
-/// Arithmetic that rounds outward: the result contains what the operation gives for any numbers in the
-/// operands. A bound that is a double is met exactly. Where a result leaves the range of doubles it is still
-/// true, if as wide as `[1.8e308, ∞]`. A solid that is written with it proves its verdicts and slabs.
+/// Arithmetic that rounds outward: the result contains the exact result for any numbers in the operands. A
+/// bound that is a double is exact. A result that leaves the range of doubles is still valid, if as wide as
+/// `[1.8e308, ∞]`. A solid that computes with intervals proves its verdicts and slabs.
 ///
 /// ```
 /// use leafless::Interval;
@@ -94,7 +94,7 @@ impl Interval {
 /// assert_eq!(Interval::exactly(1.0).over(b), Interval::ALL);
 /// ```
 impl Interval {
-    /// Of an integer below 2^120 in magnitude.
+    /// The interval of an integer below 2^120 in magnitude.
     pub(crate) fn of_integer(value: i128) -> Interval {
         let nearest = value as f64;
         let error = value - nearest as i128;
@@ -103,7 +103,7 @@ impl Interval {
         Interval::between(lower, upper)
     }
 
-    /// The numbers of the other sign.
+    /// The negated numbers.
     #[must_use]
     pub fn negated(self) -> Interval {
         Interval::between(-self.upper, -self.lower)
@@ -123,7 +123,7 @@ impl Interval {
         self.plus(other.negated())
     }
 
-    /// The product. A factor of 0 makes it 0, whatever the other one is.
+    /// The product. A factor of 0 makes it 0, whatever the other factor is.
     #[must_use]
     pub fn times(self, other: Interval) -> Interval {
         let [a, b] = [self.lower, self.upper];
@@ -140,7 +140,7 @@ impl Interval {
         self.times(self).not_negative()
     }
 
-    /// Divided by a positive number; all numbers if `divisor` may be 0.
+    /// The quotient by a positive number; all numbers if `divisor` may be 0.
     #[must_use]
     pub fn over(self, divisor: Interval) -> Interval {
         if divisor.lower <= 0.0 {
@@ -151,7 +151,7 @@ impl Interval {
         Interval::between(quotient(self.lower, lower).lower, quotient(self.upper, upper).upper)
     }
 
-    /// The square root of a number that is not negative, whatever its bounds say.
+    /// The square root of a number that is not negative. A negative bound counts as 0.
     #[must_use]
     pub fn root(self) -> Interval {
         let of = |x: f64| {
@@ -163,14 +163,14 @@ impl Interval {
         Interval::between(of(self.lower).lower.max(0.0), of(self.upper).upper)
     }
 
-    /// With what else is known of the same number. `None` if the two have no number in common: then one of
-    /// them does not contain the truth, or there is no such number.
+    /// The intersection with another interval of the same number. `None` if it is empty: then one of the
+    /// intervals is wrong, or no such number exists.
     pub fn common(self, other: Interval) -> Option<Interval> {
         Interval::new(self.lower.max(other.lower), self.upper.min(other.upper))
     }
 
-    /// Of a number that is known not to be negative. (A negative upper bound contradicts that, and counts as
-    /// 0.)
+    /// The interval of a number that is known not to be negative. (A negative upper bound contradicts that,
+    /// and counts as 0.)
     #[must_use]
     pub fn not_negative(self) -> Interval {
         Interval::between(self.lower.max(0.0), self.upper.max(0.0))
@@ -183,12 +183,12 @@ impl Interval {
     }
 }
 
-/// A number between the neighbours of `value`, or beyond the largest double on the same side.
+/// The interval between the neighbours of `value`; beyond the largest double, it ends at infinity.
 fn around(value: f64) -> Interval {
     Interval::between(value.next_down(), value.next_up())
 }
 
-/// The number `value + error` with `value` the nearest double, if the error is one that can be relied on.
+/// The number `value + error`, where `value` is the nearest double; `reliable` means that the error is exact.
 #[inline(always)]
 fn rounded((value, error): (f64, f64), reliable: bool) -> Interval {
     if reliable && value.is_finite() && !error.is_nan() {
@@ -204,7 +204,7 @@ fn rounded((value, error): (f64, f64), reliable: bool) -> Interval {
 
 #[inline(always)]
 fn product(a: f64, b: f64) -> Interval {
-    // A bound of infinity stands for numbers of any size, and zero times each is zero.
+    // An infinite bound stands for numbers of any size, and zero times each of them is zero.
     if a == 0.0 || b == 0.0 {
         return Interval::exactly(0.0);
     }
@@ -223,7 +223,7 @@ fn quotient(a: f64, b: f64) -> Interval {
     rounded((value, rest as f64), is_splittable(a) && is_splittable(b) && is_splittable(value))
 }
 
-/// Whether the error of a product of such numbers is exact, the product being one itself.
+/// Returns whether the error of a product of such numbers is exact, if the product is such a number, too.
 #[inline(always)]
 fn is_splittable(x: f64) -> bool {
     /// 2^900
@@ -305,8 +305,8 @@ mod tests {
         assert_eq!(of(-2.0, 1.0).not_negative(), of(0.0, 1.0));
     }
 
-    /// Every operation on every pair of a set of bounds that are hard: the bounds stay in order, which the
-    /// constructor asserts.
+    /// Applies every operation to every pair from a set of difficult bounds. The bounds must stay in order,
+    /// which the constructor asserts.
     #[test]
     fn arithmetic_keeps_the_order() {
         let inf = f64::INFINITY;

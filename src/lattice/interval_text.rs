@@ -1,18 +1,18 @@
-//! Intervals as people read them.
+//! Intervals as text for people.
 
 use super::Interval;
 use alloc::format;
 use alloc::string::String;
 use core::fmt;
 
-/// Digits of the doubt that are printed, less one.
+/// The number of digits of the uncertainty that are printed, minus one.
 const DOUBT_DIGITS: i32 = 1;
 
-/// Powers of ten that are written out; beyond them the power stands behind.
+/// The powers of ten that are written out; others use scientific notation.
 const PLAIN_POWERS: core::ops::Range<i32> = -4..9;
 
-/// Prints the digits that mean something: `42345.1 ± 0.2`, or `3.9 to 12.1` where the interval is wide.
-/// Bounds are rounded outward: what is printed contains the interval.
+/// Prints the significant digits: `42345.1 ± 0.2`, or `3.9 to 12.1` where the interval is wide. Bounds are
+/// rounded outward: the printed range contains the interval.
 ///
 /// ```
 /// use leafless::Interval;
@@ -28,7 +28,7 @@ impl fmt::Display for Interval {
 }
 
 impl Interval {
-    /// Both bounds as text, rounded outward to a thousandth of the width or so: `["0", "0.0125"]`.
+    /// Both bounds as text, rounded outward to about a thousandth of the width: `["0", "0.0125"]`.
     pub fn bounds_text(&self) -> [String; 2] {
         let (lower, upper) = (self.lower, self.upper);
         let width = upper - lower;
@@ -37,7 +37,7 @@ impl Interval {
         }
         let digits = 3 - exponent(width);
         let unit = ten_to(-digits);
-        // A number that is a multiple of the unit but for a rounding stays as it is.
+        // A number that is a multiple of the unit up to rounding stays as it is.
         let down = |x: f64| {
             let near = round_to(x, digits);
             if near <= x { near } else { round_to(near - unit, digits) }
@@ -56,7 +56,7 @@ fn text(interval: Interval) -> String {
         (true, true) => {}
     }
     let (width, greatest) = (upper - lower, lower.abs().max(upper.abs()));
-    // Doubles have no more than 16 digits.
+    // Doubles have no more than 16 significant digits.
     if width < 1e-12 * greatest {
         return format!("{} to {}", number(lower), number(upper));
     }
@@ -87,7 +87,7 @@ fn number(x: f64) -> String {
     text
 }
 
-/// Six digits of a number, not greater than it.
+/// A number rounded down to six digits.
 fn rounded_down(x: f64) -> f64 {
     if x == 0.0 {
         return x;
@@ -99,17 +99,17 @@ fn rounded_down(x: f64) -> f64 {
 
 /// The exponent of the first digit of a positive number.
 fn exponent(x: f64) -> i32 {
-    // Written out because a logarithm may be off by one at powers of ten.
+    // Uses the formatter, because a logarithm may be off by one at powers of ten.
     format!("{x:e}").split_once('e').and_then(|parts| parts.1.parse().ok()).unwrap_or(0)
 }
 
-/// The double next to a power of ten.
+/// The double nearest to a power of ten.
 fn ten_to(power: i32) -> f64 {
     format!("1e{power}").parse().unwrap_or(f64::INFINITY)
 }
 
-/// The double next to a number that is rounded to so many digits behind the point; negative ones are before
-/// it.
+/// The double nearest to `x` rounded to `digits` digits after the decimal point; negative counts round before
+/// the point.
 fn round_to(x: f64, digits: i32) -> f64 {
     if digits >= 0 {
         format!("{x:.*}", digits as usize).parse().unwrap_or(x)

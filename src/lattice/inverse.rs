@@ -1,10 +1,11 @@
-//! The way back of affine maps, with proof.
+//! Inverses of affine maps, with proven error bounds.
 
 use super::{Affine, Interval, axes};
 
-/// The inverse of an affine map, or of several after each other: y = L x + o, with intervals that contain the
-/// exact numbers. The intervals of a map that permutes and mirrors axes, stretches them by powers of two, and
-/// moves are single numbers, and so are those of several unless the sum of their offsets is rounded.
+/// The inverse of an affine map, or of a composition: y = L x + o, with intervals that contain the exact
+/// numbers. For a map that permutes and mirrors axes, scales them by powers of two, and translates, the
+/// intervals are single numbers. For a composition of such maps they are, too, unless the sum of the offsets
+/// is rounded.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct Inverse {
     linear: [[Interval; 3]; 3],
@@ -12,10 +13,10 @@ pub(crate) struct Inverse {
 }
 
 impl Inverse {
-    /// Of one map.
+    /// The inverse of one map.
     pub(crate) fn of(placement: &Affine) -> Inverse {
-        // Each entry of the inverse is off by 5 · 2^-53 of itself at the most, and of a monomial map it is
-        // exact.
+        // The relative error of each entry of the inverse is at most 5 · 2^-53. The inverse of a monomial map
+        // is exact.
         let slack = if placement.is_monomial() { 0.0 } else { 4.0 * f64::EPSILON };
         let share = Interval::between(1.0 - slack, 1.0 + slack);
         let linear =
@@ -24,7 +25,7 @@ impl Inverse {
         Inverse { linear, offset: linear.map(|row| dot(&row, &moved)) }
     }
 
-    /// Of this map and then another one.
+    /// The inverse of this map followed by another one.
     pub(crate) fn then(&self, placement: &Affine) -> Inverse {
         let next = Inverse::of(placement);
         let linear = self.linear.map(|row| axes(|j| dot(&row, &next.column(j))));
@@ -37,14 +38,14 @@ impl Inverse {
         axes(|axis| dot(&self.linear[axis], x).plus(self.offset[axis]))
     }
 
-    /// The inverse image of a point, if it is a point of doubles.
+    /// The inverse image of a point, if its coordinates are exact doubles.
     pub(crate) fn exact_image(&self, point: [f64; 3]) -> Option<[f64; 3]> {
         let image = self.image(&point.map(Interval::exactly));
         let is_exact = image.iter().all(|c| c.lower == c.upper && c.lower.is_finite());
         is_exact.then(|| image.map(|c| c.lower))
     }
 
-    /// Lᵀ n: the gradient before the maps, n, as a gradient after them.
+    /// Lᵀ n: converts a gradient n before the maps to a gradient after them.
     pub(crate) fn pulled_back(&self, n: &[Interval; 3]) -> [Interval; 3] {
         axes(|j| dot(n, &self.column(j)))
     }
@@ -68,7 +69,7 @@ fn dot(a: &[Interval; 3], b: &[Interval; 3]) -> Interval {
 mod tests {
     use super::*;
 
-    /// A number that is cheap to say, and no power of two.
+    /// A pseudo-random number that is no power of two.
     fn noise(k: u32) -> f64 {
         f64::from(k.wrapping_mul(2_654_435_761) >> 8) / f64::from(1u32 << 23) - 1.0
     }
@@ -81,7 +82,7 @@ mod tests {
             else {
                 continue;
             };
-            // Of points whose images are exact: integers under integer maps.
+            // Points whose images are exact: integers under integer maps.
             let whole = |map: &Affine| Affine::new(map.rows().map(|row| row.map(|c| (8.0 * c).round())));
             let (Ok(first), Ok(second)) = (whole(&first), whole(&second)) else { continue };
             let point = axes(|axis| (100.0 * noise(k + axis as u32)).round());

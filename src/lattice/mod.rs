@@ -1,9 +1,10 @@
 //! The integer lattice and its place in model space.
 //!
-//! A [`Frame`] puts a cube (the *universe*) somewhere in model space and cuts it into 2^depth cells per axis.
-//! A [`Cell`] is an octant of that cube at some level, a [`Cube`] the same with its frame, hence with model
-//! coordinates. Inside the library everything is integers; frames are the only place where model units and
-//! cells meet, and they meet exactly: no rounding error ever puts a point into the wrong cell.
+//! A [`Frame`] puts a cube (the *universe*) at a place in model space and divides it into 2^depth cells per
+//! axis. A [`Cell`] is an octant of that cube at some level. A [`Cube`] is a cell with its frame, and
+//! therefore has model coordinates. Inside the library everything is an integer. Frames are the only place
+//! where model units and cells meet, and they meet exactly: no rounding error ever puts a point into the
+//! wrong cell.
 //!
 //! Corners, children and bits are numbered the same way everywhere: bit 0 is x, bit 1 is y, bit 2 is z.
 //!

@@ -5,11 +5,11 @@ use core::array::from_fn as array;
 
 const ZERO: Interval = Interval::exactly(0.0);
 
-/// The volume of a set of points and its moments about one of them, in model units. The intervals contain the
-/// truth.
+/// The volume of a set of points, and its moments about a point, in model units. The intervals contain the
+/// true values.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct VolumeMoments {
-    /// The point p that the moments are about: near the centroid, so that little cancels.
+    /// The reference point p of the moments. It lies near the centroid, to avoid cancellation.
     pub point: [f64; 3],
     /// The volume. Not negative.
     pub volume: Interval,
@@ -47,8 +47,8 @@ impl VolumeMoments {
                 self.second[k].minus(product.over(self.volume))
             }));
         }
-        // The set may be anything between nothing and what the second moments allow. M ≽ 0, so that Mij² ≤
-        // Mii Mjj.
+        // The set may be anything between nothing and the maximum that the second moments allow. M ≽ 0, so
+        // that Mij² ≤ Mii Mjj.
         tensor(array(|k| {
             let (i, j) = PAIRS[k];
             let [a, b] = [i, j].map(|axis| Interval::between(0.0, self.second[axis].upper.max(0.0)));
@@ -58,7 +58,7 @@ impl VolumeMoments {
     }
 }
 
-/// The tensor of inertia of second moments. Those of one axis are not negative.
+/// The tensor of inertia from second moments. The second moments of one axis are not negative.
 fn tensor(second: [Interval; 6]) -> [[Interval; 3]; 3] {
     let mut tensor = [[ZERO; 3]; 3];
     for (k, (i, j)) in (0..6).zip(PAIRS) {

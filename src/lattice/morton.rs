@@ -1,4 +1,4 @@
-//! Morton order on 4 × 4 × 4 blocks, the grain of storage.
+//! Morton order on 4 × 4 × 4 blocks, which are the granularity of storage.
 //!
 //! The position of a cell within its block of 64 interleaves two bits per axis: bits 0 to 2 are the low bits
 //! of x, y, z, bits 3 to 5 the high bits. So byte k of a 64-bit plane is octant k.
@@ -75,12 +75,13 @@ pub fn slabs(axis: usize, first: u32, last: u32) -> u64 {
     SLABS[axis][first as usize][last as usize]
 }
 
-/// The cells of a block one place further along `axis`, or one place before if not `up`, than those of
-/// `mask`.
+/// The cells of `mask`, moved one place up along `axis`, or one place down if not `up`. Cells that leave the
+/// block are dropped.
 #[inline(always)]
 pub const fn shifted(mask: u64, axis: usize, up: bool) -> u64 {
     let [first, second, third, last] = SLAB[axis];
-    // From place 0 to 1 and from 2 to 3 a bit moves by one position of its axis, between them by seven.
+    // From place 0 to 1 and from 2 to 3 a bit moves by one position of its axis; from 1 to 2 it moves by
+    // seven.
     let (one, seven) = (1 << axis, 7 << axis);
     if up {
         (mask & (first | third)) << one | (mask & second) << seven

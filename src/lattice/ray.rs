@@ -8,17 +8,17 @@ use crate::error::Error;
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Ray {
     pub(crate) from: [f64; 3],
-    /// The sum of two doubles an axis.
+    /// For each axis, the sum of two doubles.
     pub(crate) direction: [[f64; 2]; 3],
     pub(crate) last: f64,
 }
 
 impl Ray {
-    /// The half-line from `origin` (model units) along `direction`, which may have any length. t counts
+    /// Makes the half-line from `origin` (model units) along `direction`, which may have any length. t counts
     /// multiples of `direction`, so t is a distance if `direction` has length 1.
     ///
     /// # Errors
-    /// [`Error::Argument`] if `direction` is zero, or if a number is not zero and not of a magnitude between
+    /// [`Error::Argument`] if `direction` is zero, or if a number is neither zero nor of a magnitude between
     /// 2^-256 and 2^256.
     #[inline]
     pub fn new(origin: [f64; 3], direction: [f64; 3]) -> Result<Ray, Error> {
@@ -27,11 +27,11 @@ impl Ray {
         Ray::along(origin, direction.map(|c| [c, 0.0]), f64::INFINITY)
     }
 
-    /// The segment between two points (model units); t runs from 0 at `from` to 1 at `to`. The direction is
-    /// the exact difference of the points.
+    /// Makes the segment between two points (model units); t runs from 0 at `from` to 1 at `to`. The
+    /// direction is the exact difference of the points.
     ///
     /// # Errors
-    /// [`Error::Argument`] if the points are equal, or if a coordinate is not zero and not of a magnitude
+    /// [`Error::Argument`] if the points are equal, or if a coordinate is neither zero nor of a magnitude
     /// between 2^-256 and 2^256.
     pub fn between(from: [f64; 3], to: [f64; 3]) -> Result<Ray, Error> {
         valid::numbers("from", &from)?;
@@ -43,7 +43,7 @@ impl Ray {
         Ray::along(from, direction, 1.0)
     }
 
-    /// The part of the ray with t ≤ `last`, or all of it if it ends before.
+    /// Limits the ray to t ≤ `last`. A ray that ends earlier stays as it is.
     ///
     /// # Errors
     /// [`Error::Argument`] if `last` is neither ∞ nor between 2^-256 and 2^256.
@@ -64,7 +64,7 @@ impl Ray {
         Ok(Ray { from, direction, last })
     }
 
-    /// The half-line along an axis, up (1) or down (−1).
+    /// Makes the half-line along an axis, up (1) or down (−1).
     pub(crate) fn along_axis(from: [f64; 3], axis: usize, sign: f64) -> Ray {
         let mut direction = [[0.0; 2]; 3];
         direction[axis][0] = sign;

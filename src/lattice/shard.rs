@@ -1,17 +1,17 @@
-//! Which cells of a frame a tree is made for, where one machine does not make all of it.
+//! The cells that one shard of a tree covers, where several machines build the tree.
 
 use super::Cell;
 use crate::error::Error;
 
-/// The cells that a *shard* of an octree knows. Of all others it knows nothing: they are PARTIAL.
+/// The cells that a *shard* of an octree covers. All other cells are unknown to the shard, and PARTIAL.
 ///
-/// A tree is cut at a level into its top and into one shard for each cell of that level that the top leaves
+/// A tree is cut at a level into its top, and into one shard for each cell of that level that the top leaves
 /// open ([`OctreeRef::open_cells`](crate::OctreeRef::open_cells)). Every shard is an octree on the frame of
-/// the whole, and true of the whole solid: it only knows less of it. [`join`](crate::op::join) puts shards
+/// the whole, and is valid for the whole solid, but with less detail. [`join`](crate::op::join) puts shards
 /// together again.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
 pub enum Shard {
-    /// The cells down to a level. What would be split there stays PARTIAL.
+    /// The cells down to a level. Cells that would be split there stay PARTIAL.
     Top {
         /// 0 to the depth of the frame.
         level: u8,
@@ -21,7 +21,7 @@ pub enum Shard {
 }
 
 impl Shard {
-    /// Refuses what a frame of this depth does not have.
+    /// Rejects a shard that a frame of this depth does not have.
     ///
     /// # Errors
     /// [`Error::Argument`].
@@ -37,7 +37,7 @@ impl Shard {
         Err(Error::Argument { name: "shard", problem })
     }
 
-    /// The level at which cells are split no more, of a frame of this depth.
+    /// The level at which cells are no longer split, on a frame of this depth.
     pub(crate) fn last(&self, depth: u8) -> u8 {
         match *self {
             Shard::Top { level } => level,
@@ -45,7 +45,7 @@ impl Shard {
         }
     }
 
-    /// Whether nothing is known in a cell.
+    /// Returns whether nothing is known in a cell.
     pub(crate) fn is_without(&self, cell: Cell) -> bool {
         match *self {
             Shard::Top { .. } => false,
@@ -53,7 +53,7 @@ impl Shard {
         }
     }
 
-    /// Whether all cells in a cell are known as they are in the whole.
+    /// Returns whether all cells in a cell are known as in the whole tree.
     pub(crate) fn has_all_in(&self, cell: Cell) -> bool {
         match *self {
             Shard::Top { .. } => false,

@@ -11,11 +11,12 @@ pub(crate) struct Window {
 }
 
 impl Window {
-    /// The cells that have more than their surface in common with the box `[min, max]` (model units), and
-    /// whether some of the box lies outside of the universe. `None` if all of it does.
+    /// Makes the window of the cells whose interiors meet the box `[min, max]` (model units); a flat box may
+    /// lie in a face. Also returns whether a part of the box lies outside the universe. `None` if the whole
+    /// box does.
     ///
     /// # Errors
-    /// [`Error::Argument`] if min > max on an axis, or a coordinate is not a number.
+    /// [`Error::Argument`] if min > max on an axis, or a coordinate is NaN.
     pub(crate) fn new(frame: &Frame, min: [f64; 3], max: [f64; 3]) -> Result<Option<(Self, bool)>, Error> {
         valid::ordered("max", min, max)?;
         let (mut window, mut clipped) = (Window { first: [0; 3], last: [0; 3] }, false);
@@ -29,7 +30,7 @@ impl Window {
         Ok(Some((window, clipped)))
     }
 
-    /// Whether a cube has something in common with it.
+    /// Returns whether the window and a cube overlap.
     #[inline]
     pub(crate) fn meets(&self, cube: &Cube<'_>) -> bool {
         let (lower, upper) = cube.planes();

@@ -10,13 +10,13 @@ use crate::lattice::exact::sqrt;
 use crate::lattice::{Bounds, Cell, Cube, Frame, valid};
 use alloc::vec::Vec;
 
-/// A solid whose cells are not split where its surface is known to lie within a layer thinner than a
-/// tolerance: an octree of it stays coarse where the surface is flat, and is fine where it bends and at
-/// edges.
+/// A solid that is not split where its surface is known to a tolerance. An octree of it stays coarse where
+/// the surface is flat, and is fine at edges and where the surface is curved.
 ///
-/// Such cells are [`Verdict::Undecided`], so PARTIAL in an octree. The solid itself knows more about them:
-/// its [`Enclosure`]s. The distance between the inner and the outer side of each slab is at most the
-/// tolerance. A solid that knows no enclosures is split as ever.
+/// A cell is not split if the surface in it is known to lie within a layer thinner than the tolerance. Such a
+/// cell is [`Verdict::Undecided`], and PARTIAL in an octree. The solid itself knows more about the cell: its
+/// [`Enclosure`]. The distance between the inner and the outer side of each slab is at most the tolerance. A
+/// solid without enclosures is split as usual.
 ///
 /// ```
 /// use leafless::{Control, Csg, Frame, Rule, build, solid::Adaptive};
@@ -34,7 +34,7 @@ pub struct Adaptive<S> {
 }
 
 impl<S: Solid> Adaptive<S> {
-    /// The solid, with a tolerance in model units.
+    /// Wraps a solid, with a tolerance in model units.
     ///
     /// # Errors
     /// [`Error::Argument`] if `tolerance` is negative or not a number.
@@ -78,7 +78,7 @@ impl<S: Solid> Solid for Adaptive<S> {
     }
 }
 
-/// Such a solid on a frame.
+/// An adaptive solid on a frame.
 #[derive(Debug, Clone)]
 pub struct AdaptiveClassifier<C> {
     inner: C,
@@ -95,14 +95,14 @@ impl<C: Classifier> Classifier for AdaptiveClassifier<C> {
     forward_classifier!(self => self.inner);
 }
 
-/// A worker on such a solid.
+/// A worker on an adaptive solid.
 pub struct AdaptiveWorker<W> {
     inner: W,
     tolerance: f64,
 }
 
 impl<W: Worker> AdaptiveWorker<W> {
-    /// The verdicts of the children of a cell, those that are known well enough being undecided.
+    /// Makes the verdicts undecided for those children whose surface is known to the tolerance.
     fn enough(
         &mut self,
         cell: Cell,
@@ -122,13 +122,13 @@ impl<W: Worker> AdaptiveWorker<W> {
     }
 }
 
-/// The distance between the two sides of a slab, in half edges of the cell, where it is greatest.
+/// The greatest distance between the two sides of a slab, in half edges of the cell.
 fn thickness(enclosure: &Enclosure) -> f64 {
     let mut most = None;
     for slab in &enclosure.slabs {
         let square = slab.normal.iter().map(|c| c * c).sum::<f64>();
         if square > 0.0 {
-            // (An infinite thickness, or none that is a number, is no thickness.)
+            // (A distance that is infinite or NaN counts as infinite.)
             let own = (slab.outer - slab.inner) / sqrt(square);
             most = Some(if own >= 0.0 { own.max(most.unwrap_or(0.0)) } else { f64::INFINITY });
         }

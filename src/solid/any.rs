@@ -1,5 +1,4 @@
-//! What is done alike with solids of all kinds, which this file therefore knows: they are wrapped, and they
-//! are moved.
+//! Operations for solids of all kinds: wrapping and moving. This file therefore depends on all kinds.
 
 use super::{Adaptive, AnySolid, Csg, Erasable, MeshSolid, SplitCounter, Transform};
 use crate::error::Error;
@@ -14,8 +13,8 @@ impl AnySolid {
         AnySolid::around(solid, nesting)
     }
 
-    /// The solid under an affine map, moved in the best way that its kind knows;
-    /// [`motion`](super::Solid::motion) says which that is.
+    /// The solid under an affine map, moved in the best way that its kind offers;
+    /// [`motion`](super::Solid::motion) returns that way.
     ///
     /// # Errors
     /// As [`TriangleMesh::placed`](crate::TriangleMesh::placed) for meshes; [`Error::OutOfMemory`].
@@ -42,13 +41,13 @@ impl AnySolid {
         }
     }
 
-    /// The mesh of a solid that a mesh encloses.
+    /// The mesh of a solid that is enclosed by a mesh.
     pub(super) fn mesh_by_kind(&self) -> Option<&TriangleMesh> {
         self.get::<MeshSolid>().map(|solid| &**solid.mesh())
     }
 }
 
-/// How many `AnySolid`s lie within each other in a solid of a kind that holds some.
+/// The number of `AnySolid`s within each other in a solid that may hold some.
 fn nesting_in(solid: &dyn Any) -> u32 {
     fn of<S: Any>(solid: &dyn Any, nesting: impl Fn(&S) -> u32) -> Option<u32> {
         solid.downcast_ref().map(nesting)

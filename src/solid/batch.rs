@@ -1,4 +1,4 @@
-//! Questions about many cells, and about points, at once.
+//! Questions about many cells or points at once.
 
 use super::{Ask, Parts, Verdict, Worker};
 use crate::control::Control;
@@ -6,27 +6,27 @@ use crate::error::Error;
 use crate::lattice::Cell;
 use alloc::vec::Vec;
 
-/// How a worker answers questions about many cells or points at once.
+/// Questions about many cells or points at once.
 ///
-/// A host program's function may take milliseconds a call, or answer a thousand boxes as fast as one. A
-/// caller that meets such a solid gathers cells, and asks a level at once, with all its threads. So that this
-/// works through every wrapper, no method has a default. A worker that gains nothing from many questions at
-/// once says so in one line: [`OneByOne`].
+/// A host program's function may take milliseconds a call, or may answer a thousand boxes as fast as one. For
+/// such a solid a caller gathers cells and queries a whole level at once, with all its threads. No method has
+/// a default, so that batches work through every wrapper. A worker that gains nothing from batches implements
+/// [`OneByOne`], in one line.
 ///
 /// # Laws
-/// The answers are those of the single forms: of [`Worker::split`] and of
-/// [`Question::Centre`](super::Question::Centre). All verdicts of one call have parts that live together: the
-/// memory of none of them is released before that of the others.
+/// The answers are the same as those of the single forms, [`Worker::split`] and
+/// [`Question::Centre`](super::Question::Centre). The parts in the verdicts of one call live together: the
+/// memory of one is not released before that of the others.
 pub trait Batch: Parts {
-    /// Whether answers are dear, or come more cheaply many at a time. A caller then gathers cells for
-    /// [`split_many`](Self::split_many), and uses threads even for few of them.
+    /// Returns whether answers are expensive, or cheaper in batches. A caller then gathers cells for
+    /// [`split_many`](Self::split_many), and uses threads even for few cells.
     fn likes_many(&self) -> bool;
 
-    /// Splits many PARTIAL cells: appends what [`Worker::split`] says of each, in their order. `control` can
-    /// cancel the call half-way. What was appended before an error is right.
+    /// Splits many PARTIAL cells: appends the result of [`Worker::split`] for each cell, in their order.
+    /// `control` can cancel the call half-way. Results that were appended before an error are valid.
     ///
     /// # Errors
-    /// As all questions, and [`Error::Cancelled`].
+    /// [Those of every question](Worker#errors), and [`Error::Cancelled`].
     fn split_many(
         &mut self,
         cells: &[(Cell, Self::Part)],
@@ -34,12 +34,12 @@ pub trait Batch: Parts {
         verdicts: &mut Vec<[Verdict<Self::Part>; 8]>,
     ) -> Result<(), Error>;
 
-    /// Samples the centres of many PARTIAL cells of the frame's depth: appends what
-    /// [`Question::Centre`](super::Question::Centre) answers for each, in their order. `control` can cancel
-    /// the call half-way. What was appended before an error is right.
+    /// Samples the centres of many PARTIAL cells of the frame's depth: appends the answer to
+    /// [`Question::Centre`](super::Question::Centre) for each cell, in their order. `control` can cancel the
+    /// call half-way. Results that were appended before an error are valid.
     ///
     /// # Errors
-    /// As all questions, and [`Error::Cancelled`].
+    /// [Those of every question](Worker#errors), and [`Error::Cancelled`].
     fn sample_many(
         &mut self,
         cells: &[(Cell, Self::Part)],
@@ -47,21 +47,22 @@ pub trait Batch: Parts {
         inside: &mut Vec<Option<bool>>,
     ) -> Result<(), Error>;
 
-    /// Whether points of the universe (model units) lie in the solid: sets `answers[i]` for `points[i]` where
-    /// that is known without a descent. On the boundary either answer is right. Where nothing is set, the
-    /// caller descends.
+    /// Decides whether points of the universe (model units) lie in the solid. Sets `answers[i]` for
+    /// `points[i]` where the answer is known without a descent. On the boundary either answer is correct. The
+    /// caller descends for the points that are left open.
     ///
     /// # Errors
-    /// As all questions.
+    /// [Those of every question](Worker#errors).
     fn inside(&mut self, points: &[[f64; 3]], answers: &mut [Option<bool>]) -> Result<(), Error>;
 
-    /// The part of a PARTIAL cell without the way to it, if the part depends on the cell alone; then no
-    /// caller replays splits. A worker that answers for one cell answers for all.
+    /// The part of a PARTIAL cell, computed without the path to the cell. `Some` if the part depends on the
+    /// cell alone; then no caller replays splits. A worker that returns `Some` for one cell returns it for
+    /// all cells.
     fn recall(&mut self, cell: Cell) -> Option<Self::Part>;
 }
 
-/// A worker that answers one question after the other, and knows nothing of points: it has [`Batch`] by this
-/// line alone.
+/// A worker that answers one question after the other and cannot decide points. This trait alone gives it
+/// [`Batch`].
 pub trait OneByOne {}
 
 impl<W: Worker + OneByOne> Batch for W {
@@ -96,10 +97,10 @@ impl<W: Worker + OneByOne> Batch for W {
     }
 }
 
-/// [`Batch::split_many`] of a worker that splits one cell after the other.
+/// Implements [`Batch::split_many`] for a worker that splits one cell after the other.
 ///
 /// # Errors
-/// As all questions, and [`Error::Cancelled`].
+/// [Those of every question](Worker#errors), and [`Error::Cancelled`].
 pub fn split_one_by_one<W: Worker + ?Sized>(
     worker: &mut W,
     cells: &[(Cell, W::Part)],
@@ -114,10 +115,10 @@ pub fn split_one_by_one<W: Worker + ?Sized>(
     Ok(())
 }
 
-/// [`Batch::sample_many`] of a worker that samples one centre after the other.
+/// Implements [`Batch::sample_many`] for a worker that samples one centre after the other.
 ///
 /// # Errors
-/// As all questions, and [`Error::Cancelled`].
+/// [Those of every question](Worker#errors), and [`Error::Cancelled`].
 pub fn sample_one_by_one<W: Worker + ?Sized>(
     worker: &mut W,
     cells: &[(Cell, W::Part)],

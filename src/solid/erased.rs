@@ -2,8 +2,8 @@
 //!
 //! [`Solid`] has associated types so that loops over it compile to tight code. Programs that hold shapes of
 //! different kinds in one place (the C interface first of all) use [`AnySolid`], which is a `Solid` itself.
-//! Each of the three traits has an object-safe face here, whose methods have no defaults: none can be
-//! forgotten.
+//! Each of the three traits has an object-safe counterpart here. The methods of these counterparts have no
+//! defaults, so that none can be forgotten.
 
 use super::forward::{forward_answers, forward_batch, forward_classifier, forward_parts, forward_solid};
 use super::{
@@ -20,7 +20,7 @@ use alloc::sync::Arc;
 use alloc::vec::Vec;
 use core::any::Any;
 
-/// Any solid, shared. Costs an indirect call a split.
+/// A shared solid of any kind. Each split costs one indirect call.
 #[derive(Clone)]
 pub struct AnySolid {
     solid: Arc<dyn ErasedSolid>,
@@ -34,7 +34,7 @@ pub struct AnyClassifier(Arc<dyn ErasedClassifier>);
 /// A worker on any solid.
 pub struct AnyWorker(Box<dyn ErasedWorker>);
 
-/// A part of an [`AnySolid`]: its place among the parts that the worker keeps.
+/// A part of an [`AnySolid`]: its index among the parts that the worker keeps.
 #[derive(Debug, Clone, Copy)]
 pub struct ErasedPart(usize);
 
@@ -50,30 +50,31 @@ impl<S: Solid<Classifier: Classifier<Worker: Worker<Part: 'static> + 'static> + 
 }
 
 impl AnySolid {
-    /// Most solids within each other; see [`nesting`](Self::nesting).
+    /// The greatest number of solids within each other; see [`nesting`](Self::nesting).
     pub const MOST_NESTED: u32 = 64;
 
-    /// Wraps a solid in which so many others lie within each other.
+    /// Wraps a solid that contains `nesting` solids within each other.
     pub(super) fn around<S: Erasable>(solid: S, nesting: u32) -> AnySolid {
         AnySolid { solid: Arc::new(solid), nesting: nesting.saturating_add(1) }
     }
 
-    /// The solid behind the type, if it is of this one.
+    /// The solid behind the type, if it has the type `S`.
     pub fn get<S: Any>(&self) -> Option<&S> {
         self.solid.as_any().downcast_ref()
     }
 
-    /// How many `AnySolid`s lie within each other here, this one included. Questions go from one to the next,
-    /// so that there is an end to what the stack holds: one with more than 64 within each other cannot be put
-    /// on a frame. (It counts those within expressions, and within transforms, counters and the like of
-    /// `AnySolid` or `Csg`; any other solid counts as one that consists of no others.)
+    /// The number of `AnySolid`s within each other, this one included. Every question passes from one to the
+    /// next, so that the number is limited to bound the use of the stack: a solid with more than 64 within
+    /// each other cannot be put on a frame. (The count includes `AnySolid`s within expressions, and within
+    /// transforms, counters and similar wrappers of `AnySolid` or `Csg`. Any other solid counts as one
+    /// without inner solids.)
     pub fn nesting(&self) -> u32 {
         self.nesting
     }
 }
 
 impl AnySolid {
-    /// The solid as its kind moves it, if it can.
+    /// The solid as moved by its own kind, if the kind can move it.
     pub(super) fn placed_by_kind(&self, placement: &Affine) -> Result<Option<AnySolid>, Error> {
         if self.nesting > AnySolid::MOST_NESTED {
             return Ok(None);
@@ -81,13 +82,13 @@ impl AnySolid {
         self.solid.placed(placement)
     }
 
-    /// What tells a solid and its clones from others, as long as they are there.
+    /// An address that identifies a solid and its clones as long as they exist.
     pub(super) fn address(&self) -> usize {
         Arc::as_ptr(&self.solid).cast::<()>() as usize
     }
 }
 
-// ---- the object-safe faces ------------------------------------------------------------------------------
+// ---- the object-safe counterparts ---------------------------------------------------------------------
 
 trait ErasedSolid: Send + Sync {
     fn as_any(&self) -> &dyn Any;
@@ -159,7 +160,8 @@ impl Solid for AnySolid {
     forward_solid!(@description self => Shallow(self));
 }
 
-/// What a solid says of itself, unless too many lie within each other: no answer goes deeper than the stack.
+/// A solid's description of itself, unless too many solids lie within each other: no answer may overflow the
+/// stack.
 struct Shallow<'s>(&'s AnySolid);
 
 impl<'s> Shallow<'s> {
@@ -204,7 +206,7 @@ trait ErasedClassifier: Send + Sync {
 impl<C: Classifier<Worker: Worker<Part: 'static> + 'static>> ErasedClassifier for C {
     fn worker(&self) -> Result<AnyWorker, Error> {
         let typed = Typed { worker: Classifier::worker(self)?, parts: Vec::new(), passing: Vec::new() };
-        // Some workers are large from the beginning.
+        // Some workers are large from the start.
         Ok(AnyWorker(memory::boxed(typed)?))
     }
 
@@ -239,11 +241,12 @@ impl Classifier for AnyClassifier {
     forward_classifier!(self => self.0);
 }
 
-/// A worker, and the parts that were handed out, each with the height that the worker's memory then had.
+/// A worker, and the parts that it has handed out. With each part goes the height of the worker's memory
+/// after the part was made.
 struct Typed<W: Worker> {
     worker: W,
     parts: Vec<(W::Part, usize)>,
-    /// Those of an element on their way in or out.
+    /// The parts of one element on their way in or out.
     passing: Vec<(u8, W::Part)>,
 }
 
@@ -261,7 +264,7 @@ impl<W: Worker> Typed<W> {
         Ok(erased)
     }
 
-    /// Cells with the worker's own parts.
+    /// The cells with the worker's own parts.
     fn own(&self, cells: &[(Cell, ErasedPart)]) -> Result<Vec<(Cell, W::Part)>, Error> {
         let own = memory::collected(cells.iter().map(|(cell, part)| (*cell, self.part(part))))?;
         Ok(own)
@@ -308,7 +311,7 @@ trait ErasedWorker: Send + Sync {
     fn answer(&mut self, cell: Cell, part: &ErasedPart, question: Question<'_>) -> Result<(), Error>;
 }
 
-// (An array of one, because a box of that can be made by way of a vector, whose memory can be refused.)
+// (An array of one, because its box can be made from a vector, whose allocation can fail without a panic.)
 impl<W: Worker<Part: 'static> + 'static> ErasedWorker for [Typed<W>; 1] {
     fn as_any(&self) -> &dyn Any {
         &self[0]

@@ -1,22 +1,23 @@
-//! Which solid is it? 128 bits that tell.
+//! Fingerprints of solids: 128 bits that identify a solid.
 
 use core::fmt;
 use xxhash_rust::xxh3::Xxh3Default;
 
-/// 128 bits that two solids have in common only if they are the same, made of everything that their verdicts
-/// depend on: a stored octree remembers its source by them, so that it is not refined by another one.
+/// A hash of 128 bits that identifies a solid. It covers everything that the verdicts depend on, so that two
+/// solids have the same fingerprint only if they are the same. A stored octree keeps the fingerprint of its
+/// source, so that no other solid refines it.
 ///
-/// It is an XXH3 hash (128 bits, no seed; the algorithm is frozen), the same on every platform. It guards
-/// against mistakes, not against malice: whoever can write a file can write any fingerprint into it, so that
-/// a cryptographic hash, several times slower on a large mesh, would prove no more.
+/// The hash is XXH3 (128 bits, no seed; the algorithm is frozen), the same on every platform. It guards
+/// against mistakes, not against malice: anyone who can write a file can write any fingerprint into it. A
+/// cryptographic hash, several times slower on a large mesh, would prove no more.
 ///
-/// It is written as `xxh3:` and 32 hexadecimal digits.
+/// Its text form is `xxh3:` and 32 hexadecimal digits.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
 pub struct Fingerprint(u128);
 
 impl Fingerprint {
-    /// The fingerprint of a solid that a host program knows by these bytes: a name, a version, a hash of its
-    /// own.
+    /// The fingerprint of a solid that the host program identifies by these bytes: a name, a version, a hash
+    /// of its own.
     pub fn of_bytes(bytes: &[u8]) -> Fingerprint {
         Fingerprinter::new("host").bytes(bytes).finish()
     }
@@ -33,11 +34,11 @@ impl fmt::Display for Fingerprint {
     }
 }
 
-/// Makes the fingerprint of a solid out of what it consists of, in a fixed order.
+/// Computes the fingerprint of a solid from its contents, in a fixed order.
 ///
-/// Each piece is preceded by its length, so that no two sequences of pieces of one kind of solid are the same
-/// bytes. A solid that consists of others takes in their fingerprints, from the leaves up; no recursion is
-/// needed.
+/// Each piece is preceded by its length, so that no two sequences of pieces of one kind of solid give the
+/// same bytes. A composite solid adds the fingerprints of its parts, from the leaves up, so that no recursion
+/// is needed.
 ///
 /// ```
 /// use leafless::solid::Fingerprinter;
@@ -48,17 +49,17 @@ impl fmt::Display for Fingerprint {
 #[derive(Clone)]
 pub struct Fingerprinter(Xxh3Default);
 
-/// Numbers that are handed to the hash at once.
+/// The number of values that are passed to the hash at once.
 const BATCH: usize = 64;
 
 impl Fingerprinter {
-    /// Begins with the kind of the solid, a name that no other kind has. It must change when verdicts change
-    /// for other reasons than those that follow.
+    /// Begins with the kind of the solid, a name that no other kind uses. The name must change when verdicts
+    /// change for a reason that the following data does not show.
     pub fn new(kind: &str) -> Fingerprinter {
         Fingerprinter(Xxh3Default::new()).bytes(kind.as_bytes())
     }
 
-    /// Takes in bytes.
+    /// Adds bytes.
     #[must_use]
     pub fn bytes(mut self, bytes: &[u8]) -> Fingerprinter {
         self.0.update(&(bytes.len() as u64).to_le_bytes());
@@ -66,25 +67,25 @@ impl Fingerprinter {
         self
     }
 
-    /// Takes in doubles; −0 counts as 0.
+    /// Adds doubles; −0 counts as 0.
     #[must_use]
     pub fn numbers(self, numbers: &[f64]) -> Fingerprinter {
         self.words(numbers.len() as u64, numbers.iter().map(|&number| (number + 0.0).to_bits()))
     }
 
-    /// Takes in whole numbers.
+    /// Adds integers.
     #[must_use]
     pub fn integers(self, integers: &[u64]) -> Fingerprinter {
         self.words(integers.len() as u64, integers.iter().copied())
     }
 
-    /// Takes in the fingerprint of a solid that this one consists of.
+    /// Adds the fingerprint of a solid that this one contains.
     #[must_use]
     pub fn part(self, part: Fingerprint) -> Fingerprinter {
         self.bytes(&part.0.to_le_bytes())
     }
 
-    /// Takes in `count` numbers.
+    /// Adds `count` numbers.
     #[must_use]
     pub(crate) fn words(mut self, count: u64, words: impl Iterator<Item = u64>) -> Fingerprinter {
         self.0.update(&count.to_le_bytes());
@@ -102,7 +103,7 @@ impl Fingerprinter {
         self
     }
 
-    /// The fingerprint of all that was taken in.
+    /// Returns the fingerprint of everything added so far.
     pub fn finish(&self) -> Fingerprint {
         Fingerprint(self.0.digest128())
     }
@@ -122,7 +123,8 @@ mod tests {
 
     #[test]
     fn what_is_written_does_not_change() {
-        // Fixed for good: files hold them. As the algorithm's own implementation computes them.
+        // Fixed for good, because files hold these values. They are those of the algorithm's reference
+        // implementation.
         let of = |all: Fingerprinter| all.finish().to_string();
         assert_eq!(of(Fingerprinter::new("")), "xxh3:2c0a8a99dc147d5445c3b49d035665b2");
         let ball = Fingerprinter::new("ball").numbers(&[1.0, 2.0, 3.0]).numbers(&[0.5]);

@@ -1,11 +1,11 @@
-//! Handing on: the methods of the traits, written once for all who pass them to somebody else.
+//! Macros that forward the methods of the traits to another value.
 //!
 //! `forward_solid!`, `forward_classifier!`, `forward_parts!`, `forward_batch!` and `forward_answers!` write
-//! methods whose bodies are one call. What is missing of methods without defaults does not compile where it
-//! is used.
+//! methods whose bodies are one call. If a macro lacks a method that has no default, the code that uses the
+//! macro does not compile.
 
-/// All methods of [`Solid`](super::Solid) but `placed`: what is moved is another solid, which a reference
-/// cannot be.
+/// Forwards all methods of [`Solid`](super::Solid) but `placed`: a moved solid is a new value, which a
+/// reference cannot be.
 macro_rules! forward_solid {
     ($classifier:ty, $self:ident => $to:expr) => {
         type Classifier = $classifier;
@@ -20,7 +20,7 @@ macro_rules! forward_solid {
 
         $crate::solid::forward::forward_solid!(@description $self => $to);
     };
-    // Those that say what the shape is, without a frame, and what it keeps.
+    // The methods that describe the shape without a frame, and its memory.
     (@description $self:ident => $to:expr) => {
         fn kept_bytes(&$self) -> u64 {
             $to.kept_bytes()
@@ -51,7 +51,7 @@ macro_rules! forward_solid {
     };
 }
 
-/// The methods of [`Classifier`](super::Classifier) but `worker`.
+/// Forwards the methods of [`Classifier`](super::Classifier) but `worker`.
 macro_rules! forward_classifier {
     ($self:ident => $to:expr) => {
         fn frame(&$self) -> &$crate::lattice::Frame {
@@ -80,7 +80,7 @@ macro_rules! forward_classifier {
     };
 }
 
-/// The methods of [`Parts`](super::Parts) but `hand_over`, which takes two workers.
+/// Forwards the methods of [`Parts`](super::Parts) but `hand_over`, which takes two workers.
 macro_rules! forward_parts {
     ($part:ty, $self:ident => $to:expr) => {
         type Part = $part;
@@ -99,7 +99,8 @@ macro_rules! forward_parts {
     };
 }
 
-/// The methods of [`Batch`](super::Batch): all of them, or (`answers`) all but those that split.
+/// Forwards the methods of [`Batch`](super::Batch): all of them, or (`answers`) all but the methods that
+/// split.
 macro_rules! forward_batch {
     ($part:ty, $self:ident => $to:expr) => {
         fn likes_many(&$self) -> bool {
@@ -141,7 +142,7 @@ macro_rules! forward_batch {
     };
 }
 
-/// The methods of [`Worker`](super::Worker) that do not split.
+/// Forwards the methods of [`Worker`](super::Worker) that do not split.
 macro_rules! forward_answers {
     ($part:ty, $self:ident => $to:expr) => {
         fn frame(&$self) -> &$crate::lattice::Frame {

@@ -1,49 +1,48 @@
-//! Solids: everything that can split a cell.
+//! Solids: shapes that can split a cell into classified children.
 //!
-//! The library asks one thing of a shape: *split this PARTIAL cell into its eight children, classified*.
-//! Whatever has a shape is a [`Solid`]: primitives, triangle meshes, stored octrees, a host program's
-//! callback. Whatever wants a shape puts it on a frame, takes a [`Worker`] and asks that. Each producer is
-//! one file, and none knows the others.
+//! The library needs one operation of a shape: *split this PARTIAL cell into its eight children, classified*.
+//! Every shape is a [`Solid`]: primitives, triangle meshes, stored octrees, a host program's callback. An
+//! algorithm puts the solid on a frame, takes a [`Worker`] and queries it. Each producer is one file and does
+//! not depend on the others.
 //!
 //! # A new solid
 //!
-//! [`Solid`] has an example. What a worker writes beside [`root`](Worker::root) and [`split`](Worker::split)
-//! makes answers better, one step at a time (`examples/metaball.rs` climbs the first three steps and prints
-//! what each gains):
+//! [`Solid`] has an example. Beyond [`root`](Worker::root) and [`split`](Worker::split), every method that a
+//! worker implements improves the results, one step at a time. `examples/metaball.rs` climbs the first three
+//! steps and prints the gain of each.
 //!
 //! | a worker that | gains |
 //! |---|---|
-//! | splits cells, and is [`FreeParts`] and [`OneByOne`] | octrees by [`Rule::Certified`](crate::Rule::Certified), `Inner` and `Outer`, points, boxes, rays, Booleans, pictures: all to the size of a cell. After N splits a volume is known to N^-½. |
+//! | splits cells, and is [`FreeParts`] and [`OneByOne`] | octrees by [`Rule::Certified`](crate::Rule::Certified), `Inner` and `Outer`, points, boxes, rays, Booleans, pictures: all to the size of a cell. After N splits the error of a volume is of the order N^-½. |
 //! | answers [`Question::Centre`] | [`Rule::Sampled`](crate::Rule::Sampled), tri-dexel models, marching cubes of sampled cells |
 //! | answers [`Question::Enclosure`] | second order: volume, centroid and inertia to N^-1 (plane faces: N^-2), a bounding box in some hundred splits, rays and vertices to a curvature times a cell's square, octrees that end where the surface is known to a tolerance ([`Adaptive`]) |
 //! | answers [`Question::Moments`], [`Question::Area`] | third order: volume and moments to N^-1.5, areas |
-//! | answers [`Question::Crossing`] | vertices of surfaces on the surface, with normals, without a search |
-//! | answers [`Question::Surfaces`], [`WholeQuestion::Surfaces`] | extended octrees that keep the surfaces, and are as exact as the solid |
+//! | answers [`Question::Crossing`] | surface vertices that lie on the surface, with normals, without a search |
+//! | answers [`Question::Surfaces`], [`WholeQuestion::Surfaces`] | extended octrees, which keep the surfaces and are as exact as the solid |
 //! | answers [`Question::Layers`], [`WholeQuestion::Layers`] | the same where surfaces are known within a width |
-//! | answers [`WholeQuestion::Facets`], or [`WholeQuestion::Pieces`] | how far its boundary is from another one, to rounding and without cells |
-//! | answers [`WholeQuestion::Walls`], writes [`Batch::inside`] | how far it is from another solid, to rounding and without cells |
-//! | answers [`Question::Ray`], [`Question::Nearest`], writes [`Batch::inside`] | single rays, distances and points in microseconds |
-//! | answers [`Question::Chords`], writes [`fill`](Worker::fill) | nothing but speed: tri-dexel models, octrees |
-//! | writes [`Batch`] in place of [`OneByOne`] | threads and whole levels at once, for functions that take long; points without a descent ([`Batch::inside`]); cells without the way to them ([`Batch::recall`]) |
-//! | writes [`Parts`] in place of [`FreeParts`] | parts that are lists in scratch memory, so that children look only at what cut their parent |
+//! | answers [`WholeQuestion::Facets`], or [`WholeQuestion::Pieces`] | the distance of its boundary from another boundary, to rounding and without cells |
+//! | answers [`WholeQuestion::Walls`], implements [`Batch::inside`] | the distance from another solid, to rounding and without cells |
+//! | answers [`Question::Ray`], [`Question::Nearest`], implements [`Batch::inside`] | single rays, distances and points in microseconds |
+//! | answers [`Question::Chords`], implements [`fill`](Worker::fill) | speed only: tri-dexel models, octrees |
+//! | implements [`Batch`] in place of [`OneByOne`] | threads and whole levels at once, for slow functions; points without a descent ([`Batch::inside`]); cells without the path to them ([`Batch::recall`]) |
+//! | implements [`Parts`] in place of [`FreeParts`] | parts that are lists in scratch memory, so that children look only at the primitives that cut their parent |
 //!
-//! Laws for all of them stand with each trait. A test of a new solid compares it with a slow oracle cell by
-//! cell, and has its row in `tests/octrees/proof_table.rs`.
+//! Each trait states its laws. A test of a new solid compares the solid with a slow oracle cell by cell, and
+//! has its row in `tests/octrees/proof_table.rs`.
 //!
 //! # A new wrapper
 //!
-//! A solid that is made of another one writes all of [`Parts`], [`Batch`], [`Classifier::proof`] and the two
-//! `answer`s: they have no defaults, because what they say would be lost in silence. Questions that a wrapper
-//! does not change are handed on as they are, those of the future included. The other methods have defaults
-//! that are right, and slower or less sure.
+//! A solid that wraps another one implements all of [`Parts`], [`Batch`], [`Classifier::proof`] and the two
+//! `answer` methods. They have no defaults, because a default would silently lose what the inner solid
+//! answers. A wrapper forwards every question that it does not change, including questions that are added in
+//! future versions. The other methods have defaults that are correct, but slower or less certain.
 
-// The contract: what a solid answers (here), where parts live, many questions at once, and what else can be
-// known.
+// The contract: the traits (here), where parts live, batches of questions, and further questions.
 mod batch;
 mod parts;
 mod question;
 mod verdict;
-// With it go what tells solids apart, what copies stored cells, and what hands questions on.
+// Helpers of the contract: fingerprints, copies of stored cells, and forwarding.
 mod fingerprint;
 pub(crate) mod forward;
 mod motion;
@@ -51,7 +50,7 @@ mod subtree;
 mod surface_cell;
 mod trace;
 
-// Producers: none knows another one. (Half-spaces are no solid by themselves; expressions are made of them.)
+// Producers: none depends on another. (Half-spaces are no solid by themselves; expressions are made of them.)
 mod callback;
 mod csg;
 pub(crate) mod half_space;
@@ -59,7 +58,7 @@ mod mesh;
 pub(crate) mod stored;
 mod volume;
 
-// Wrappers: solids that are made of a solid of any kind.
+// Wrappers: solids that are made from a solid of any kind.
 mod adaptive;
 mod any;
 mod erased;
@@ -108,9 +107,10 @@ use alloc::vec::Vec;
 
 /// A shape in model space.
 ///
-/// A shape is asked in three steps. [`on`](Solid::on) puts it on the lattice of a frame, once: the
-/// [`Classifier`] is a handle that costs nothing to copy and that threads, queries and poses share. Each
-/// thread takes a [`Worker`] from it, which has the scratch memory and answers.
+/// A shape is queried in three steps. [`on`](Solid::on) puts the shape on the lattice of a frame, once, and
+/// returns a [`Classifier`]: a handle that costs nothing to copy and that threads, queries and poses share.
+/// Each thread takes a [`Worker`] from the classifier. The worker has scratch memory and answers the
+/// questions.
 ///
 /// ```
 /// use leafless::{
@@ -125,7 +125,7 @@ use alloc::vec::Vec;
 /// impl Solid for Octahedron {
 ///     type Classifier = OnFrame;
 ///
-///     // Nothing costs time here. A mesh would sort its triangles.
+///     // No preparation is needed here. A mesh would sort its triangles.
 ///     fn on(&self, frame: &Frame, _: &Control<'_>) -> Result<OnFrame, Error> {
 ///         Ok(OnFrame { shape: *self, frame: *frame })
 ///     }
@@ -135,7 +135,7 @@ use alloc::vec::Vec;
 ///     }
 /// }
 ///
-/// /// The shape on a frame. There is no scratch memory, so that the handle is its own worker.
+/// /// The shape on a frame. It needs no scratch memory, so that the handle is its own worker.
 /// #[derive(Clone, Copy)]
 /// struct OnFrame {
 ///     shape: Octahedron,
@@ -167,7 +167,7 @@ use alloc::vec::Vec;
 ///         let (min, max) = Cube { frame: &self.frame, cell }.bounds();
 ///         let far = |axis: usize| min[axis].abs().max(max[axis].abs());
 ///         let near = |axis: usize| if min[axis] <= 0.0 && max[axis] >= 0.0 { 0.0 } else { min[axis].abs().min(max[axis].abs()) };
-///         // Some last places for what is rounded: a verdict is a proof.
+///         // A margin of some last places covers the rounding errors: a verdict is a proof.
 ///         let (most, least) = (far(0) + far(1) + far(2), near(0) + near(1) + near(2));
 ///         if most * (1.0 + 4.0 * f64::EPSILON) <= self.shape.0 {
 ///             Verdict::Full
@@ -179,7 +179,7 @@ use alloc::vec::Vec;
 ///     }
 /// }
 ///
-/// // A cell is decided by the cell itself: nothing is remembered about it.
+/// // The cell alone decides its verdict: the worker remembers nothing about it.
 /// impl FreeParts for OnFrame {
 ///     type Part = ();
 /// }
@@ -199,7 +199,7 @@ use alloc::vec::Vec;
 ///         Ok([0, 1, 2, 3, 4, 5, 6, 7].map(|octant| self.verdict(cell.child(octant))))
 ///     }
 ///
-///     // Centres are all that it knows beside its cells. (Slabs would come next: `Question::Enclosure`.)
+///     // The worker answers only for centres. (Slabs would come next: `Question::Enclosure`.)
 ///     fn answer(&mut self, cell: Cell, _: &(), question: Question<'_>) -> Result<(), Error> {
 ///         if let Question::Centre(inside) = question {
 ///             let (min, max) = Cube { frame: &self.frame, cell }.bounds();
@@ -219,45 +219,46 @@ use alloc::vec::Vec;
 /// ```
 ///
 /// # Law
-/// What [`on`](Solid::on) returns depends on the shape and the frame alone.
+/// The result of [`on`](Solid::on) depends on the shape and the frame alone.
 ///
-/// # One question after the other
-/// Every query puts the solid on its frame first: O(1) for octrees that this library made and for a host's
-/// functions, O(n) in the half-spaces of an expression, the triangles of a mesh, and the links of an octree
-/// that was mapped. Whoever asks one point after the other wraps the solid in [`Prepared`], which keeps what
-/// was prepared.
+/// # Repeated queries
+/// Every query first puts the solid on its frame. That takes O(1) for octrees made by this library and for a
+/// host's functions. It takes O(n) in the half-spaces of an expression, in the triangles of a mesh, and in
+/// the links of a mapped octree. For many single queries in a row, wrap the solid in [`Prepared`], which
+/// keeps the prepared classifier.
 pub trait Solid: Send + Sync {
-    /// The shape on a frame.
+    /// The type of the shape on a frame.
     type Classifier: Classifier;
 
-    /// The shape on the lattice of a frame. All that costs time in proportion to the model is done here.
+    /// Puts the shape on the lattice of a frame. All work that grows with the size of the model is done here.
     ///
     /// # Errors
-    /// If the shape cannot be had in this frame ([`Error::FrameMismatch`] for stored octrees), memory runs
-    /// out, or `control` asks for it: the work can be cancelled, and may use its threads.
+    /// If the shape is not available on this frame ([`Error::FrameMismatch`] for stored octrees), if memory
+    /// runs out, or if `control` cancels the work. The work may use the threads of `control`.
     fn on(&self, frame: &Frame, control: &Control<'_>) -> Result<Self::Classifier, Error>;
 
-    /// A box in model space that the shape surely lies in, if one is known.
+    /// A box in model space that certainly contains the shape, if one is known.
     fn bounds(&self) -> Option<Bounds> {
         None
     }
 
-    /// The frame on which the shape is exact, if there is only one: that of a stored octree.
+    /// The only frame on which the shape is exact, if there is only one: the frame of a stored octree.
     fn home(&self) -> Option<Frame> {
         None
     }
 
-    /// What tells this shape from others: two with the same fingerprint give the same verdicts. `None`, the
-    /// default, if nothing does; then an octree that was refined on demand cannot be taken up again with it.
+    /// The fingerprint of the shape: two shapes with the same fingerprint give the same verdicts. `None`, the
+    /// default, means that the shape has no fingerprint. An octree that was refined on demand can then not be
+    /// resumed with it.
     fn fingerprint(&self) -> Option<Fingerprint> {
         None
     }
 
-    /// The shape under an affine map, if its kind can be moved otherwise than by [`Transform`]; `None`, the
-    /// default, if it cannot. [`AnySolid::placed`] moves all kinds.
+    /// The shape under an affine map, if its kind can be moved more directly than by [`Transform`]. `None`,
+    /// the default, means that it cannot. [`AnySolid::placed`] moves all kinds.
     ///
     /// # Errors
-    /// If memory runs out, or the kind's own.
+    /// If memory runs out, or an error of the kind of solid.
     fn placed(&self, placement: &Affine) -> Result<Option<Self>, Error>
     where
         Self: Sized,
@@ -266,110 +267,116 @@ pub trait Solid: Send + Sync {
         Ok(None)
     }
 
-    /// The mesh whose solid this is, if it is nothing else: a picture draws its triangles. `None`, the
-    /// default, if that is not known.
+    /// The mesh whose solid this is, if the solid consists of that mesh alone; a picture then draws its
+    /// triangles. `None`, the default, if that is not known.
     fn sole_mesh(&self) -> Option<&TriangleMesh> {
         None
     }
 
-    /// What moving the shape does to it.
+    /// The precision of the shape under affine maps.
     fn motion(&self) -> Motion {
         Motion::Conservative
     }
 
-    /// About how many bytes of memory (or of mapped files) the shape keeps alive: its own, and those of the
-    /// meshes, octrees and samples that it shares with others. An expression counts each of its parts once,
-    /// but two parts that share a mesh count the mesh twice. 0, the default, if nobody knows. A solid in
-    /// small structs only may say 0.
+    /// The approximate number of bytes of memory (or of mapped files) that the shape keeps alive: its own,
+    /// and those of the meshes, octrees and samples that it shares with other shapes. An expression counts
+    /// each of its parts once, but two parts that share a mesh count the mesh twice. 0, the default, means
+    /// unknown. A solid that consists of small structs only may return 0.
     fn kept_bytes(&self) -> u64 {
         0
     }
 }
 
-/// A shape on a frame: a cheap shared handle, for threads, queries and poses.
+/// A shape on a frame: a cheap shared handle for threads, queries and poses.
 pub trait Classifier: Clone + Send + Sync {
-    /// The same with scratch memory.
+    /// The type of the workers: the classifier with scratch memory.
     type Worker: Worker;
 
     /// The frame.
     fn frame(&self) -> &Frame;
 
-    /// A worker, which keeps alive what it needs. O(1) in the model.
+    /// Creates a worker, which keeps alive everything that it needs. O(1) in the size of the model.
     ///
     /// # Errors
     /// [`Error::OutOfMemory`].
     fn worker(&self) -> Result<Self::Worker, Error>;
 
-    /// What is known of the space around the universe: EMPTY if the shape is proven to end inside, FULL if
-    /// the space is proven solid, else PARTIAL.
+    /// The state of the space around the universe: EMPTY if the shape is proven to end inside the universe,
+    /// FULL if the space is proven solid, PARTIAL otherwise.
     fn exterior(&self) -> Tag {
         Tag::Partial
     }
 
-    /// What the verdicts prove. [`Proof::CERTIFIED`]: all that they say. The verdicts of a stored octree
-    /// prove what its cells do; those of a solid that is known at points only prove nothing.
+    /// What the verdicts prove. [`Proof::CERTIFIED`] means that FULL and EMPTY are proven for the whole cell.
+    /// The verdicts of a stored octree prove as much as its cells do. The verdicts of a solid that is known
+    /// only at points prove nothing.
     fn proof(&self) -> Proof;
 
-    /// Answers a question about the whole shape, if the shape knows more than its cells tell. A shape that
-    /// does not is done with `Ok(())`.
+    /// Answers a question about the whole shape, if the shape knows more than its cells show. Any other shape
+    /// just returns `Ok(())`.
     ///
     /// # Errors
     /// [`Error::OutOfMemory`], and [`Error::Cancelled`] by `control`.
     fn answer_whole(&self, question: WholeQuestion<'_>, control: &Control<'_>) -> Result<(), Error>;
 
-    /// About how many bytes of memory the handle and its clones keep alive beyond those of the solid
-    /// ([`Solid::kept_bytes`]). 0, the default, if nobody knows.
+    /// The approximate number of bytes of memory that the handle and its clones keep alive beyond those of
+    /// the solid ([`Solid::kept_bytes`]). 0, the default, means unknown.
     fn kept_bytes(&self) -> u64 {
         0
     }
 }
 
-/// A classifier with scratch memory: what answers.
+/// A classifier with scratch memory, which answers the questions.
 ///
-/// A worker remembers something about PARTIAL cells, their *parts* ([`Parts`], or [`FreeParts`]), and may
-/// answer many questions at once ([`Batch`], or [`OneByOne`]).
+/// A worker remembers something about each PARTIAL cell: the *part* of the cell ([`Parts`], or
+/// [`FreeParts`]). It may answer many questions at once ([`Batch`], or [`OneByOne`]).
 ///
 /// # Laws
 /// 1. A FULL or EMPTY verdict is proven, unless [`Classifier::proof`] says otherwise. Contact is not overlap:
 ///    FULL means that the whole (closed) cell lies in the solid, EMPTY that the interiors are disjoint.
-/// 2. A verdict depends on the cell and the shape alone: not on the path to the cell, the thread, or what
-///    was asked before.
-/// 3. The part of any cell can be had again by replaying the splits from the root.
+/// 2. A verdict depends on the cell and the shape alone. It does not depend on the path to the cell, on the
+///    thread, or on earlier questions.
+/// 3. Replaying the splits from the root recovers the part of any cell.
 /// 4. An enclosure and a crossing are proven as verdicts are. A crossing has the same bits whichever cell is
-///    asked.
+///    queried for it.
 ///
-/// All of it concerns the shape inside of the universe. The errors of all questions are those of memory that
-/// runs out, and of a host program's function that stops the work.
+/// All laws concern the shape inside the universe.
+///
+/// # Errors
+/// Every question fails with [`Error::OutOfMemory`] if memory runs out, and with the error of a host
+/// program's function ([`Error::Callback`], for example) if that function stops the work.
 pub trait Worker: Batch {
     /// The frame.
     fn frame(&self) -> &Frame;
 
-    /// The universe's verdict. O(1) in the model.
+    /// Returns the verdict on the universe. O(1) in the size of the model.
     ///
     /// # Errors
-    /// As all questions.
+    /// [Those of every question](Worker#errors).
     fn root(&mut self) -> Result<Verdict<Self::Part>, Error>;
 
-    /// Splits a PARTIAL cell, which is above the frame's depth: the verdicts of its children in octant order.
+    /// Splits a PARTIAL cell above the frame's depth and returns the verdicts on its children in octant
+    /// order.
     ///
     /// # Errors
-    /// As all questions.
+    /// [Those of every question](Worker#errors).
     fn split(&mut self, cell: Cell, part: &Self::Part) -> Result<[Verdict<Self::Part>; 8], Error>;
 
-    /// Answers what else is known of a PARTIAL cell: sets the place in the question, or leaves it. A worker
-    /// that knows nothing beyond verdicts is done with `Ok(())`.
+    /// Answers a further question about a PARTIAL cell: fills in the place for the answer in the question, or
+    /// leaves it as it is. A worker that has nothing but verdicts returns `Ok(())`.
     ///
     /// # Errors
-    /// As all questions.
+    /// [Those of every question](Worker#errors).
     fn answer(&mut self, cell: Cell, part: &Self::Part, question: Question<'_>) -> Result<(), Error>;
 
-    // ---- the same answers in less time: the defaults are right --------------------------------------------------------------
+    // ---- the same answers in less time: the defaults are correct ------------------------------------------
 
-    /// Splits two levels at once, the grain of storage: the tags of the 64 grandchildren in Morton order.
-    /// The parts of those that can be split are appended to `parts` with their index, in ascending order.
+    /// Splits two levels at once, which is the granularity of storage. Returns the tags of the 64
+    /// grandchildren in Morton order. The parts of the grandchildren that can be split are appended to
+    /// `parts` with their indices, in ascending order.
     ///
     /// # Errors
-    /// As all questions.
+    /// [Those of every question](Worker#errors).
     fn split64(
         &mut self,
         cell: Cell,
@@ -379,23 +386,23 @@ pub trait Worker: Batch {
         split_twice(self, cell, part, parts)
     }
 
-    /// Classifies a PARTIAL cell of 64³ finest cells at once, where that is faster than descent: fills what
-    /// `block` asks for with just what descending by [`split`](Self::split) would find, and returns `true`.
-    /// The default returns `false`: descend.
+    /// Classifies a PARTIAL cell of 64³ finest cells at once, where that is faster than descent. It fills in
+    /// what `block` requests, with exactly the result of a descent by [`split`](Self::split), and returns
+    /// `true`. The default returns `false`: the caller must descend.
     ///
     /// # Errors
-    /// As all questions.
+    /// [Those of every question](Worker#errors).
     fn fill(&mut self, cell: Cell, part: &Self::Part, block: &mut Block) -> Result<bool, Error> {
         let _ = (cell, part, block);
         Ok(false)
     }
 
-    /// Samples many at once, the grain of storage: of those 64 grandchildren of a cell whose parts are given,
-    /// with their index, bit c says whether the centre of cell c lies in the solid. The grandchildren have
-    /// the frame's depth.
+    /// Samples the centres of many cells at once, which is the granularity of storage. `parts` holds the
+    /// parts of some of the 64 grandchildren of a cell, with their indices. The grandchildren have the
+    /// frame's depth. Bit c of the result is set if the centre of grandchild c lies in the solid.
     ///
     /// # Errors
-    /// As all questions.
+    /// [Those of every question](Worker#errors).
     fn sample64(&mut self, cell: Cell, parts: &[(u8, Self::Part)]) -> Result<Option<u64>, Error> {
         let mut inside = 0;
         for (c, part) in parts {
@@ -408,8 +415,8 @@ pub trait Worker: Batch {
         Ok(Some(inside))
     }
 
-    /// The stored cells that a PARTIAL cell consists of, if they are stored in the form of octrees on this
-    /// frame: whoever writes an octree copies them.
+    /// The stored cells that make up a PARTIAL cell, if they are stored in the form of octrees on this frame.
+    /// A writer of octrees copies them.
     fn subtree(&self, part: &Self::Part) -> Option<Subtree<'_>> {
         let _ = part;
         None
@@ -419,7 +426,7 @@ pub trait Worker: Batch {
 /// The worker of a solid.
 pub(crate) type WorkerOf<S> = <<S as Solid>::Classifier as Classifier>::Worker;
 
-/// A solid that is borrowed.
+/// A borrowed solid.
 impl<S: Solid> Solid for &S {
     forward::forward_solid!(S::Classifier, self => (**self));
 }
@@ -427,10 +434,10 @@ impl<S: Solid> Solid for &S {
 /// The parts of a solid.
 pub(crate) type PartOf<S> = <WorkerOf<S> as Parts>::Part;
 
-/// The octants in their order.
+/// The octants in order.
 pub(crate) const OCTANTS: [u8; 8] = [0, 1, 2, 3, 4, 5, 6, 7];
 
-/// Two levels by splitting twice.
+/// Splits two levels by splitting twice.
 pub(crate) fn split_twice<W: Worker + ?Sized>(
     worker: &mut W,
     cell: Cell,

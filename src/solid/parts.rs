@@ -1,15 +1,15 @@
-//! Where the parts of cells live.
+//! Where workers keep their data about cells.
 
 use crate::error::Error;
 
-/// What a worker remembers about PARTIAL cells, and the scratch memory that it remembers this in.
+/// A worker's memory of PARTIAL cells: the type of a cell's part, and the scratch memory that parts refer to.
 ///
-/// A *part* may refer to the worker's scratch memory, which is a stack: parts that were made after a
-/// [mark](Parts::mark) are gone once the mark is [released](Parts::release). A part means something to the
-/// worker that made it, and to no other. (Another worker may take it for anything, and may panic.)
+/// A *part* may refer to the worker's scratch memory, which is a stack: [releasing](Parts::release) a
+/// [mark](Parts::mark) invalidates all parts that were made after the mark. A part is valid only for the
+/// worker that made it. (Another worker may misinterpret the part, and may panic.)
 ///
-/// No method has a default, because these methods are right together or wrong across threads. A worker whose
-/// parts refer to nothing says so in one line: [`FreeParts`].
+/// No method has a default, because these methods are correct only together, and a mistake shows only across
+/// threads. A worker whose parts refer to nothing implements [`FreeParts`], in one line.
 ///
 /// ```
 /// use leafless::{Error, solid::Parts};
@@ -34,7 +34,7 @@ use crate::error::Error;
 ///         size_of_val(&*self.lists)
 ///     }
 ///
-///     // Another worker's part refers to another worker's memory: what it refers to is copied.
+///     // The part of another worker refers to that worker's memory, so that the list is copied.
 ///     fn hand_over(&mut self, from: &Lists, part: &(usize, usize)) -> Result<(usize, usize), Error> {
 ///         let list = &from.lists[part.0..part.1];
 ///         let first = self.lists.len();
@@ -54,31 +54,32 @@ use crate::error::Error;
 /// # Ok::<(), Error>(())
 /// ```
 pub trait Parts: Send + Sync {
-    /// What is remembered about one PARTIAL cell.
+    /// The data about one PARTIAL cell.
     type Part: Clone + Send + Sync;
 
-    /// The present height of the scratch memory. O(1).
+    /// The current height of the scratch memory. O(1).
     fn mark(&self) -> usize;
 
-    /// Takes the scratch memory back to an earlier height.
+    /// Truncates the scratch memory to an earlier height.
     fn release(&mut self, mark: usize);
 
-    /// Bytes that the scratch memory takes for parts. A caller that keeps many parts at once limits this
-    /// number.
+    /// The number of bytes that parts occupy in the scratch memory. A caller that keeps many parts at once
+    /// limits this number.
     fn scratch_bytes(&self) -> usize;
 
-    /// Takes over a part of another worker of the same classifier, with what the part refers to.
+    /// Copies a part from another worker of the same classifier, together with the data that the part refers
+    /// to.
     ///
     /// # Errors
     /// [`Error::OutOfMemory`].
     fn hand_over(&mut self, from: &Self, part: &Self::Part) -> Result<Self::Part, Error>;
 }
 
-/// A worker whose parts refer to nothing: they are copied, they never become invalid, and any worker of the
-/// same classifier understands them. The worker then needs no scratch memory, and has [`Parts`] by this line
-/// alone.
+/// A worker whose parts refer to nothing. Such parts can be copied, never become invalid, and are valid for
+/// any worker of the same classifier. The worker needs no scratch memory for them; this trait alone gives it
+/// [`Parts`].
 pub trait FreeParts: Send + Sync {
-    /// What is remembered about one PARTIAL cell.
+    /// The data about one PARTIAL cell.
     type Part: Clone + Send + Sync;
 }
 

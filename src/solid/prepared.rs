@@ -1,4 +1,4 @@
-//! A solid that keeps what it is on a frame.
+//! A solid that keeps its classifier.
 
 use super::forward::forward_solid;
 use super::{AnyClassifier, AnySolid, Classifier, Solid};
@@ -8,11 +8,11 @@ use crate::lattice::{Affine, Frame};
 use crate::lock::Lock;
 use alloc::sync::Arc;
 
-/// A solid that keeps one frame prepared, the last that it was put on: asked on it again, it is there at
-/// once. A clone shares what is kept.
+/// A solid that keeps its classifier for the last frame that it was put on. A second query on that frame
+/// starts at once. Clones share the kept classifier.
 ///
-/// Threads may put it on frames at the same time. None waits for another: two that come first with the same
-/// frame both prepare it.
+/// Threads may put the solid on frames at the same time. No thread waits for another: two threads that come
+/// first with the same frame both prepare it.
 #[derive(Clone)]
 pub struct Prepared {
     solid: AnySolid,
@@ -20,17 +20,17 @@ pub struct Prepared {
 }
 
 impl Prepared {
-    /// A solid that nobody has put on a frame yet.
+    /// Wraps a solid. Nothing is prepared yet.
     pub fn new(solid: AnySolid) -> Prepared {
         Prepared { solid, last: Arc::default() }
     }
 
-    /// The solid.
+    /// The wrapped solid.
     pub fn solid(&self) -> &AnySolid {
         &self.solid
     }
 
-    /// What is kept, if it is for this frame.
+    /// The kept classifier, if it is for this frame.
     fn kept(&self, frame: &Frame) -> Option<AnyClassifier> {
         self.last.with(|last| {
             last.as_ref().filter(|(kept, _)| kept == frame).map(|(_, classifier)| classifier.clone())
@@ -45,7 +45,8 @@ impl Solid for Prepared {
         if let Some(classifier) = self.kept(frame) {
             return Ok(classifier);
         }
-        // The host's functions may be called here, and may ask this very solid: no lock is held.
+        // The host's functions may be called here, and may query this very solid, so that no lock may be
+        // held.
         let classifier = self.solid.on(frame, control)?;
         let before = self.last.with(|last| last.replace((*frame, classifier.clone())));
         drop(before);
@@ -56,7 +57,7 @@ impl Solid for Prepared {
         Ok(Some(Prepared::new(AnySolid::placed(&self.solid, placement)?)))
     }
 
-    /// The solid's, and what is kept for the last frame.
+    /// Counts the solid, and the classifier that is kept for the last frame.
     fn kept_bytes(&self) -> u64 {
         let last = self.last.with(|last| last.as_ref().map(|(_, classifier)| classifier.clone()));
         self.solid.kept_bytes() + last.map_or(0, |classifier| classifier.kept_bytes())

@@ -1,4 +1,4 @@
-//! What may be asked of a solid beside its cells.
+//! Questions to a solid beyond the verdicts on its cells.
 
 use super::{
     BoundaryFacets, BoundaryPieces, BoxContent, Classifier, Crossing, Enclosure, NearestSurface,
@@ -11,102 +11,106 @@ use crate::error::Error;
 use crate::lattice::{Bounds, Cell, CellMoments, Interval, Ray, VolumeMoments};
 use alloc::vec::Vec;
 
-/// A question about one PARTIAL cell, with the place for the answer, in which nothing is to be before.
-/// Nothing is put there where nothing is known.
+/// A question about one PARTIAL cell, with the place for the answer. The place must be empty before the
+/// question. It stays empty if the answer is not known.
 ///
-/// The answers are proven as verdicts are, and depend on the cell and the shape alone. Questions may be
-/// added: a worker answers those that it knows, and passes over the others. A wrapper hands the question on.
+/// The answers are proven as verdicts are, and depend on the cell and the shape alone. Later versions may add
+/// questions: a worker answers the questions that it knows and ignores the others. A wrapper forwards the
+/// question.
 #[non_exhaustive]
 pub enum Question<'q> {
-    /// Whether the centre of the cell, which has the frame's depth, lies in the solid. A centre on the
+    /// Whether the centre of the cell lies in the solid. The cell has the frame's depth. A centre on the
     /// boundary is decided as if all centres were shifted by (ε, ε², ε³), to first order: on a curved surface
-    /// too, the first axis that leads across it decides.
+    /// too, the first axis that leads across the surface decides.
     Centre(&'q mut Option<bool>),
 
-    /// Slabs between which the boundary lies in the cell, by the law that [`Enclosure`] states.
+    /// Slabs that contain the boundary in the cell, by the law that [`Enclosure`] states.
     Enclosure(&'q mut Option<Enclosure>),
 
-    /// Volume and moments of the solid in the cell, if they are known better than by an enclosure.
+    /// Volume and moments of the solid in the cell, if they are known more precisely than by an enclosure.
     Moments(&'q mut Option<CellMoments>),
 
-    /// Bounds of the area that the boundary has in the cell, in squares of the cell's half edge, if any are
-    /// known beside those by an enclosure with a cone.
+    /// Bounds of the area of the boundary in the cell, in squares of the cell's half edge, if bounds are
+    /// known other than those of an enclosure with a cone.
     Area(&'q mut Option<Interval>),
 
-    /// Where a segment with both ends in the closed cell first crosses the boundary, by the law that
-    /// [`Crossing`] states. Nothing if it does not, or the solid cannot tell.
+    /// The first crossing of the boundary by a segment with both ends in the closed cell, by the law that
+    /// [`Crossing`] states. Not answered if there is no crossing, or if the solid cannot find it.
     Crossing(&'q Segment, &'q mut Option<Crossing>),
 
-    /// Where rays through the centres of finest cells enter and leave the solid in the cell, if that is known
-    /// for all rays that the beam asks for.
+    /// The intervals in which rays through the centres of finest cells lie inside the solid in the cell.
+    /// Answered only if they are known for all rays that the beam requests.
     Chords(Chords<'q>),
 
-    /// Which surfaces of the classifier's list ([`WholeQuestion::Surfaces`]) cross the cell, and which
-    /// function of their signs the solid is, by the law that [`OpenSurfaces`] states. Nothing if there are
-    /// too many, the solid is made otherwise, or nobody has asked for the list yet.
+    /// The surfaces of the classifier's list ([`WholeQuestion::Surfaces`]) that cross the cell, and the
+    /// function of their signs that the solid is there, by the law that [`OpenSurfaces`] states. Not answered
+    /// if there are too many surfaces, if the solid is not made of surfaces, or if nobody has requested the
+    /// list yet.
     Surfaces(&'q mut Option<OpenSurfaces>),
 
-    /// The same of the list with layers ([`WholeQuestion::Layers`]): where nothing exact is known of a
-    /// surface, planes with a width may stand for it.
+    /// As [`Surfaces`](Self::Surfaces), for the list with layers ([`WholeQuestion::Layers`]): planes with a
+    /// width may stand for a surface that is not known exactly.
     Layers(LayersQuestion<'q>),
 
-    /// Where a ray goes in and out of the solid in the cell: of the root, in the universe. Beyond the cell
-    /// the trace need not be right. Nothing is told unless [`WholeQuestion::Direct`] was asked before.
+    /// The crossings of a ray with the boundary of the solid in the cell; for the root cell, in the universe.
+    /// Beyond the cell the trace need not be correct. Answered only after [`WholeQuestion::Direct`] has been
+    /// asked.
     Ray(RayQuestion<'q>),
 
-    /// Which point of the whole boundary is nearest to a point (model units): asked of the root alone.
-    /// Nothing is told unless [`WholeQuestion::Direct`] was asked before.
+    /// The point of the whole boundary that is nearest to a point (model units). Only for the root cell.
+    /// Answered only after [`WholeQuestion::Direct`] has been asked.
     Nearest([f64; 3], &'q mut Option<NearestSurface>),
 
-    /// How a box in the universe lies to the solid: asked of the root alone. Nothing is told unless
-    /// [`WholeQuestion::Direct`] was asked before.
+    /// The position of a box in the universe: in the solid, outside, or both. Only for the root cell.
+    /// Answered only after [`WholeQuestion::Direct`] has been asked.
     Box(&'q Bounds, &'q mut Option<BoxContent>),
 }
 
-/// How thick layers may be, with the places for the answer.
+/// The greatest thickness of layers, with the places for the answer.
 pub struct LayersQuestion<'q> {
-    /// No point of a layer is to be further than twice this from the surface (model units).
+    /// Half the greatest distance that a layer's points may have from the surface (model units).
     pub tolerance: f64,
-    /// Layers for this cell alone are added: a surface with the number [`OpenSurfaces::OWN`] + i is number i
-    /// of these.
+    /// Layers for this cell alone are appended here: a surface with the number [`OpenSurfaces::OWN`] + i is
+    /// number i of this list.
     pub own: &'q mut Vec<PlacedHalfSpace>,
-    /// The function, of surfaces of the list and own ones.
+    /// The function of surfaces of the list and of own layers.
     pub known: &'q mut Option<OpenSurfaces>,
 }
 
 impl LayersQuestion<'_> {
-    /// How wide any layer may be, as a share of the tolerance. Next to a wall of the cell a point in it is up
-    /// to 1 + √3 of its widths away from the surface, which is to be less than twice the tolerance.
+    /// The greatest width of any layer, as a share of the tolerance. Next to a wall of the cell a point in a
+    /// layer is up to 1 + √3 widths away from the surface. That distance must be less than twice the
+    /// tolerance.
     pub(crate) const SHARE: f64 = 0.7;
 
-    /// Whether a layer that alone bounds the solid in a cell is thin enough for a tolerance, in half edges of
-    /// the cell. (It may get a little thicker when it is stored.)
+    /// Returns whether a layer that alone bounds the solid in a cell is thin enough for a tolerance, in half
+    /// edges of the cell. (Storing the layer may make it a little thicker.)
     pub(crate) fn admits(slab: &Slab, tolerance: f64) -> bool {
         let width = (slab.outer - slab.inner) / libm::sqrt(slab.normal.iter().map(|c| c * c).sum::<f64>());
-        // (What is no number is not less.)
+        // (A comparison with NaN is false.)
         width <= Self::SHARE * tolerance || width <= tolerance && cut::stray(slab) <= 1.9 * tolerance
     }
 }
 
-/// The place for intervals of rays.
+/// The place for the intervals of rays.
 pub struct Chords<'q> {
-    /// The rays. Their intervals in the cell are added; each holds just those centres that
+    /// The rays. Their intervals in the cell are appended. Each interval holds exactly those centres that
     /// [`Question::Centre`] would find inside.
     pub beam: &'q mut Beam,
     /// Set once the intervals of all rays have been added.
     pub found: &'q mut bool,
-    /// Intervals that the beam held before the question.
+    /// The number of intervals that the beam held before the question.
     first: usize,
 }
 
 impl<'q> Question<'q> {
-    /// The question for the intervals of a beam's rays.
+    /// Returns the question for the intervals of a beam's rays.
     pub fn chords(beam: &'q mut Beam, found: &'q mut bool) -> Question<'q> {
         let first = beam.len();
         Question::Chords(Chords { beam, found, first })
     }
 
-    /// Makes the answer to a question about a solid that of its complement.
+    /// Turns the answer to a question about a solid into the answer about its complement.
     ///
     /// # Errors
     /// [`Error::OutOfMemory`].
@@ -132,7 +136,7 @@ impl<'q> Question<'q> {
         Ok(())
     }
 
-    /// The same question once more: another borrow of the same places.
+    /// The same question again: another borrow of the same places.
     pub fn again(&mut self) -> Question<'_> {
         match self {
             Question::Centre(inside) => Question::Centre(inside),
@@ -156,12 +160,14 @@ impl<'q> Question<'q> {
     }
 }
 
-/// The questions as functions. Every worker has them, and none can change them: they ask [`Worker::answer`].
+/// The questions as functions. Every worker has these functions, and no worker can change them: they call
+/// [`Worker::answer`].
 pub trait Ask: Worker {
-    /// Whether the centre of a PARTIAL cell of the frame's depth lies in the solid: [`Question::Centre`].
+    /// Returns whether the centre of a PARTIAL cell of the frame's depth lies in the solid:
+    /// [`Question::Centre`].
     ///
     /// # Errors
-    /// As all questions.
+    /// [Those of every question](Worker#errors).
     #[inline(always)]
     fn sample(&mut self, cell: Cell, part: &Self::Part) -> Result<Option<bool>, Error> {
         let mut inside = None;
@@ -169,10 +175,10 @@ pub trait Ask: Worker {
         Ok(inside)
     }
 
-    /// Slabs between which the boundary lies in a PARTIAL cell: [`Question::Enclosure`].
+    /// Returns slabs that contain the boundary in a PARTIAL cell: [`Question::Enclosure`].
     ///
     /// # Errors
-    /// As all questions.
+    /// [Those of every question](Worker#errors).
     #[inline(always)]
     fn enclosure(&mut self, cell: Cell, part: &Self::Part) -> Result<Option<Enclosure>, Error> {
         let mut known = None;
@@ -180,10 +186,10 @@ pub trait Ask: Worker {
         Ok(known)
     }
 
-    /// Volume and moments of the solid in a PARTIAL cell: [`Question::Moments`].
+    /// Returns volume and moments of the solid in a PARTIAL cell: [`Question::Moments`].
     ///
     /// # Errors
-    /// As all questions.
+    /// [Those of every question](Worker#errors).
     #[inline(always)]
     fn moments(&mut self, cell: Cell, part: &Self::Part) -> Result<Option<CellMoments>, Error> {
         let mut known = None;
@@ -191,10 +197,10 @@ pub trait Ask: Worker {
         Ok(known)
     }
 
-    /// Bounds of the area that the boundary has in a PARTIAL cell: [`Question::Area`].
+    /// Returns bounds of the area of the boundary in a PARTIAL cell: [`Question::Area`].
     ///
     /// # Errors
-    /// As all questions.
+    /// [Those of every question](Worker#errors).
     #[inline(always)]
     fn area(&mut self, cell: Cell, part: &Self::Part) -> Result<Option<Interval>, Error> {
         let mut known = None;
@@ -202,10 +208,10 @@ pub trait Ask: Worker {
         Ok(known)
     }
 
-    /// Where a segment in a PARTIAL cell first crosses the boundary: [`Question::Crossing`].
+    /// Returns the first crossing of a segment in a PARTIAL cell with the boundary: [`Question::Crossing`].
     ///
     /// # Errors
-    /// As all questions.
+    /// [Those of every question](Worker#errors).
     #[inline(always)]
     fn crossing(
         &mut self,
@@ -218,10 +224,10 @@ pub trait Ask: Worker {
         Ok(known)
     }
 
-    /// Adds the intervals of rays in a PARTIAL cell, if they are known: [`Question::Chords`].
+    /// Appends the intervals of rays in a PARTIAL cell, if they are known: [`Question::Chords`].
     ///
     /// # Errors
-    /// As all questions.
+    /// [Those of every question](Worker#errors).
     #[inline(always)]
     fn chords(&mut self, cell: Cell, part: &Self::Part, beam: &mut Beam) -> Result<bool, Error> {
         let mut found = false;
@@ -229,10 +235,11 @@ pub trait Ask: Worker {
         Ok(found)
     }
 
-    /// Which surfaces cross a PARTIAL cell, and which function of them the solid is: [`Question::Surfaces`].
+    /// Returns the surfaces that cross a PARTIAL cell, and the function of them that the solid is there:
+    /// [`Question::Surfaces`].
     ///
     /// # Errors
-    /// As all questions.
+    /// [Those of every question](Worker#errors).
     #[inline(always)]
     fn surfaces(&mut self, cell: Cell, part: &Self::Part) -> Result<Option<OpenSurfaces>, Error> {
         let mut known = None;
@@ -243,13 +250,13 @@ pub trait Ask: Worker {
 
 impl<W: Worker + ?Sized> Ask for W {}
 
-/// The same, for wrappers and builders.
+/// The question for layers as a function, for wrappers and builders.
 pub(crate) trait AskLayers: Worker {
-    /// Which surfaces and layers cross a PARTIAL cell, and which function of them the solid is:
-    /// [`Question::Layers`].
+    /// Returns the surfaces and layers that cross a PARTIAL cell, and the function of them that the solid is
+    /// there: [`Question::Layers`].
     ///
     /// # Errors
-    /// As all questions.
+    /// [Those of every question](Worker#errors).
     fn layers(
         &mut self,
         cell: Cell,
@@ -266,12 +273,13 @@ pub(crate) trait AskLayers: Worker {
 
 impl<W: Worker + ?Sized> AskLayers for W {}
 
-/// The questions about the universe that are answered without a descent.
+/// The questions about the universe that are answered without a descent, as functions.
 pub(crate) trait AskDirect: Worker {
-    /// Where a ray goes in and out of the solid: [`Question::Ray`]. `trace` is overwritten.
+    /// Finds the crossings of a ray with the boundary of the solid: [`Question::Ray`]. `trace` is
+    /// overwritten.
     ///
     /// # Errors
-    /// As all questions.
+    /// [Those of every question](Worker#errors).
     #[inline]
     fn trace(
         &mut self,
@@ -284,10 +292,10 @@ pub(crate) trait AskDirect: Worker {
         self.answer(Cell::ROOT, root, Question::Ray(RayQuestion { ray, is_first_enough, trace }))
     }
 
-    /// Which point of the boundary is nearest to a point: [`Question::Nearest`].
+    /// Returns the point of the boundary that is nearest to a point: [`Question::Nearest`].
     ///
     /// # Errors
-    /// As all questions.
+    /// [Those of every question](Worker#errors).
     #[inline]
     fn nearest(&mut self, root: &Self::Part, point: [f64; 3]) -> Result<Option<NearestSurface>, Error> {
         let mut known = None;
@@ -295,10 +303,10 @@ pub(crate) trait AskDirect: Worker {
         Ok(known)
     }
 
-    /// How a box in the universe lies to the solid: [`Question::Box`].
+    /// Returns the content of a box in the universe: [`Question::Box`].
     ///
     /// # Errors
-    /// As all questions.
+    /// [Those of every question](Worker#errors).
     fn content_of(&mut self, root: &Self::Part, bounds: &Bounds) -> Result<Option<BoxContent>, Error> {
         let mut known = None;
         self.answer(Cell::ROOT, root, Question::Box(bounds, &mut known))?;
@@ -308,8 +316,8 @@ pub(crate) trait AskDirect: Worker {
 
 impl<W: Worker + ?Sized> AskDirect for W {}
 
-/// A question about a whole shape on a frame, inside and outside of the universe, with the place for the
-/// answer, in which nothing is to be before. Nothing is put there where nothing is known. The answers are
+/// A question about a whole shape on a frame, inside and outside the universe, with the place for the answer.
+/// The place must be empty before the question. It stays empty if the answer is not known. The answers are
 /// proven as verdicts are.
 #[non_exhaustive]
 pub enum WholeQuestion<'q> {
@@ -319,39 +327,39 @@ pub enum WholeQuestion<'q> {
     /// The area of the boundary (square model units), if it is known without splitting cells.
     Area(&'q mut Option<Interval>),
 
-    /// Whether no piece of the boundary lies in a plane of the lattice, so that all area of the boundary lies
-    /// in open PARTIAL cells. The flag is set if that is known.
+    /// Whether no piece of the boundary lies in a plane of the lattice, so that the whole area of the
+    /// boundary lies in open PARTIAL cells. The flag is set if that is known.
     OffLattice(&'q mut bool),
 
-    /// The surfaces that cells are crossed by, which [`Question::Surfaces`] tells by their places in this
+    /// The list of surfaces that cross cells. [`Question::Surfaces`] refers to a surface by its place in this
     /// list. Surfaces may be equal.
     Surfaces(&'q mut Option<Vec<PlacedHalfSpace>>),
 
-    /// The surfaces that cells are crossed by, and planes with a width that stand for such of which nothing
-    /// exact is known: the list of [`Question::Layers`]. A solid that tells nothing has none but its
+    /// The list of [`Question::Layers`]: the surfaces that cross cells, and planes with a width for surfaces
+    /// that are not known exactly. For a solid that does not answer, the list is that of
     /// [`Surfaces`](Self::Surfaces).
     Layers(&'q mut Option<Vec<PlacedHalfSpace>>),
 
-    /// Whether questions of this kind about the universe are answered without a descent as a rule. What that
-    /// takes is made now, once, and kept for all that share the shape; the flag is set if there is such a
-    /// thing.
+    /// Whether questions of this kind about the universe are usually answered without a descent. The data
+    /// that this needs is made now, once, and kept for all handles that share the shape. The flag is set if
+    /// such data exists.
     Direct(Direct, &'q mut bool),
 
-    /// The triangles that the whole boundary consists of, none of which lies inside of the solid or outside
-    /// of it, if there are such and all of the boundary lies in the universe. Whether the solid or its
-    /// complement is meant does not matter.
+    /// The triangles that make up the whole boundary, if such triangles are known and the whole boundary lies
+    /// in the universe. No triangle lies in the interior of the solid or outside the solid. The answer is the
+    /// same for the solid and its complement.
     Facets(&'q mut Option<BoundaryFacets>),
 
-    /// The same where triangles intersect: those are cut into pieces, and where pieces meet others they have
-    /// sides no longer than the given size (model units).
+    /// As [`Facets`](Self::Facets), for meshes whose triangles intersect: intersecting triangles are cut into
+    /// pieces. Pieces that meet other pieces have sides no longer than the given size (model units).
     Pieces(f64, &'q mut Option<BoundaryPieces>),
 
-    /// The triangles of [`Facets`](Self::Facets) with triangles beside those of the boundary, all of which
-    /// lie in the closed solid, or, if its complement is meant, outside of that.
+    /// The triangles of [`Facets`](Self::Facets), and further triangles beside those of the boundary. All of
+    /// them lie in the closed solid; for the complement, all of them lie outside the complement.
     Walls(&'q mut Option<BoundaryFacets>),
 }
 
-/// A kind of questions about the universe that some solids answer without a descent.
+/// A kind of question about the universe that some solids answer without a descent.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
 #[non_exhaustive]
 pub enum Direct {
@@ -365,10 +373,10 @@ pub enum Direct {
     Boxes,
 }
 
-/// The questions about whole shapes as functions. Every classifier has them, and none can change them: they
-/// ask [`Classifier::answer_whole`].
+/// The questions about whole shapes as functions. Every classifier has these functions, and no classifier can
+/// change them: they call [`Classifier::answer_whole`].
 pub trait AskWhole: Classifier {
-    /// The volume and the moments of the shape: [`WholeQuestion::Moments`].
+    /// Returns the volume and the moments of the shape: [`WholeQuestion::Moments`].
     ///
     /// # Errors
     /// [`Error::OutOfMemory`], and [`Error::Cancelled`] by `control`.
@@ -378,7 +386,7 @@ pub trait AskWhole: Classifier {
         Ok(known)
     }
 
-    /// The area of the shape's boundary: [`WholeQuestion::Area`].
+    /// Returns the area of the shape's boundary: [`WholeQuestion::Area`].
     ///
     /// # Errors
     /// As [`moments`](Self::moments).
@@ -388,7 +396,7 @@ pub trait AskWhole: Classifier {
         Ok(known)
     }
 
-    /// The surfaces that cells are crossed by, if the shape is made of such: [`WholeQuestion::Surfaces`].
+    /// Returns the surfaces that cross cells, if the shape is made of surfaces: [`WholeQuestion::Surfaces`].
     ///
     /// # Errors
     /// As [`moments`](Self::moments).
@@ -398,7 +406,7 @@ pub trait AskWhole: Classifier {
         Ok(known)
     }
 
-    /// The surfaces and layers that cells are crossed by: [`WholeQuestion::Layers`].
+    /// Returns the surfaces and layers that cross cells: [`WholeQuestion::Layers`].
     ///
     /// # Errors
     /// As [`moments`](Self::moments).
@@ -408,7 +416,7 @@ pub trait AskWhole: Classifier {
         Ok(known)
     }
 
-    /// Whether questions of a kind are answered without a descent, and gets ready for them:
+    /// Returns whether questions of a kind are answered without a descent, and prepares the data for them:
     /// [`WholeQuestion::Direct`].
     ///
     /// # Errors
@@ -419,7 +427,7 @@ pub trait AskWhole: Classifier {
         Ok(is_direct)
     }
 
-    /// The triangles that the whole boundary consists of: [`WholeQuestion::Facets`].
+    /// Returns the triangles that make up the whole boundary: [`WholeQuestion::Facets`].
     ///
     /// # Errors
     /// As [`moments`](Self::moments).
@@ -429,7 +437,8 @@ pub trait AskWhole: Classifier {
         Ok(known)
     }
 
-    /// The triangles and pieces of triangles that the whole boundary consists of: [`WholeQuestion::Pieces`].
+    /// Returns the triangles and pieces of triangles that make up the whole boundary:
+    /// [`WholeQuestion::Pieces`].
     ///
     /// # Errors
     /// As [`moments`](Self::moments).
@@ -439,7 +448,7 @@ pub trait AskWhole: Classifier {
         Ok(known)
     }
 
-    /// Triangles in the closed solid among which its whole boundary is: [`WholeQuestion::Walls`].
+    /// Returns triangles in the closed solid that include its whole boundary: [`WholeQuestion::Walls`].
     ///
     /// # Errors
     /// As [`moments`](Self::moments).
@@ -449,11 +458,11 @@ pub trait AskWhole: Classifier {
         Ok(known)
     }
 
-    /// Whether no piece of the boundary is known to lie in a plane of the lattice:
+    /// Returns whether it is known that no piece of the boundary lies in a plane of the lattice:
     /// [`WholeQuestion::OffLattice`].
     fn is_off_lattice(&self) -> bool {
         let mut known = false;
-        // (What cannot be found out is not known.)
+        // (On an error the answer is not known.)
         self.answer_whole(WholeQuestion::OffLattice(&mut known), &Control::default()).is_ok() && known
     }
 }

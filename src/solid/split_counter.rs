@@ -1,4 +1,4 @@
-//! A solid that counts what it is asked.
+//! A solid that counts its questions.
 
 use super::forward::{forward_batch, forward_classifier, forward_parts, forward_solid};
 use super::{Batch, Classifier, Parts, Question, Solid, Verdict, Worker};
@@ -9,8 +9,8 @@ use alloc::sync::Arc;
 use alloc::vec::Vec;
 use core::sync::atomic::{AtomicU64, Ordering::Relaxed};
 
-/// A solid that counts how often it is put on a frame, and its splits, level by level. It answers as the
-/// solid that it wraps; bulk production is turned off, so that every split is counted.
+/// A solid that counts its splits, level by level, and how often it is put on a frame. It answers as the
+/// wrapped solid does. Bulk production is turned off, so that every split is counted.
 ///
 /// ```
 /// use leafless::{Control, Csg, Frame, Rule, build, solid::SplitCounter};
@@ -33,22 +33,22 @@ struct Counts {
 }
 
 impl<S: Solid> SplitCounter<S> {
-    /// Counts from zero.
+    /// Wraps a solid, with all counts at zero.
     pub fn new(solid: S) -> SplitCounter<S> {
         SplitCounter { solid, counts: Arc::default() }
     }
 
-    /// The solid that is counted.
+    /// The wrapped solid.
     pub fn solid(&self) -> &S {
         &self.solid
     }
 
-    /// How many cells of each level were split so far.
+    /// Returns the number of cells of each level that were split so far.
     pub fn splits(&self) -> [u64; MAX_DEPTH as usize] {
         self.counts.splits.each_ref().map(|count| count.load(Relaxed))
     }
 
-    /// How often the solid was put on a frame.
+    /// Returns how often the solid was put on a frame.
     pub fn frames(&self) -> u64 {
         self.counts.frames.load(Relaxed)
     }
@@ -136,7 +136,7 @@ impl<W: Worker> Worker for CountingWorker<W> {
         self.inner.split(cell, part)
     }
 
-    /// Rays are descended, so that their splits are counted.
+    /// Rays are answered by descent, so that their splits are counted.
     fn answer(&mut self, cell: Cell, part: &W::Part, question: Question<'_>) -> Result<(), Error> {
         match question {
             Question::Chords(_) => Ok(()),

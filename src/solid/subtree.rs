@@ -1,8 +1,8 @@
-//! Stored cells that are copied as they are.
+//! Stored cells that are copied unchanged.
 
 use crate::octree::OctreeRef;
 
-/// Stored cells that whoever writes an octree can copy as they are, or complemented.
+/// Stored cells that a writer of octrees can copy unchanged, or complemented.
 #[derive(Debug, Clone, Copy)]
 pub struct Subtree<'a> {
     pub(crate) tree: &'a OctreeRef<'a>,

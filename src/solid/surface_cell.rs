@@ -1,4 +1,5 @@
-//! Cells in which a solid is a known function of few surfaces. Nothing else is asked of the solid there.
+//! Cells in which a solid is a known function of few surfaces. There the function alone answers all
+//! questions.
 
 use super::half_space::bounds::{Octants, centre};
 use super::half_space::literals::Literals;
@@ -7,7 +8,7 @@ use super::{LayersQuestion, OpenSurfaces, Question};
 use crate::error::Error;
 use crate::lattice::Cell;
 
-/// What the function is in the children of a cell. `all` are the surfaces of the list, on the universe.
+/// The functions in the children of a cell. `all` are the surfaces of the list, on the universe.
 pub(crate) fn split(all: &[Placed], cell: Cell, known: &OpenSurfaces) -> Result<[OpenSurfaces; 8], Error> {
     let at = Octants::of(cell);
     let mut tables = [known.table(); 8];
@@ -20,7 +21,7 @@ pub(crate) fn split(all: &[Placed], cell: Cell, known: &OpenSurfaces) -> Result<
     Ok(tables.map(|table| known.with_table(table).shortened()))
 }
 
-/// What a cell with a function knows.
+/// Answers a question about a cell by its function.
 pub(crate) fn answer(
     all: &[Placed],
     cell: Cell,

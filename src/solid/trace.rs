@@ -1,4 +1,4 @@
-//! Where a ray goes in and out of a solid.
+//! Rays, nearest points and boxes against a solid, without cells.
 
 use crate::error::Error;
 use crate::lattice::{Interval, Ray};
@@ -7,42 +7,42 @@ use crate::mesh::TriangleMesh;
 use alloc::sync::Arc;
 use alloc::vec::Vec;
 
-/// Where a ray goes in and out of a solid.
+/// The crossings of a ray with the boundary of a solid.
 ///
-/// The solid is a closed set. Beside its crossings a ray is either proven inside or proven outside, and
-/// within the interval of a crossing it may be either.
+/// The solid is a closed set. Between its crossings the ray is proven inside or proven outside. Within the
+/// interval of a crossing it may be either.
 #[derive(Debug, Clone, PartialEq)]
 pub struct RayTrace {
     /// Whether the ray is inside until its first crossing.
     pub begins_inside: bool,
-    /// Ascending; their intervals have no more than ends in common.
+    /// In ascending order. Their intervals share no more than end points.
     pub crossings: Vec<RayCrossing>,
-    /// Until when it is known. Nothing is known of later times.
+    /// The end of the time range in which the trace is known. Nothing is known of later times.
     pub until: f64,
 }
 
-/// Where a ray crosses the boundary of a solid, or touches it.
+/// A crossing of a ray with the boundary of a solid, or a contact.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct RayCrossing {
-    /// When.
+    /// The time of the crossing.
     pub t: Interval,
-    /// Whether the ray is inside from then on until the next crossing.
+    /// Whether the ray is inside between this crossing and the next.
     pub is_inside_after: bool,
-    /// Whether a point of the interval is proven to be inside: a crossing of which both sides are outside may
-    /// be a touch.
+    /// Whether a point of the interval is proven to be inside: a crossing with both sides outside may be a
+    /// contact.
     pub is_met: bool,
     /// The outward normal of the boundary there, of any length.
     pub normal: [f64; 3],
-    /// The number of the surface: of a mesh, the triangle's.
+    /// The number of the surface; for a mesh, the number of the triangle.
     pub surface: Option<u32>,
 }
 
 impl RayTrace {
-    /// Nothing is known.
+    /// The trace of which nothing is known.
     pub const UNKNOWN: RayTrace =
         RayTrace { begins_inside: false, crossings: Vec::new(), until: f64::NEG_INFINITY };
 
-    /// Whether the ray is outside before and after a crossing, which may be a touch.
+    /// Returns whether the ray is outside before and after some crossing, which may be a contact.
     pub(crate) fn has_touches(&self) -> bool {
         let mut before = self.begins_inside;
         self.crossings.iter().any(|crossing| {
@@ -52,18 +52,18 @@ impl RayTrace {
         })
     }
 
-    /// Forgets what is known.
+    /// Resets the trace to unknown.
     pub(crate) fn clear(&mut self) {
         self.crossings.clear();
         (self.begins_inside, self.until) = (false, f64::NEG_INFINITY);
     }
 
-    /// Whether anything is known.
+    /// Returns whether anything is known.
     pub fn is_known(&self) -> bool {
         self.until >= 0.0
     }
 
-    /// The trace in what either of two solids holds, of both of which it is the same ray's.
+    /// The trace of the same ray in the union of two solids.
     pub(crate) fn united(&self, other: &RayTrace) -> Result<RayTrace, Error> {
         let mut sides = [Side::new(self), Side::new(other)];
         let begins_inside = self.begins_inside || other.begins_inside;
@@ -71,7 +71,7 @@ impl RayTrace {
         let mut united = RayTrace { begins_inside, until, ..RayTrace::UNKNOWN };
         let mut open: Option<RayCrossing> = None;
         loop {
-            // Of equal times, crossings begin before others end.
+            // At equal times, crossings begin before others end.
             let times = [0, 1].map(|k| (sides[k].time(), sides[k].is_within));
             let k = usize::from(times[1] < times[0]);
             let Some(crossing) = sides[k].advance() else { return Ok(united) };
@@ -89,7 +89,7 @@ impl RayTrace {
                 (Some(is_inside_after), Some(begun)) => {
                     let t = Interval::between(begun.t.lower, t);
                     let is_met = begun.is_met || crossing.is_met || is_inside_after;
-                    // What it began with may only be a touch.
+                    // The crossing that began the interval may only be a contact.
                     let RayCrossing { normal, surface, .. } = if is_inside_after { crossing } else { begun };
                     united.push(RayCrossing { t, is_inside_after, is_met, normal, surface })?;
                     open = None;
@@ -99,20 +99,20 @@ impl RayTrace {
         }
     }
 
-    /// The trace in the complement.
+    /// Turns the trace into that of the complement.
     pub(crate) fn complement(&mut self) {
         self.begins_inside = !self.begins_inside;
         let mut before = self.begins_inside;
         for crossing in &mut self.crossings {
             crossing.is_inside_after = !crossing.is_inside_after;
-            // The complement is closed, too: it holds its limit points.
+            // The complement is closed, too: it contains its limit points.
             crossing.is_met = before || crossing.is_inside_after;
             before = crossing.is_inside_after;
             crossing.normal = crossing.normal.map(|c| -c);
         }
     }
 
-    /// Adds a crossing. One that begins before the last one ends goes on from there.
+    /// Appends a crossing. A crossing that begins before the last one ends is moved to that end.
     pub(crate) fn push(&mut self, crossing: RayCrossing) -> Result<(), Error> {
         let last = self.crossings.last().map_or(f64::NEG_INFINITY, |last| last.t.upper);
         let t = Interval::between(crossing.t.lower.max(last), crossing.t.upper.max(last));
@@ -124,22 +124,22 @@ impl RayTrace {
 pub struct RayQuestion<'q> {
     /// The ray.
     pub ray: &'q Ray,
-    /// Whether it is enough to know the trace until the ray is first proven inside.
+    /// Whether the trace may end where the ray is first proven inside.
     pub is_first_enough: bool,
-    /// The trace, if it is known, as far as the ray runs in the cell.
+    /// The trace along the ray's way through the cell, if it is known.
     pub trace: &'q mut RayTrace,
 }
 
-/// The point of the boundary that is nearest to another one.
+/// The point of the boundary that is nearest to a query point.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct NearestSurface {
     /// The distance, which is not negative.
     pub distance: Interval,
-    /// On which side of the boundary the other point lies, if that is sure.
+    /// The side of the boundary on which the query point lies, if that is certain.
     pub is_inside: Option<bool>,
-    /// The nearest point, or one that is hardly further away: a point of the surface but for rounding.
+    /// The nearest point, or one that is hardly further away. It lies on the surface up to rounding.
     pub point: [f64; 3],
-    /// The number of the surface: of a mesh, the triangle's.
+    /// The number of the surface; for a mesh, the number of the triangle.
     pub surface: Option<u32>,
 }
 
@@ -149,37 +149,38 @@ impl NearestSurface {
     }
 }
 
-/// Triangles that the boundary of a solid consists of.
+/// Triangles that make up the boundary of a solid.
 #[derive(Clone)]
 pub struct BoundaryFacets {
-    /// The triangles; its [`displacement`](TriangleMesh::displacement) is how far, along each axis, the
-    /// boundary may lie from them.
+    /// The triangles. The [`displacement`](TriangleMesh::displacement) of the mesh bounds, for each axis, how
+    /// far the boundary may lie from the triangles.
     pub mesh: Arc<TriangleMesh>,
-    /// Whether each triangle belongs to the boundary. Empty: all of them do.
+    /// For each triangle, whether it belongs to the boundary. Empty means that all triangles do.
     pub chosen: Vec<bool>,
 }
 
-/// Triangles that the boundary of a solid consists of but where triangles intersect, and pieces of these.
+/// The boundary of a solid as whole triangles, and as pieces of triangles where triangles intersect.
 #[derive(Clone)]
 pub struct BoundaryPieces {
     /// Triangles that belong to the boundary.
     pub facets: BoundaryFacets,
-    /// Pieces of others that do. They have no vertices in common.
+    /// Pieces of other triangles that belong to the boundary. Pieces share no vertices.
     pub sure: Vec<[[f64; 3]; 3]>,
-    /// Pieces that may. All that is not among the facets or the pieces does not belong to the boundary.
+    /// Pieces that may belong to the boundary. Everything outside the facets and the pieces does not belong
+    /// to it.
     pub doubtful: Vec<[[f64; 3]; 3]>,
-    /// How far pieces may lie beside the triangles of the mesh, in model units.
+    /// The greatest distance of pieces from the triangles of the mesh, in model units.
     pub rounding: f64,
 }
 
-/// How a box lies to a solid.
+/// The position of a box relative to a solid.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum BoxContent {
-    /// Its interior is disjoint from the solid's.
+    /// The interiors of the box and the solid are disjoint.
     Empty,
-    /// It lies in the solid.
+    /// The box lies in the solid.
     Full,
-    /// Part of it lies inside, part outside.
+    /// Part of the box lies inside, part outside.
     Both,
 }
 
@@ -193,13 +194,13 @@ impl BoxContent {
     }
 }
 
-/// How far one of two traces has been followed.
+/// A cursor in one of two traces.
 struct Side<'t> {
     trace: &'t RayTrace,
     next: usize,
     /// Whether the next crossing has begun.
     is_within: bool,
-    /// Whether the ray is inside; nothing within a crossing.
+    /// Whether the ray is inside; `None` within a crossing.
     state: Option<bool>,
 }
 
@@ -208,14 +209,14 @@ impl<'t> Side<'t> {
         Side { trace, next: 0, is_within: false, state: Some(trace.begins_inside) }
     }
 
-    /// When its state changes next.
+    /// The time of its next change of state.
     fn time(&self) -> f64 {
         self.trace.crossings.get(self.next).map_or(f64::INFINITY, |crossing| {
             if self.is_within { crossing.t.upper } else { crossing.t.lower }
         })
     }
 
-    /// Changes its state, at the beginning or the end of a crossing.
+    /// Advances to the beginning or the end of the next crossing.
     fn advance(&mut self) -> Option<RayCrossing> {
         let crossing = *self.trace.crossings.get(self.next)?;
         if self.is_within {

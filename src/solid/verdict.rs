@@ -1,23 +1,23 @@
-//! What a solid says of one cell.
+//! The verdict of a solid on one cell.
 
 use crate::error::Error;
 use crate::octree::Tag;
 
-/// What a solid says of one cell.
+/// The verdict of a solid on one cell.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Verdict<P> {
     /// The cell's interior and the solid's are proven disjoint.
     Empty,
     /// The cell is proven to lie in the solid.
     Full,
-    /// Not decided, and splitting does not help.
+    /// Undecided, and splitting does not help.
     Undecided,
-    /// Not decided; the part is what the solid remembers about the cell, so that it can split it.
+    /// Undecided, and the cell can be split. The part holds the solid's data about the cell.
     Partial(P),
 }
 
 impl<P> Verdict<P> {
-    /// The verdict as a tag.
+    /// Returns the verdict as a tag.
     #[inline(always)]
     pub fn tag(&self) -> Tag {
         match self {
@@ -27,7 +27,7 @@ impl<P> Verdict<P> {
         }
     }
 
-    /// The same verdict with another part.
+    /// Returns the same verdict with another part.
     #[inline(always)]
     pub fn map<Q>(self, part: impl FnOnce(P) -> Q) -> Verdict<Q> {
         match self {
@@ -38,7 +38,7 @@ impl<P> Verdict<P> {
         }
     }
 
-    /// The same verdict with another part, if that can be made.
+    /// Returns the same verdict with another part, if that part can be made.
     ///
     /// # Errors
     /// Those of `part`.
@@ -52,7 +52,7 @@ impl<P> Verdict<P> {
         })
     }
 
-    /// The verdict of the complement.
+    /// Returns the verdict of the complement.
     #[inline(always)]
     #[must_use]
     pub fn complement(self) -> Verdict<P> {

@@ -4,12 +4,12 @@ use crate::error::Error;
 use crate::lattice::{Cell, MAX_DEPTH};
 use core::fmt;
 
-/// The linear octree code of a cell: its octants from the root to the cell, an octal digit each, followed by
-/// zeros up to a fixed length, which is the depth of the lattice. So it is also the Morton code of the cell's
-/// minimum corner on the finest lattice. How many digits count is the cell's level.
+/// The linear octree code of a cell: its octants from the root to the cell, one octal digit each, followed by
+/// zeros up to a fixed length, the depth of the lattice. So it is also the Morton code of the cell's minimum
+/// corner on the finest lattice. The number of significant digits is the cell's level.
 ///
-/// In a digit bit 0 is x, bit 1 is y, bit 2 is z. Codes are ordered as the cells are in Morton order, a cell
-/// before the cells in it.
+/// In a digit bit 0 is x, bit 1 is y, bit 2 is z. Codes are ordered as the cells are in Morton order, with a
+/// cell before the cells in it.
 ///
 /// ```
 /// use leafless::{Cell, voxel::LinearCode};
@@ -28,10 +28,10 @@ pub struct LinearCode {
 }
 
 impl LinearCode {
-    /// The code of `cell` on a lattice of `depth` levels.
+    /// Makes the code of `cell` on a lattice of `depth` levels.
     ///
     /// # Errors
-    /// [`Error::Argument`] if `depth` is beyond [`MAX_DEPTH`], or the cell lies outside of the universe or is
+    /// [`Error::Argument`] if `depth` exceeds [`MAX_DEPTH`], or if the cell lies outside the universe or is
     /// finer than the lattice.
     pub fn new(cell: Cell, depth: u8) -> Result<LinearCode, Error> {
         let refused = |name, problem| Err(Error::Argument { name, problem });
@@ -44,11 +44,11 @@ impl LinearCode {
         Ok(LinearCode { number: number_of(cell, depth), level: cell.level, depth })
     }
 
-    /// The code with this number, of a cell of `level`.
+    /// Makes the code with this number, of a cell of `level`.
     ///
     /// # Errors
     /// [`Error::Argument`] unless `level` ≤ `depth` ≤ [`MAX_DEPTH`], the number has at most `depth` digits,
-    /// and those beyond the first `level` are zero.
+    /// and the digits beyond the first `level` are zero.
     pub fn from_number(number: u64, level: u8, depth: u8) -> Result<LinearCode, Error> {
         if depth > MAX_DEPTH {
             return Err(Error::Argument { name: "depth", problem: "must be at most 20" });
@@ -64,10 +64,10 @@ impl LinearCode {
         Ok(LinearCode { number, level, depth })
     }
 
-    /// Reads the text form, of which the first `level` digits count.
+    /// Parses the text form. The first `level` digits are significant.
     ///
     /// # Errors
-    /// As [`from_number`](Self::from_number), and if the text is not of 0 to 20 octal digits.
+    /// As [`from_number`](Self::from_number); also if the text does not consist of 0 to 20 octal digits.
     pub fn parse(text: &str, level: u8) -> Result<LinearCode, Error> {
         let octal = text.bytes().all(|digit| (b'0'..=b'7').contains(&digit));
         if text.len() > MAX_DEPTH as usize || !octal {
@@ -77,22 +77,22 @@ impl LinearCode {
         LinearCode::from_number(number, level, text.len() as u8)
     }
 
-    /// All digits as one number: what the records of voxels are sorted by.
+    /// All digits as one number: the sort key of voxel records.
     pub fn number(self) -> u64 {
         self.number
     }
 
-    /// The cell's level: how many digits count.
+    /// The cell's level: the number of significant digits.
     pub fn level(self) -> u8 {
         self.level
     }
 
-    /// The depth of the lattice: how many digits there are.
+    /// The depth of the lattice: the number of digits.
     pub fn depth(self) -> u8 {
         self.depth
     }
 
-    /// The octant on the way from level `k` to level `k + 1`; 0 beyond the digits that count.
+    /// The octant on the path from level `k` to level `k + 1`; 0 beyond the significant digits.
     pub fn digit(self, k: u8) -> u8 {
         if k < self.level { (self.number >> (3 * (self.depth - 1 - k)) & 7) as u8 } else { 0 }
     }
@@ -102,21 +102,21 @@ impl LinearCode {
         cell_of(self.number, self.level, self.depth)
     }
 
-    /// The code of the parent; the universe is its own.
+    /// The code of the parent. The universe is its own parent.
     #[must_use]
     pub fn parent(self) -> LinearCode {
         let level = self.level.saturating_sub(1);
         LinearCode { number: self.number & !(size(level, self.depth) - 1), level, ..self }
     }
 
-    /// Whether the other cell, of the same lattice, lies in this one (or is this one).
+    /// Returns whether the other cell, of the same lattice, lies in this one or equals it.
     pub fn contains(self, other: LinearCode) -> bool {
         let inside = other.number & !(size(self.level, self.depth) - 1) == self.number;
         self.depth == other.depth && self.level <= other.level && inside
     }
 }
 
-/// The digits, as many as the lattice has levels.
+/// Writes the digits, as many as the lattice has levels.
 impl fmt::Display for LinearCode {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         let digits: [u8; MAX_DEPTH as usize] = core::array::from_fn(|k| b'0' + self.digit(k as u8));
@@ -124,27 +124,27 @@ impl fmt::Display for LinearCode {
     }
 }
 
-/// How many finest cells a cell of `level` has: how far its codes reach.
+/// The number of finest cells in a cell of `level`: the range of its codes.
 #[inline(always)]
 pub(super) fn size(level: u8, depth: u8) -> u64 {
     1 << (3 * (depth - level))
 }
 
-/// The number of a good cell.
+/// The number of a valid cell.
 #[inline(always)]
 pub(super) fn number_of(cell: Cell, depth: u8) -> u64 {
     let [x, y, z] = cell.at.map(|a| spread(a as u64));
     (x | y << 1 | z << 2) << (3 * (depth - cell.level))
 }
 
-/// The cell of a good number.
+/// The cell of a valid number.
 #[inline(always)]
 pub(super) fn cell_of(number: u64, level: u8, depth: u8) -> Cell {
     let own = number >> (3 * (depth - level));
     Cell { level, at: [own, own >> 1, own >> 2].map(|bits| gather(bits) as u32) }
 }
 
-/// The low 21 bits to every third bit.
+/// Moves the low 21 bits to every third bit.
 #[inline(always)]
 fn spread(bits: u64) -> u64 {
     let bits = (bits | bits << 32) & 0x001F_0000_0000_FFFF;
@@ -154,7 +154,7 @@ fn spread(bits: u64) -> u64 {
     (bits | bits << 2) & 0x1249_2492_4924_9249
 }
 
-/// Every third bit to the low 21 bits.
+/// Moves every third bit to the low 21 bits.
 #[inline(always)]
 fn gather(bits: u64) -> u64 {
     let bits = bits & 0x1249_2492_4924_9249;

@@ -1,4 +1,4 @@
-//! Records cell by cell, the octants of each cell in an order of choice.
+//! Traverses records cell by cell, with the octants of each cell in a chosen order.
 
 use super::code::{number_of, size};
 use super::records::VoxelRecordsRef;
@@ -15,18 +15,18 @@ pub(super) struct Part {
 }
 
 impl VoxelRecordsRef<'_> {
-    /// All records.
+    /// The whole universe with all records.
     pub(super) fn whole(&self) -> Part {
         Part { cell: Cell::ROOT, range: 0..self.len() }
     }
 
-    /// Whether the first record of a part is of its cell itself.
+    /// Returns whether the first record of a part is that of its cell.
     pub(super) fn has_own(&self, part: &Part) -> bool {
-        // No record of the part reaches beyond the cell, so one of its level is it.
+        // No record of the part reaches beyond the cell, so that a record of its level is the cell's own.
         !part.range.is_empty() && self.levels()[part.range.start] == part.cell.level
     }
 
-    /// The records in the octants of a cell that has none of its own, or without that. O(log n).
+    /// The records in the octants of a cell; the cell's own record is left out. O(log n).
     pub(super) fn split(&self, part: &Part) -> [Part; 8] {
         let depth = self.frame().depth();
         let mut start = part.range.start + self.has_own(part) as usize;
@@ -39,7 +39,7 @@ impl VoxelRecordsRef<'_> {
             let rest = &self.codes()[start..part.range.end];
             let first = start;
             start += match rest.last() {
-                // The last octant takes all that is left, and many octants are empty.
+                // The last octant takes all remaining records, and many octants are empty.
                 Some(&last) if last < end => rest.len(),
                 Some(_) => rest.partition_point(|&code| code < end),
                 None => 0,
@@ -48,8 +48,8 @@ impl VoxelRecordsRef<'_> {
         })
     }
 
-    /// Hands over all records: those of a cell octant by octant in the order that `order` gives, a refined
-    /// one before those that it consists of. No two records are compared. O(n · levels).
+    /// Visits all records: those of a cell octant by octant in the order that `order` returns, and a refined
+    /// record before the records that it consists of. No two records are compared. O(n · levels).
     pub(super) fn visit(
         &self,
         part: &Part,
@@ -70,7 +70,7 @@ impl VoxelRecordsRef<'_> {
     }
 }
 
-/// What a tag must not be that stands for boundary voxels.
+/// Checks a tag that represents boundary voxels.
 pub(super) fn checked(boundary: Tag) -> Result<Tag, Error> {
     let problem = "must be EMPTY, PARTIAL or FULL";
     if boundary == Tag::Branch { Err(Error::Argument { name: "boundary", problem }) } else { Ok(boundary) }

@@ -10,27 +10,27 @@ use crate::memory;
 use alloc::boxed::Box;
 use alloc::vec::Vec;
 
-/// A row of voxels along y that are all of one kind and of one material.
+/// A row of voxels along y that all have the same kind and the same material.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct LongVoxel {
-    /// Its first voxel. A voxel (x, y, z) lies between the centres of the cells x − 1 and x, and likewise on
-    /// the other axes; so its indices go from 0 to the cells of an axis, that number included.
+    /// The first voxel of the row. A voxel (x, y, z) lies between the centres of the cells x − 1 and x, and
+    /// likewise on the other axes. So its indices go from 0 to the number of cells of an axis, both included.
     pub first: [u32; 3],
-    /// How many voxels it consists of.
+    /// The number of voxels in the row.
     pub length: u32,
     /// [`VoxelKind::Inside`] or [`VoxelKind::Boundary`].
     pub kind: VoxelKind,
-    /// What it is made of; 0 where nothing was said.
+    /// The number of the material; 0 if it is unknown.
     pub material: u32,
     /// The material's colour: red, green, blue and opacity, 0 to 255.
     pub colour: [u8; 4],
 }
 
-/// The colour of materials of which none is given: an opaque grey.
+/// The colour of materials without a given colour: an opaque grey.
 const GREY: [u8; 4] = [128, 128, 128, 255];
 
 impl LongVoxel {
-    /// Its lowest and highest corner in model space.
+    /// The lowest and the highest corner in model space.
     pub fn bounds(&self, frame: &Frame) -> ([f64; 3], [f64; 3]) {
         let at = |axis: usize, cells: f64| frame.origin()[axis] + (cells - 0.5) * frame.cell_size();
         let length = [1, self.length, 1];
@@ -49,34 +49,36 @@ pub struct DexelVoxels {
 }
 
 impl DexelVoxels {
-    /// The rows of voxels that do not lie outside: by z, then by x, then by y. Two that follow each other
-    /// along y differ in kind or in material.
+    /// The rows of voxels that do not lie outside: by z, then by x, then by y. Neighbouring rows along y
+    /// differ in kind or in material.
     pub fn list(&self) -> &[LongVoxel] {
         &self.list
     }
 
-    /// How many voxels are of a kind, before they were merged.
+    /// The number of voxels of a kind before merging.
     pub fn count(&self, kind: VoxelKind) -> u64 {
         self.counts.get(kind as usize).copied().unwrap_or(0)
     }
 }
 
-/// The voxels of a tri-dexel model, as Gao, Zhang and Hou have them (*DEXEL model of polyhedrons and boolean
-/// operations*, 2007): the rays of three directions cut space into voxels whose corners are the centres of
-/// cells. A voxel lies inside if all of its eight corners do, outside if none does, and else on the boundary:
-/// those are the voxels in which [`marching_cubes_dexels`](crate::surface::marching_cubes_dexels) makes
-/// triangles. Centres outside of the universe lie outside. Voxels that do not lie outside are merged along y,
-/// between four neighbouring rays, as far as their kind and their material are the same.
+/// Computes the voxels of a tri-dexel model by the method of Gao, Zhang and Hou (*DEXEL model of polyhedrons
+/// and boolean operations*, 2007). The rays of three directions divide space into voxels whose corners are
+/// the centres of cells. A voxel lies inside if all of its eight corners do, outside if none does, and
+/// otherwise on the boundary. The boundary voxels are those in which
+/// [`marching_cubes_dexels`](crate::surface::marching_cubes_dexels) makes triangles. Centres outside the
+/// universe lie outside. Voxels that do not lie outside are merged along y, between four neighbouring rays,
+/// as far as their kind and their material are the same.
 ///
 /// The material of a voxel is that of the model at the voxel's first corner that lies inside. Corners are
-/// counted with x running fastest and z slowest. If the model stores no materials it is 0. Its colour is the
-/// one that `colours` has for the material, at the place of the material's number; materials beyond are grey
-/// (128, 128, 128, 255).
+/// counted with x varying fastest and z slowest. If the model stores no materials, the material is 0. The
+/// colour is the element of `colours` at the index of the material's number; materials beyond the list are
+/// grey (128, 128, 128, 255).
 ///
-/// Which centres lie inside is what [`TriDexelRef::contains_cell`] says.
+/// [`TriDexelRef::contains_cell`] decides which centres lie inside.
 ///
-/// O(rays of the window + blocks + rows), for blocks of 64³ cells in which centres lie inside, and O(log) for
-/// each voxel that does not lie outside if the model stores materials; by the calling thread.
+/// O(rays of the window + blocks + rows), where the blocks are those of 64³ cells with centres inside. If the
+/// model stores materials, O(log) in addition for each voxel that does not lie outside. The work is done by
+/// the calling thread.
 ///
 /// # Errors
 /// [`Error::OutOfMemory`], [`Error::Cancelled`].
@@ -141,7 +143,7 @@ pub fn dexel_voxels(
 }
 
 impl DexelVoxels {
-    /// Appends a row, or makes the last one longer.
+    /// Appends a row, or extends the last one.
     #[inline]
     fn append(&mut self, row: LongVoxel) -> Result<(), Error> {
         match self.list.last_mut() {
@@ -166,27 +168,27 @@ fn material(model: &TriDexelRef<'_>, at: [u32; 3]) -> u32 {
 
 /// 64³ centres of cells, as columns along y: bit y of word x + 64 z.
 struct Columns {
-    /// Which of the blocks along x and along y it is.
+    /// The index of the block along x and along y.
     at: [u32; 2],
     words: Box<[u64; 4096]>,
 }
 
-/// 64 layers of centres: the blocks in which any lies inside, by x, then by y.
+/// 64 layers of centres: the blocks that contain centres inside, by x, then by y.
 struct Slab {
-    /// Which of the slabs along z it is.
+    /// The index of the slab along z.
     at: u32,
     blocks: Vec<Columns>,
 }
 
 impl Slab {
-    /// The blocks of one place along x.
+    /// The blocks at one index along x.
     fn strip(&self, x: u32) -> &[Columns] {
         let first = self.blocks.partition_point(|block| block.at[0] < x);
         let count = self.blocks[first..].partition_point(|block| block.at[0] == x);
         &self.blocks[first..first + count]
     }
 
-    /// The last of so many layers.
+    /// The last layer of a slab of `deep` layers.
     fn top(&self, deep: u32) -> Layer<'_> {
         Layer { slab: self, z: deep - 1 }
     }
@@ -199,9 +201,9 @@ struct Layer<'a> {
     z: u32,
 }
 
-/// Hands out, by z, x and y, the words of voxels of which any has a corner inside: their place along x, the
-/// number of the word along y, their place along z, and which of the voxels have any corner inside, and which
-/// all.
+/// Calls `each`, by z, x and y, for the words that contain voxels with a corner inside. The arguments are the
+/// voxels' index along x, the index of the word along y, the index along z, and two sets of bits: the voxels
+/// with any corner inside, and the voxels with all corners inside.
 fn each_word(
     model: &TriDexelRef<'_>,
     control: &Control<'_>,
@@ -209,7 +211,7 @@ fn each_word(
 ) -> Result<(), Error> {
     let mut blocks = Occupied::of(model)?.blocks()?;
     blocks.sort_unstable_by_key(|&[x, y, z]| [z, x, y]);
-    // Layers of a slab.
+    // The number of layers of a slab.
     let deep = model.frame().cells().min(BLOCK);
     let mut before: Option<Slab> = None;
     for group in blocks.chunk_by(|a, b| a[2] == b[2]) {
@@ -237,7 +239,7 @@ fn each_word(
     }
 }
 
-/// The voxels between two layers. `deep` are the cells of a block along an axis.
+/// The voxels between two layers. `deep` is the number of cells of a block along an axis.
 fn layer(
     deep: u32,
     z: u32,
@@ -271,7 +273,7 @@ fn layer(
     Ok(())
 }
 
-/// The blocks along y of two layers, each with the number of its layer.
+/// The blocks along y of two layers, each with the index of the layer in its slab.
 type Strips<'a> = [Option<(&'a [Columns], u32)>; 2];
 
 /// The voxels of a column along y, between columns of centres at two places along x.
@@ -287,7 +289,7 @@ fn column(
             }
         }
     }
-    // What the word before left: whether its last four centres have any inside, and all.
+    // The carry of the previous word: whether any of its last four centres lies inside, and whether all do.
     let (mut at, mut carry) = (0, [0u64; 2]);
     loop {
         let first = sources.iter().filter_map(|(blocks, _)| blocks.first()).map(|block| block.at[1]).min();

@@ -1,4 +1,4 @@
-//! Which part of a voxel is solid.
+//! The solid fraction of voxels.
 
 use super::record::VoxelKind;
 use super::records::VoxelRecordsRef;
@@ -12,10 +12,10 @@ use crate::walk::Trail;
 use alloc::vec::Vec;
 
 impl VoxelRecordsRef<'_> {
-    /// Which part of each voxel is solid, 0 to 1: as a volume's
-    /// [weights](crate::render::VolumeLayer::weights). Inside voxels have 1, outside and refined ones 0. Of a
-    /// boundary voxel it is what `solid` knows of its moments there, or the middle between what its slabs
-    /// enclose; ½ where the solid knows neither. One thread; O(records · levels).
+    /// Computes the solid fraction of each voxel, 0 to 1, in the form of a volume's
+    /// [weights](crate::render::VolumeLayer::weights). Inside voxels have 1, outside and refined voxels have 0.
+    /// For a boundary voxel, the fraction comes from the moments of `solid` there, or from the mean of the
+    /// two bounds by its slabs; it is ½ if the solid has neither. One thread; O(records · levels).
     ///
     /// ```
     /// use leafless::{Control, Csg, Frame, Rule, build, voxel::{VoxelOptions, VoxelRecords}};
@@ -30,7 +30,7 @@ impl VoxelRecordsRef<'_> {
     /// ```
     ///
     /// # Errors
-    /// The solid's own, [`Error::OutOfMemory`], [`Error::Cancelled`].
+    /// Those of the solid, [`Error::OutOfMemory`], [`Error::Cancelled`].
     pub fn solid_parts<S: Solid>(&self, solid: &S, control: &Control<'_>) -> Result<Vec<f64>, Error> {
         let mut trail = Trail::new(solid.on(self.frame(), control)?.worker()?)?;
         let mut parts = memory::with_capacity(self.len())?;
@@ -43,7 +43,7 @@ impl VoxelRecordsRef<'_> {
             control.check()?;
             let cell = self.cell_at(index);
             let part = match cell.level {
-                // Solids are asked about the children of a cell.
+                // A trail asks about a cell by way of its parent, and the universe has none.
                 0 => mean((0..8).map(|octant| part(&mut trail, cell.child(octant), control)))?,
                 _ => part(&mut trail, cell, control)?,
             };
@@ -53,12 +53,12 @@ impl VoxelRecordsRef<'_> {
     }
 }
 
-/// The mean of eight parts.
+/// The mean of eight fractions.
 fn mean(parts: impl Iterator<Item = Result<f64, Error>>) -> Result<f64, Error> {
     Ok(parts.sum::<Result<f64, Error>>()? / 8.0)
 }
 
-/// Which part of a cell below the universe is solid.
+/// The solid fraction of a cell below the universe.
 fn part<W: Worker>(trail: &mut Trail<W>, cell: Cell, control: &Control<'_>) -> Result<f64, Error> {
     trail.follow(cell.parent(), control)?;
     let part = match trail.verdict(cell) {

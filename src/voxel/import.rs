@@ -1,4 +1,4 @@
-//! Records as a solid, and so back into an octree.
+//! Records as a solid, and their conversion back into an octree.
 
 use super::descent::{Part, checked};
 use super::record::VoxelKind;
@@ -10,11 +10,11 @@ use crate::octree::{Octree, Proof, Tag};
 use crate::op::{Rule, build};
 use crate::solid::{Classifier, FreeParts, OneByOne, Question, Solid, Verdict, WholeQuestion, Worker};
 
-/// Records as a solid on their own universe: inside voxels are FULL, outside voxels and what no record speaks
-/// of are EMPTY, boundary voxels are what one asks for.
+/// Records as a solid on their own universe. Inside voxels are FULL. Outside voxels and cells without a
+/// record are EMPTY. Boundary voxels have a tag of the caller's choice.
 ///
-/// Its verdicts prove what the records do ([`VoxelRecordsRef::proof`]), less what boundary voxels are taken
-/// for:
+/// The verdicts prove what the records do ([`VoxelRecordsRef::proof`]), with a restriction for boundary
+/// voxels:
 ///
 /// | boundary voxels as | FULL | EMPTY |
 /// |---|---|---|
@@ -22,7 +22,7 @@ use crate::solid::{Classifier, FreeParts, OneByOne, Question, Solid, Verdict, Wh
 /// | FULL | not proven, unless all of them are known to lie inside ([`VoxelRecordsRef::boundary`]) | as the records |
 /// | EMPTY | as the records | not proven |
 ///
-/// Where there are no boundary voxels, it is as the records say.
+/// Without boundary voxels, all columns are as the records.
 #[derive(Debug, Clone, Copy)]
 pub struct VoxelSolid<'a> {
     records: VoxelRecordsRef<'a>,
@@ -30,7 +30,7 @@ pub struct VoxelSolid<'a> {
     proof: Proof,
 }
 
-/// The same on a frame: handle and worker.
+/// The solid on a frame: both handle and worker.
 #[derive(Debug, Clone, Copy)]
 pub struct VoxelsOnFrame<'a> {
     solid: VoxelSolid<'a>,
@@ -38,10 +38,10 @@ pub struct VoxelsOnFrame<'a> {
 }
 
 impl<'a> VoxelSolid<'a> {
-    /// The solid of records, of which boundary voxels have the tag `boundary`. O(records).
+    /// Makes the solid of records, with the tag `boundary` for boundary voxels. O(records).
     ///
     /// # Errors
-    /// [`Error::Argument`] if that is [`Tag::Branch`].
+    /// [`Error::Argument`] if `boundary` is [`Tag::Branch`].
     pub fn new(records: VoxelRecordsRef<'a>, boundary: Tag) -> Result<VoxelSolid<'a>, Error> {
         let boundary = checked(boundary)?;
         let mut proof = records.proof();
@@ -75,12 +75,12 @@ impl<'a> VoxelSolid<'a> {
 }
 
 impl VoxelRecordsRef<'_> {
-    /// The octree that the records speak of, to the depth of their frame. Records of an octree give that
-    /// octree again, as far as they went into it: cells that were split for an attribute merge, and values
-    /// are left behind. `boundary` is what boundary voxels become: PARTIAL for those that are not decided,
-    /// FULL for those of a binary octree.
+    /// Builds the octree of the records, to the depth of their frame. The records of an octree give that
+    /// octree again, to the depth of the records. Cells that were split for an attribute merge, and values
+    /// are dropped. `boundary` is the tag of boundary voxels: PARTIAL for undecided voxels, FULL for the
+    /// voxels of a binary octree.
     ///
-    /// The exterior is what is known of the records, and cells prove what [`VoxelSolid`] says.
+    /// The exterior is that of the records. The cells prove as much as the verdicts of [`VoxelSolid`].
     ///
     /// # Errors
     /// [`Error::Argument`] if `boundary` is [`Tag::Branch`], and as [`build`](crate::build).
@@ -134,7 +134,7 @@ impl<'a> Classifier for VoxelsOnFrame<'a> {
 }
 
 impl FreeParts for VoxelsOnFrame<'_> {
-    /// The records in the cell, from the first to behind the last.
+    /// The range of the records in the cell: the first, and the one after the last.
     type Part = (usize, usize);
 }
 

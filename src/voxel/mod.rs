@@ -1,8 +1,9 @@
 //! Voxel records: the list of a solid's voxels, sorted by linear octree code (Zhu, Tang and Dong 2002).
 //!
-//! A record says what a voxel is (outside, inside, boundary), which cell it is, and what value an attribute
-//! has in it. The cells of a record list are of any sizes: inside voxels follow an attribute, boundary voxels
-//! have a level of their own. [`Voxels`] hands out records one by one, [`VoxelRecords`] keeps them in arrays.
+//! A record consists of the kind of a voxel (outside, inside, boundary), its cell, and the value of an
+//! attribute in it. The cells of a record list have any sizes: inside voxels follow an attribute, boundary
+//! voxels have a level of their own. [`Voxels`] produces records one by one, [`VoxelRecords`] keeps them in
+//! arrays.
 //!
 //! The voxels of a tri-dexel model, which lie between its rays, are rows along y instead ([`DexelVoxels`]).
 

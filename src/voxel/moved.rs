@@ -1,4 +1,4 @@
-//! Records moved on their lattice: symmetries, and offsets of whole cells.
+//! Moves records on their lattice: symmetries, and offsets by whole cells.
 
 use super::code::number_of;
 use super::record::VoxelKind;
@@ -11,32 +11,33 @@ use crate::memory;
 use crate::octree::Tag;
 use alloc::vec::Vec;
 
-/// A cell that a record becomes.
+/// A cell of the result of a record.
 struct Piece {
     code: u64,
     level: u8,
     record: usize,
 }
 
-/// Which finest cells: from `first` to before `end`.
+/// A box of finest cells: from `first` to before `end`.
 struct Range {
     first: [i64; 3],
     end: [i64; 3],
 }
 
 impl VoxelRecordsRef<'_> {
-    /// The records under a symmetry about the centre of their universe, and then an offset of whole finest
+    /// The records under a symmetry about the centre of their universe, followed by an offset by whole finest
     /// cells, on the same lattice. Exact. O(n · levels + m log m) for m records of the result.
     ///
-    /// A record whose image is no cell becomes the largest cells that make its image up; each has the
-    /// record's kind and value. What is moved out of the universe is cut off. No record speaks of what comes
-    /// in from outside of it. A refined voxel is left out if its image is no cell of the universe.
+    /// A record whose image is no cell becomes the largest cells that make up its image. Each of them has the
+    /// record's kind and value. Parts that leave the universe are cut off. Space that enters the universe has
+    /// no records. A refined voxel is dropped if its image is no cell of the universe.
     ///
-    /// The result [proves](Self::proof) of EMPTY what the records do only if the space around their universe
-    /// is EMPTY. If inside or boundary voxels are cut off, the space around is not known any more.
+    /// The result [proves](Self::proof) EMPTY only if the records do and the space around their universe is
+    /// EMPTY. If inside or boundary voxels are cut off, the space around the result is unknown.
     ///
     /// # Errors
-    /// [`Error::OutOfMemory`], and what `control` asks for: its limit of bytes holds for the arrays.
+    /// [`Error::OutOfMemory`], and the errors that `control` causes: its limit of bytes applies to the
+    /// arrays.
     pub fn moved(
         &self,
         symmetry: Symmetry,
@@ -104,8 +105,8 @@ impl Range {
         }
     }
 
-    /// Hands out the largest cells in `cell` that make up what of the range lies there. The recursion is as
-    /// deep as the lattice, 20 levels at the most.
+    /// Calls `put` with the largest cells in `cell` that make up the part of the range there. The recursion
+    /// is as deep as the lattice, at most 20 levels.
     fn cut(
         &self,
         cell: Cell,

@@ -1,25 +1,25 @@
-//! Which voxels of an octree are listed.
+//! The choice of the voxels of an octree that are listed.
 
 use crate::attribute::Detail;
 use crate::error::Error;
 use crate::lattice::{Frame, MAX_DEPTH};
 use crate::octree::OctreeRef;
 
-/// Which voxels are boundary voxels.
+/// The choice of boundary voxels.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Default)]
 pub enum VoxelBoundary {
-    /// Cells of the boundary depth that are cut further there, and cells that are not decided: where the
-    /// surface may go through. A surface that lies in a plane of the lattice goes through no cell, and a
-    /// binary octree has no other.
+    /// Cells of the boundary depth that are cut further there, and undecided cells: the surface may pass
+    /// through them. A surface that lies in a plane of the lattice passes through no cell, and a binary
+    /// octree has no other surface.
     #[default]
     Undecided,
-    /// These, and inside cells of the boundary depth that touch an outside cell with a face: an inside cell
-    /// that does is split down to the boundary depth. Faces of the universe count if the solid is known to
-    /// end in it.
+    /// In addition, inside cells of the boundary depth that touch an outside cell with a face. An inside cell
+    /// that touches one is split down to the boundary depth. Faces of the universe count if the solid is
+    /// known to end in it.
     Touching,
 }
 
-/// Which voxels of an octree are listed, and how large they are.
+/// The choice of the voxels of an octree that are listed, and their size.
 ///
 /// ```
 /// use leafless::{Control, Csg, Frame, Rule, build, attribute::Detail, voxel::{VoxelOptions, VoxelRecords}};
@@ -42,38 +42,39 @@ pub struct VoxelOptions {
 }
 
 impl VoxelOptions {
-    /// Inside and boundary voxels, as large as the octree's cells.
+    /// Makes the default options: inside and boundary voxels, as large as the octree's cells.
     pub fn new() -> VoxelOptions {
         VoxelOptions::default()
     }
 
-    /// The level of boundary voxels: what is cut there is not looked into. Without it, and beyond the
-    /// octree's depth, it is the octree's depth.
+    /// Sets the level of boundary voxels: cells that are cut there are not examined further. The default is
+    /// the octree's depth, which is also the limit.
     #[must_use]
     pub fn boundary_depth(self, depth: u8) -> VoxelOptions {
         VoxelOptions { boundary_depth: Some(depth), ..self }
     }
 
-    /// Which voxels are boundary voxels.
+    /// Sets the choice of boundary voxels.
     #[must_use]
     pub fn boundary(self, boundary: VoxelBoundary) -> VoxelOptions {
         VoxelOptions { boundary, ..self }
     }
 
-    /// Whether outside voxels are listed, as large as they can be.
+    /// Sets whether outside voxels are listed, as large as possible.
     #[must_use]
     pub fn outside(self, outside: bool) -> VoxelOptions {
         VoxelOptions { outside, ..self }
     }
 
-    /// Whether voxels that are refined are listed before the smaller ones that they consist of.
+    /// Sets whether refined voxels are listed before the smaller voxels that they consist of.
     #[must_use]
     pub fn refined(self, refined: bool) -> VoxelOptions {
         VoxelOptions { refined, ..self }
     }
 
-    /// How finely inside voxels follow the attribute: they are split until they are [fine](Detail::is_fine).
-    /// Those next to the boundary may be smaller. Boundary voxels are not split for it.
+    /// Sets the detail of inside voxels: they are split until they are [fine](Detail::is_fine) for the
+    /// attribute. Voxels next to the boundary may be smaller. Boundary voxels are not split for the
+    /// attribute.
     #[must_use]
     pub fn detail(self, detail: Detail) -> VoxelOptions {
         VoxelOptions { detail: Some(detail), ..self }

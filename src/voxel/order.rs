@@ -1,4 +1,4 @@
-//! Records by their depth, as they are seen.
+//! Orders records by their depth for a viewer.
 
 use super::record::VoxelKind;
 use super::records::VoxelRecordsRef;
@@ -8,12 +8,12 @@ use crate::lattice::{Cell, Cube, valid};
 use crate::memory;
 use alloc::vec::Vec;
 
-/// From where voxels are looked at.
+/// The position from which voxels are viewed.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum Viewpoint {
-    /// From infinitely far away, in this direction (of any length).
+    /// Infinitely far away; the direction of view, of any length.
     Parallel([f64; 3]),
-    /// From this point (model units), which may lie among the voxels.
+    /// An eye point (model units), which may lie among the voxels.
     Perspective([f64; 3]),
 }
 
@@ -32,13 +32,13 @@ impl Viewpoint {
 }
 
 impl VoxelRecordsRef<'_> {
-    /// The indices of the records from front to back: a voxel comes before every other one of which it hides
-    /// a part. Refined voxels are left out, and what they consist of is there. From back to front it is the
-    /// reverse.
+    /// Returns the indices of the records from front to back: a voxel comes before every other voxel that it
+    /// hides in part. Refined voxels are left out; the voxels that they consist of are included. The order
+    /// from back to front is the reverse.
     ///
-    /// The octants of a cell are put in order, and no two records are compared: an octant on the near side of
-    /// the planes through the cell's centre hides those on the far side, never the other way round.
-    /// O(n · levels). Exact.
+    /// The octants of a cell are ordered, and no two records are compared: an octant on the near side of the
+    /// planes through the cell's centre may hide octants on the far side, never the reverse. O(n · levels).
+    /// Exact.
     ///
     /// ```
     /// use leafless::{Control, Csg, Frame, Rule, build, voxel::{Viewpoint, VoxelOptions, VoxelRecords}};
@@ -51,8 +51,9 @@ impl VoxelRecordsRef<'_> {
     /// ```
     ///
     /// # Errors
-    /// [`Error::Argument`] if the direction is zero or a number is not finite (of an eye also one beyond
-    /// ±2^256 or, but zero, below 2^-256), [`Error::OutOfMemory`], [`Error::Cancelled`].
+    /// [`Error::Argument`] if the direction is zero or a number is not finite (for an eye point, also if a
+    /// magnitude exceeds 2^256 or is below 2^-256 and not zero), [`Error::OutOfMemory`],
+    /// [`Error::Cancelled`].
     pub fn depth_order(&self, from: &Viewpoint, control: &Control<'_>) -> Result<Vec<u64>, Error> {
         from.check()?;
         let leaves = self.len() as u64 - self.count(VoxelKind::Refined);
@@ -66,7 +67,7 @@ impl VoxelRecordsRef<'_> {
             }
             Ok(())
         };
-        // Octant k of the near corner's numbering is octant k ^ near.
+        // Octant k in the numbering of the near corner is octant k ^ near.
         let octants = |near: u8| core::array::from_fn(|k| k as u8 ^ near);
         match *from {
             Viewpoint::Parallel(direction) => {

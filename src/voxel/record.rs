@@ -1,30 +1,30 @@
-//! One voxel.
+//! A single voxel.
 
 use crate::error::Error;
 use crate::lattice::axes;
 use crate::lattice::{Cell, Frame};
 
-/// What a voxel is.
+/// The kind of a voxel.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash)]
 #[repr(u8)]
 pub enum VoxelKind {
-    /// It lies outside of the solid.
+    /// The voxel lies outside the solid.
     Outside = 0,
-    /// It lies inside.
+    /// The voxel lies inside the solid.
     Inside = 1,
-    /// The boundary of the solid goes through it, or along it: see
+    /// The boundary of the solid passes through the voxel, or along it: see
     /// [`VoxelBoundary`](crate::voxel::VoxelBoundary).
     Boundary = 2,
-    /// It is refined: it consists of the smaller voxels that follow it.
+    /// The voxel is refined: it consists of the smaller voxels that follow it.
     Refined = 3,
 }
 
 impl VoxelKind {
-    /// All of them, by their numbers.
+    /// All kinds, in the order of their numbers.
     pub const ALL: [VoxelKind; 4] =
         [VoxelKind::Outside, VoxelKind::Inside, VoxelKind::Boundary, VoxelKind::Refined];
 
-    /// The kind with this number.
+    /// Returns the kind with this number.
     ///
     /// # Errors
     /// [`Error::Argument`] beyond 3.
@@ -33,7 +33,7 @@ impl VoxelKind {
         kind.ok_or(Error::Argument { name: "kind", problem: "must be 0 to 3" })
     }
 
-    /// Its name: `outside`, `inside`, `boundary` or `refined`.
+    /// The name of the kind: `outside`, `inside`, `boundary` or `refined`.
     pub fn name(self) -> &'static str {
         match self {
             VoxelKind::Outside => "outside",
@@ -44,24 +44,24 @@ impl VoxelKind {
     }
 }
 
-/// A voxel: a cell, what it is, and the attribute's value at its centre.
+/// A voxel: its cell, its kind, and the attribute's value at its centre.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct VoxelRecord {
-    /// What it is.
+    /// The kind of the voxel.
     pub kind: VoxelKind,
-    /// Which octant of the universe; its level is the voxel's.
+    /// The octant of the universe; its level is that of the voxel.
     pub cell: Cell,
     /// The attribute's value at the centre; `None` if there is no attribute, or no value there.
     pub value: Option<[f64; 4]>,
 }
 
-/// The minimum corner of a cell in model units, rounded down where it is no double.
+/// The minimum corner of a cell in model units; rounded down if it is no double.
 pub(super) fn corner(frame: &Frame, cell: Cell) -> [f64; 3] {
     let at = cell.first_at(frame.depth()).at;
     axes(|axis| frame.plane(axis, at[axis]).lower)
 }
 
-/// The edge of a cell in model units, exactly.
+/// The edge of a cell in model units, exact.
 pub(super) fn edge(frame: &Frame, level: u8) -> f64 {
     frame.edge() / (1u64 << level) as f64
 }

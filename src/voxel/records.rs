@@ -1,4 +1,4 @@
-//! Sorted arrays of voxel records, and what is found in them by code.
+//! Sorted arrays of voxel records, and queries by code.
 
 use super::code::{LinearCode, cell_of, number_of, size};
 use super::record::{self, VoxelKind, VoxelRecord};
@@ -12,16 +12,16 @@ use crate::octree::{OctreeRef, Proof, Tag};
 use alloc::vec::Vec;
 use core::ops::Range;
 
-/// The records of voxels in four arrays, sorted by code; of two with one code the larger voxel comes first.
-/// A record takes 10 bytes, and 8 for each component of its value.
+/// The records of voxels in four arrays, sorted by code; of two records with one code the larger voxel comes
+/// first. A record takes 10 bytes, and 8 for each component of its value.
 ///
-/// Reading is done by [`VoxelRecordsRef`].
+/// [`VoxelRecordsRef`] has all methods that read.
 #[derive(Debug, Clone, PartialEq)]
 pub struct VoxelRecords {
     pub(super) frame: Frame,
     pub(super) exterior: Tag,
     pub(super) proof: Proof,
-    /// FULL or PARTIAL, as [`VoxelRecordsRef::boundary`] says.
+    /// FULL or PARTIAL; see [`VoxelRecordsRef::boundary`].
     pub(super) boundary: Tag,
     pub(super) components: usize,
     pub(super) codes: Vec<u64>,
@@ -30,12 +30,13 @@ pub struct VoxelRecords {
     pub(super) values: Vec<f64>,
 }
 
-/// Borrowed records: everything that only reads.
+/// Borrowed records, with all methods that read.
 ///
 /// The records lie in four arrays: the numbers of the [linear codes](LinearCode), levels, the numbers of the
-/// [kinds](VoxelKind), and values, as many numbers a record as the values have components. A record without
-/// value has NaN in each. Records are sorted by code, and of two with one code the coarser comes first.
-/// Voxels are disjoint, except that a [refined](VoxelKind::Refined) one is followed by those in it.
+/// [kinds](VoxelKind), and values. A record has as many numbers in the last array as the values have
+/// components; a record without value has NaN in each. Records are sorted by code, and of two with one code
+/// the coarser comes first. Voxels are disjoint, except that a [refined](VoxelKind::Refined) voxel is
+/// followed by the voxels in it.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct VoxelRecordsRef<'a> {
     frame: Frame,
@@ -50,26 +51,27 @@ pub struct VoxelRecordsRef<'a> {
 }
 
 impl VoxelRecords {
-    /// Bytes of memory that the arrays take, with their room to spare.
+    /// The number of bytes of the arrays, with their spare capacity.
     pub fn bytes(&self) -> u64 {
         let VoxelRecords { codes, levels, kinds, values, .. } = self;
         let lists = memory::bytes_of(codes) + memory::bytes_of(levels) + memory::bytes_of(kinds);
         (lists + memory::bytes_of(values)) as u64
     }
 
-    /// No records on a lattice.
+    /// Makes an empty list on a lattice.
     pub(super) fn empty(frame: Frame, exterior: Tag, proof: Proof, components: usize) -> VoxelRecords {
         let (codes, levels, kinds, values) = Default::default();
         let boundary = Tag::Partial;
         VoxelRecords { frame, exterior, proof, boundary, components, codes, levels, kinds, values }
     }
 
-    /// The records of an octree's voxels; of any solid those of the octree that it is
-    /// [built](crate::build) into. O(records).
+    /// Lists the records of an octree's voxels. For any other solid, [build](crate::build) an octree first.
+    /// O(records).
     ///
     /// # Errors
-    /// As [`Voxels::new`], what the attribute reports, [`Error::OutOfMemory`], and what `control` asks for:
-    /// its limit of bytes holds for the arrays.
+    /// [`Error::Argument`] and [`Error::Damaged`] as [`Voxels::new`]; the errors of the attribute;
+    /// [`Error::OutOfMemory`]; and the errors that `control` causes: its limit of bytes applies to the
+    /// arrays.
     pub fn of(
         tree: &OctreeRef<'_>,
         options: &VoxelOptions,
@@ -107,9 +109,9 @@ impl VoxelRecords {
         Ok(records)
     }
 
-    /// Records from arrays, as [`VoxelRecordsRef`] describes them. The exterior and what boundary voxels are
-    /// is not known, and nothing is proven, until somebody says so: [`with_exterior`](Self::with_exterior)
-    /// and [`with_boundary`](Self::with_boundary).
+    /// Makes records from arrays, which [`VoxelRecordsRef`] describes. The exterior and the tag of boundary
+    /// voxels are unknown, and nothing is proven, until [`with_exterior`](Self::with_exterior) and
+    /// [`with_boundary`](Self::with_boundary) set them.
     ///
     /// # Errors
     /// As [`VoxelRecordsRef::new`].
@@ -136,17 +138,16 @@ impl VoxelRecords {
         })
     }
 
-    /// The same records, of which this is known: the tag of the space outside of the universe (BRANCH counts
-    /// as PARTIAL), and what voxels prove ([`VoxelRecordsRef::proof`]). Only a list that is complete may say
-    /// that EMPTY is proven: whoever leaves out or changes records of a solid must take that back.
+    /// Sets the tag of the space outside the universe (BRANCH counts as PARTIAL), and what the voxels prove
+    /// ([`VoxelRecordsRef::proof`]). Only a complete list may claim that EMPTY is proven. A program that
+    /// drops or changes records of a solid must withdraw that claim.
     #[must_use]
     pub fn with_exterior(self, exterior: Tag, proof: Proof) -> VoxelRecords {
         let exterior = if exterior == Tag::Branch { Tag::Partial } else { exterior };
         VoxelRecords { exterior, proof, ..self }
     }
 
-    /// The same records, of which boundary voxels are known to be this: FULL if each of them lies inside. Any
-    /// other tag says that this is not known.
+    /// Sets the tag of boundary voxels: FULL if each of them lies inside. Any other tag means unknown.
     #[must_use]
     pub fn with_boundary(self, boundary: Tag) -> VoxelRecords {
         let boundary = if boundary == Tag::Full { Tag::Full } else { Tag::Partial };
@@ -168,12 +169,12 @@ impl VoxelRecords {
         }
     }
 
-    /// Bytes that a record takes.
+    /// The number of bytes of a record.
     pub fn bytes_each(&self) -> usize {
         size_of::<u64>() + 2 + self.components * size_of::<f64>()
     }
 
-    /// Room for `count` more.
+    /// Reserves room for `count` more records.
     pub(super) fn reserve(&mut self, count: usize) -> Result<(), Error> {
         self.codes.try_reserve(count)?;
         self.levels.try_reserve(count)?;
@@ -191,7 +192,7 @@ impl VoxelRecords {
         Ok(())
     }
 
-    /// Appends a record, whose cell comes after all others.
+    /// Appends a record, whose cell must come after all others.
     pub(super) fn push(
         &mut self,
         cell: Cell,
@@ -208,12 +209,12 @@ impl VoxelRecords {
 }
 
 impl<'a> VoxelRecordsRef<'a> {
-    /// Records in arrays of somebody else. O(records).
+    /// Makes records from borrowed arrays. O(records).
     ///
     /// # Errors
-    /// [`Error::Argument`] if the arrays are not of one length (times `components`, 0 to 4, for the values),
-    /// if a level is beyond the frame's depth, a code is not one of its level, a kind is none, or records are
-    /// out of order or overlap.
+    /// [`Error::Argument`] if the lengths of the arrays differ (for the values, times `components`, 0 to 4),
+    /// if a level exceeds the frame's depth, if a code is not one of its level, if a kind is invalid, or if
+    /// records are out of order or overlap.
     pub fn new(
         frame: &Frame,
         codes: &'a [u64],
@@ -233,7 +234,7 @@ impl<'a> VoxelRecordsRef<'a> {
         {
             return refused("records", "the arrays must be of one length");
         }
-        // Where the last voxel ends that is not refined, and what came last.
+        // The end of the last voxel that is not refined, and the last record.
         let (mut end, mut last) = (0, None);
         for ((&code, &level), &kind) in codes.iter().zip(levels).zip(kinds) {
             LinearCode::from_number(code, level, frame.depth())?;
@@ -257,8 +258,8 @@ impl<'a> VoxelRecordsRef<'a> {
         })
     }
 
-    /// Records without values that nobody has checked: what is found in them means nothing if they are none.
-    /// The arrays must be of one length.
+    /// Makes records without values and without checks. If the arrays are not valid records, the results of
+    /// queries are meaningless. The arrays must have one length.
     #[doc(hidden)]
     pub fn unchecked(
         frame: &Frame,
@@ -284,42 +285,42 @@ impl<'a> VoxelRecordsRef<'a> {
         &self.frame
     }
 
-    /// What is known of the space outside of the universe.
+    /// The state of the space outside the universe.
     pub fn exterior(&self) -> Tag {
         self.exterior
     }
 
-    /// What voxels prove of the solid that they were made from. FULL is proven if inside voxels are proven to
-    /// lie in it. EMPTY is proven if outside voxels **and all that no record speaks of** are proven to lie
-    /// outside: so the list is complete. Of boundary voxels nothing is proven but what
-    /// [`boundary`](Self::boundary) says.
+    /// What the voxels prove about the solid that they were made from. FULL is proven if inside voxels are
+    /// proven to lie in the solid. EMPTY is proven if outside voxels **and all space without records** are
+    /// proven to lie outside; so the list is complete. For boundary voxels, nothing is proven beyond
+    /// [`boundary`](Self::boundary).
     ///
-    /// The records of an octree prove what its cells do, and so do their images under symmetries and [exact
-    /// placements](Self::placed_exactly). Those that were [sampled](Self::placed_by_centres), and arrays of
-    /// somebody else, prove nothing.
+    /// The records of an octree prove what its cells do. So do their images under symmetries and [exact
+    /// placements](Self::placed_exactly). Records that were [sampled](Self::placed_by_centres), and records
+    /// from arrays, prove nothing.
     pub fn proof(&self) -> Proof {
         self.proof
     }
 
-    /// What is known of boundary voxels: FULL if each lies inside as inside voxels do, else PARTIAL. It is
-    /// FULL for the records of a binary octree, whose boundary voxels are inside cells that
-    /// [touch](crate::voxel::VoxelBoundary::Touching) an outside one, but not if their level is above the
-    /// octree's depth and cells that are cut became boundary voxels.
+    /// The tag of boundary voxels: FULL if each of them lies inside as inside voxels do, otherwise PARTIAL.
+    /// It is FULL for the records of a binary octree, whose boundary voxels are inside cells that
+    /// [touch](crate::voxel::VoxelBoundary::Touching) an outside one. The exception is a boundary level above
+    /// the octree's depth, because cells that are cut become boundary voxels, too.
     pub fn boundary(&self) -> Tag {
         self.boundary
     }
 
-    /// How many records there are.
+    /// The number of records.
     pub fn len(&self) -> usize {
         self.codes.len()
     }
 
-    /// Whether there is none.
+    /// Returns whether there are no records.
     pub fn is_empty(&self) -> bool {
         self.codes.is_empty()
     }
 
-    /// How many numbers a value has; 0 if the records have no values.
+    /// The number of components of a value; 0 if the records have no values.
     pub fn components(&self) -> usize {
         self.components
     }
@@ -344,17 +345,17 @@ impl<'a> VoxelRecordsRef<'a> {
         self.values
     }
 
-    /// How many records there are of a kind. O(n).
+    /// The number of records of a kind. O(n).
     pub fn count(&self, kind: VoxelKind) -> u64 {
         self.kinds.iter().filter(|&&number| number == kind as u8).count() as u64
     }
 
-    /// The kind of a record of which the index is known to be good.
+    /// The kind of the record at a valid index.
     pub(crate) fn kind_at(&self, index: usize) -> VoxelKind {
         VoxelKind::ALL[self.kinds[index] as usize & 3]
     }
 
-    /// The cell of a record of which the index is known to be good.
+    /// The cell of the record at a valid index.
     pub(crate) fn cell_at(&self, index: usize) -> Cell {
         cell_of(self.codes[index], self.levels[index], self.frame.depth())
     }
@@ -391,27 +392,27 @@ impl<'a> VoxelRecordsRef<'a> {
         LinearCode::new(cell, self.frame.depth()).ok()
     }
 
-    /// The minimum corner of a voxel in model units, rounded down where it is no double.
+    /// The minimum corner of a voxel in model units; rounded down if it is no double.
     pub fn corner(&self, index: usize) -> Option<[f64; 3]> {
         (index < self.len()).then(|| record::corner(&self.frame, self.cell_at(index)))
     }
 
-    /// The edge of a voxel in model units, exactly.
+    /// The edge of a voxel in model units, exact.
     pub fn edge(&self, index: usize) -> Option<f64> {
         self.levels.get(index).map(|&level| record::edge(&self.frame, level))
     }
 
-    /// The record of just this cell. O(log n).
+    /// The index of the record of exactly this cell. O(log n).
     pub fn find(&self, cell: Cell) -> Option<usize> {
         let code = LinearCode::new(cell, self.frame.depth()).ok()?;
         let key = (code.number(), cell.level);
         let first = self.lower_bound(key.0);
-        // Of one code there are no more records than levels.
+        // There are no more records with one code than levels.
         let found = (first..self.len()).take_while(|&index| self.codes[index] == key.0);
         found.into_iter().find(|&index| self.levels[index] == cell.level)
     }
 
-    /// The records of the cells in `cell`, with its own if there is one: they follow each other. O(log n).
+    /// The range of the records of the cells in `cell`, its own included. O(log n).
     pub fn within(&self, cell: Cell) -> Range<usize> {
         let Ok(code) = LinearCode::new(cell, self.frame.depth()) else { return 0..0 };
         let start = self.lower_bound(code.number());
@@ -420,15 +421,16 @@ impl<'a> VoxelRecordsRef<'a> {
         start + larger.count()..self.lower_bound(code.number() + size(cell.level, self.frame.depth()))
     }
 
-    /// For each octant of `cell` the records in it: the children of a voxel that is refined, or if a child is
-    /// refined further what it consists of. None of a cell that is none of the lattice. O(log n).
+    /// For each octant of `cell`, the range of the records in it: the children of a refined voxel, or, if a
+    /// child is refined further, the voxels that it consists of. Empty for a cell that does not belong to the
+    /// lattice. O(log n).
     pub fn children(&self, cell: Cell) -> [Range<usize>; 8] {
         let is_split = cell.level < self.frame.depth() && LinearCode::new(cell, self.frame.depth()).is_ok();
         core::array::from_fn(|octant| if is_split { self.within(cell.child(octant as u8)) } else { 0..0 })
     }
 
-    /// The record, not of a refined voxel, that contains a cell, which may be finer than the lattice. O(log
-    /// n).
+    /// The index of the record that contains a cell, which may be finer than the lattice. Refined voxels do
+    /// not count. O(log n).
     pub fn containing(&self, cell: Cell) -> Option<usize> {
         let depth = self.frame.depth();
         let finer = (depth + 1..=MAX_DEPTH).contains(&cell.level);
@@ -437,21 +439,21 @@ impl<'a> VoxelRecordsRef<'a> {
         let code = LinearCode::new(cell, self.frame.depth()).ok()?;
         let (number, level) = (code.number(), cell.level);
         let after = self.codes.partition_point(|&code| code <= number);
-        // Records of smaller cells at the same corner come last.
+        // The records of smaller cells at the same corner come last.
         let index =
             (0..after).rev().find(|&index| (self.codes[index], self.levels[index]) <= (number, level))?;
         let end = self.codes[index].saturating_add(size(self.levels[index].min(depth), depth));
         (number < end && self.kind_at(index) != VoxelKind::Refined).then_some(index)
     }
 
-    /// The record, not of a refined voxel, that contains a point (model units). What lies on a face between
-    /// voxels belongs to the upper one. O(log n).
+    /// The index of the record that contains a point (model units). Refined voxels do not count. A point on a
+    /// face between voxels belongs to the upper one. O(log n).
     pub fn at(&self, point: [f64; 3]) -> Option<usize> {
         let at = self.frame.cell_of(point)?;
         self.containing(Cell { level: self.frame.depth(), at })
     }
 
-    /// The first record whose code is at least `number`.
+    /// The index of the first record whose code is at least `number`.
     fn lower_bound(&self, number: u64) -> usize {
         self.codes.partition_point(|&code| code < number)
     }

@@ -3,20 +3,20 @@
 use crate::error::Error;
 use crate::lattice::Affine;
 
-/// One of the 48 symmetries of a cube: the axes are permuted, and some are turned round.
+/// One of the 48 symmetries of a cube: a permutation of the axes, with some axes reversed.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
 pub struct Symmetry {
     /// The old axis that becomes axis i.
     axes: [u8; 3],
-    /// Whether the new axis i runs against the old one.
+    /// For each new axis i, whether it is reversed.
     flipped: [bool; 3],
 }
 
 impl Symmetry {
-    /// The symmetry that moves nothing.
+    /// The identity.
     pub const IDENTITY: Symmetry = Symmetry { axes: [0, 1, 2], flipped: [false; 3] };
 
-    /// The symmetry that makes the old axis `axes[i]` the new axis i, and turns that round if `flipped[i]`.
+    /// Makes the symmetry that turns the old axis `axes[i]` into the new axis i, reversed if `flipped[i]`.
     ///
     /// # Errors
     /// [`Error::Argument`] unless `axes` are 0, 1 and 2 in any order.
@@ -27,7 +27,7 @@ impl Symmetry {
         Ok(Symmetry { axes, flipped })
     }
 
-    /// All of them; the first moves nothing.
+    /// Returns all 48 symmetries; the first is the identity.
     pub fn all() -> impl Iterator<Item = Symmetry> {
         let orders = [[0, 1, 2], [1, 2, 0], [2, 0, 1], [1, 0, 2], [0, 2, 1], [2, 1, 0]];
         orders.into_iter().flat_map(|axes| {
@@ -40,17 +40,17 @@ impl Symmetry {
         self.axes
     }
 
-    /// Whether the new axis i runs against the old one.
+    /// For each new axis i, whether it is reversed.
     pub fn flipped(self) -> [bool; 3] {
         self.flipped
     }
 
-    /// Where an octant goes.
+    /// The image of an octant.
     pub(super) fn octant(self, old: u8) -> u8 {
         (0..3).fold(0, |bits, axis| bits | ((old >> self.axes[axis] & 1) ^ self.flipped[axis] as u8) << axis)
     }
 
-    /// The symmetry and the scale of a map whose matrix is such a symmetry times a power of two.
+    /// The symmetry and the scale of a map whose matrix is a symmetry times a power of two.
     pub(super) fn of(map: &Affine) -> Option<(Symmetry, f64)> {
         let scale = map.rows()[0][..3].iter().fold(0.0, |most: f64, entry| most.max(entry.abs()));
         let (mut axes, mut flipped) = ([0; 3], [false; 3]);

@@ -1,9 +1,9 @@
-//! Whether a closed triangle and a closed cube have a point in common, exactly.
+//! Exact test whether a closed triangle and a closed cube intersect.
 //!
-//! Two convex polytopes are apart if one of finitely many directions separates them (the separating-axis
-//! test, Gottschalk, Lin and Manocha 1996): for a triangle and a cube the cube's axes, the triangle's normal,
-//! and the products of the axes with the triangle's edges. Intervals decide nearly all; what they leave open
-//! is decided in integers.
+//! Two convex polytopes are disjoint if one of finitely many directions separates them (the separating-axis
+//! test, Gottschalk, Lin and Manocha 1996). For a triangle and a cube these are the cube's axes, the
+//! triangle's normal, and the products of the axes with the triangle's edges. Intervals decide nearly all
+//! cases; integers decide the rest.
 
 use crate::lattice::axes;
 use crate::lattice::exact::Dyadic;
@@ -26,12 +26,12 @@ pub(super) fn bounds([a, b, c]: &Corners) -> Bounds {
     }
 }
 
-/// Whether a triangle and a cube have a point in common.
+/// Returns whether a triangle and a cube intersect.
 pub(super) fn meets(corners: &Corners, cube: &Cube<'_>) -> bool {
     by_intervals(corners, cube).or_else(|| exactly(corners, cube)).unwrap_or(true)
 }
 
-/// The same, and also true where intervals leave it open.
+/// Returns whether a triangle and a cube may intersect: true also where intervals leave it open.
 pub(super) fn may_meet(corners: &Corners, cube: &Cube<'_>) -> bool {
     by_intervals(corners, cube).unwrap_or(true)
 }
@@ -57,14 +57,14 @@ fn exactly(corners: &Corners, cube: &Cube<'_>) -> Option<bool> {
     apart(&places, &edges, &Dyadic::new(cube.half_edge())).map(|apart| !apart)
 }
 
-/// Numbers that may be known only within bounds.
+/// Numbers that are exact, or known only within bounds.
 trait Number: Clone {
     fn plus(&self, other: &Self) -> Self;
     fn minus(&self, other: &Self) -> Self;
     fn times(&self, other: &Self) -> Self;
     fn magnitude(&self) -> Self;
     fn negated(&self) -> Self;
-    /// Whether this is greater than the other, if that is sure.
+    /// Returns whether this number is greater than the other; `None` if that is uncertain.
     fn exceeds(&self, other: &Self) -> Option<bool>;
 }
 
@@ -127,11 +127,11 @@ impl Number for Dyadic {
     }
 }
 
-/// Whether a direction separates a triangle, its corners seen from the centre of a cube, from the cube;
-/// `None` if that is not sure.
+/// Returns whether a direction separates a triangle from a cube; `None` if that is uncertain. The triangle's
+/// corners are relative to the centre of the cube.
 fn apart<N: Number>(places: &[[N; 3]; 3], edges: &[[N; 3]; 3], half: &N) -> Option<bool> {
     let mut sure = true;
-    // Whether all of these numbers lie beyond the reach, on one side.
+    // Returns whether all of these numbers lie beyond the reach, on one side.
     let mut separates = |numbers: [&N; 3], reach: &N| {
         let beyond = |turned: bool| {
             let mut all = Some(true);

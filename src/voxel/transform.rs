@@ -1,4 +1,4 @@
-//! Records moved: exactly where cells are the images of cells, by their centres otherwise.
+//! Moves records: exactly where cells are the images of cells, by their centres otherwise.
 
 use super::code::size;
 use super::record::{VoxelKind, centre};
@@ -38,7 +38,7 @@ impl VoxelRecordsRef<'_> {
                 control.check()?;
             }
             let level = self.levels()[index];
-            // A digit after the other.
+            // One digit after the other.
             let digits = (depth - level..depth).map(|place| 3 * place);
             let code = self.codes()[index];
             let image = digits
@@ -57,8 +57,8 @@ impl VoxelRecordsRef<'_> {
     /// two, and any translation. The universe moves along, and nothing is rounded. O(n · levels).
     ///
     /// # Errors
-    /// [`Error::Argument`] if the map is another one, or the image of the universe is no frame: its corner no
-    /// double, or its edge out of range. [`Error::OutOfMemory`], [`Error::Cancelled`].
+    /// [`Error::Argument`] if the map has another form, or if the image of the universe is not a valid frame:
+    /// its corner is no double, or its edge is out of range. [`Error::OutOfMemory`], [`Error::Cancelled`].
     pub fn placed_exactly(&self, placement: &Affine, control: &Control<'_>) -> Result<VoxelRecords, Error> {
         let refused = |problem| Error::Argument { name: "placement", problem };
         let (symmetry, scale) = Symmetry::of(placement)
@@ -67,7 +67,7 @@ impl VoxelRecordsRef<'_> {
         let mut origin = [0.0; 3];
         for axis in 0..3 {
             let from = frame.origin()[symmetry.axes()[axis] as usize];
-            // The corner that becomes the lower one, in terms that are exact.
+            // The corner that becomes the lower one, as a sum of exact terms.
             let moved = placement.rows()[axis][3];
             let terms = match symmetry.flipped()[axis] {
                 false => [scale * from, 0.0, moved],
@@ -77,23 +77,24 @@ impl VoxelRecordsRef<'_> {
             // The sum may have been rounded twice.
             let exact = |x: &f64| sign_of_sum(&[terms[0], terms[1], terms[2], -x]) == 0;
             let found = [near, near.next_down(), near.next_up()].into_iter().find(exact);
-            origin[axis] = found.ok_or(refused("moves the corner of the universe to what is no double"))?;
+            origin[axis] = found
+                .ok_or(refused("moves the corner of the universe to coordinates that are no doubles"))?;
         }
         let image = Frame::new(origin, scale * frame.edge(), frame.depth())?;
         self.turned_into(symmetry, image, control)
     }
 
-    /// The records under any affine map, on the lattice of any frame, by the centres of its finest cells:
-    /// such a cell is what the record is that contains the preimage of its centre, computed in doubles, and
-    /// has its value; where there is no record there is none. Equal cells merge, except boundary voxels.
+    /// The records under any affine map, on the lattice of any frame, by the centres of its finest cells. The
+    /// preimage of such a centre, computed in doubles, lies in a record or in none. The cell has the kind and
+    /// the value of that record; without a record it has none. Equal cells merge, except boundary voxels.
     /// Refined voxels are left out.
     ///
-    /// This samples: nothing is proven of the result, and voxels that are thinner than a cell may vanish.
-    /// What lies beyond the frame is cut off. O(cells next to faces between records · log n).
+    /// This is sampling: nothing is proven about the result, and voxels that are thinner than a cell may
+    /// vanish. Parts beyond the frame are cut off. O(cells next to faces between records · log n).
     ///
     /// # Errors
-    /// [`Error::Argument`] if doubles hold no inverse of the map; [`Error::OutOfMemory`], and what `control`
-    /// asks for: its limit of bytes holds for the arrays.
+    /// [`Error::Argument`] if the inverse of the map cannot be computed in doubles; [`Error::OutOfMemory`],
+    /// and the errors that `control` causes: its limit of bytes applies to the arrays.
     pub fn placed_by_centres(
         &self,
         placement: &Affine,
@@ -109,7 +110,7 @@ impl VoxelRecordsRef<'_> {
     }
 }
 
-/// What is being made of records by centres.
+/// The state of sampling records by centres.
 struct Sampler<'r, 'a, 'c> {
     from: VoxelRecordsRef<'a>,
     placement: &'r Affine,
@@ -120,16 +121,16 @@ struct Sampler<'r, 'a, 'c> {
     asked: u32,
 }
 
-/// What is known of all centres in a cell.
+/// The records that contain the centres in a cell.
 enum Known {
-    /// They lie in one record, or in none.
+    /// All centres lie in one record, or in none.
     One(Option<usize>),
     Unknown,
 }
 
 impl Sampler<'_, '_, '_> {
-    /// A box around the preimages of all finest centres in a cell, as they are computed: of each sum every
-    /// summand is taken where it is least, or largest, and rounding keeps the order.
+    /// A box around the preimages of all finest centres in a cell, as they are computed. Each summand of a
+    /// sum is taken at its least, or greatest, value, and rounding is monotonic.
     fn preimages(&self, cell: Cell) -> ([f64; 3], [f64; 3]) {
         let depth = self.frame.depth();
         let finest = |at: [u32; 3]| centre(self.frame, Cell { level: depth, at });
@@ -196,7 +197,7 @@ impl Sampler<'_, '_, '_> {
 }
 
 impl VoxelRecords {
-    /// Makes one of the records from `start` on, if they are the eight octants of `cell` and equal.
+    /// Merges the records from `start` on, if they are the eight octants of `cell` and equal.
     fn merge(&mut self, start: usize, cell: Cell) {
         let kind = self.kinds.get(start).copied();
         let whole = self.codes.len() == start + 8
@@ -218,8 +219,8 @@ impl VoxelRecords {
     }
 }
 
-/// The inverse of a map's matrix, rounded. An error if rounding leaves none, of a matrix that is nearly
-/// singular.
+/// The inverse of a map's matrix, rounded. An error if the matrix is so nearly singular that rounding leaves
+/// no inverse.
 fn inverse(map: &Affine) -> Result<[[f64; 3]; 3], Error> {
     let m = map.rows();
     let minor = |i: usize, j: usize| {
@@ -231,5 +232,8 @@ fn inverse(map: &Affine) -> Result<[[f64; 3]; 3], Error> {
     if rows.iter().flatten().all(|entry| entry.is_finite()) {
         return Ok(rows);
     }
-    Err(Error::Argument { name: "placement", problem: "too nearly singular for doubles to hold its inverse" })
+    Err(Error::Argument {
+        name: "placement",
+        problem: "so nearly singular that doubles cannot hold its inverse",
+    })
 }

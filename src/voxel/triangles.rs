@@ -11,7 +11,7 @@ use crate::memory;
 use crate::mesh::TriangleMesh;
 use alloc::vec::Vec;
 
-/// For each record the triangles that meet it, in compressed rows.
+/// For each record, the triangles that meet it, in compressed rows.
 #[derive(Debug, Clone, PartialEq, Eq, Default)]
 pub struct VoxelTriangles {
     offsets: Vec<u64>,
@@ -19,18 +19,18 @@ pub struct VoxelTriangles {
 }
 
 impl VoxelTriangles {
-    /// Where the triangles of each record begin in [`triangles`](Self::triangles), and the end: one more than
-    /// there are records.
+    /// For each record, the index of its first triangle in [`triangles`](Self::triangles); then the number of
+    /// all. There is one offset more than there are records.
     pub fn offsets(&self) -> &[u64] {
         &self.offsets
     }
 
-    /// The indices of the triangles, record by record, ascending for each.
+    /// The indices of the triangles, record by record, ascending within each record.
     pub fn triangles(&self) -> &[u32] {
         &self.triangles
     }
 
-    /// The triangles of a record; none beyond the records.
+    /// The triangles of a record; empty for an index beyond the records.
     pub fn of(&self, index: usize) -> &[u32] {
         match self.offsets.get(index..).and_then(|rest| rest.first_chunk()) {
             Some(&[start, end]) => &self.triangles[start as usize..end as usize],
@@ -40,16 +40,18 @@ impl VoxelTriangles {
 }
 
 impl VoxelRecordsRef<'_> {
-    /// For each boundary voxel the triangles of `mesh` (in model units) that meet it; none for other records.
+    /// Finds, for each boundary voxel, the triangles of `mesh` (in model units) that meet it. Other records
+    /// have no triangles.
     ///
-    /// Voxels and triangles are closed sets here: a triangle that only touches a voxel, with a corner in its
-    /// face, meets it. So a triangle in a plane of the lattice meets the voxels on both sides. Decided
-    /// exactly.
+    /// Voxels and triangles are closed sets here: a triangle that only touches a voxel, for example with a
+    /// corner in its face, meets the voxel. So a triangle in a plane of the lattice meets the voxels on both
+    /// sides. The decision is exact.
     ///
-    /// Each cell is given the triangles that meet its parent. O((n + triangles that are met) · levels).
+    /// Each cell receives the triangles that meet its parent. O((n + triangles that are met) · levels).
     ///
     /// # Errors
-    /// [`Error::OutOfMemory`], and what `control` asks for: its limit of bytes holds for the two arrays.
+    /// [`Error::OutOfMemory`], and the errors that `control` causes: its limit of bytes applies to the two
+    /// arrays.
     pub fn triangles(&self, mesh: &TriangleMesh, control: &Control<'_>) -> Result<VoxelTriangles, Error> {
         let mut offsets = memory::with_capacity(self.len() + 1)?;
         offsets.push(0);
@@ -72,15 +74,15 @@ struct Sorter<'r, 'a, 'c> {
     mesh: &'r TriangleMesh,
     boxes: Vec<Bounds>,
     control: &'r Control<'c>,
-    /// A stack: the candidates of the cells on the way.
+    /// A stack: the candidates of the cells on the path.
     candidates: Vec<u32>,
     found: VoxelTriangles,
 }
 
 impl Sorter<'_, '_, '_> {
-    /// Records before `index` that are not told of have no triangles.
+    /// Gives no triangles to the records before `index` that were skipped.
     fn skip_to(&mut self, index: usize) {
-        // There is room for all.
+        // There is room for all of them.
         self.found.offsets.resize(index + 1, self.found.triangles.len() as u64);
     }
 
@@ -105,7 +107,7 @@ impl Sorter<'_, '_, '_> {
             let corners = || touch::corners(self.mesh, self.mesh.triangles()[index as usize]);
             let keep = match own {
                 Some(VoxelKind::Boundary) => touch::meets(&corners(), &cube),
-                // The box of a triangle that is smaller than the cell says enough.
+                // For a triangle smaller than the cell, the box alone suffices.
                 _ => {
                     let small = (0..3).all(|axis| bounds.max[axis] - bounds.min[axis] < length);
                     small || touch::may_meet(&corners(), &cube)

@@ -1,14 +1,14 @@
-//! Whether all of a box is of one kind.
+//! Tests whether a whole box is of one kind.
 
 use super::descent::Part;
 use super::record::VoxelKind;
 use super::records::VoxelRecordsRef;
 use crate::lattice::Cell;
 
-/// Cells that are looked at, at the most.
+/// The greatest number of cells that are visited.
 const VISITS: u32 = 256;
 
-/// A look into a box of finest cells, from `first` to `last`.
+/// The test of a box of finest cells, from `first` to `last`.
 struct Look<'r> {
     records: &'r VoxelRecordsRef<'r>,
     first: [u32; 3],
@@ -16,14 +16,15 @@ struct Look<'r> {
     visits: u32,
     /// A record in the box.
     found: Option<usize>,
-    /// Whether there is a place in the box without a record.
+    /// Whether some part of the box has no record.
     has_nothing: bool,
 }
 
 impl VoxelRecordsRef<'_> {
-    /// What all of the box from the finest cell `first` to `last` is: a record that is equal to all others in
-    /// it, or none if there are none. A box that goes on `beyond` the universe has a part without records.
-    /// `None` if the box is not known to be of one kind: boundary voxels are, each by itself. O(log n).
+    /// The common content of the box from the finest cell `first` to `last`: a record that is equal to all
+    /// other records in the box, or `Some(None)` if there are none. A box that extends `beyond` the universe
+    /// has a part without records. `None` if the box is not known to be of one kind; boundary voxels never
+    /// are. O(log n).
     pub(super) fn uniform(&self, first: [u32; 3], last: [u32; 3], beyond: bool) -> Option<Option<usize>> {
         let mut look = Look { records: self, first, last, visits: 0, found: None, has_nothing: beyond };
         look.visit(&self.whole()).then_some(look.found)
@@ -31,8 +32,8 @@ impl VoxelRecordsRef<'_> {
 }
 
 impl Look<'_> {
-    /// Whether what was seen so far, and what of a cell lies in the box, is of one kind. The recursion is as
-    /// deep as the lattice, 20 levels at the most.
+    /// Returns whether everything seen so far, and the part of a cell in the box, are of one kind. The
+    /// recursion is as deep as the lattice, at most 20 levels.
     fn visit(&mut self, part: &Part) -> bool {
         self.visits += 1;
         if self.visits > VISITS {

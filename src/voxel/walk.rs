@@ -1,4 +1,4 @@
-//! The voxels of a stored octree one after another.
+//! Enumerates the voxels of a stored octree one after another.
 
 use super::options::VoxelOptions;
 use super::record::{VoxelKind, centre, edge};
@@ -8,7 +8,7 @@ use crate::error::Error;
 use crate::lattice::{Bounds, Cell, Cube, Frame};
 use crate::octree::{CellFilter, Cells, Direction, OctreeRef, Tag};
 
-/// What is followed inside where there is no attribute.
+/// The attribute that stands for none.
 struct Nothing;
 
 impl Attribute for Nothing {
@@ -26,17 +26,18 @@ impl Attribute for Nothing {
     }
 }
 
-/// An inside cell of the octree on the way through the voxels that it is split into.
+/// An inside cell of the octree, and the position in the traversal of the voxels that it is split into.
 #[derive(Clone)]
 struct Inside {
     root: Cell,
     at: Cell,
-    /// Cells of this level and below on the way are known to touch no outside cell.
+    /// The level of the ancestor, or of the cell itself, that is known to touch no outside cell; `u8::MAX` if
+    /// none is known.
     quiet: u8,
 }
 
 impl Inside {
-    /// The next cell behind the current one; `None` behind the last.
+    /// Moves to the next cell after the current one; `None` after the last.
     fn advance(&mut self) -> Option<()> {
         while self.at.level > self.root.level && self.at.octant() == 7 {
             self.at = self.at.parent();
@@ -53,7 +54,7 @@ impl Inside {
     }
 }
 
-/// Cells and what they are, in the order of their codes, without values.
+/// Cells and their kinds, in the order of their codes, without values.
 #[derive(Clone)]
 pub(super) struct Walk<'a> {
     tree: OctreeRef<'a>,
@@ -74,8 +75,8 @@ impl<'a> Walk<'a> {
         attribute: Option<&'a dyn Attribute>,
     ) -> Result<Walk<'a>, Error> {
         if options.touching() {
-            // Looking beside every cell, a descent remembers nothing: elements with shared children would be
-            // met again and again.
+            // The walk looks beside every cell, and a descent remembers nothing: elements with shared
+            // children would be visited again and again.
             tree.ensure_links()?;
         }
         let boundary_level = options.boundary_level(tree);
@@ -96,18 +97,18 @@ impl<'a> Walk<'a> {
         &self.frame
     }
 
-    /// As many voxels as there are at the least: undecided cells, what inside cells are split into for their
-    /// size, and voxels at faces to outside cells. O(elements).
+    /// A lower bound of the number of voxels: undecided cells, the parts into which inside cells are split
+    /// for their size, and voxels at faces to outside cells. O(elements).
     fn least(&self) -> u64 {
         let (level, touching) = (self.boundary_level, self.options.touching());
-        // The level that inside cells are split to for their size.
+        // The level to which inside cells are split for their size.
         let coarse = self.options.how_fine().map_or(0, |detail| {
             let is_small = |&level: &u8| edge(&self.frame, level) <= detail.coarse();
             (0..=self.frame.depth()).find(is_small).unwrap_or(self.frame.depth())
         });
-        // (What a mapped file says of its levels may be wrong.)
+        // (The level counts of a mapped file may be wrong.)
         let counts = self.tree.count_levels();
-        // Inside cells split to a level, each of them at least once.
+        // The number of inside cells if they are split to a level, each counted at least once.
         let split = |to: u8| {
             counts.iter().zip(0..=level).fold(0u64, |sum, (count, own)| {
                 sum.saturating_add(count.full.saturating_mul(1 << (3 * u32::from(to.saturating_sub(own)))))
@@ -130,7 +131,8 @@ impl<'a> Walk<'a> {
                 faces[way] = faces[way].saturating_add(1 << (2 * (level - smaller)));
             }
         }
-        // A voxel has one face in each direction. Those without any are as small as their size asks for.
+        // A voxel has one face in each direction. Voxels without such faces are only as small as their size
+        // requires.
         let at_faces = faces.into_iter().fold(0, u64::max);
         let inner = split(level).saturating_sub(faces.into_iter().fold(0, u64::saturating_add));
         let inner = inner.saturating_mul(1 << (3 * u32::from(coarse.saturating_sub(level))));
@@ -138,13 +140,13 @@ impl<'a> Walk<'a> {
         undecided.saturating_add(inner)
     }
 
-    /// How much of the universe lies before a cell.
+    /// The share of the universe before a cell.
     pub(super) fn progress(&self, cell: Cell) -> f64 {
         let depth = self.frame.depth();
         code::number_of(cell, depth) as f64 / code::size(0, depth) as f64
     }
 
-    /// The next voxel.
+    /// Returns the next voxel.
     pub(super) fn next(&mut self) -> Result<Option<(VoxelKind, Cell)>, Error> {
         loop {
             if let Some(mut inside) = self.inside.take() {
@@ -180,7 +182,7 @@ impl<'a> Walk<'a> {
         }
     }
 
-    /// What becomes of the current cell of an inside cell.
+    /// The kind of the current cell of an inside cell.
     fn kind(&self, inside: &mut Inside) -> Result<VoxelKind, Error> {
         let cell = inside.at;
         if self.options.touching() && inside.quiet == u8::MAX {
@@ -201,7 +203,7 @@ impl<'a> Walk<'a> {
         Ok(if fine { VoxelKind::Inside } else { VoxelKind::Refined })
     }
 
-    /// Whether a face of an inside cell, not below the boundary level, touches an outside cell.
+    /// Returns whether a face of an inside cell, not below the boundary level, touches an outside cell.
     fn touches(&self, cell: Cell) -> bool {
         let cells = self.tree.frame().cells();
         let shift = self.tree.frame().depth() - cell.level;
@@ -212,7 +214,7 @@ impl<'a> Walk<'a> {
         if at_end && self.tree.exterior() == Tag::Empty {
             return true;
         }
-        // Most cells have nothing outside around them.
+        // Most cells have no outside cells around them.
         if !any(min.map(|a| a.saturating_sub(1)), max.map(|a| a + 1)) {
             return false;
         }
@@ -225,13 +227,13 @@ impl<'a> Walk<'a> {
     }
 }
 
-/// Records whose values are asked for at once.
+/// The number of records whose values are queried at once.
 const BATCH: usize = 64;
 
-/// The records of an octree's voxels one after another, in the order of their codes. See [`VoxelOptions`] for
-/// which these are, and [`VoxelRecords::of`](crate::voxel::VoxelRecords::of) for all at once.
+/// The records of an octree's voxels one after another, in the order of their codes. [`VoxelOptions`] chooses
+/// the voxels; [`VoxelRecords::of`](crate::voxel::VoxelRecords::of) lists all at once.
 ///
-/// After an error there is nothing more.
+/// The iterator ends after an error.
 pub struct Voxels<'a> {
     walk: Walk<'a>,
     attribute: Option<&'a dyn Attribute>,
@@ -242,7 +244,8 @@ pub struct Voxels<'a> {
 }
 
 impl<'a> Voxels<'a> {
-    /// The voxels of a stored octree, with an attribute's values at their centres. Needs no allocation.
+    /// Starts at the first voxel of a stored octree, with an attribute's values at the centres. Needs no
+    /// allocation.
     ///
     /// ```
     /// use leafless::{Control, Csg, Frame, Rule, build, voxel::{VoxelKind, VoxelOptions, Voxels}};
@@ -257,9 +260,10 @@ impl<'a> Voxels<'a> {
     /// ```
     ///
     /// # Errors
-    /// As [`VoxelOptions::frame`], and [`Error::Damaged`] if cells beside cells are asked for and links of
-    /// the tree are damaged. (Else damage reads as boundary voxels.) Items are errors if the attribute
-    /// reports one.
+    /// [`Error::Argument`] if the detail's fine limit is below the edge of a cell of level 20
+    /// ([`VoxelOptions::frame`]); [`Error::Damaged`] if the options need neighbours of cells and links of the
+    /// tree are damaged. (Otherwise damage reads as boundary voxels.) Items are errors if the attribute
+    /// returns one.
     pub fn new(
         tree: &OctreeRef<'a>,
         options: &VoxelOptions,
@@ -275,10 +279,10 @@ impl<'a> Voxels<'a> {
         self.walk.frame()
     }
 
-    /// How many records are still to come: a pass that asks for no values. O(records).
+    /// Counts the records that are still to come, in a pass that reads no values. O(records).
     ///
     /// # Errors
-    /// What the attribute reports.
+    /// Those of the attribute.
     pub fn count_records(&self) -> Result<u64, Error> {
         let mut walk = self.walk.clone();
         let mut count = (self.filled - self.next) as u64;
@@ -288,22 +292,22 @@ impl<'a> Voxels<'a> {
         Ok(count)
     }
 
-    /// As many records as there are at the least, without a look at each. O(elements).
+    /// A lower bound of the number of records, without visiting each. O(elements).
     pub(super) fn least_records(&self) -> u64 {
         self.walk.least()
     }
 
-    /// Whether all boundary voxels that were told are inside cells, which touch outside ones.
+    /// Returns whether all boundary voxels so far are inside cells, which touch outside ones.
     pub(super) fn boundary_is_inside(&self) -> bool {
         self.walk.boundary_is_inside
     }
 
-    /// How much of the universe has been told.
+    /// The share of the universe that was enumerated.
     pub(super) fn progress(&self) -> f64 {
         self.batch[..self.filled].last().map_or(0.0, |record| self.walk.progress(record.cell))
     }
 
-    /// The next records; none at the end.
+    /// Returns the next records; an empty slice at the end.
     pub(super) fn next_batch(&mut self) -> Result<&[VoxelRecord], Error> {
         if self.next == self.filled {
             self.refill()?;
@@ -316,7 +320,7 @@ impl<'a> Voxels<'a> {
         (self.next, self.filled) = (0, 0);
         let mut filled = 0;
         while filled < BATCH && !self.ended {
-            // Unless it goes well, it is the end.
+            // If this fails, the iteration has ended.
             self.ended = true;
             if let Some((kind, cell)) = self.walk.next()? {
                 self.batch[filled] = VoxelRecord { kind, cell, value: None };
@@ -389,7 +393,7 @@ mod tests {
                         let voxels = Voxels::new(tree.view(), &options, None).unwrap();
                         let (least, all) = (voxels.least_records(), voxels.count_records().unwrap());
                         assert!(least <= all, "{rule:?} {options:?}: {least} of {all}");
-                        // Most of what lies at the surface is known beforehand, and what is split for its
+                        // The bound includes most cells at the surface, and cells that are split for their
                         // size.
                         if touching && depth == 5 || !touching && detail == Some(0.01) {
                             assert!(12 * least >= all, "{rule:?} {options:?}: {least} of {all}");

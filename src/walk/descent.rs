@@ -1,4 +1,4 @@
-//! Walking depth first through the cells of a solid.
+//! Depth-first walks through the cells of a solid.
 
 use crate::control::Job;
 use crate::error::Error;
@@ -6,19 +6,19 @@ use crate::lattice::Cell;
 use crate::solid::{Verdict, Worker};
 use crate::walk::split_one;
 
-/// Where a walk goes from a cell.
+/// The next move of a walk.
 pub(crate) enum Step<P> {
-    /// To its children.
+    /// To the children of the cell.
     Into(P),
-    /// To what comes after it.
+    /// To the cell after this one.
     Past,
-    /// Nowhere.
+    /// The end of the walk.
     End,
 }
 
-/// Walks depth first through what lies below a cell: `step` is shown each child, and says where to go.
-/// `false` if it ended the walk. No part is kept. The recursion is as deep as the frame, 20 levels at the
-/// most.
+/// Walks depth first through the cells below a cell. `step` gets each child and returns the next move.
+/// Returns `false` if `step` ended the walk. No part is kept. The recursion is as deep as the frame, at most
+/// 20 levels.
 pub(crate) fn descend<W: Worker>(
     worker: &mut W,
     cell: Cell,

@@ -1,10 +1,10 @@
-//! Where an edge between two samples crosses the surface of a solid.
+//! Finds the crossing of an edge between two samples with the surface of a solid.
 //!
-//! The edge runs along edges of cells. What is known of these narrows down where it crosses: a FULL or EMPTY
-//! cell says on which side all of its edge lies, and the slabs of a PARTIAL one leave only what lies between
-//! their two planes. The next cell that is asked is as small as what is left. Slabs are thinner than their
-//! cells by a factor of the cell's size, so that each step doubles the number of digits; a plane surface is
-//! found at once.
+//! The edge runs along edges of cells, and each of these cells narrows down the crossing. A FULL or EMPTY
+//! cell decides the side of its whole edge. The slabs of a PARTIAL cell leave only the range between their
+//! two planes. The next cell to query is as small as the remaining range. Slabs are thinner than their cells
+//! by a factor of the cell's size, so that each step doubles the number of digits; a plane surface is found
+//! at once.
 
 use super::trail::Trail;
 use crate::control::Control;
@@ -18,18 +18,18 @@ use crate::solid::{Enclosure, Segment, SlabJoin, Worker};
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct Edge {
     pub axis: usize,
-    /// Its lower end.
+    /// The lower end.
     pub lower: [i32; 3],
-    /// Cells of the frame that it is long.
+    /// The length in cells of the frame.
     pub steps: u32,
-    /// Whether the lower end lies inside; the other one does not lie on the same side.
+    /// Whether the lower end lies inside; the upper end lies on the other side.
     pub starts_inside: bool,
 }
 
-/// Edges this much shorter need not be cut further.
+/// The width below which a bracket is not narrowed further.
 const FINE: f64 = 1.0 / (1u64 << 44) as f64;
 
-/// Which cell along a bracket is asked.
+/// The place along a bracket of the next cell to query.
 #[derive(Clone, Copy)]
 enum Place {
     Middle,
@@ -38,7 +38,8 @@ enum Place {
 }
 
 impl Place {
-    /// How many cells of a level are asked there, one after the other. The middle ones end by themselves.
+    /// The greatest number of cells of a level to query there, one after the other. The middle ones end by
+    /// themselves.
     fn most(self) -> usize {
         match self {
             Place::Middle => MAX_DEPTH as usize + 2,
@@ -48,12 +49,12 @@ impl Place {
 }
 
 impl Edge {
-    /// Where it crosses the surface of the solid that `trail` asks on the finest lattice of the universe: 0
-    /// at the lower end, 1 at the upper one. What is proven narrows it down; of what is left it is the
-    /// middle.
+    /// Returns the crossing with the surface of the solid that `trail` queries on the finest lattice of the
+    /// universe: 0 at the lower end, 1 at the upper one. Proofs narrow down the crossing; the result is the
+    /// middle of the remaining range.
     ///
     /// # Errors
-    /// The solid's own.
+    /// Those of the solid.
     pub fn crossing<W: Worker>(
         &self,
         frame: &Frame,
@@ -86,11 +87,11 @@ impl Edge {
         }
     }
 
-    /// Whether the edge's lower end, or its upper one, lies inside: by the finest cell of the universe there,
-    /// and by the centre of this cell if it is not decided. `None` if the solid cannot tell.
+    /// Returns whether the edge's lower or upper end lies inside. The finest cell of the universe there
+    /// decides, or, if that cell is undecided, its centre. `None` if the solid cannot decide.
     ///
     /// # Errors
-    /// The solid's own.
+    /// Those of the solid.
     pub fn face<W: Worker>(
         &self,
         frame: &Frame,
@@ -108,8 +109,8 @@ impl Edge {
         }
     }
 
-    /// Narrows the bracket down by cells of a level: by halves, as long as cells in the middle are decided,
-    /// then from both ends. If the solid knows the crossing, that is the answer.
+    /// Narrows the bracket down by cells of a level: by bisection, as long as cells in the middle are
+    /// decided, then from both ends. If the solid knows the crossing, that is the answer.
     fn narrow<W: Worker>(
         &self,
         frame: &Frame,
@@ -175,7 +176,7 @@ impl Edge {
         let finer = level - frame.depth();
         let (mut at, mut others) = ([0; 3], [0.0; 3]);
         for axis in 0..3 {
-            // Behind the last cell there is none.
+            // Beyond the last cell there is none.
             let is_last = self.lower[axis] >= frame.cells() as i32;
             at[axis] = ((self.lower[axis] as u32) << finer) - u32::from(is_last);
             others[axis] = if is_last { 1.0 } else { -1.0 };
@@ -190,13 +191,13 @@ impl Edge {
 /// The part of an edge that is an edge of a cell.
 struct Piece {
     axis: usize,
-    /// Where the edge lies on the other axes, from the cell's centre in half edges.
+    /// The position of the edge on the other axes, from the cell's centre in half edges.
     others: [f64; 3],
     start: f64,
     size: f64,
 }
 
-/// From one number to a greater one; nothing if it is less.
+/// A range from one number to a greater one; empty if the second number is less.
 type Range = [f64; 2];
 
 const NOTHING: Range = [f64::INFINITY, f64::NEG_INFINITY];
@@ -206,7 +207,7 @@ impl Piece {
         [self.start, self.start + self.size]
     }
 
-    /// Which parts of the piece surely lie inside and outside.
+    /// The parts of the piece that are certainly inside, and those that are certainly outside.
     fn sides(&self, enclosure: &Enclosure) -> ([Range; 3], [Range; 3]) {
         let all = self.range();
         let (mut inside, mut outside) = ([NOTHING; 3], [NOTHING; 3]);
@@ -217,7 +218,7 @@ impl Piece {
                 height += slab.normal[axis] * self.others[axis];
             }
             let slope = slab.normal[self.axis];
-            // Where slope · u + height is less than a bound, or greater.
+            // The part where slope · u + height is less than a bound, or greater.
             let side = |bound: f64, is_less: bool| {
                 if slope == 0.0 {
                     return if (height < bound) == is_less && height != bound { all } else { NOTHING };
@@ -246,7 +247,7 @@ impl Piece {
     }
 }
 
-/// Where the edge crosses: between a point on the side of its lower end and one on the other side.
+/// The range of the crossing: from a point on the side of the lower end to a point on the other side.
 struct Bracket {
     low: f64,
     high: f64,
@@ -258,7 +259,7 @@ impl Bracket {
         0.5 * (self.low + self.high)
     }
 
-    /// Takes into account that points in `ranges` lie inside, or outside.
+    /// Narrows the bracket by ranges whose points lie inside, or outside.
     fn cut(&mut self, ranges: &[Range], inside: bool) {
         for &[first, last] in ranges {
             let (first, last) = (first.max(self.low), last.min(self.high));

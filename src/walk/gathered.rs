@@ -1,8 +1,7 @@
-//! Solids whose answers come more cheaply many at a time: asked level by level.
+//! Batches for solids that answer more cheaply many at a time: they are queried level by level.
 //!
-//! A host program's functions take most of the time of whoever asks them, and can be asked about all cells of
-//! a level at once, by as many threads as there are. What they say is kept, and the octree is then built from
-//! that.
+//! A host program's functions usually take most of the running time. They can classify all cells of a level
+//! at once, in as many threads as there are. Their answers are kept, and the octree is then built from them.
 
 use super::split::{Part, each, map_parts, split_each};
 use crate::control::{Control, Job};
@@ -13,27 +12,27 @@ use crate::octree::{Proof, Tag};
 use crate::solid::{Batch, Classifier, FreeParts, OneByOne, Parts, Question, Verdict, WholeQuestion, Worker};
 use alloc::vec::Vec;
 
-/// Levels below a cell that are asked at most before anything is written. (Of a surface some four times as
-/// many cells are kept with each.)
+/// The greatest number of levels below a cell that are queried before anything is written. (With each level,
+/// a surface has some four times as many cells to keep.)
 pub(crate) const LEVELS: u8 = 8;
 
-/// What a solid said of the cells below one cell.
+/// The answers of a solid for the cells below one cell.
 pub(crate) struct Gathered {
     frame: Frame,
     splits: Vec<Split>,
-    /// Whether the centres of finest cells that are open lie inside, if that was asked.
+    /// Whether the centres of open finest cells lie inside, if they were queried.
     centres: Vec<Option<bool>>,
 }
 
 /// A cell that was split.
 struct Split {
     verdicts: [Verdict<()>; 8],
-    /// Of the children that are open: where the first was split, or its centre. The others follow.
+    /// For the open children: the index of the first child's split, or of its centre. The others follow.
     first: u32,
 }
 
 impl Gathered {
-    /// Splits a cell and all that is open below it; asks for the `centres` of finest cells too.
+    /// Splits a cell and all open cells below it; also queries the `centres` of finest cells, if that is set.
     pub(crate) fn new<C: Classifier>(
         classifier: &C,
         worker: &mut C::Worker,
@@ -52,7 +51,7 @@ impl Gathered {
         Ok(gathered)
     }
 
-    /// Splits cells of one level and all that is open below them. Their splits, or their centres, come next.
+    /// Splits cells of one level and all open cells below them. Their splits, or their centres, are appended.
     fn below<C: Classifier>(
         &mut self,
         asking: &mut Asking<'_, C>,
@@ -72,7 +71,7 @@ impl Gathered {
         }
         let verdicts = split_each(*classifier, worker, &front, *threads, job.control())?;
         let mut next = Vec::new();
-        // Of each cell the place of its split, and how many of its children are open.
+        // For each cell, the index of its split and the number of its open children.
         let mut families = memory::with_capacity(front.len())?;
         self.splits.try_reserve(front.len())?;
         for ((cell, _), eight) in front.into_iter().zip(verdicts) {
@@ -85,7 +84,7 @@ impl Gathered {
             families.push((self.splits.len(), next.len() - before));
             self.splits.push(Split { verdicts, first: 0 });
         }
-        // The children of one piece after the other, each with all that is below it.
+        // The children of one piece after the other, each with everything below it.
         let is_large = worker.scratch_bytes() > MOST_BYTES;
         let piece = if is_large { families.len().div_ceil(PIECES) } else { families.len() };
         let mut next = next.into_iter();
@@ -106,22 +105,22 @@ impl Gathered {
     }
 }
 
-/// Who is asked, and how.
+/// The target and the parameters of the queries.
 struct Asking<'a, C: Classifier> {
     classifier: &'a C,
     worker: &'a mut C::Worker,
-    /// Whether the centres of finest cells are asked for.
+    /// Whether the centres of finest cells are queried.
     centres: bool,
     job: &'a Job<'a>,
     threads: usize,
 }
 
-/// If the parts of a level take more, what is below it is asked in pieces: a level has eight times as many
-/// parts as the one before where all of it is open, and a part of a solid that is moved twice may have a
-/// thousand cells.
+/// If the parts of a level take more bytes, the cells below are queried in pieces. Where everything is open,
+/// a level has eight times as many parts as the one before, and a part of a solid that is moved twice may
+/// hold a thousand cells.
 const MOST_BYTES: usize = 1 << 26;
 
-/// How many pieces there are then.
+/// The number of pieces then.
 const PIECES: usize = 64;
 
 impl Classifier for &Gathered {
@@ -139,7 +138,7 @@ impl Classifier for &Gathered {
         Tag::Partial
     }
 
-    /// The verdicts are those of the solid that was asked, whatever it proves: nobody asks here.
+    /// The verdicts are those of the queried solid, whatever that solid proves. Nobody uses this value.
     fn proof(&self) -> Proof {
         Proof::CERTIFIED
     }
@@ -149,8 +148,7 @@ impl Classifier for &Gathered {
     }
 }
 
-/// Parts are the places of splits, and of the centres of finest cells. The cell that all is below has the
-/// first.
+/// Parts are the indices of splits, and of the centres of finest cells. The top cell has the first index.
 impl FreeParts for &Gathered {
     type Part = u32;
 }

@@ -1,4 +1,4 @@
-//! Where on a lattice a solid lies, found with few splits.
+//! Finds the box of a solid on a lattice, with few splits.
 
 use super::split::split_one;
 use crate::control::Control;
@@ -8,14 +8,14 @@ use crate::lattice::axes;
 use crate::solid::{Verdict, Worker};
 use core::ops::Range;
 
-/// Levels between one attempt and the next.
+/// The number of levels between one attempt and the next.
 const STEP: u8 = 4;
-/// Splits that an attempt may take.
+/// The greatest number of splits of an attempt.
 const SPLITS: u32 = 1 << 14;
 
-/// The finest cells of each axis between which the solid lies: a box that holds all that is not EMPTY. It is
-/// as narrow as some thousand splits can tell; cells that lie in the box of others are not split. The box of
-/// an empty solid is empty.
+/// Returns a range of finest cells on each axis: a box that contains all cells that are not EMPTY. It is as
+/// narrow as some thousand splits can prove. Cells that lie in the box of other cells are not split. The box
+/// of an empty solid is empty.
 ///
 /// # Errors
 /// Those of the worker, and [`Error::Cancelled`].
@@ -53,8 +53,8 @@ struct Search<'a, W> {
 }
 
 impl<W: Worker> Search<'_, W> {
-    /// Widens the box by what of a cell is not EMPTY. The answer is `false` if splits are spent. The
-    /// recursion is as deep as the frame, 20 levels at the most.
+    /// Widens the box by the part of a cell that is not EMPTY. Returns `false` if the splits are spent. The
+    /// recursion is as deep as the frame, at most 20 levels.
     fn visit(&mut self, cell: Cell, verdict: Verdict<W::Part>) -> Result<bool, Error> {
         let shift = self.depth - cell.level;
         let (low, high) = (cell.at.map(|a| a << shift), cell.at.map(|a| (a + 1) << shift));

@@ -1,12 +1,12 @@
-//! What walks through the cells of a solid: whatever asks a solid for more than one split, to build, to
-//! measure or to draw, asks by way of this room.
+//! Walks through the cells of a solid. Every algorithm that needs more than one split, to build, to measure
+//! or to draw, uses this module.
 //!
 //! - Every cell in turn: `split` (one cell, or many by several threads), `descent` (depth first), `gathered`
-//!   (level by level, kept for a second look).
-//! - One place after another: `trail` (the way to a cell, which the next one shares), `edge` (where an edge
-//!   crosses the surface), `zone` (where a walk leads at all), `hull` (where the solid lies).
-//! - The most promising first: `queue`, and `subject` (the solid in a search that remembers parts).
-//! - What may be believed on the way: `proven`.
+//!   (level by level, kept for a second pass).
+//! - One place after another: `trail` (the path to a cell, which the next cell shares), `edge` (the crossing
+//!   of an edge with the surface), `zone` (the region of a walk), `hull` (the box of the solid).
+//! - The most promising cell first: `queue`, and `subject` (the solid in a search that keeps parts).
+//! - Trust in verdicts: `proven`.
 
 mod descent;
 mod edge;

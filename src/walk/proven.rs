@@ -1,4 +1,4 @@
-//! What a solid proves, and no more.
+//! A classifier that trusts only proven verdicts.
 
 use crate::control::Control;
 use crate::error::Error;
@@ -10,8 +10,8 @@ use crate::solid::{
 };
 use alloc::vec::Vec;
 
-/// A solid on a frame, of whose verdicts those are believed that are proven: a FULL or an EMPTY cell of which
-/// that does not hold is undecided. What all searches ask.
+/// A classifier that trusts only proven verdicts. A FULL or EMPTY verdict that is not proven becomes
+/// undecided. All searches use it.
 #[derive(Clone)]
 pub(crate) struct Proven<C>(pub(crate) C);
 
@@ -48,7 +48,7 @@ pub(crate) struct ProvenWorker<W> {
     proof: Proof,
 }
 
-/// A verdict as far as it is proven. Where nothing is, there is no reason to split.
+/// The verdict, if it is proven; otherwise undecided. Splitting would not help then.
 fn proven<P>(proof: Proof, verdict: Verdict<P>) -> Verdict<P> {
     match verdict {
         Verdict::Full if !proof.full => Verdict::Undecided,
@@ -111,7 +111,7 @@ impl<W: Worker> Batch for ProvenWorker<W> {
 }
 
 impl<W: Worker> ProvenWorker<W> {
-    /// What is proven of a point.
+    /// The answer for a point, if it is proven.
     fn proven_point(&self, inside: Option<bool>) -> Option<bool> {
         inside.filter(|&inside| if inside { self.proof.full } else { self.proof.empty })
     }
@@ -128,14 +128,14 @@ impl<W: Worker> Worker for ProvenWorker<W> {
 
     #[inline(always)]
     fn split(&mut self, cell: Cell, part: &W::Part) -> Result<[Verdict<W::Part>; 8], Error> {
-        // As a rule all is proven, and nothing is looked at or copied.
+        // Usually everything is proven, and nothing is examined or copied.
         if self.proof.is_certified() {
             return self.inner.split(cell, part);
         }
         Ok(self.inner.split(cell, part)?.map(|verdict| proven(self.proof, verdict)))
     }
 
-    /// What is known of a cell whose solid proves one side only is known of that side.
+    /// If the solid proves only one side, answers about a cell are kept for that side only.
     #[inline]
     fn answer(&mut self, cell: Cell, part: &W::Part, question: Question<'_>) -> Result<(), Error> {
         if self.proof.is_certified() {

@@ -1,29 +1,29 @@
-//! What a best-first search has still to look at.
+//! The priority queue of a best-first search.
 
 use crate::error::Error;
 use alloc::collections::BinaryHeap;
 use core::cmp::Ordering;
 
-/// A priority queue: the greatest key comes first. A search depends on its order, so no two keys are to be
-/// equal: [`met`](Self::met) makes them differ.
+/// A priority queue: the greatest key comes first. The result of a search depends on its order, so no two
+/// keys may be equal: [`met`](Self::met) makes them differ.
 pub(crate) struct Queue<K, T> {
     heap: BinaryHeap<Entry<K, T>>,
     met: u64,
 }
 
-/// An item and its place in the order.
+/// An item with its key.
 pub(crate) struct Entry<K, T> {
     pub(crate) key: K,
     pub(crate) item: T,
 }
 
 impl<K: Ord, T> Queue<K, T> {
-    /// Nothing to look at.
+    /// An empty queue.
     pub(crate) fn new() -> Self {
         Queue { heap: BinaryHeap::new(), met: 0 }
     }
 
-    /// How many items were added so far.
+    /// The number of items added so far.
     pub(crate) fn met(&self) -> u64 {
         self.met
     }
@@ -36,22 +36,22 @@ impl<K: Ord, T> Queue<K, T> {
         Ok(())
     }
 
-    /// The first.
+    /// The first item.
     pub(crate) fn peek(&self) -> Option<&Entry<K, T>> {
         self.heap.peek()
     }
 
-    /// Takes the first out. O(log n).
+    /// Removes the first item. O(log n).
     pub(crate) fn pop(&mut self) -> Option<T> {
         self.heap.pop().map(|entry| entry.item)
     }
 
-    /// All items, in no order.
+    /// All items, in no particular order.
     pub(crate) fn into_items(self) -> impl Iterator<Item = T> {
         self.heap.into_iter().map(|entry| entry.item)
     }
 
-    /// Changes what is in the queue, keys and items. O(n).
+    /// Changes the contents of the queue, keys and items. O(n).
     pub(crate) fn change<R>(&mut self, change: impl FnOnce(&mut [Entry<K, T>]) -> R) -> R {
         let mut entries = core::mem::take(&mut self.heap).into_vec();
         let result = change(&mut entries);

@@ -1,4 +1,4 @@
-//! The splits of cells, one by one or many at once, by whichever form of splitting a solid likes.
+//! Splits of cells, one by one or in batches, by the form of splitting that the solid prefers.
 
 use crate::control::Control;
 use crate::error::Error;
@@ -11,8 +11,8 @@ use alloc::vec::Vec;
 /// The parts of a classifier's workers.
 pub(crate) type Part<C> = <<C as Classifier>::Worker as Parts>::Part;
 
-/// The eight children of a cell, by whichever form of splitting the solid likes; where that takes long,
-/// `control` can cancel it half-way.
+/// Splits a cell, by the form of splitting that the solid prefers. Where that takes long, `control` can
+/// cancel it half-way.
 pub(crate) fn split_one<W: Worker>(
     worker: &mut W,
     cell: Cell,
@@ -27,8 +27,8 @@ pub(crate) fn split_one<W: Worker>(
     Ok(verdicts.pop().unwrap_or([const { Verdict::Undecided }; 8]))
 }
 
-/// What is asked about many cells, by several threads: the answers in the order of the cells. Parts among the
-/// answers are handed over to `worker`.
+/// Asks a question about many cells, with several threads: returns the answers in the order of the cells.
+/// Parts among the answers are handed over to `worker`.
 pub(crate) fn each<C: Classifier, A: Answer<Part<C>>>(
     classifier: &C,
     worker: &mut C::Worker,
@@ -44,7 +44,7 @@ pub(crate) fn each<C: Classifier, A: Answer<Part<C>>>(
     Ok(all)
 }
 
-/// The children of many cells, which several threads split.
+/// Splits many cells with several threads.
 pub(crate) fn split_each<C: Classifier>(
     classifier: &C,
     worker: &mut C::Worker,
@@ -57,8 +57,8 @@ pub(crate) fn split_each<C: Classifier>(
     })
 }
 
-/// As [`each`], with the answers going to `take` in the order of the cells, each with its cell's place. If
-/// there is an error, the answers that were had all the same are taken first.
+/// As [`each`], with the answers going to `take` in the order of the cells, each with its cell's index. After
+/// an error, the answers that were computed are still taken first.
 pub(crate) fn each_known<C: Classifier, A: Answer<Part<C>>>(
     classifier: &C,
     worker: &mut C::Worker,

@@ -1,4 +1,4 @@
-//! A solid in a search that remembers parts.
+//! A solid in a search that keeps parts.
 
 use super::split::{Part, split_each, split_one};
 use crate::control::Control;
@@ -14,7 +14,7 @@ pub(crate) struct Subject<'s, C: Classifier> {
     pub(crate) worker: C::Worker,
     pub(crate) splits: u64,
     control: &'s Control<'s>,
-    /// Height of the memory when all parts in it were last in use.
+    /// The height of the memory when all parts in it were last in use.
     used: usize,
 }
 
@@ -23,18 +23,18 @@ impl<'s, C: Classifier> Subject<'s, C> {
         Ok(Subject { classifier, worker: classifier.worker()?, splits: 0, control, used: 0 })
     }
 
-    /// Whether the solid may go on outside of the universe, or does.
+    /// Returns whether the solid may extend, or extends, beyond the universe.
     pub(crate) fn is_clipped(&self) -> bool {
         self.classifier.exterior() != Tag::Empty
     }
 
-    /// The children of a cell.
+    /// Splits a cell.
     pub(crate) fn split(&mut self, cell: Cell, part: &Part<C>) -> Result<[Verdict<Part<C>>; 8], Error> {
         self.splits += 1;
         split_one(&mut self.worker, cell, part, self.control)
     }
 
-    /// The children of several cells. A solid that is better asked about them at once is asked by `threads`.
+    /// Splits several cells. A solid that prefers batches is queried by `threads` threads.
     pub(crate) fn split_many(
         &mut self,
         cells: &[(Cell, Part<C>)],
@@ -45,18 +45,18 @@ impl<'s, C: Classifier> Subject<'s, C> {
         split_each(self.classifier, &mut self.worker, cells, threads, self.control)
     }
 
-    /// Whether most of the memory is held by parts that are not in use any more.
+    /// Returns whether most of the memory holds parts that are no longer in use.
     pub(crate) fn is_wasteful(&self) -> bool {
         self.worker.mark() > 4 * self.used + 4096
     }
 
-    /// Whether the parts in memory take more than one in `share` of the bytes that the caller allows. (While
-    /// memory grows or is handed over there are two of them, and there may be another solid.)
+    /// Returns whether the parts in memory take more than one in `share` of the bytes that the caller allows.
+    /// (While memory grows or is handed over there are two copies, and there may be another solid.)
     pub(crate) fn takes(&self, share: u64) -> bool {
         self.control.max_bytes.is_some_and(|limit| self.worker.scratch_bytes() as u64 > limit / share)
     }
 
-    /// Gives back the memory of all parts but these.
+    /// Releases the memory of all parts but these.
     pub(crate) fn keep<'k>(
         &mut self,
         verdicts: impl Iterator<Item = &'k mut Verdict<Part<C>>>,

@@ -1,4 +1,4 @@
-//! How a solid's parts are had again.
+//! Recomputes parts by replaying splits from the root.
 
 use crate::control::Control;
 use crate::error::Error;
@@ -8,36 +8,36 @@ use crate::solid::{Ask, Crossing, Enclosure, Segment, Verdict, Worker};
 use crate::walk::split_one;
 use alloc::vec::Vec;
 
-/// One split on the way.
+/// One split on the path.
 struct Step<P> {
-    /// Height of the scratch memory before it.
+    /// The height of the scratch memory before the split.
     mark: usize,
     verdicts: [Verdict<P>; 8],
 }
 
-/// The splits from the universe to one cell, which have its part: to split another cell, those are replayed
-/// that do not lie on the way to this one, too.
+/// The splits on the path from the universe to one cell, which provide its part. To split another cell, only
+/// the splits that the two paths do not share are replayed.
 pub(crate) struct Trail<W: Worker> {
     worker: W,
     root: Verdict<W::Part>,
-    /// Where the way leads.
+    /// The cell at the end of the path.
     cell: Cell,
     /// `steps[i]` is the split of the ancestor of `cell` at level i; the last may be its own.
     steps: Vec<Step<W::Part>>,
-    /// The split of `cell` itself, if its part was had without the way.
+    /// The split of `cell` itself, if its part was recalled without the path.
     own: Option<[Verdict<W::Part>; 8]>,
     splits: u64,
 }
 
 impl<W: Worker> Trail<W> {
-    /// Asks the solid for the universe.
+    /// Starts a trail at the universe.
     pub(crate) fn new(mut worker: W) -> Result<Trail<W>, Error> {
         let root = worker.root()?;
         let steps = memory::with_capacity(worker.frame().depth().into())?;
         Ok(Trail { worker, root, cell: Cell::ROOT, steps, own: None, splits: 0 })
     }
 
-    /// Whether many cells are better split at once, and each without the way to it.
+    /// Returns whether cells are better split in batches, each without the path to it.
     pub(crate) fn likes_many(&mut self) -> bool {
         let mark = self.worker.mark();
         let alone = self.worker.likes_many() && self.worker.recall(Cell::ROOT).is_some();
@@ -45,33 +45,32 @@ impl<W: Worker> Trail<W> {
         alone
     }
 
-    /// The worker, for cells that are split without the way to them; and a count of their splits.
+    /// The worker, for cells that are split without the path to them, and the count of splits.
     pub(crate) fn worker(&mut self) -> (&mut W, &mut u64) {
         (&mut self.worker, &mut self.splits)
     }
 
-    /// The verdict of the universe.
+    /// The verdict on the universe.
     pub(crate) fn root(&self) -> &Verdict<W::Part> {
         &self.root
     }
 
-    /// Splits that the solid was asked for.
+    /// The number of splits so far.
     pub(crate) fn splits(&self) -> u64 {
         self.splits
     }
 
-    /// The splits at hand that lie on the way to `cell`, which ends with its own.
+    /// The number of kept splits that lie on the path to `cell`, its own included.
     pub(crate) fn at_hand(&self, cell: Cell) -> usize {
         let level = cell.level.min(self.cell.level);
         let (a, b) = (cell.ancestor(level).at, self.cell.ancestor(level).at);
         let differ = (a[0] ^ b[0]) | (a[1] ^ b[1]) | (a[2] ^ b[2]);
-        // The universe is on every way.
+        // The universe is on every path.
         let shared = level as usize + 1 - (u32::BITS - differ.leading_zeros()) as usize;
         shared.min(self.steps.len())
     }
 
-    /// What the solid says of the children of `cell`'s ancestor at `level`, if [`lead`](Self::lead) came that
-    /// far.
+    /// The verdicts on the children of `cell`'s ancestor at `level`, if [`lead`](Self::lead) came that far.
     pub(crate) fn verdicts(&self, level: u8) -> Option<&[Verdict<W::Part>; 8]> {
         match &self.own {
             Some(own) => (level == self.cell.level).then_some(own),
@@ -79,18 +78,18 @@ impl<W: Worker> Trail<W> {
         }
     }
 
-    /// Leads the way to `cell`, which is above the frame's depth, and splits it. It ends before a cell that
-    /// the solid does not split.
+    /// Follows the path to `cell`, which is above the frame's depth, and splits the cell. The path ends
+    /// before a cell that the solid does not split.
     ///
     /// # Errors
-    /// The solid's own; the way then ends where they occurred.
+    /// Those of the solid; the path then ends where the error occurred.
     pub(crate) fn lead(&mut self, cell: Cell, control: &Control<'_>) -> Result<(), Error> {
         let mark = self.worker.mark();
         if let Some(part) = self.worker.recall(cell) {
             self.own = None;
             let verdicts = split_one(&mut self.worker, cell, &part, control);
             self.worker.release(mark);
-            // The steps at hand do not lead to this cell.
+            // The kept steps do not lead to this cell.
             self.cut(0);
             (self.own, self.cell) = (Some(verdicts?), cell);
             self.splits += 1;
@@ -99,7 +98,7 @@ impl<W: Worker> Trail<W> {
         self.follow(cell, control)
     }
 
-    /// As [`lead`](Self::lead), with all splits on the way whether or not the part can be had without them.
+    /// As [`lead`](Self::lead), with all splits on the path even if the part could be recalled without them.
     pub(crate) fn follow(&mut self, cell: Cell, control: &Control<'_>) -> Result<(), Error> {
         self.cut(self.at_hand(cell));
         (self.own, self.cell) = (None, cell);
@@ -119,53 +118,53 @@ impl<W: Worker> Trail<W> {
         Ok(())
     }
 
-    /// What is known of `cell`, to whose parent the way was led, or of the ancestor that the way ends before.
+    /// The verdict on `cell`, to whose parent the path leads, or on the ancestor that the path ends before.
     pub(crate) fn verdict(&self, cell: Cell) -> &Verdict<W::Part> {
         verdict_at(&self.steps, &self.root, cell.ancestor(self.steps.len() as u8))
     }
 
     #[cfg(feature = "render")]
-    /// The level of the cell that the way, led to a parent, ends at: one below that of the parent, or that of
-    /// an ancestor which the solid does not split.
+    /// The level of the cell where a path to a parent ends: one below the parent, or the level of an ancestor
+    /// that the solid does not split.
     pub(crate) fn level(&self) -> u8 {
         self.steps.len() as u8
     }
 
-    /// What the solid knows of the boundary in `cell`, to whose parent the way was led.
+    /// The enclosure of the boundary in `cell`, to whose parent the path leads.
     ///
     /// # Errors
-    /// The solid's own.
+    /// Those of the solid.
     pub(crate) fn enclosure(&mut self, cell: Cell) -> Result<Option<Enclosure>, Error> {
         self.ask(cell, |worker, part| worker.enclosure(cell, part))
     }
 
-    /// What the solid knows of its moments in `cell`, to whose parent the way was led.
+    /// The moments of the solid in `cell`, to whose parent the path leads.
     ///
     /// # Errors
-    /// The solid's own.
+    /// Those of the solid.
     pub(crate) fn moments(&mut self, cell: Cell) -> Result<Option<CellMoments>, Error> {
         self.ask(cell, |worker, part| worker.moments(cell, part))
     }
 
-    /// Where a segment in `cell`, to whose parent the way was led, crosses the boundary, if the solid can
-    /// tell.
+    /// The crossing of a segment in `cell`, to whose parent the path leads, with the boundary, if the solid
+    /// can find it.
     ///
     /// # Errors
-    /// The solid's own.
+    /// Those of the solid.
     pub(crate) fn crossing(&mut self, cell: Cell, segment: &Segment) -> Result<Option<Crossing>, Error> {
         self.ask(cell, |worker, part| worker.crossing(cell, part, segment))
     }
 
-    /// Whether the centre of a finest `cell`, to whose parent the way was led, lies inside, if the solid can
-    /// tell.
+    /// Returns whether the centre of a finest `cell`, to whose parent the path leads, lies inside, if the
+    /// solid can decide.
     ///
     /// # Errors
-    /// The solid's own.
+    /// Those of the solid.
     pub(crate) fn sample(&mut self, cell: Cell) -> Result<Option<bool>, Error> {
         self.ask(cell, |worker, part| worker.sample(cell, part))
     }
 
-    /// Asks about a cell to whose parent the way was led, if it has a part.
+    /// Asks about a cell to whose parent the path leads, if the cell has a part.
     fn ask<R>(
         &mut self,
         cell: Cell,
@@ -181,7 +180,7 @@ impl<W: Worker> Trail<W> {
         answer
     }
 
-    /// Forgets all but the first `steps` splits.
+    /// Drops all but the first `steps` splits.
     pub(crate) fn cut(&mut self, steps: usize) {
         if let Some(step) = self.steps.get(steps) {
             self.worker.release(step.mark);
@@ -190,7 +189,7 @@ impl<W: Worker> Trail<W> {
     }
 }
 
-/// What the last of the steps to `cell` says of it.
+/// The verdict on `cell` by the last of the steps.
 fn verdict_at<'s, P>(steps: &'s [Step<P>], root: &'s Verdict<P>, cell: Cell) -> &'s Verdict<P> {
     steps.last().map_or(root, |step| &step.verdicts[cell.octant() as usize])
 }

@@ -1,35 +1,34 @@
-//! Where a lazy octree is refined.
+//! The zones in which a lazy octree is refined.
 
 use crate::error::Error;
 use crate::lattice::{Cube, Frame, Window, valid};
 
-/// A part of model space in which cells are to be refined. What of it lies outside of the universe does not
-/// count.
+/// A part of model space in which cells are to be refined. Anything outside the universe is ignored.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum Zone {
-    /// All of the universe.
+    /// The whole universe.
     Whole,
-    /// The cells that have more than their surface in common with a box (model units, min ≤ max); of a box
-    /// without thickness, those that it lies in.
+    /// The cells whose interiors meet a box (model units, min ≤ max). For a box without thickness: the cells
+    /// that contain it.
     Box {
         /// Lower corner.
         min: [f64; 3],
         /// Upper corner.
         max: [f64; 3],
     },
-    /// The cells that contain a point (model units), as point queries count them: a point between two cells
+    /// The cells that contain a point (model units), by the rule of point queries: a point between two cells
     /// lies in the upper one.
     Point([f64; 3]),
-    /// All cells that the points origin + t·direction with from ≤ t ≤ to touch, be it in a corner, and
-    /// perhaps some that they miss by a hair's breadth.
+    /// All cells that the points origin + t·direction with from ≤ t ≤ to touch, even at a corner only, and
+    /// perhaps some cells that they narrowly miss.
     Ray {
         /// A point of the ray (model units); each coordinate zero or of a magnitude between 2^-256 and 2^256.
         origin: [f64; 3],
-        /// Its direction, of any length but zero; each coordinate as of the origin.
+        /// Its direction, of any length but zero; the coordinates have the same range as those of the origin.
         direction: [f64; 3],
-        /// Where it begins; any number, also −∞.
+        /// The parameter of its first point; any number, also −∞.
         from: f64,
-        /// Where it ends, not below `from`; any number, also ∞.
+        /// The parameter of its last point, not below `from`; any number, also ∞.
         to: f64,
     },
 }
@@ -48,10 +47,10 @@ struct Ray {
 }
 
 impl Reach {
-    /// The cells of `zone`, or `None` if there are none.
+    /// Returns the cells of `zone`, or `None` if there are none.
     ///
     /// # Errors
-    /// [`Error::Argument`] if its numbers are not as they must be.
+    /// [`Error::Argument`] if a number of the zone is out of range.
     pub(crate) fn new(frame: &Frame, zone: &Zone) -> Result<Option<Reach>, Error> {
         let whole = Window { first: [0; 3], last: [frame.cells() - 1; 3] };
         let without_ray = |window| Reach { window, ray: None };
@@ -66,14 +65,14 @@ impl Reach {
         })
     }
 
-    /// Whether the zone has a cell in common with `cube`.
+    /// Returns whether the zone has a cell in common with `cube`.
     #[inline]
     pub(crate) fn meets(&self, cube: &Cube<'_>) -> bool {
         self.window.meets(cube) && self.ray.as_ref().is_none_or(|ray| ray.meets(cube))
     }
 
-    /// What the octants' numbers are changed by (exclusive or) to take them in the zone's order: along a ray
-    /// from its beginning on.
+    /// The mask (exclusive or) that turns octant numbers into the order of the zone: along a ray from its
+    /// beginning.
     pub(crate) fn order(&self) -> Option<u8> {
         let ray = self.ray.as_ref()?;
         Some((0..3).fold(0, |order, axis| order | ((ray.direction[axis] < 0.0) as u8) << axis))
@@ -94,8 +93,8 @@ impl Ray {
         Ok(Ray { origin, direction, from, to })
     }
 
-    /// Whether the ray touches a cube: by the intervals of t in which it is between the cube's planes (Kay
-    /// and Kajiya, *Ray tracing complex scenes*, 1986), every number rounded outward.
+    /// Returns whether the ray touches a cube, from the intervals of t in which the ray is between the cube's
+    /// planes (Kay and Kajiya, *Ray tracing complex scenes*, 1986), with every number rounded outward.
     fn meets(&self, cube: &Cube<'_>) -> bool {
         let (min, max) = cube.bounds();
         let (mut enters, mut leaves) = (self.from, self.to);
@@ -108,7 +107,7 @@ impl Ray {
                 continue;
             }
             let (near, far) = (min[axis] - origin, max[axis] - origin);
-            // Backwards, the upper plane comes first.
+            // In the negative direction, the upper plane comes first.
             let (near, far) = if direction > 0.0 {
                 (near.next_down(), far.next_up())
             } else {
@@ -175,7 +174,7 @@ mod tests {
         ];
         for direction in directions {
             for start in [0.0, -0.5, -2.0, -1e3] {
-                // Exact: the numbers are small.
+                // Exact, because the numbers are small.
                 let origin = [0, 1, 2].map(|axis| corner[axis] + start * direction[axis]);
                 if direction[2] == 1e-9 && start != 0.0 {
                     continue;
@@ -195,7 +194,7 @@ mod tests {
         }
     }
 
-    /// Points that a ray is known to pass lie in cells that it touches, whatever the roundings.
+    /// Points that a ray is known to pass lie in cells that the ray touches, whatever the roundings.
     #[test]
     fn no_cell_on_the_way_is_missed() {
         let frame = Frame::new([0.1, -7.3, 1.0 / 3.0], 10.0 / 3.0, 20).unwrap();

@@ -1,12 +1,12 @@
-//! Numbers of two doubles: about 106 bits.
+//! Numbers of two doubles, with about 106 bits.
 //!
-//! (Dekker 1971; Hida, Li and Bailey 2001.) The last of them are rounded, so that nothing is decided by such
-//! numbers alone; they make errors so small that exact arithmetic is hardly ever needed.
+//! (Dekker 1971; Hida, Li and Bailey 2001.) The last bits are rounded, so that such numbers alone decide
+//! nothing. They make errors so small that exact arithmetic is hardly ever needed.
 
 use super::{sqrt, two_product, two_sum};
 use core::ops::{Add, Mul, Neg, Sub};
 
-/// The sum of two doubles, the second of which is no more than half a last place of the first.
+/// The sum of two doubles, the second of which is at most half a unit in the last place of the first.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
 pub(crate) struct DoubleDouble {
     pub high: f64,
@@ -14,7 +14,7 @@ pub(crate) struct DoubleDouble {
 }
 
 impl DoubleDouble {
-    /// More than the relative error of a sum of magnitudes, a product or a root.
+    /// A bound of the relative error of a sum of magnitudes, a product or a root.
     pub const EPSILON: f64 = 16.0 * f64::EPSILON * f64::EPSILON;
 
     /// The sum of two doubles.
@@ -31,19 +31,19 @@ impl DoubleDouble {
         DoubleDouble { high, low }
     }
 
-    /// Of a number that is not negative, the square root.
+    /// The square root; 0 for a negative number.
     #[inline]
     pub fn root(self) -> DoubleDouble {
         if self.high <= 0.0 {
             return DoubleDouble::default();
         }
-        // One step of Newton's doubles the digits.
+        // One Newton step doubles the number of correct digits.
         let root = sqrt(self.high);
         let rest = self - DoubleDouble::product(root, root);
         DoubleDouble::sum(root, rest.high / (2.0 * root))
     }
 
-    /// The quotient as a double, off by little more than a last place.
+    /// The quotient as a double, with an error of little more than a unit in the last place.
     #[inline]
     pub fn quotient(self, by: DoubleDouble) -> f64 {
         let quotient = self.high / by.high;
@@ -108,7 +108,7 @@ mod tests {
         &Dyadic::new(x.high) + &Dyadic::new(x.low)
     }
 
-    /// Whether the difference is at most so much of the size.
+    /// Returns whether the difference is at most `size` times the relative error.
     fn is_near(found: DoubleDouble, expected: &Dyadic, size: f64) -> bool {
         let off = &exactly(found) - expected;
         off.rounded().abs() <= size * DoubleDouble::EPSILON

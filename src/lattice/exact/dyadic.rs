@@ -1,5 +1,5 @@
-//! Integers times powers of two. Every double is one, and so are sums and products of them. All of it is
-//! cold.
+//! Integers times powers of two. Every double is such a number, and so are sums and products of them. This
+//! code is not performance-critical.
 
 use alloc::vec::Vec;
 use core::cmp::Ordering;
@@ -7,15 +7,15 @@ use core::ops::{Add, Mul, Neg, Sub};
 use num_bigint::{BigInt, Sign};
 use num_traits::{ToPrimitive, Zero};
 
-/// `mantissa · 2^exponent`; the mantissa is odd or zero.
+/// The number `mantissa · 2^exponent`; the mantissa is odd or zero.
 #[derive(Debug, Clone, PartialEq, Eq, Hash)]
 pub(crate) struct Dyadic {
     mantissa: BigInt,
     exponent: i64,
 }
 
-/// Doubles whose sum is an exact number, in memory of fixed size: that a surface cannot be stored is another
-/// failure than that memory is refused.
+/// Doubles whose sum is an exact number, in memory of fixed size. So the failure to store a surface cannot be
+/// mistaken for a failed allocation.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(crate) struct Terms {
     doubles: [f64; 8],
@@ -31,7 +31,7 @@ impl core::ops::Deref for Terms {
 }
 
 impl Dyadic {
-    /// About how many bytes the digits take beside the number itself.
+    /// The approximate number of bytes of the digits, without the number itself.
     pub(crate) fn heap_bytes(&self) -> usize {
         self.mantissa.bits().div_ceil(64) as usize * size_of::<u64>()
     }
@@ -40,7 +40,7 @@ impl Dyadic {
         Dyadic { mantissa: BigInt::zero(), exponent: 0 }
     }
 
-    /// A finite double, exactly.
+    /// Converts a finite double, exactly.
     pub(crate) fn new(value: f64) -> Dyadic {
         debug_assert!(value.is_finite());
         let bits = value.to_bits();
@@ -58,7 +58,7 @@ impl Dyadic {
         }
     }
 
-    /// −1, 0 or 1.
+    /// The sign: −1, 0 or 1.
     pub(crate) fn sign(&self) -> i32 {
         match self.mantissa.sign() {
             Sign::Minus => -1,
@@ -87,22 +87,22 @@ impl Dyadic {
         (!self.is_zero()).then(|| self.mantissa.bits() as i64 - 1 + self.exponent)
     }
 
-    /// The exponent of the lowest bit, of which this is a multiple; `None` for zero.
+    /// The exponent of the lowest bit: the number is a multiple of 2 to that power; `None` for zero.
     pub(crate) fn grain(&self) -> Option<i64> {
         (!self.is_zero()).then_some(self.exponent)
     }
 
-    /// Bits of the mantissa.
+    /// The number of bits of the mantissa.
     pub(crate) fn bits(&self) -> u64 {
         self.mantissa.bits()
     }
 
-    /// The mantissa's bytes, in two's complement from the lowest on, and the exponent.
+    /// The mantissa's bytes, in two's complement with the lowest first, and the exponent.
     pub(crate) fn bytes(&self) -> (Vec<u8>, i64) {
         (self.mantissa.to_signed_bytes_le(), self.exponent)
     }
 
-    /// Writes the number, so that it can be read again.
+    /// Writes the number in a form that `read` can read.
     pub(crate) fn write(&self, to: &mut Vec<u8>) {
         let (mantissa, exponent) = self.bytes();
         to.extend(exponent.to_le_bytes());
@@ -110,7 +110,7 @@ impl Dyadic {
         to.extend(mantissa);
     }
 
-    /// Reads a number, and leaves what was written behind it.
+    /// Reads a number, and advances `from` beyond it.
     pub(crate) fn read(from: &mut &[u8]) -> Dyadic {
         let (mut exponent, mut length) = ([0; 8], [0; 4]);
         exponent.copy_from_slice(&from[..8]);
@@ -121,25 +121,25 @@ impl Dyadic {
         Dyadic { mantissa, exponent: i64::from_le_bytes(exponent) }
     }
 
-    /// The double towards zero whose error is less than 2^-52 of it, or less than 2^-1020; infinite beyond
-    /// the doubles.
+    /// The number rounded towards zero to a double. The error is less than 2^-52 of the number, or less than
+    /// 2^-1020; infinite beyond the range of doubles.
     pub(crate) fn rounded(&self) -> f64 {
         let bits = self.mantissa.bits() as i64;
-        // All bits that a double has, cut off below.
+        // The 53 leading bits; the others are cut off.
         let cut = (bits - 53).max(0);
         let kept = (self.mantissa.magnitude() >> cut as u64).to_f64().unwrap_or(f64::INFINITY);
         let magnitude = scaled(kept, self.exponent + cut);
         if self.sign() < 0 { -magnitude } else { magnitude }
     }
 
-    /// Doubles whose sum is exactly this, the largest first, each at most 2^-53 of the one before; none for
-    /// zero. `None` if there are more than `most`, which is 8 or less, or the number reaches beyond the
-    /// doubles.
+    /// Doubles whose sum is exactly this number, the largest first. Each is at most 2^-53 of the one before;
+    /// zero has none. `None` if there are more than `most`, which is 8 or less, or if the number leaves the
+    /// range of doubles.
     pub(crate) fn expansion(&self, most: usize) -> Option<Terms> {
         let mut terms = Terms { doubles: [0.0; 8], count: 0 };
         let mut rest = self.clone();
         while !rest.is_zero() {
-            // The nearest of the doubles on both sides.
+            // The nearer of the two neighbouring doubles.
             let inner = rest.rounded();
             let outer = if inner > 0.0 { inner.next_up() } else { inner.next_down() };
             if terms.count == most || !outer.is_finite() || inner == 0.0 {
@@ -159,9 +159,9 @@ impl Dyadic {
         terms.iter().fold(Dyadic::zero(), |sum, &term| &sum + &Dyadic::new(term))
     }
 
-    /// Divides numbers by what they have in common, so that they are integers without a common factor, of
-    /// which the first that is not zero is positive; whether that changed the signs. Numbers are proportional
-    /// just if the same comes of them.
+    /// Divides numbers by a common factor, so that they become integers without a common divisor, and the
+    /// first number that is not zero becomes positive. Returns whether that changed the signs. Lists of
+    /// numbers are proportional exactly if their primitive forms are equal.
     pub(crate) fn make_primitive(numbers: &mut [Dyadic]) -> bool {
         let grain = numbers.iter().filter_map(Dyadic::grain).min().unwrap_or(0);
         let whole = |number: &Dyadic| &number.mantissa << (number.exponent - grain).max(0) as u64;
@@ -185,19 +185,19 @@ impl Dyadic {
         first < 0
     }
 
-    /// The double that this is, if it is one.
+    /// The number as a double, if it is exactly one.
     pub(crate) fn exactly(&self) -> Option<f64> {
         let value = self.rounded();
         (value.is_finite() && Dyadic::new(value) == *self).then_some(value)
     }
 }
 
-/// a · b, of three coordinates.
+/// The dot product a · b in three dimensions.
 pub(crate) fn dot(a: [&Dyadic; 3], b: [&Dyadic; 3]) -> Dyadic {
     &(&(a[0] * b[0]) + &(a[1] * b[1])) + &(a[2] * b[2])
 }
 
-/// a × b, of three coordinates.
+/// The cross product a × b in three dimensions.
 pub(crate) fn cross(a: &[Dyadic], b: &[Dyadic]) -> [Dyadic; 3] {
     [(1, 2), (2, 0), (0, 1)].map(|(i, j)| &(&a[i] * &b[j]) - &(&a[j] * &b[i]))
 }
@@ -214,7 +214,7 @@ impl PartialOrd for Dyadic {
     }
 }
 
-/// `value · 2^exponent`, in steps that do not overflow before the result does.
+/// `value · 2^exponent`, in steps that overflow only if the result does.
 fn scaled(mut value: f64, mut exponent: i64) -> f64 {
     let power = |e: i64| f64::from_bits(((1023 + e) as u64) << 52);
     while exponent > 1000 && value.is_finite() && value != 0.0 {
@@ -294,7 +294,7 @@ mod tests {
             );
             assert_eq!(number.expansion(count.saturating_sub(1)).is_some(), count == 0);
         }
-        // Beyond the doubles on either side.
+        // Beyond the range of doubles at both ends.
         assert_eq!((d(1e300).pow(2).expansion(7), d(1e-300).pow(2).expansion(7)), (None, None));
     }
 

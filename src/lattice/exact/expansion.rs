@@ -1,10 +1,10 @@
 //! Sums of doubles that do not overlap, so that the largest term has the sign of the sum (Shewchuk, *Adaptive
-//! precision floating-point arithmetic*, 1997). All of it is cold.
+//! precision floating-point arithmetic*, 1997). This code is not performance-critical.
 
 use super::{grow, sign, two_product};
 use alloc::vec::Vec;
 
-/// A real number, exactly: non-overlapping terms of increasing magnitude, no zeros.
+/// An exact real number: non-overlapping terms of increasing magnitude, without zeros.
 #[derive(Debug, Clone, Default)]
 pub(crate) struct Expansion(Vec<f64>);
 
@@ -45,19 +45,19 @@ impl Expansion {
         product
     }
 
-    /// The number rounded: off by 2^-52 of itself at the most.
+    /// The number as a double, with a relative error of at most 2^-52.
     pub(crate) fn estimate(&self) -> f64 {
         self.0.iter().sum()
     }
 
-    /// −1, 0 or 1.
+    /// The sign: −1, 0 or 1.
     pub(crate) fn sign(&self) -> i32 {
         self.0.last().map_or(0, |&term| sign(term))
     }
 }
 
-/// The sign of a value that is known up to an error, or `None` if that does not decide it. With no error
-/// at all, zero is a sign.
+/// The sign of a value that is known up to an error; `None` if the error leaves it open. Without an error,
+/// zero is a sign.
 #[inline(always)]
 pub(crate) fn certain(value: f64, error: f64) -> Option<i32> {
     if value > error || value < -error || error == 0.0 { Some(sign(value)) } else { None }

@@ -1,15 +1,16 @@
-//! Exact arithmetic, of which there are two kinds.
+//! Exact arithmetic of two kinds.
 //!
-//! * Sums of doubles, for the sign of a short polynomial in the doubles that a shape was given:
-//!   [`sign_of_sum`] and [`sign_of_products`] where the number of terms is known, an [`Expansion`] where it
-//!   is not. They rest on error-free transformations, which turn the sum or product of two doubles into a
-//!   pair `(rounded, error)` (Dekker 1971, Knuth 1969). All of it holds under round-to-nearest as long as
-//!   nothing over- or underflows, which the ranges that frames and shapes accept (2^±256) guarantee for
-//!   polynomials up to degree three.
-//! * [`Dyadic`], an integer of any length times a power of two, for what grows: coefficients of half-spaces,
-//!   placements within placements, polynomials of any degree. It never overflows, and it is slow.
+//! * Sums of doubles, for the sign of a short polynomial in the doubles that define a shape: [`sign_of_sum`]
+//!   and [`sign_of_products`] where the number of terms is known, an [`Expansion`] where it is not. They use
+//!   error-free transformations, which turn the sum or product of two doubles into a pair `(rounded, error)`
+//!   (Dekker 1971, Knuth 1969). All of it holds under round-to-nearest as long as nothing overflows or
+//!   underflows. The ranges that frames and shapes accept (2^±256) guarantee that for polynomials up to
+//!   degree three.
+//! * [`Dyadic`], an integer of any length times a power of two, for numbers that grow: coefficients of
+//!   half-spaces, nested placements, polynomials of any degree. It never overflows, and it is slow.
 //!
-//! Both decide what floating point with an error bound leaves open; that filter belongs to the caller.
+//! Both decide the cases that floating point with an error bound leaves open. That filter is the caller's
+//! task.
 
 mod double_double;
 mod dyadic;
@@ -51,7 +52,8 @@ pub fn two_product(a: f64, b: f64) -> (f64, f64) {
     (product, al * bl - (((product - ah * bh) - al * bh) - ah * bl))
 }
 
-/// The square root, correctly rounded, hence the same everywhere. (glam's lengths call a function for it.)
+/// The square root, correctly rounded, and therefore the same on every platform. (glam's `length` makes a
+/// function call for it.)
 #[inline(always)]
 pub fn sqrt(x: f64) -> f64 {
     #[cfg(feature = "std")]
@@ -73,7 +75,7 @@ pub fn product_up(a: f64, b: f64) -> f64 {
 }
 
 /// Adds `value` to the expansion in `terms[..count]` (non-overlapping, increasing magnitude) and returns the
-/// new count; zeros are dropped. `terms` needs room for one more (Shewchuk 1997, Grow-Expansion).
+/// new count; zeros are dropped. `terms` needs room for one more term (Shewchuk 1997, Grow-Expansion).
 #[inline]
 fn grow(terms: &mut [f64], count: usize, value: f64) -> usize {
     let mut carry = value;
@@ -97,7 +99,7 @@ fn grow(terms: &mut [f64], count: usize, value: f64) -> usize {
 pub fn sign_of_sum<const N: usize>(values: &[f64; N]) -> i32 {
     let mut terms = [0.0; N];
     let count = values.iter().fold(0, |count, &value| grow(&mut terms, count, value));
-    // The last term of an expansion outweighs all the others together.
+    // The last term of an expansion outweighs all other terms together.
     terms[..count].last().map_or(0, |&term| sign(term))
 }
 
@@ -113,7 +115,7 @@ pub fn sign_of_products(pairs: &[(f64, f64)]) -> i32 {
     terms[..count].last().map_or(0, |&term| sign(term))
 }
 
-/// −1, 0 or 1.
+/// The sign of a number: −1, 0 or 1.
 #[inline]
 pub fn sign(value: f64) -> i32 {
     (value > 0.0) as i32 - (value < 0.0) as i32

@@ -1,31 +1,33 @@
-//! What a host knows of its function over a box: a value and the range of the gradient.
+//! First-order bounds of a host's function over a box: a value and the range of the gradient.
 
 use crate::lattice::{Cube, Interval};
 use crate::solid::{Enclosure, Slab};
 use core::f64::consts::FRAC_PI_2;
 
-/// Bounds of a host's function f over a box, to first order. The solid is the set of points with f ≤ 0, as
-/// for a signed distance: f is negative inside, and its gradient leads out of the solid.
+/// First-order bounds of a host's function f over a box. The solid is the set of points with f ≤ 0, as for a
+/// signed distance: f is negative inside, and its gradient points out of the solid.
 ///
-/// The promise concerns the points of the box alone. By the mean value theorem it makes a [slab](Slab). If
-/// the gradient's range shrinks with the box, as it does by interval arithmetic, the slab's thickness falls
-/// with the square of the cell's edge.
+/// The promise concerns the points of the box alone. By the mean value theorem the bounds give a
+/// [slab](Slab). If the gradient's range shrinks with the box, as it does by interval arithmetic, the slab's
+/// thickness falls with the square of the cell's edge.
 ///
 /// An infinite gradient says nothing. One end of `value` may be infinite.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct GradientRange {
-    /// Contains the value of f at the middle of the box.
+    /// An interval that contains the value of f at the middle of the box.
     pub value: Interval,
-    /// For each axis: contains the partial derivative of f everywhere in the box. f must be continuous in the
-    /// box. Where it has no derivative, as at a crease, the range must contain the slopes on all sides.
+    /// For each axis, an interval that contains the partial derivative of f everywhere in the box. f must be
+    /// continuous in the box. Where f has no derivative, as at a crease, the interval must contain the
+    /// one-sided derivatives of all sides.
     pub gradient: [Interval; 3],
 }
 
 impl GradientRange {
-    /// What this proves of a cube in the box; the value is that at `middle`, a point of the box.
+    /// The enclosure that these bounds prove for a cube in the box. The value is that at `middle`, a point of
+    /// the box.
     ///
-    /// Let m be the middle of the gradient's range. For each point y of the box, f(y) lies in
-    /// value + m · (y − middle) + (range − m) · (y − middle).
+    /// Let m be the middle of the gradient's range. For each point y of the box, f(y) lies in value + m · (y
+    /// − middle) + (range − m) · (y − middle).
     pub(super) fn enclosure(&self, cube: &Cube<'_>, middle: [f64; 3]) -> Option<Enclosure> {
         let half = cube.half_edge();
         let to_centre = cube.centre_from(middle);
@@ -46,9 +48,9 @@ impl GradientRange {
     }
 }
 
-/// An upper bound of the angle between a vector and another one that differs from it by at most a share of
-/// its length; the square of that share is given. The angle is the share's arc sine, which is less than its
-/// tangent.
+/// An upper bound of the angle between a vector and a second vector that differs from it by at most a share
+/// of its length. `square` is the square of that share. The angle is the arc sine of the share, which is less
+/// than the tangent of that angle.
 fn cone(square: f64) -> f64 {
     if square < 1.0 {
         let square = Interval::exactly(square);

@@ -1,4 +1,4 @@
-//! A host program's own shape, through its functions.
+//! A host program's own shape, classified by its functions.
 
 mod gradient;
 mod placement;
@@ -23,7 +23,7 @@ use alloc::sync::Arc;
 use alloc::vec::Vec;
 use placement::{Corners, Placement};
 
-/// Decides points, where the host can.
+/// Decides points, if the host can.
 type Contains<'a> = Box<dyn Fn(&[[f64; 3]], &mut [bool]) -> Result<(), Error> + Send + Sync + 'a>;
 
 /// Classifies many boxes at once.
@@ -32,10 +32,10 @@ type ClassifyMany<'a> = Box<dyn Fn(&[Corners], &mut [Verdict<()>]) -> Result<(),
 /// Bounds the distances of points from the surface.
 type Distance<'a> = Box<dyn Fn(&[[f64; 3]], &mut [f64]) -> Result<(), Error> + Send + Sync + 'a>;
 
-/// Tells more about a box, given by its corners and its middle.
+/// Returns more data about a box, given by its corners and its middle.
 type Local<'a, T> = Box<dyn Fn([f64; 3], [f64; 3], [f64; 3]) -> Result<Option<T>, Error> + Send + Sync + 'a>;
 
-/// A shape that a host program classifies: how a B-rep kernel, a distance field, or a simulation takes part.
+/// A shape that a host program classifies: a B-rep kernel, a distance field, or a simulation.
 ///
 /// ```
 /// use leafless::{Callback, Control, Frame, Rule, Verdict, build};
@@ -56,7 +56,7 @@ type Local<'a, T> = Box<dyn Fn([f64; 3], [f64; 3], [f64; 3]) -> Result<Option<T>
 /// The methods that add to a callback panic once it has been put on a frame or moved.
 pub struct Callback<'a, F> {
     functions: Arc<Functions<'a, F>>,
-    /// Where it was moved to.
+    /// The placement of a moved shape.
     placement: Option<Placement>,
 }
 
@@ -64,7 +64,7 @@ struct Functions<'a, F> {
     classify: F,
     classify_many: Option<ClassifyMany<'a>>,
     contains: Option<Contains<'a>>,
-    /// Whether that takes them one by one.
+    /// Whether `contains` decides one point at a time.
     contains_one: bool,
     distance: Option<Distance<'a>>,
     gradient: Option<Local<'a, GradientRange>>,
@@ -74,15 +74,15 @@ struct Functions<'a, F> {
     fingerprint: Option<Fingerprint>,
 }
 
-/// A handle that nobody else has yet.
-const SHARED: &str = "a callback is put on frames, and moved, only once it is complete";
+/// The panic message for changes to a callback that is already shared.
+const SHARED: &str = "functions can be added to a callback only before it is put on a frame or moved";
 
 impl<'a, F: Fn([f64; 3], [f64; 3]) -> Result<Verdict<()>, Error> + Send + Sync> Callback<'a, F> {
-    /// A solid from a function that classifies the box `(min, max)` in model units. The box contains the cell
-    /// (it is the cell itself on frames whose lattice planes are doubles), and FULL and EMPTY must be proven
-    /// for all of it. The function is called from several threads at once, and must give the same answer to
-    /// the same box; boxes within a box that is FULL or EMPTY must be so, too. An error, such as
-    /// [`Error::Callback`], ends the operation and is what that returns.
+    /// Makes a solid from a function that classifies the box `(min, max)` in model units. The box contains
+    /// the cell. (It is the cell itself on frames whose lattice planes are doubles.) FULL and EMPTY must be
+    /// proven for the whole box. The function is called from several threads at once. It must give the same
+    /// answer for the same box, and boxes within a FULL or EMPTY box must be FULL or EMPTY, too. An error of
+    /// the function, such as [`Error::Callback`], ends the operation, which returns that error.
     pub fn new(classify: F) -> Callback<'a, F> {
         let functions = Arc::new(Functions {
             classify,
@@ -105,9 +105,9 @@ impl<'a, F: Fn([f64; 3], [f64; 3]) -> Result<Verdict<()>, Error> + Send + Sync> 
         self
     }
 
-    /// The same solid with a function that classifies several boxes (lower and upper corner each) at once,
-    /// for hosts that do that faster than one by one; its answers must be those of the single form. It gets
-    /// as many verdicts to set as there are boxes, all of them undecided.
+    /// Adds a function that classifies several boxes (lower and upper corner each) at once, for hosts that do
+    /// that faster than one by one. Its answers must be those of the single form. The function gets as many
+    /// verdicts to set as there are boxes, all of them undecided.
     #[must_use]
     pub fn with_classify_many(
         self,
@@ -116,7 +116,7 @@ impl<'a, F: Fn([f64; 3], [f64; 3]) -> Result<Verdict<()>, Error> + Send + Sync> 
         self.with(|functions| functions.classify_many = Some(Box::new(classify)))
     }
 
-    /// The same solid with a function that decides single points (model units): the sampled rule needs it.
+    /// Adds a function that decides single points (model units). The sampled rule needs it.
     #[must_use]
     pub fn with_contains(
         self,
@@ -131,8 +131,8 @@ impl<'a, F: Fn([f64; 3], [f64; 3]) -> Result<Verdict<()>, Error> + Send + Sync> 
         .with(|functions| functions.contains_one = true)
     }
 
-    /// As [`with_contains`](Self::with_contains), for several points at once. It gets as many answers to set
-    /// as there are points.
+    /// As [`with_contains`](Self::with_contains), for several points at once. The function gets as many
+    /// answers to set as there are points.
     #[must_use]
     pub fn with_contains_many(
         self,
@@ -144,10 +144,11 @@ impl<'a, F: Fn([f64; 3], [f64; 3]) -> Result<Verdict<()>, Error> + Send + Sync> 
         })
     }
 
-    /// The same solid with a function that bounds distances: of each point (model units) it sets a number
-    /// whose magnitude is at most the point's distance from the surface, negative where the point lies inside
-    /// and positive where it lies outside; 0, or what is no number, says nothing. It is asked first: a cell
-    /// whose middle is further from the surface than its corners is decided, and the box is not classified.
+    /// Adds a function that bounds distances. For each point (model units) it sets a number whose magnitude
+    /// is at most the point's distance from the surface. The number is negative where the point lies inside,
+    /// and positive where it lies outside. 0 or NaN means unknown. This function is called first: a cell
+    /// whose middle is further from the surface than from its corners is decided, and its box is not
+    /// classified.
     #[must_use]
     pub fn with_distance(
         self,
@@ -156,13 +157,13 @@ impl<'a, F: Fn([f64; 3], [f64; 3]) -> Result<Verdict<()>, Error> + Send + Sync> 
         self.with(|functions| functions.distance = Some(Box::new(distance)))
     }
 
-    /// The same solid with a function that bounds the host's own f over boxes, where the solid is f ≤ 0. It
-    /// gets the box `(min, max)`, as the classifying function does, and a point next to the box's middle.
-    /// `None` says nothing of the box.
+    /// Adds a function that bounds the host's own f over boxes, where the solid is f ≤ 0. It gets the box
+    /// `(min, max)`, as the classifying function does, and a point next to the box's middle. `None` means
+    /// that nothing is known about the box.
     ///
-    /// The function is asked about undecided cells by whoever uses their [enclosures](Question::Enclosure):
-    /// [`measure`](crate::measure), [`bounding_box`](crate::bounding_box) and
-    /// [`Adaptive`](crate::solid::Adaptive) need far fewer splits with it. No verdict depends on it.
+    /// The function is called for undecided cells when an algorithm uses their
+    /// [enclosures](Question::Enclosure): [`measure`](crate::measure), [`bounding_box`](crate::bounding_box)
+    /// and [`Adaptive`](crate::solid::Adaptive) need far fewer splits with it. No verdict depends on it.
     ///
     /// ```
     /// use leafless::{Callback, Control, Frame, Interval, Verdict, measure, solid::GradientRange};
@@ -170,7 +171,7 @@ impl<'a, F: Fn([f64; 3], [f64; 3]) -> Result<Verdict<()>, Error> + Send + Sync> 
     /// let square = |low: f64, high: f64| Interval::new(if low * high < 0.0 { 0.0 } else { (low * low).min(high * high) }, (low * low).max(high * high)).unwrap();
     /// let bowl = Callback::new(move |min, max| {
     ///     let (x, y) = (square(min[0], max[0]), square(min[1], max[1]));
-    ///     // The margin is more than what is rounded.
+    ///     // The margin exceeds the rounding errors.
     ///     Ok(match (x.lower + y.lower - max[2] - 1e-14, x.upper + y.upper - min[2] + 1e-14) {
     ///         (least, _) if least >= 0.0 => Verdict::Empty,
     ///         (_, most) if most <= 0.0 => Verdict::Full,
@@ -198,9 +199,10 @@ impl<'a, F: Fn([f64; 3], [f64; 3]) -> Result<Verdict<()>, Error> + Send + Sync> 
         self.with(|functions| functions.gradient = Some(Box::new(gradient)))
     }
 
-    /// The same solid with a function that tells where the surface passes next to the middle of a box, and
-    /// how it bends there. It gets the same as the function of [`with_gradient`](Self::with_gradient), and is
-    /// asked for the same. If there are both, this one is asked where the other one proves nothing.
+    /// Adds a function that returns the position and the curvature of the surface next to the middle of a
+    /// box. It gets the same arguments as the function of [`with_gradient`](Self::with_gradient), and is
+    /// called for the same purposes. If there are both functions, this one is called where the other one
+    /// proves nothing.
     #[must_use]
     pub fn with_tangent(
         self,
@@ -209,10 +211,10 @@ impl<'a, F: Fn([f64; 3], [f64; 3]) -> Result<Verdict<()>, Error> + Send + Sync> 
         self.with(|functions| functions.tangent = Some(Box::new(tangent)))
     }
 
-    /// The same solid with a promise about the space around the universe: EMPTY if the shape ends inside.
-    /// Without it the shape counts as clipped by the universe. BRANCH means PARTIAL. The promise does not
-    /// hold of the shape under an affine map, whose universe is another one;
-    /// [`with_bounds`](Self::with_bounds) moves along.
+    /// Adds a promise about the space around the universe: EMPTY if the shape ends inside. Without the
+    /// promise the shape counts as clipped by the universe. BRANCH means PARTIAL. The promise does not apply
+    /// to the shape under an affine map, because its universe is another one. The box of
+    /// [`with_bounds`](Self::with_bounds) moves with the shape.
     #[must_use]
     pub fn with_exterior(self, exterior: Tag) -> Callback<'a, F> {
         self.with(|functions| {
@@ -220,14 +222,14 @@ impl<'a, F: Fn([f64; 3], [f64; 3]) -> Result<Verdict<()>, Error> + Send + Sync> 
         })
     }
 
-    /// The same solid with a promise that it lies in a box. On frames whose universe holds the box the shape
-    /// then ends inside, whatever else was promised of the space around.
+    /// Adds a promise that the shape lies in a box. On frames whose universe contains the box the shape then
+    /// ends inside, whatever else was promised about the space around.
     #[must_use]
     pub fn with_bounds(self, bounds: Bounds) -> Callback<'a, F> {
         self.with(|functions| functions.bounds = Some(bounds))
     }
 
-    /// The same solid with a fingerprint: the promise that every shape that is given this one is the same.
+    /// Adds a fingerprint: the promise that all shapes with this fingerprint are the same.
     #[must_use]
     pub fn with_fingerprint(self, fingerprint: Fingerprint) -> Callback<'a, F> {
         self.with(|functions| functions.fingerprint = Some(fingerprint))
@@ -255,11 +257,11 @@ impl<'a, F: Fn([f64; 3], [f64; 3]) -> Result<Verdict<()>, Error> + Send + Sync> 
         Some(placement.back.numbers().fold(all, |all, number| all.numbers(&[number])).finish())
     }
 
-    /// A cell is classified by the box around its inverse image, with as many calls as ever. A surface that
-    /// is not parallel to the lattice blurs by about a cell. Where the placement permutes axes, with signs
-    /// and powers of two as scales, and moves, nothing blurs, as far as coordinates are not rounded. Centres
-    /// of cells are moved back and rounded, and the host decides there; other points only where nothing is
-    /// rounded.
+    /// A cell is classified by the box around its inverse image, with as many calls as before. A surface that
+    /// is not parallel to the lattice blurs by about a cell. Nothing blurs where the placement permutes axes,
+    /// with signs and powers of two as scales and an offset, as far as coordinates are not rounded. The
+    /// centres of cells are moved back and rounded, and the host decides them. Other points are decided only
+    /// where nothing is rounded.
     fn placed(&self, placement: &Affine) -> Result<Option<Self>, Error> {
         let placement = match &self.placement {
             Some(before) => before.then(placement),
@@ -269,7 +271,7 @@ impl<'a, F: Fn([f64; 3], [f64; 3]) -> Result<Verdict<()>, Error> + Send + Sync> 
     }
 }
 
-/// A host's shape on a frame: handle and worker.
+/// A host's shape on a frame: both handle and worker.
 pub struct CallbackOnFrame<'a, F> {
     functions: Arc<Functions<'a, F>>,
     placement: Option<Placement>,
@@ -314,7 +316,7 @@ impl<'a, F: Fn([f64; 3], [f64; 3]) -> Result<Verdict<()>, Error> + Send + Sync> 
 }
 
 impl<F: Fn([f64; 3], [f64; 3]) -> Result<Verdict<()>, Error> + Send + Sync> CallbackOnFrame<'_, F> {
-    /// The box in the host's own space that is asked about for a cell.
+    /// The box in the host's own space that represents a cell.
     fn corners(&self, cell: Cell) -> Corners {
         let (min, max) = Cube { frame: &self.frame, cell }.bounds();
         match &self.placement {
@@ -323,7 +325,7 @@ impl<F: Fn([f64; 3], [f64; 3]) -> Result<Verdict<()>, Error> + Send + Sync> Call
         }
     }
 
-    /// The centre of a cell of the frame's depth in the host's own space, rounded.
+    /// The rounded centre of a cell of the frame's depth, in the host's own space.
     fn centre(&self, cell: Cell) -> [f64; 3] {
         let centre = centre(&self.frame, cell);
         match &self.placement {
@@ -334,7 +336,7 @@ impl<F: Fn([f64; 3], [f64; 3]) -> Result<Verdict<()>, Error> + Send + Sync> Call
         }
     }
 
-    /// Whether the host says that points of its own space lie inside, if it can tell.
+    /// Lets the host decide points of its own space, if it can.
     fn host_contains(&self, points: &[[f64; 3]], answers: &mut [Option<bool>]) -> Result<(), Error> {
         let Some(contains) = self.functions.contains.as_ref().filter(|_| !points.is_empty()) else {
             return Ok(());
@@ -345,15 +347,15 @@ impl<F: Fn([f64; 3], [f64; 3]) -> Result<Verdict<()>, Error> + Send + Sync> Call
         Ok(())
     }
 
-    /// What the host says of cells: of all that its distances leave open. With an error comes how many of the
-    /// cells are known from the first on.
+    /// Classifies cells: the distances decide first, and the host's boxes decide the rest. An error comes
+    /// with the number of cells, counted from the first, whose verdicts are known.
     fn classify(
         &self,
         cells: &[Cell],
         control: &Control<'_>,
         verdicts: &mut [Verdict<()>],
     ) -> Result<(), (usize, Error)> {
-        // The host is never asked about nothing.
+        // The host is never called with an empty list.
         if cells.is_empty() {
             return Ok(());
         }
@@ -362,7 +364,7 @@ impl<F: Fn([f64; 3], [f64; 3]) -> Result<Verdict<()>, Error> + Send + Sync> Call
         let boxed = |i: usize| self.corners(cells[i]);
         let Some(classify_many) = &self.functions.classify_many else {
             for i in open {
-                // A cancel waits for one call at the most.
+                // A cancellation waits for one call at most.
                 control.check().map_err(|error| (i, error))?;
                 let [min, max] = boxed(i);
                 verdicts[i] = (self.functions.classify)(min, max).map_err(|error| (i, error))?;
@@ -382,7 +384,7 @@ impl<F: Fn([f64; 3], [f64; 3]) -> Result<Verdict<()>, Error> + Send + Sync> Call
         Ok(())
     }
 
-    /// What the host's f, or its surface next to the middle, tells of a cell.
+    /// The enclosure of a cell, from the host's f, or from its surface next to the middle.
     fn slabs(&self, cell: Cell) -> Result<Option<Enclosure>, Error> {
         let Functions { gradient, tangent, .. } = &*self.functions;
         let cube = Cube { frame: &self.frame, cell };
@@ -415,7 +417,7 @@ impl<F: Fn([f64; 3], [f64; 3]) -> Result<Verdict<()>, Error> + Send + Sync> Call
         Ok(slab.and_then(|slab| Enclosure::of_one(slab, f64::INFINITY)))
     }
 
-    /// Decides cells by the distances of their middles; returns those that this leaves open.
+    /// Decides cells by the distances of their middles; returns the cells that are left open.
     fn by_distance(&self, cells: &[Cell], verdicts: &mut [Verdict<()>]) -> Result<Vec<usize>, Error> {
         let mut open = memory::with_capacity(cells.len())?;
         let Some(distance) = &self.functions.distance else {
@@ -433,8 +435,8 @@ impl<F: Fn([f64; 3], [f64; 3]) -> Result<Verdict<()>, Error> + Send + Sync> Call
         distance(&points, &mut found)?;
         for (i, (&cell, found)) in cells.iter().zip(found).enumerate() {
             let [min, max] = self.corners(cell);
-            // The corner that is farthest from the middle, each step rounded up by far less than a part in
-            // 2^48.
+            // The distance of the corner that is farthest from the middle. Each step is rounded up by far
+            // less than a part in 2^48.
             let reach = |axis: usize| (max[axis] - points[i][axis]).max(points[i][axis] - min[axis]);
             let square = (0..3).map(|axis| reach(axis) * reach(axis)).sum::<f64>();
             let radius = sqrt(square) * (1.0 + 16.0 * f64::EPSILON) + f64::MIN_POSITIVE;
@@ -490,7 +492,7 @@ impl<F: Fn([f64; 3], [f64; 3]) -> Result<Verdict<()>, Error> + Send + Sync> Batc
         let first = inside.len();
         inside.try_reserve(cells.len())?;
         inside.resize(first + cells.len(), None);
-        // A function that decides one point at a time is cancelled between pieces.
+        // A function that decides one point at a time can be cancelled between points.
         let piece = if self.functions.contains_one { 1 } else { cells.len().max(1) };
         for (k, points) in points.chunks(piece).enumerate() {
             let start = first + k * piece;
@@ -510,7 +512,8 @@ impl<F: Fn([f64; 3], [f64; 3]) -> Result<Verdict<()>, Error> + Send + Sync> Batc
         if self.functions.contains.is_none() {
             return Ok(());
         }
-        // The host decides points that are moved without rounding. Where others lie is not known well enough.
+        // The host decides the points that move without rounding. The places of the others are not known
+        // exactly enough.
         let (mut exact, mut places) = (Vec::new(), Vec::new());
         for (place, &point) in points.iter().enumerate() {
             if let Some(image) = placement.back.exact_image(point) {

@@ -1,4 +1,4 @@
-//! A host's shape that was moved: where cells and points lie in the host's own space.
+//! The positions of cells and points in the space of a host's shape that was moved.
 
 use super::gradient::GradientRange;
 use super::middle;
@@ -8,7 +8,7 @@ use crate::solid::{Enclosure, Slab};
 /// A box in model units: lower and upper corner.
 pub(super) type Corners = [[f64; 3]; 2];
 
-/// Where a shape was moved to.
+/// The placement of a moved shape.
 #[derive(Clone, Copy)]
 pub(super) struct Placement {
     pub(super) back: Inverse,
@@ -17,13 +17,13 @@ pub(super) struct Placement {
 }
 
 impl Placement {
-    /// Of a shape that lies in `bounds` before it is moved.
+    /// A placement of a shape that lies in `bounds` before it is moved.
     pub(super) fn new(placement: &Affine, bounds: Option<Bounds>) -> Placement {
         let bounds = bounds.and_then(|bounds| bounds.placed(placement));
         Placement { back: Inverse::of(placement), bounds }
     }
 
-    /// Moved once more.
+    /// This placement, followed by another one.
     pub(super) fn then(&self, placement: &Affine) -> Placement {
         let bounds = self.bounds.and_then(|bounds| bounds.placed(placement));
         Placement { back: self.back.then(placement), bounds }
@@ -35,8 +35,8 @@ impl Placement {
         [image.map(|x| x.lower), image.map(|x| x.upper)]
     }
 
-    /// What a range of the gradient over the box around a cell's inverse image proves of the cell; the value
-    /// is that at `at`, a point of the box.
+    /// The enclosure of a cell, from a range of the gradient over the box around the cell's inverse image.
+    /// The value is that at `at`, a point of the box.
     pub(super) fn enclosure(
         &self,
         range: &GradientRange,
@@ -45,8 +45,7 @@ impl Placement {
     ) -> Option<Enclosure> {
         let (min, max) = cube.bounds();
         let middle = middle(min, max);
-        // By the mean value theorem from `at` to the image of the cell's middle, both of which lie in the
-        // box.
+        // By the mean value theorem, from `at` to the image of the cell's middle. Both points lie in the box.
         let image = self.back.image(&middle.map(Interval::exactly));
         let way = |axis: usize| image[axis].minus(Interval::exactly(at[axis]));
         let value = (0..3).fold(range.value, |sum, axis| sum.plus(range.gradient[axis].times(way(axis))));
@@ -58,8 +57,8 @@ impl Placement {
         self.back.image(&cube.centre_from([0.0; 3]))
     }
 
-    /// A slab over the cube of half edge `half` around the inverse image of a cell's centre, as a slab over
-    /// the cell.
+    /// Converts a slab over the cube of half edge `half` around the inverse image of a cell's centre to a
+    /// slab over the cell.
     pub(super) fn slab(&self, slab: &Slab, half: f64, cube: &Cube<'_>) -> Option<Slab> {
         let ratio = Interval::exactly(cube.half_edge()).over(Interval::exactly(half));
         let pulled = self.back.pulled_back(&slab.normal.map(Interval::exactly)).map(|c| c.times(ratio));

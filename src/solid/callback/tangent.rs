@@ -1,4 +1,4 @@
-//! What a host knows of its surface next to a point: balls on both sides that touch it.
+//! Second-order bounds of a host's surface next to a point: balls on both sides that touch it.
 
 use crate::lattice::Interval;
 use crate::lattice::axes;
@@ -19,33 +19,33 @@ use crate::solid::Slab;
 ///
 /// A bound of the surface's own curvatures does not suffice, because another sheet of the surface may pass
 /// through the box. The reciprocal of the surface's reach suffices for both (Federer 1959). The reach is the
-/// greatest distance up to which every point has only one nearest point on the surface, so its reciprocal is
-/// no less than any curvature, nor than 2 over the width of any wall or gap. In a box that a single face of a
-/// part passes through, the reach of that face's surface suffices: 0 is the reciprocal for a plane, 1/r for a
-/// cylinder or a sphere.
+/// greatest distance up to which every point has only one nearest point on the surface. So its reciprocal is
+/// no less than any curvature, and no less than 2 over the width of any wall or gap. If a single face of a
+/// part passes through the box, the reach of that face's surface suffices: its reciprocal is 0 for a plane,
+/// and 1/r for a cylinder or a sphere.
 ///
 /// The slab is thinnest if `point` is the surface's nearest point to the middle of the box. Its thickness
 /// falls with the square of the cell's edge, down to twice the error.
 ///
-/// A NaN, a negative error, or a normal that is zero or infinite says nothing.
+/// The bounds prove nothing if there is a NaN or a negative error, or if the normal is zero or infinite.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct TangentBalls {
-    /// Where the balls touch, in model units.
+    /// The point where the balls touch, in model units.
     pub point: [f64; 3],
-    /// The direction that leads out of the solid there, of any length.
+    /// The direction out of the solid at that point, of any length.
     pub normal: [f64; 3],
     /// The reciprocal of the radius of the ball in the solid.
     pub inner_curvature: f64,
-    /// The reciprocal of the radius of the ball outside of it.
+    /// The reciprocal of the radius of the ball outside the solid.
     pub outer_curvature: f64,
-    /// By how much the surface may be off, in model units, because point and normal are rounded. Not
-    /// negative.
+    /// The greatest error of the surface in model units, from the rounding of point and normal. Not negative.
     pub error: f64,
 }
 
 impl TangentBalls {
-    /// What this proves of the cube of half edge `half` around a centre, as far as it lies in the box: a slab
-    /// from the centre, in half edges. `to_centre` leads from `point` to the centre.
+    /// The slab that these bounds prove for the cube of half edge `half` around a centre, as far as the cube
+    /// lies in the box. The slab is measured from the centre, in half edges. `to_centre` points from `point`
+    /// to the centre.
     pub(super) fn slab(&self, half: f64, to_centre: [Interval; 3]) -> Option<Slab> {
         let numbers = [self.inner_curvature, self.outer_curvature];
         if self.error >= 0.0 && !numbers.iter().chain(&self.point).any(|c| c.is_nan()) {
@@ -58,7 +58,7 @@ impl TangentBalls {
     }
 
     /// A lower bound of n · x over the points x of the cube, in the cube's own coordinates, that the promise
-    /// of one side does not cover. That side is the one from which n leads away.
+    /// for one side does not cover. That side is the one opposite to n.
     ///
     /// Let a be the vector from `point` to the cube's centre, h the cube's half edge, l the length of n, κ
     /// the curvature, and a = α n + t with t at right angles to n. The promise covers x if
@@ -82,7 +82,7 @@ impl TangentBalls {
         let factor = half.times(Interval::exactly(1.0).plus(bend.times(share)));
         let across = axes(|axis| a[axis].minus(n[axis].times(share)));
         let most = across.iter().fold(0.0, |sum: f64, c| sum + c.upper.max(-c.lower));
-        // (The sum of three, rounded.)
+        // (A sum of three terms, rounded.)
         let sideways = half.times(bend).times(Interval::exactly(most * (1.0 + 4.0 * f64::EPSILON)));
         let square_of_x = Interval::between(0.0, 1.5);
         let rest = along

@@ -1,4 +1,4 @@
-//! The surfaces of two solids under common numbers.
+//! The surfaces of two solids, numbered in common.
 
 use crate::control::Control;
 use crate::error::Error;
@@ -14,18 +14,18 @@ use alloc::vec::Vec;
 use hashbrown::HashMap;
 use hashbrown::hash_map::Entry;
 
-/// The signs of two functions: whether they are negative.
+/// The combinations of signs of two functions; `true` means negative.
 const SIGNS: [(bool, bool); 4] = [(false, false), (false, true), (true, false), (true, true)];
 
-/// Pairs of surfaces at most of which it is remembered what they exclude. (What is forgotten is found out
+/// The greatest number of pairs of surfaces whose contacts are remembered. (Forgotten contacts are computed
 /// again.)
 const REMEMBERED: usize = 1 << 12;
 
-/// What pairs of surfaces exclude of each other, as far as somebody has asked.
+/// The combinations of signs that pairs of surfaces exclude, as far as they were requested.
 #[derive(Default)]
 pub(super) struct Contacts {
     known: HashMap<[u32; 2], Contact>,
-    /// What they take beside the table.
+    /// The memory of the values beside the table, in bytes.
     heap_bytes: usize,
 }
 
@@ -35,19 +35,20 @@ impl Contacts {
     }
 }
 
-/// The surfaces of two solids. A surface that bounds both has one number, whichever side of it the one and
-/// the other lie on.
+/// The surfaces of two solids. A surface that bounds both solids has one number, even if they lie on opposite
+/// sides of it.
 pub(crate) struct Common {
     frame: Frame,
     surfaces: Vec<PlacedHalfSpace>,
-    /// On the universe.
+    /// The surfaces on the universe.
     pub(super) all: Vec<Placed>,
-    /// For each surface of each solid's list its number, and whether its function is the negative there.
+    /// For each surface of each solid's list, its common number, and whether its function has the opposite
+    /// sign there.
     names: [Vec<(u32, bool)>; 2],
 }
 
 impl Common {
-    /// `None` if one of them has no surfaces. O(surfaces).
+    /// Numbers the surfaces of two solids. `None` if one of them has no surfaces. O(surfaces).
     pub(super) fn of<A: Classifier, B: Classifier>(
         a: &A,
         b: &B,
@@ -79,7 +80,7 @@ impl Common {
             + names
     }
 
-    /// The function of both solids' functions in a cell; `None` if they have too many surfaces.
+    /// The intersection of both solids' functions in a cell; `None` if they have too many surfaces.
     pub(super) fn both(
         &self,
         cell: Cell,
@@ -94,7 +95,7 @@ impl Common {
         self.possible(cell, &both.with_table(Table(of_a.0 & of_b.0)).shortened(), contacts).map(Some)
     }
 
-    /// The table of the function of one solid, by the numbers in `both`, to which its surfaces are added.
+    /// The table of one solid's function, by the numbers in `both`; its surfaces are added to `both`.
     fn named(&self, both: &mut OpenSurfaces, solid: usize, own: &OpenSurfaces) -> Option<Table> {
         let (mut places, mut table) = ([0; OpenSurfaces::MOST], own.table());
         for (i, index) in own.variables() {
@@ -107,8 +108,8 @@ impl Common {
         Some(table.spread(&places[..own.indices().len()]))
     }
 
-    /// The same function on the combinations of signs that are possible in a cell, of as few surfaces as that
-    /// takes.
+    /// The same function on the combinations of signs that are possible in a cell, with as few surfaces as
+    /// necessary.
     pub(super) fn possible(
         &self,
         cell: Cell,
@@ -130,7 +131,7 @@ impl Common {
         })
     }
 
-    /// The combinations of signs that surfaces in contact leave.
+    /// The combinations of signs that remain after contacts between surfaces.
     fn left_by_contacts(
         &self,
         cell: Cell,
@@ -142,7 +143,7 @@ impl Common {
         for (i, a) in own.variables() {
             for (j, b) in own.variables().filter(|&(j, _)| j > i) {
                 let both = |(negative_a, negative_b)| Table::of(i, negative_a).0 & Table::of(j, negative_b).0;
-                // What surely occurs, nothing excludes.
+                // Contacts cannot exclude a combination that certainly occurs.
                 let is_open = |&signs: &(bool, bool)| {
                     left.0 & both(signs) != 0 && !met.is_seen(&[(i, signs.0), (j, signs.1)])
                 };
@@ -191,7 +192,7 @@ impl Common {
         self.surfaces[number as usize].is_plane()
     }
 
-    /// What two surfaces exclude of each other.
+    /// The combinations of signs that two surfaces exclude.
     fn contact<'c>(&self, pair: [u32; 2], contacts: &'c mut Contacts) -> Result<&'c Contact, Error> {
         let Contacts { known, heap_bytes } = contacts;
         if known.len() >= REMEMBERED && !known.contains_key(&pair) {
@@ -211,12 +212,12 @@ impl Common {
     }
 }
 
-/// Surfaces that are numbered as they are met.
+/// Surfaces that are numbered in the order in which they are found.
 #[derive(Default)]
 struct Numbered {
     pool: Pool,
-    /// For each number of the pool that of the surface, and whether its function is the negative of the
-    /// pool's.
+    /// For each number of the pool, the number of the surface, and whether the surface's function has the
+    /// opposite sign.
     places: Vec<(u32, bool)>,
     surfaces: Vec<PlacedHalfSpace>,
 }
@@ -236,7 +237,7 @@ impl Numbered {
                         (next, false)
                     }
                 },
-                // What has no exact numbers is like no other.
+                // A surface without exact numbers equals no other.
                 None => {
                     memory::push(&mut self.surfaces, surface.clone())?;
                     (next, false)

@@ -1,4 +1,4 @@
-//! What two solids have in common, cell by cell.
+//! The intersection of two solids, cell by cell.
 
 mod common;
 
@@ -18,11 +18,11 @@ use common::{Common, Contacts};
 
 /// The intersection of two solids on one frame.
 ///
-/// A cell where one of them is EMPTY is EMPTY, and where one is FULL it is what the other is. Where both know
-/// functions of surfaces, the function of both is looked at: of a surface that bounds both, the two sides
-/// have nothing in common, and of others bounds tell which sides have. From there on the cells below know
-/// nothing but that function. Where one of them knows no function, slabs of both may tell that the cell is
-/// EMPTY.
+/// A cell is EMPTY where one of the solids is EMPTY. Where one of them is FULL, the cell is as it is in the
+/// other. Where both solids are functions of surfaces, their common function is examined: the two sides of a
+/// surface that bounds both solids exclude each other, and bounds exclude sides of other surfaces. The cells
+/// below depend on that function alone. Where one of the solids has no function, slabs of both may prove that
+/// the cell is EMPTY.
 #[derive(Clone)]
 pub(crate) struct Joint<A, B> {
     a: A,
@@ -31,7 +31,7 @@ pub(crate) struct Joint<A, B> {
 }
 
 impl<A: Classifier, B: Classifier> Joint<A, B> {
-    /// O(surfaces).
+    /// Builds the intersection. O(surfaces).
     pub(crate) fn new(a: A, b: B, control: &Control<'_>) -> Result<Joint<A, B>, Error> {
         let common = Common::of(&a, &b, control)?.map(Arc::new);
         Ok(Joint { a, b, common })
@@ -78,12 +78,12 @@ impl<A: Classifier, B: Classifier> Classifier for Joint<A, B> {
     }
 }
 
-/// What is left to ask of a PARTIAL cell.
+/// The open data of a PARTIAL cell.
 #[derive(Clone)]
 enum Open<P, Q> {
-    /// Both solids; neither is EMPTY, and one is PARTIAL.
+    /// Both solids; neither is EMPTY, and at least one is PARTIAL.
     Both(Verdict<P>, Verdict<Q>),
-    /// The function that the intersection is.
+    /// The function of surfaces that the intersection is.
     Function(OpenSurfaces),
 }
 
@@ -91,12 +91,12 @@ enum Open<P, Q> {
 #[derive(Clone)]
 pub(crate) struct JointPart<P, Q> {
     open: Open<P, Q>,
-    /// A guess between 0 and 1, from the siblings, of how much of the cell lies in both.
+    /// The estimated share of the cell that lies in both solids, 0 to 1, from the siblings.
     pub(crate) likely: f64,
 }
 
 impl<P, Q> JointPart<P, Q> {
-    /// Of which of the two solids a cell is split when this one is.
+    /// For each of the two solids, whether splitting this cell splits a cell of that solid.
     pub(crate) fn splits(&self) -> [bool; 2] {
         match &self.open {
             Open::Both(a, b) => [matches!(a, Verdict::Partial(_)), matches!(b, Verdict::Partial(_))],
@@ -112,9 +112,9 @@ pub(crate) struct JointWorker<A, B> {
     b: B,
     common: Option<Arc<Common>>,
     contacts: Contacts,
-    /// How high the memory of both was before each step.
+    /// The heights of both memories before each step.
     heights: Vec<[usize; 2]>,
-    /// Splits of the second solid that were spared, because nothing of the first is there.
+    /// The number of splits of the second solid that were saved because the first solid is nowhere there.
     pub(crate) spared: u64,
 }
 
@@ -174,7 +174,7 @@ impl<A: Worker, B: Worker> Batch for JointWorker<A, B> {
         }
         self.a.split_many(&asked, control, &mut of_a)?;
         let mut of_a = of_a.into_iter();
-        // What of the first solid is known, and which cells of the second are worth a question.
+        // The children by the first solid, and the cells in which the second solid must be split.
         let mut firsts = memory::with_capacity(cells.len())?;
         let mut asked = Vec::new();
         for (cell, part) in cells {
@@ -263,7 +263,7 @@ impl<A: Worker, B: Worker> Worker for JointWorker<A, B> {
 
     fn answer(&mut self, cell: Cell, part: &Self::Part, question: Question<'_>) -> Result<(), Error> {
         match (&part.open, question) {
-            // (The numbers of surfaces are not those of a list that anybody has.)
+            // (The common numbers of surfaces belong to no list that a caller has.)
             (_, Question::Surfaces(_) | Question::Layers(_)) => Ok(()),
             (Open::Function(known), question) => match &self.common {
                 Some(common) => surface_cell::answer(&common.all, cell, known, question),
@@ -297,7 +297,7 @@ impl<A: Worker, B: Worker> Worker for JointWorker<A, B> {
 }
 
 impl<A: Worker, B: Worker> JointWorker<A, B> {
-    /// Remembers how high the memory is.
+    /// Records the current heights of the memories.
     fn step(&mut self) -> Result<(), Error> {
         memory::push(&mut self.heights, [self.a.mark(), self.b.mark()])
     }
@@ -337,7 +337,7 @@ impl<A: Worker, B: Worker> JointWorker<A, B> {
         Ok(met)
     }
 
-    /// What a cell is, by what it is in both.
+    /// The verdict on a cell, from the verdicts of both solids.
     fn meet(
         &mut self,
         cell: Cell,
@@ -367,7 +367,7 @@ impl<A: Worker, B: Worker> JointWorker<A, B> {
         Ok(Verdict::Partial(JointPart { open: Open::Both(a, b), likely }))
     }
 
-    /// What is known of both, as slabs.
+    /// The slabs of both solids.
     fn enclosure_of(
         &mut self,
         cell: Cell,
@@ -380,12 +380,12 @@ impl<A: Worker, B: Worker> JointWorker<A, B> {
     }
 }
 
-/// Whether no point of a cell lies in the solid, by its slabs.
+/// Returns whether the slabs prove that no point of a cell lies in the solid.
 fn is_empty(known: &Enclosure) -> bool {
     cut::reach::upper(known, [1.0, 0.0, 0.0]) == f64::NEG_INFINITY
 }
 
-/// A cell by its function.
+/// The verdict on a cell by its function.
 fn of_function<P, Q>(known: OpenSurfaces, likely: f64) -> Verdict<JointPart<P, Q>> {
     match known.settled() {
         Some(true) => Verdict::Full,
@@ -394,7 +394,7 @@ fn of_function<P, Q>(known: OpenSurfaces, likely: f64) -> Verdict<JointPart<P, Q
     }
 }
 
-/// What is known of a cell of one solid; nothing of FULL, which cuts nothing off.
+/// The enclosure of one solid in a cell; `None` for FULL, which cuts nothing off.
 fn enclosure<W: Worker>(
     worker: &mut W,
     cell: Cell,
@@ -416,7 +416,7 @@ fn sample<W: Worker>(worker: &mut W, cell: Cell, verdict: &Verdict<W::Part>) -> 
     })
 }
 
-/// The children of a cell by its verdict; those of a PARTIAL one are `split`.
+/// The verdicts on the children of a cell; for a PARTIAL cell they are those of `split`.
 fn children<P>(
     verdict: &Verdict<P>,
     split: impl FnOnce() -> Result<[Verdict<P>; 8], Error>,
@@ -440,10 +440,10 @@ fn is_nowhere<P>(children: &[Verdict<P>; 8]) -> bool {
     children.iter().all(|verdict| matches!(verdict, Verdict::Empty))
 }
 
-/// A guess for each of eight siblings, between 0 and 1, how much of it lies in the solid: from the siblings
-/// that share a face with it.
+/// For each of eight siblings, its estimated share in the solid, 0 to 1, from the siblings that share a face
+/// with it.
 fn guesses<P>(verdicts: &[Verdict<P>; 8]) -> [f64; 8] {
-    // What cannot be split any more lies in the solid nowhere that one could tell.
+    // A cell that cannot be split further counts as outside, because nothing shows otherwise.
     if verdicts.iter().all(|verdict| matches!(verdict, Verdict::Undecided)) {
         return [0.0; 8];
     }

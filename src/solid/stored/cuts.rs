@@ -1,4 +1,4 @@
-//! What the cuts of a stored octree say: cells below its own, and points.
+//! Answers from the cuts of a stored octree: cells below its own cells, and points.
 
 use super::StoredPart;
 use crate::error::{Damage, Error};
@@ -19,12 +19,12 @@ use once_cell::race::OnceBox;
 /// The surfaces of a tree on its universe.
 pub(super) struct PlacedCuts {
     surfaces: Vec<PlacedHalfSpace>,
-    /// In unit coordinates, for cells.
+    /// The surfaces in unit coordinates of the universe, for cells.
     cells: Vec<Placed>,
-    /// The least cube around the origin that holds the universe and whose edge is a power of two: points of
-    /// the model are exact in its unit coordinates, too.
+    /// A frame at the origin whose edge is the least power of two not below the magnitude of any coordinate
+    /// of the universe: points of the model stay exact in its unit coordinates.
     around: Frame,
-    /// In those coordinates; made when the first point is asked for.
+    /// The surfaces in unit coordinates of `around`; made for the first point.
     points: OnceBox<Vec<Placed>>,
 }
 
@@ -35,7 +35,7 @@ impl core::fmt::Debug for PlacedCuts {
 }
 
 impl PlacedCuts {
-    /// About how many bytes it takes.
+    /// The approximate number of bytes of the surfaces.
     pub(super) fn bytes(&self) -> usize {
         let placed =
             |list: &Vec<Placed>| memory::bytes_of(list) + list.iter().map(Placed::heap_bytes).sum::<usize>();
@@ -48,10 +48,11 @@ impl PlacedCuts {
             + self.points.get().map_or(0, placed)
     }
 
-    /// Of a tree with cuts, on a frame of its universe. O(surfaces).
+    /// Places the surfaces of a tree with cuts on a frame of its universe. O(surfaces).
     ///
     /// # Errors
-    /// [`Damage::Surface`] if one is none; [`Error::Limit`] if the exact map of its placements is too long.
+    /// [`Damage::Surface`] if one of the surfaces is invalid; [`Error::Limit`] if the exact map of its
+    /// placements is too long.
     pub(super) fn new(cuts: &CutsRef<'_>, frame: &Frame) -> Result<PlacedCuts, Error> {
         let mut surfaces = memory::with_capacity(cuts.surfaces.len())?;
         let mut cells = memory::with_capacity(cuts.surfaces.len())?;
@@ -78,13 +79,13 @@ impl PlacedCuts {
         &self.surfaces
     }
 
-    /// The surfaces on which a table depends, with their numbers in it; nothing if one is not there.
+    /// The surfaces on which a table depends, with their numbers in it; `None` if a surface is missing.
     fn variables(&self, cuts: &CutsRef<'_>, record: u32, table: Table) -> Option<Variables> {
         let CellCut::Table { ids, .. } = cuts.at(record as usize) else { return None };
         ids.iter().all(|&id| (id as usize) < self.cells.len()).then_some(Variables { ids, table })
     }
 
-    /// The children of a cell of which a table is known.
+    /// The verdicts on the children of a cell whose table is known.
     pub(super) fn split(
         &self,
         cuts: &CutsRef<'_>,
@@ -109,7 +110,7 @@ impl PlacedCuts {
         }))
     }
 
-    /// What is known of a cell of which a table is known.
+    /// Answers a question about a cell whose table is known.
     pub(super) fn answer(
         &self,
         cuts: &CutsRef<'_>,
@@ -148,8 +149,8 @@ impl PlacedCuts {
         Ok(())
     }
 
-    /// Whether a point of the universe (model units) is inside, by exact signs; `None` if nothing is known of
-    /// it there.
+    /// Returns whether a point of the universe (model units) is inside, by exact signs; `None` if it is not
+    /// known.
     pub(super) fn inside(
         &self,
         tree: &OctreeRef<'_>,
@@ -194,7 +195,7 @@ impl PlacedCuts {
     }
 }
 
-/// The surfaces of a record, and a function of them that remains.
+/// The surfaces of a record, and a remaining function of them.
 struct Variables {
     ids: CellIds,
     table: Table,
@@ -206,11 +207,11 @@ impl Variables {
     }
 }
 
-/// Where a finest cell lies.
+/// The cell that contains a finest cell.
 enum Place {
-    /// In a cell that is decided, or of which nothing is known.
+    /// A cell that is decided, or of which nothing is known.
     Settled(Tag),
-    /// In a PARTIAL cell of a level, of which there is a record.
+    /// A PARTIAL cell of a level, with its record.
     Record { record: usize, level: u8 },
 }
 
@@ -235,7 +236,7 @@ impl OctreeRef<'_> {
         }
     }
 
-    /// The universe, with its cut if it is one PARTIAL cell.
+    /// The verdict on the universe, with its cut if it is one PARTIAL cell.
     pub(super) fn root_with(&self, cuts: Option<&CutsRef<'_>>) -> Verdict<StoredPart> {
         match (self.root_tag(), cuts) {
             (Tag::Partial, Some(_)) => Verdict::Partial(StoredPart::Record(CutsRef::ROOT as u32)),
@@ -243,7 +244,7 @@ impl OctreeRef<'_> {
         }
     }
 
-    /// The children of a cell that the planes describe, with records of those that are PARTIAL.
+    /// The verdicts on the children of a cell that the planes describe, with records of the PARTIAL ones.
     pub(super) fn verdicts_with(
         &self,
         cuts: Option<&CutsRef<'_>>,

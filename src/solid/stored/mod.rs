@@ -21,17 +21,17 @@ use alloc::vec::Vec;
 use cuts::PlacedCuts;
 pub use sharded::ShardedOctree;
 
-/// Where a cut cell of a stored octree is described.
+/// The place of the description of a cut cell in a stored octree.
 #[derive(Debug, Clone, Copy)]
 pub enum StoredPart {
-    /// By all of an element.
+    /// A whole element.
     Element {
         /// Element level.
         level: u8,
         /// Index of the element.
         index: usize,
     },
-    /// By one octant of an element.
+    /// One octant of an element.
     Octant {
         /// Element level.
         level: u8,
@@ -40,20 +40,20 @@ pub enum StoredPart {
         /// The octant.
         octant: u8,
     },
-    /// By a record of a PARTIAL cell.
+    /// The record of a PARTIAL cell.
     Record(u32),
-    /// By a record of a PARTIAL cell that this one is a part of, of whose function this one remains.
+    /// The record of a PARTIAL cell that contains this cell, and the function that remains in this cell.
     Cut {
         /// The record.
         record: u32,
-        /// The truth table.
+        /// The truth table of the remaining function.
         table: u8,
     },
 }
 
 impl OctreeRef<'_> {
     /// The element that a part names. Links are followed from parents to children only, and the level rises
-    /// with each: whatever the bytes, a descent ends. A part that somebody made up leads nowhere.
+    /// with each link: a descent ends, whatever the bytes are. An invented part leads nowhere.
     fn described(&self, level: u8, index: usize) -> Planes {
         let level = level as usize;
         let on_level = level < self.levels() && self.on_level(index, level);
@@ -61,7 +61,7 @@ impl OctreeRef<'_> {
         entry.unwrap_or(Planes::uniform(Tag::Partial))
     }
 
-    /// The universe.
+    /// The verdict on the universe.
     pub(crate) fn root_verdict(&self) -> Verdict<StoredPart> {
         match self.root_tag() {
             Tag::Empty => Verdict::Empty,
@@ -74,8 +74,8 @@ impl OctreeRef<'_> {
         }
     }
 
-    /// The eight children of any cell: those of one that is not cut are like it. (As for
-    /// [`child_verdicts`](Self::child_verdicts).)
+    /// The verdicts on the eight children of any cell; the children of a decided cell are like the cell. (The
+    /// requirement is that of [`child_verdicts`](Self::child_verdicts).)
     pub(crate) fn verdicts_below(&self, verdict: &Verdict<StoredPart>) -> [Verdict<StoredPart>; 8] {
         match verdict {
             Verdict::Partial(part) => self.child_verdicts(part),
@@ -83,7 +83,8 @@ impl OctreeRef<'_> {
         }
     }
 
-    /// The eight children of a cut cell. (The links of a tree that is walked must have been checked.)
+    /// The verdicts on the eight children of a cut cell. (The links of a tree must have been checked before
+    /// it is walked.)
     pub(crate) fn child_verdicts(&self, part: &StoredPart) -> [Verdict<StoredPart>; 8] {
         match *part {
             StoredPart::Element { level, index } => {
@@ -113,7 +114,7 @@ impl OctreeRef<'_> {
     }
 }
 
-/// A tree that is borrowed, or owned: where its view comes from.
+/// The owner of a view: a borrowed tree, or an owned one.
 trait Tree: Clone + Send + Sync {
     fn tree(&self) -> &OctreeRef<'_>;
 }
@@ -130,7 +131,7 @@ impl Tree for Octree {
     }
 }
 
-/// A stored octree whose links are checked, on a frame of its universe: handle and worker.
+/// A stored octree with checked links, on a frame of its universe: both handle and worker.
 #[derive(Debug, Clone)]
 pub struct StoredOnFrame<T> {
     tree: T,
@@ -144,8 +145,8 @@ impl<T: Tree> StoredOnFrame<T> {
         if !frame.same_universe(tree.tree().frame()) {
             return Err(tree.tree().frame().mismatch(frame));
         }
-        // A descent remembers nothing, so elements with shared children would be visited again and again:
-        // 64^10 times in a file of a few kilobytes.
+        // A descent remembers nothing, so that elements with shared children would be visited again and
+        // again: 64^10 times in a file of a few kilobytes.
         tree.tree().ensure_links()?;
         tree.tree().ensure_cuts()?;
         let cuts = match &tree.tree().cuts {
@@ -184,7 +185,7 @@ impl<T: Tree> Classifier for StoredOnFrame<T> {
         match question {
             WholeQuestion::Surfaces(known) | WholeQuestion::Layers(known) => match &self.cuts {
                 Some(cuts) => *known = Some(memory::collected(cuts.surfaces().iter().cloned())?),
-                // No cell is crossed by any.
+                // No surface crosses a cell.
                 None if self.tree.tree().is_binary() => *known = Some(Vec::new()),
                 None => {}
             },
@@ -202,12 +203,12 @@ impl<T: Tree> FreeParts for StoredOnFrame<T> {
 
 #[allow(private_bounds)]
 impl<T: Tree> StoredOnFrame<T> {
-    /// The cuts, if there are any that are not damaged.
+    /// The cuts, if there are any and they are not damaged.
     fn cuts(&self) -> Option<(&PlacedCuts, &CutsRef<'_>)> {
         Some((self.cuts.as_deref()?, self.tree.tree().cuts.as_ref()?))
     }
 
-    /// What the record of a PARTIAL cell leaves to be found out.
+    /// The verdict after the record of a PARTIAL cell is taken into account.
     fn settled(&self, cuts: &CutsRef<'_>, verdict: Verdict<StoredPart>) -> Verdict<StoredPart> {
         let Verdict::Partial(StoredPart::Record(record)) = verdict else { return verdict };
         match cuts.at(record as usize) {
@@ -218,7 +219,7 @@ impl<T: Tree> StoredOnFrame<T> {
     }
 }
 
-/// Points of trees with cuts are decided by exact signs.
+/// Exact signs decide the points of trees with cuts.
 #[allow(private_bounds)]
 impl<T: Tree> Batch for StoredOnFrame<T> {
     fn likes_many(&self) -> bool {
@@ -304,14 +305,14 @@ impl<T: Tree> Worker for StoredOnFrame<T> {
                 memory::push(parts, (c as u8, part))?;
             }
         }
-        // Whoever asks sees a cut cell as PARTIAL with a part.
+        // The caller sees a cut cell as PARTIAL, with a part.
         Ok(Planes { lower: planes.full(), upper: planes.upper | planes.lower })
     }
 
     fn subtree(&self, part: &StoredPart) -> Option<Subtree<'_>> {
         let tree = self.tree.tree();
         match *part {
-            // (What cuts decide is not in the planes.)
+            // (The planes do not contain the decisions of cuts.)
             StoredPart::Element { level, index } if *tree.frame() == self.frame && self.cuts.is_none() => {
                 Some(Subtree { tree, level: level.into(), index, flip: false })
             }
@@ -320,14 +321,14 @@ impl<T: Tree> Worker for StoredOnFrame<T> {
     }
 }
 
-/// An octree, in memory or on disk, as a solid on its own universe. Built to fewer levels it is cut there
-/// (what is cut becomes PARTIAL), built to more its PARTIAL cells stay undecided. Its verdicts prove what its
-/// cells do ([`OctreeRef::proof`]).
+/// An octree, in memory or on disk, as a solid on its own universe. On a frame of fewer levels it is
+/// truncated: cells that are cut there become PARTIAL. On a frame of more levels its PARTIAL cells stay
+/// undecided. Its verdicts prove as much as its cells do ([`OctreeRef::proof`]).
 ///
-/// To put it on a frame, all links are checked, O(elements), unless the tree was made in memory:
-/// [`Error::Damaged`] if the tree was mapped unverified and they are damaged. Whoever writes an octree copies
-/// subtrees as they are: of an unverified one whose links are sound, but not what they lead to, the copy is
-/// damaged, too, or [`Error::Damaged`] is returned.
+/// Putting the octree on a frame checks all links, O(elements), unless the tree was made in memory. Damaged
+/// links of a tree that was mapped unverified are [`Error::Damaged`]. A writer of octrees copies subtrees
+/// unchanged. If an unverified tree has sound links but damaged contents, the copy is damaged, too, or
+/// [`Error::Damaged`] is returned.
 impl<'a> Solid for OctreeRef<'a> {
     type Classifier = StoredOnFrame<OctreeRef<'a>>;
 
@@ -343,10 +344,10 @@ impl<'a> Solid for OctreeRef<'a> {
         Some(*self.frame())
     }
 
-    /// Of what is stored, however its bricks are encoded. O(n).
+    /// Covers the stored cells, independent of the encoding of the bricks. O(n).
     fn fingerprint(&self) -> Option<Fingerprint> {
         let frame = self.frame();
-        // Of a brick that cannot be read a cell would be a branch.
+        // A cell of an unreadable brick counts as a branch.
         let bricks =
             (0..self.bricks.len()).map(|b| self.bricks.get(b).unwrap_or(Planes::uniform(Tag::Branch)));
         let words = |planes: Planes| [planes.lower, planes.upper];
@@ -364,7 +365,7 @@ impl<'a> Solid for OctreeRef<'a> {
     }
 }
 
-/// As a view of it, for whoever needs a solid that owns its tree.
+/// As a view of the octree, for callers that need a solid that owns its tree.
 impl Solid for Octree {
     type Classifier = StoredOnFrame<Octree>;
 
@@ -380,7 +381,7 @@ impl Solid for Octree {
 }
 
 impl CutsRef<'_> {
-    /// A fingerprint that has taken in the cuts.
+    /// Adds the cuts to a fingerprint.
     fn taken_in(&self, all: Fingerprinter) -> Fingerprinter {
         let surfaces = &self.surfaces;
         let doubles = surfaces.doubles.iter().map(|double| double.to_bits());

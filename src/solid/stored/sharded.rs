@@ -1,4 +1,4 @@
-//! A stored octree in shards, as a solid: nothing is joined.
+//! A stored octree in shards, as a solid: the shards are not joined.
 
 use super::{StoredOnFrame, StoredPart};
 use crate::control::Control;
@@ -16,12 +16,12 @@ use alloc::vec::Vec;
 use hashbrown::HashMap;
 use once_cell::race::OnceBox;
 
-/// An octree whose [shards](crate::Shard) lie in memory or on disk, each an octree: the top, and shards of
-/// cells that it leaves open. It is a solid without being joined. A shard is looked at when one of its cells
-/// is asked for. A cell whose shard is missing is PARTIAL.
+/// An octree in [shards](crate::Shard), in memory or on disk. Each shard is an octree: the top, and the
+/// shards of cells that the top leaves open. The octree is a solid without being joined. A shard is read when
+/// one of its cells is queried. A cell whose shard is missing is PARTIAL.
 ///
 /// Its cells are those of the octree that [`join`](crate::op::join) makes. It keeps no list of surfaces
-/// ([`WholeQuestion::Surfaces`]): an extended octree of it is made by joining.
+/// ([`WholeQuestion::Surfaces`]): to make an extended octree of it, join it.
 ///
 /// ```
 /// use leafless::solid::ShardedOctree;
@@ -41,16 +41,16 @@ pub struct ShardedOctree(Arc<Pieces>);
 
 struct Pieces {
     top: Octree,
-    /// The level of the shards' cells; 0 if there are none.
+    /// The level of the shards' cells; 0 if there are no shards.
     level: u8,
-    /// In ascending order of their cells.
+    /// The shards in ascending Morton order of their cells.
     shards: Vec<(u64, Octree)>,
     exterior: Tag,
     proof: Proof,
 }
 
 impl ShardedOctree {
-    /// Of a top and shards in any order. O(shards).
+    /// Combines a top and shards, in any order. O(shards).
     ///
     /// # Errors
     /// [`Error::FrameMismatch`] if the frames differ; [`Error::Argument`] if the cells are not of one level
@@ -68,7 +68,7 @@ impl ShardedOctree {
             }
             let is_there = cell.level <= top.frame().depth() && cell.at.iter().all(|&a| a >> cell.level == 0);
             if !is_there || *level.get_or_insert(cell.level) != cell.level {
-                return Err(wrong("must be of cells of one level of the frame"));
+                return Err(wrong("must belong to cells of one level of the frame"));
             }
             if exterior == Tag::Partial {
                 exterior = shard.view().exterior();
@@ -78,7 +78,7 @@ impl ShardedOctree {
         }
         list.sort_unstable_by_key(|(code, _)| *code);
         if list.windows(2).any(|pair| pair[0].0 == pair[1].0) {
-            return Err(wrong("must be of different cells"));
+            return Err(wrong("must belong to different cells"));
         }
         let level = level.unwrap_or(0);
         Ok(ShardedOctree(Arc::new(Pieces { top, level, shards: list, exterior, proof })))
@@ -102,12 +102,12 @@ impl ShardedOctree {
 }
 
 impl Pieces {
-    /// The shard of a cell of their level.
+    /// The index of the shard of a cell of the shards' level.
     fn number(&self, cell: Cell) -> Option<usize> {
         self.shards.binary_search_by_key(&cell.morton(), |(code, _)| *code).ok()
     }
 
-    /// Whether there are shards in a cell of their level, or of one above.
+    /// Returns whether there are shards in a cell of the shards' level, or of a level above.
     fn has_any_in(&self, cell: Cell) -> bool {
         let shift = 3 * (self.level - cell.level);
         let first = self.shards.partition_point(|(code, _)| code >> shift < cell.morton());
@@ -138,12 +138,12 @@ impl Solid for ShardedOctree {
     }
 }
 
-/// Shards on a frame of their universe.
+/// A sharded octree on a frame of its universe.
 #[derive(Clone)]
 pub struct ShardedOnFrame {
     pieces: Arc<Pieces>,
     top: StoredOnFrame<Octree>,
-    /// Those that somebody has asked for.
+    /// The shards that were queried so far.
     placed: Arc<Vec<OnceBox<StoredOnFrame<Octree>>>>,
 }
 
@@ -168,25 +168,25 @@ impl Classifier for ShardedOnFrame {
 
     fn answer_whole(&self, question: WholeQuestion<'_>, control: &Control<'_>) -> Result<(), Error> {
         match question {
-            // The surfaces of the top are not all.
+            // The surfaces of the top are not all surfaces.
             WholeQuestion::Surfaces(_) | WholeQuestion::Layers(_) => Ok(()),
             question => self.top.answer_whole(question, control),
         }
     }
 }
 
-/// What is known of a cell.
+/// The data about a cell.
 #[derive(Debug, Clone, Copy)]
 pub enum ShardedPart {
-    /// The top describes it.
+    /// A cell that the top describes.
     Top(StoredPart),
-    /// Nothing is known of it, but there are shards in it.
+    /// A cell of which nothing is known, but which contains shards.
     Open,
-    /// A shard describes it, by its number.
+    /// A cell that a shard describes, by the number of the shard.
     Shard(u32, StoredPart),
 }
 
-/// What one thread needs.
+/// The scratch memory of one thread.
 pub struct ShardedWorker {
     all: ShardedOnFrame,
     own: HashMap<u32, StoredOnFrame<Octree>>,
@@ -206,7 +206,7 @@ impl ShardedWorker {
         self.own.get_mut(&number).ok_or(Error::OutOfMemory)
     }
 
-    /// The verdict on a cell of which the top says this.
+    /// The verdict on a cell with this verdict in the top.
     fn of_top(&mut self, cell: Cell, verdict: Verdict<StoredPart>) -> Result<Verdict<ShardedPart>, Error> {
         Ok(match verdict {
             Verdict::Empty => Verdict::Empty,
@@ -227,7 +227,7 @@ impl ShardedWorker {
         })
     }
 
-    /// What a shard says of its cell.
+    /// The verdict of a shard on its cell.
     fn of_shard(&mut self, number: u32, cell: Cell) -> Result<Verdict<ShardedPart>, Error> {
         let worker = self.shard(number)?;
         let mut verdict = worker.root()?;
@@ -324,7 +324,7 @@ impl Worker for ShardedWorker {
 
     fn answer(&mut self, cell: Cell, part: &ShardedPart, question: Question<'_>) -> Result<(), Error> {
         match (part, question) {
-            // Numbers of surfaces are those of one shard.
+            // The numbers of surfaces are valid in one shard only.
             (_, Question::Surfaces(_) | Question::Layers(_)) | (ShardedPart::Open, _) => Ok(()),
             (ShardedPart::Top(part), question) => self.all.top.answer(cell, part, question),
             (ShardedPart::Shard(number, part), question) => self.shard(*number)?.answer(cell, part, question),

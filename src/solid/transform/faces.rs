@@ -1,10 +1,11 @@
-//! Planes of a solid's own lattice in which pieces of its boundary lie that no surface tells of.
+//! Finds lattice planes that contain pieces of a solid's boundary that belong to no known surface.
 //!
-//! A surface in a plane of the lattice crosses no cell, so that no cell keeps it: the cells on both sides are
-//! just something else. Once it is moved it crosses cells as any other.
+//! A surface in a plane of the solid's own lattice crosses no cell, so that no cell stores it: the cells on
+//! its two sides just have different verdicts. Once the solid is moved, the surface crosses cells as any
+//! other does.
 //!
-//! Where facets meet in such a plane the cells on both sides may know one of them each. That plane is a seam:
-//! no part of the boundary, but where it is known on which side one is, it is known which facet counts.
+//! Where facets meet in such a plane, each of the two cells beside it may know only one of the facets. That
+//! plane is a *seam*. A seam is no part of the boundary, but the side of the seam tells which facet counts.
 
 use crate::control::Control;
 use crate::error::Error;
@@ -18,22 +19,23 @@ use crate::solid::half_space::table::Table;
 use crate::solid::{OCTANTS, OpenSurfaces, Question, Verdict, Worker};
 use alloc::vec::Vec;
 
-/// A plane of a lattice: its axis, and its place in finest cells.
+/// A plane of a lattice: its axis, and its position in finest cells.
 pub(super) type LatticePlane = (usize, u32);
 
-/// Most planes that are kept, and most cells that are split to find them. A solid with more is one of cells.
+/// The greatest number of planes that are kept, and of cells that are split to find them. A solid beyond
+/// these limits is moved cell by cell.
 const MOST_PLANES: usize = 32;
 const MOST_SPLITS: usize = 1 << 20;
 
-/// Most seams that are kept: of the largest cells.
+/// The greatest number of seams that are kept: those of the largest cells.
 const MOST_SEAMS: usize = 1 << 13;
 
-/// So many times faces are divided to see whether cells are decided on both sides, and most cells of all
-/// faces that are split for that.
+/// How often a face is divided to find out whether the cells on both sides are decided, and the greatest
+/// number of cells that are split for all faces.
 const MOST_DIVISIONS: u8 = 4;
 const MOST_DIVIDED: usize = 1 << 14;
 
-/// A cell, or all that lies beyond the universe, and what it is, if that is known.
+/// A cell, or everything beyond the universe, with its verdict and its function, if these are known.
 struct Node<P> {
     cell: Option<Cell>,
     verdict: Verdict<P>,
@@ -51,17 +53,17 @@ struct Walk<'w, 'c, W> {
     seams: Vec<LatticePlane>,
 }
 
-/// Planes of a solid's own lattice, each list in order.
+/// Planes of a solid's own lattice; each list is sorted.
 #[derive(Debug, Default)]
 pub(super) struct LatticePlanes {
-    /// In which faces lie.
+    /// The planes that contain faces.
     pub(super) faces: Vec<LatticePlane>,
-    /// Which lie between cells that are not surely one function of surfaces.
+    /// The planes between cells that are not certainly one function of surfaces.
     pub(super) seams: Vec<LatticePlane>,
 }
 
-/// The planes; none if the faces lie in too many, or there are too many cells. `placed`: the surfaces on the
-/// universe of the solid's own frame.
+/// Returns the planes; none if the faces lie in too many planes, or if there are too many cells. `placed`
+/// holds the surfaces on the universe of the solid's own frame.
 pub(super) fn lattice_planes<W: Worker>(
     inner: &mut W,
     exterior: Tag,
@@ -114,7 +116,7 @@ impl<W: Worker> Walk<'_, '_, W> {
         Ok(Node { cell: Some(cell), verdict, known })
     }
 
-    /// The children of a PARTIAL cell; `None` of others, and at the end of the depth.
+    /// The children of a PARTIAL cell; `None` for other cells, and for cells of the frame's depth.
     fn divided(&mut self, node: &Node<W::Part>) -> Result<Option<Vec<Node<W::Part>>>, Error> {
         let (Some(cell), Verdict::Partial(part)) = (node.cell, &node.verdict) else { return Ok(None) };
         if cell.level == self.own.depth() {
@@ -127,7 +129,7 @@ impl<W: Worker> Walk<'_, '_, W> {
         Ok(Some(children))
     }
 
-    /// The same of a cell that is no function of surfaces, while any may be split.
+    /// As `divided`, but `None` for a cell that is a function of surfaces, and once a limit is reached.
     fn children(&mut self, node: &Node<W::Part>) -> Result<Option<Vec<Node<W::Part>>>, Error> {
         if node.known.is_some() || self.left == 0 || self.faces.len() > MOST_PLANES {
             return Ok(None);
@@ -137,7 +139,7 @@ impl<W: Worker> Walk<'_, '_, W> {
         self.divided(node)
     }
 
-    /// The same of a cell beside a face.
+    /// As `divided`, for a cell beside a face.
     fn divided_at_face(&mut self, node: &Node<W::Part>) -> Result<Option<Vec<Node<W::Part>>>, Error> {
         let Some(left) = self.left_of_faces.checked_sub(1) else { return Ok(None) };
         self.left_of_faces = left;
@@ -157,7 +159,7 @@ impl<W: Worker> Walk<'_, '_, W> {
         Ok(())
     }
 
-    /// Of two cells beside each other.
+    /// Collects the planes between two cells beside each other.
     fn between(&mut self, a: &Node<W::Part>, b: &Node<W::Part>, axis: usize) -> Result<(), Error> {
         let (lower, upper) = (self.children(a)?, self.children(b)?);
         if lower.is_none() && upper.is_none() {
@@ -179,7 +181,7 @@ impl<W: Worker> Walk<'_, '_, W> {
         Ok(())
     }
 
-    /// Whether the face between two cells, or a part of it, surely belongs to the boundary.
+    /// Returns whether the face between two cells, or a part of it, certainly belongs to the boundary.
     fn is_boundary(
         &mut self,
         a: &Node<W::Part>,
@@ -195,7 +197,7 @@ impl<W: Worker> Walk<'_, '_, W> {
             return Ok(true);
         }
         if let Some((is_lower, octant)) = beside(a, b, axis) {
-            // Of the larger cell only that child counts which the other lies beside.
+            // In the larger cell only the child beside the other cell counts.
             let Some(children) = self.divided_at_face(if is_lower { a } else { b })? else {
                 return Ok(false);
             };
@@ -217,7 +219,7 @@ impl<W: Worker> Walk<'_, '_, W> {
         Ok(false)
     }
 
-    /// Whether one function of the surfaces is what both are, or nothing is known of one.
+    /// Returns whether one function of the surfaces fits both cells. Also true if one function is unknown.
     fn agree(&mut self, a: &Node<W::Part>, b: &Node<W::Part>) -> Result<bool, Error> {
         let (Some(of_a), Some(of_b)) = (a.known, b.known) else { return Ok(true) };
         let (mut all, mut joined, mut agree) = (of_a, Joined::default(), true);
@@ -227,7 +229,7 @@ impl<W: Worker> Walk<'_, '_, W> {
             *place = number;
         }
         let values = [of_a.table(), of_b.table().spread(&places[..of_b.indices().len()])];
-        // (Beyond the universe the same is possible as before its end.)
+        // (Beyond the universe the same signs are possible as in the cell inside.)
         for (value, cell) in values.into_iter().zip([a.cell.or(b.cell), b.cell.or(a.cell)]) {
             let possible = cell.map_or(Ok(Table::FULL), |cell| self.possible(&all, cell))?;
             agree &= joined.take(value, possible);
@@ -235,7 +237,7 @@ impl<W: Worker> Walk<'_, '_, W> {
         Ok(agree)
     }
 
-    /// The combinations of signs that are possible in a cell by the sides of the surfaces.
+    /// The combinations of signs that the sides of the surfaces leave possible in a cell.
     fn possible(&self, all: &OpenSurfaces, cell: Cell) -> Result<Table, Error> {
         let mut possible = Table::FULL;
         for (i, &index) in all.indices().iter().enumerate() {
@@ -245,8 +247,8 @@ impl<W: Worker> Walk<'_, '_, W> {
     }
 }
 
-/// Of two cells the larger, if that is PARTIAL: whether it is the lower, and its octant that the other lies
-/// beside.
+/// For the larger of two cells, if it is PARTIAL: whether it is the lower one, and its octant beside the
+/// other cell.
 fn beside<P>(a: &Node<P>, b: &Node<P>, axis: usize) -> Option<(bool, u8)> {
     let (lower, upper) = (a.cell?, b.cell?);
     let is_open = |node: &Node<P>| matches!(node.verdict, Verdict::Partial(_));
@@ -257,12 +259,12 @@ fn beside<P>(a: &Node<P>, b: &Node<P>, axis: usize) -> Option<(bool, u8)> {
     is_larger.then(|| (false, lower.ancestor(upper.level + 1).octant() & !(1 << axis)))
 }
 
-/// The children on both sides of the middle of an axis.
+/// The pairs of children on both sides of the middle of an axis.
 fn pairs(axis: usize) -> impl Iterator<Item = (usize, usize)> {
     (0..8usize).filter(move |k| k >> axis & 1 == 0).map(move |k| (k, k | 1 << axis))
 }
 
-/// What a cell of the solid's own frame is; `None` if that is no function of surfaces.
+/// The function that the solid is in a cell of its own frame; `None` if it is no function of surfaces there.
 pub(super) fn known<W: Worker>(
     inner: &mut W,
     cell: Cell,
@@ -277,7 +279,7 @@ pub(super) fn known<W: Worker>(
     Ok(open)
 }
 
-/// The sides of a cell alone, as its own first octant.
+/// The sides of a single cell, as those of its first octant.
 pub(super) fn lone(placed: &Placed, cell: Cell) -> Result<Sides, Error> {
     let half = 2.0 * half_edge(cell);
     let low = cell.at.map(|at| f64::from(at) * half);

@@ -1,25 +1,26 @@
-//! Boxes of one lattice as seen from another.
+//! Maps boxes of one lattice to another lattice.
 
 use crate::lattice::axes;
 use crate::lattice::exact::Expansion;
 use crate::lattice::exact::{floor, sqrt, two_product};
 use crate::lattice::{Affine, Bounds, Cell, Cube, Frame, MAX_DEPTH};
 
-/// From the lattice of one frame to that of another, in finest cells: u = linear · k + offset.
+/// A map from the lattice of one frame to that of another, in finest cells: u = linear · k + offset.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct LatticeMap {
     pub(super) linear: [[f64; 3]; 3],
     offset: [f64; 3],
-    /// How far what [`image`](Self::image) computes for boxes of the universe may be off. Zero: not at all.
+    /// For each axis, the greatest error of [`image`](Self::image) for boxes of the universe. Zero means
+    /// exact.
     pub(super) error: [f64; 3],
-    /// Whether nothing is rounded along an axis, on which but one axis of the source counts.
+    /// For each axis, whether nothing is rounded along it; then only one axis of the source contributes.
     exact: [bool; 3],
 }
 
 impl LatticeMap {
-    /// The map p ↦ linear · (p − before) + after of model space. `linear` may be off by 5 · 2^-53,
-    /// relatively, in each entry; none of a row is that is `monomial`, and then it has one entry, which is a
-    /// power of two.
+    /// Builds the map p ↦ linear · (p − before) + after of model space. Each entry of `linear` may have a
+    /// relative error of 5 · 2^-53. A row with `monomial` set is exact: it has one entry, which is a power of
+    /// two.
     fn new(
         linear: &[[f64; 3]; 3],
         before: [f64; 3],
@@ -43,8 +44,8 @@ impl LatticeMap {
                 size += linear[i][j].abs() * (from.origin()[j].abs() + before[j].abs());
             }
             map.offset[i] = offset / cell;
-            // Every sum below has a dozen roundings at the most, each relative to this size; the entries
-            // bring five more.
+            // Each sum below has at most a dozen roundings, each relative to this size. The entries add five
+            // more.
             map.error[i] = 32.0 * f64::EPSILON * (reach + size / cell);
         }
         for i in 0..3 {
@@ -56,8 +57,8 @@ impl LatticeMap {
         map
     }
 
-    /// Whether the offset on an axis of a monomial map is one with which no sum is rounded; corrects it if
-    /// so.
+    /// Returns whether the offset along an axis of a monomial map leaves every sum unrounded. Corrects the
+    /// offset if so.
     fn offset_is_exact(
         &mut self,
         i: usize,
@@ -76,8 +77,8 @@ impl LatticeMap {
         are_sums_exact(span, offset) && sum.minus(&Expansion::sum([error, product])).sign() == 0
     }
 
-    /// The box around the image of a cube with this corner and edge (or half of both) of the source lattice,
-    /// without the error.
+    /// The box around the image of a cube of the source lattice, without the error. Corner and edge are given
+    /// in whole or half cells.
     #[inline(always)]
     pub(super) fn image(&self, corner: [f64; 3], edge: f64) -> ([f64; 3], [f64; 3]) {
         let (mut low, mut high) = ([0.0; 3], [0.0; 3]);
@@ -92,7 +93,7 @@ impl LatticeMap {
         (low, high)
     }
 
-    /// The same with the error.
+    /// As [`image`](Self::image), with the error.
     #[inline(always)]
     pub(super) fn around(&self, corner: [f64; 3], edge: f64) -> ([f64; 3], [f64; 3]) {
         let (mut low, mut high) = self.image(corner, edge);
@@ -102,18 +103,18 @@ impl LatticeMap {
         (low, high)
     }
 
-    /// The edge of the cells that the image of a unit cube is to be covered with: the cube's longest image,
-    /// or half of that again and again while a few dozen cells will do.
+    /// The edge of the cells that cover the image of a unit cube: the longest image of an edge of the cube,
+    /// halved as long as a few dozen cells suffice.
     fn grain(&self) -> f64 {
         const MOST: f64 = 32.0;
         let square = |j: usize| (0..3).map(|i| self.linear[i][j] * self.linear[i][j]).sum::<f64>();
-        // Rounding must not make what is equal a little larger.
+        // Rounding must not make an equal length a little larger.
         let mut edge = sqrt(square(0).max(square(1)).max(square(2))) * (1.0 + 1e-9);
         let extents = self.linear.map(|[a, b, c]| a.abs() + b.abs() + c.abs());
         let count = |edge: f64| extents.iter().map(|extent| extent / edge + 1.0).product::<f64>();
-        // Where nothing blurs, cells of the shortest image are as good as any smaller ones.
+        // Where nothing blurs, cells as long as the shortest image are as good as smaller ones.
         let least = if self.is_exact() { sqrt(square(0).min(square(1)).min(square(2))) } else { 0.0 };
-        // (More than so many are needed only where the map is far beyond what doubles resolve.)
+        // (More steps are needed only for maps far beyond the resolution of doubles.)
         for _ in 0..64 {
             if 0.5 * edge < least || count(0.5 * edge) > MOST {
                 break;
@@ -123,7 +124,7 @@ impl LatticeMap {
         edge
     }
 
-    /// Whether nothing is rounded along an axis.
+    /// Returns whether nothing is rounded along an axis.
     pub(super) fn is_exact_along(&self, axis: usize) -> bool {
         self.exact[axis]
     }
@@ -132,16 +133,16 @@ impl LatticeMap {
         self.error == [0.0; 3]
     }
 
-    /// Whether the map is an offset of whole cells.
+    /// Returns whether the map is an offset by whole cells.
     pub(super) fn keeps_centres(&self) -> bool {
         const UNIT: [[f64; 3]; 3] = [[1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]];
         self.is_exact() && self.linear == UNIT && self.offset.iter().all(|&c| c == floor(c) as f64)
     }
 }
 
-/// Whether all coordinates of the images of cells are doubles, and of their halves, where the universe's
-/// image spans `span` cells: they are multiples of a power of two, and smaller than 2^53 of it. That does not
-/// depend on the depth.
+/// Returns whether all coordinates of the images of cells, and their halves, are doubles. The image of the
+/// universe spans `span` cells. The coordinates are multiples of a power of two, and must be smaller than
+/// 2^53 times that power. The result does not depend on the depth.
 fn are_sums_exact(span: f64, offset: f64) -> bool {
     const STEP: f64 = 1.0 / (2u64 << MAX_DEPTH) as f64;
     const MOST: f64 = (1u64 << 53) as f64;
@@ -149,26 +150,26 @@ fn are_sums_exact(span: f64, offset: f64) -> bool {
     span + offset.abs() <= MOST * grain
 }
 
-/// The largest power of two that a number is a multiple of.
+/// The largest power of two that divides a number.
 fn lowest_bit(x: f64) -> f64 {
     if x == 0.0 {
         return f64::INFINITY;
     }
-    // Without its last bit it is a double, too, and so is the difference.
+    // The number without its last bit is a double, too, and so is the difference.
     let bits = x.abs().to_bits();
     let without = if bits & MANTISSA == 0 { 0 } else { bits & (bits - 1) };
     x.abs() - f64::from_bits(without)
 }
 
-/// The bits of a double that say nothing of its magnitude.
+/// The mantissa bits of a double.
 const MANTISSA: u64 = (1 << 52) - 1;
 
-/// Both ways between the lattice of a frame and that of the solid.
+/// The maps in both directions between the lattice of a frame and that of the solid.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Maps {
     pub(super) inward: LatticeMap,
     pub(super) outward: LatticeMap,
-    /// The largest cells to cover a finest cell's inverse image with.
+    /// The largest edge of cells that cover the inverse image of a finest cell.
     grain: f64,
 }
 
@@ -177,7 +178,7 @@ impl Maps {
         let rows = placement.rows();
         let linear = rows.map(|[x, y, z, _]| [x, y, z]);
         let offset = rows.map(|[_, _, _, t]| t);
-        // An axis that goes to one axis, to which no other goes, comes back exactly.
+        // An axis that maps to a single axis, which no other axis maps to, has an exact inverse.
         let (mut inverse, mut to, mut from) = (*inverse, [false; 3], [false; 3]);
         for (i, row) in linear.iter().enumerate() {
             let is_power = |c: f64| c.is_normal() && c.to_bits() & ((1 << 52) - 1) == 0;
@@ -195,12 +196,12 @@ impl Maps {
     }
 }
 
-/// What cells of the solid's own frame are held against.
+/// A target of the comparison with cells of the solid's own frame.
 pub(super) trait Target {
-    /// Which of up to eight things (bit k: thing k) the cell touches with this corner and edge.
+    /// Which of up to eight objects (bit k: object k) the cell with this corner and edge touches.
     fn touched(&self, corner: [f64; 3], edge: f64) -> u8;
 
-    /// The same of its eight children.
+    /// The same for the eight children of the cell.
     fn touched_by_children(&self, corner: [f64; 3], edge: f64) -> [u8; 8] {
         let half = 0.5 * edge;
         [0, 1, 2, 3, 4, 5, 6, 7].map(|octant: u8| {
@@ -209,23 +210,24 @@ pub(super) trait Target {
     }
 }
 
-/// The inverse images of the eight children of a cube, or of a single one.
+/// The inverse images of the eight children of a cube, or of a single cube.
 ///
-/// A cell touches those whose inner points neither a plane of its lattice nor one of the frame's separates
-/// from its own. A number that is none separates nothing.
+/// A cell touches an image unless a plane of the cell's lattice or of the frame separates their interiors. A
+/// NaN separates nothing.
 pub(super) struct Images<'m> {
     maps: &'m Maps,
-    /// Boxes around them.
+    /// The boxes around the images.
     low: [[f64; 8]; 3],
     high: [[f64; 8]; 3],
     /// The planes that bound the children, in the frame's finest cells.
     planes: [[f64; 3]; 3],
-    /// The largest cells to cover them with.
+    /// The largest edge of cells that cover the images.
     pub(super) grain: f64,
 }
 
 impl<'m> Images<'m> {
-    /// The images of the children of a cube (`parts` = 2), or of the cube itself (1), then eight times.
+    /// The images of the children of a cube (`parts` = 2), or eight copies of the image of the cube itself
+    /// (1).
     pub(super) fn new(maps: &'m Maps, cube: &Cube<'_>, parts: u32) -> Images<'m> {
         let (lower, upper) = cube.planes();
         let edge = (upper[0] - lower[0]) as f64 / parts as f64;
@@ -245,7 +247,7 @@ impl<'m> Images<'m> {
         images
     }
 
-    /// Those that may reach beyond the universe of this many cells. A number that is none may.
+    /// Those that may reach beyond the universe of `cells` cells. A NaN may.
     pub(super) fn reach_beyond(&self, cells: f64) -> u8 {
         (0..8).fold(0, |beyond, k| {
             let inside = (0..3).all(|axis| self.low[axis][k] >= 0.0 && self.high[axis][k] <= cells);
@@ -253,7 +255,7 @@ impl<'m> Images<'m> {
         })
     }
 
-    /// Those whose boxes reach between two planes of the solid's lattice.
+    /// Those whose boxes overlap the range between two planes of the solid's lattice.
     #[inline(always)]
     fn between(&self, axis: usize, low: f64, high: f64) -> u8 {
         let mut apart = 0;
@@ -317,20 +319,20 @@ impl Target for Images<'_> {
     }
 }
 
-/// The inverse image of a point: a cell touches it if it may hold it. Where there is no error, what lies on a
-/// plane goes where the shift of all centres by (ε, ε², ε³) leads.
+/// The inverse image of a point. A cell touches the image if it may contain it. Where there is no error, the
+/// shift of all centres by (ε, ε², ε³) decides for images on a plane.
 pub(super) struct Point<'m> {
     pub(super) map: &'m LatticeMap,
     pub(super) at: [f64; 3],
 }
 
 impl<'m> Point<'m> {
-    /// The image of a finest cell's centre.
+    /// The image of the centre of a finest cell.
     pub(super) fn centre(map: &'m LatticeMap, cell: Cell) -> Point<'m> {
         Point { map, at: map.image(cell.at.map(|a| a as f64 + 0.5), 0.0).0 }
     }
 
-    /// Whether a cell holds the point, as it was computed: of a face between two cells one of both does.
+    /// Returns whether a cell contains the computed image; a face between two cells belongs to one of them.
     pub(super) fn is_in(&self, corner: [f64; 3], edge: f64) -> bool {
         (0..3).all(|axis| self.is_between(axis, corner[axis], corner[axis] + edge))
     }
@@ -343,10 +345,10 @@ impl<'m> Point<'m> {
         }
     }
 
-    /// Whether it may lie beyond the universe of this many cells, as a bit.
+    /// Returns 1 if the image may lie beyond the universe of `cells` cells, else 0.
     pub(super) fn reaches_beyond(&self, cells: f64) -> u8 {
         if self.map.is_exact() {
-            // What no cell holds: of the universe's faces, too, the shift decides.
+            // The shift decides for the faces of the universe, too: then no cell contains the image.
             return (self.touched([0.0; 3], cells) == 0) as u8;
         }
         !(0..3).all(|axis| {
@@ -370,7 +372,7 @@ impl Target for Point<'_> {
     }
 }
 
-/// The frame whose cells have those of `frame` as their images, if there is one and its origin is a double.
+/// The frame whose cells have the cells of `frame` as their images, if it exists and its origin is a double.
 pub(super) fn source_frame(placement: &Affine, inverse: &[[f64; 3]; 3], frame: &Frame) -> Option<Frame> {
     let scale = |row: [f64; 3]| row.iter().map(|c| c.abs()).sum::<f64>();
     let factor = scale(inverse[0]);
@@ -379,7 +381,7 @@ pub(super) fn source_frame(placement: &Affine, inverse: &[[f64; 3]; 3], frame: &
     }
     let mut origin = [0.0; 3];
     for (axis, row) in inverse.iter().enumerate() {
-        // The lower end comes from the upper one where the axis is turned round.
+        // Where the axis is reversed, the lower end comes from the upper one.
         let (from, entry) = row.iter().enumerate().find(|(_, entry)| **entry != 0.0)?;
         let upper = if *entry < 0.0 { frame.edge() } else { 0.0 };
         let moved = Expansion::sum([frame.origin()[from], upper, -placement.rows()[from][3]]);
@@ -392,7 +394,7 @@ pub(super) fn source_frame(placement: &Affine, inverse: &[[f64; 3]; 3], frame: &
     Frame::new(origin, frame.edge() * factor, frame.depth()).ok()
 }
 
-/// A box that holds the inverse image of a box: somewhat larger than what is computed.
+/// A box that contains the inverse image of a box: somewhat larger than the computed box.
 pub(super) fn source_box(placement: &Affine, inverse: &[[f64; 3]; 3], bounds: &Bounds) -> [[f64; 3]; 2] {
     let (mut min, mut max) = ([0.0; 3], [0.0; 3]);
     for (i, row) in inverse.iter().enumerate() {
@@ -409,8 +411,8 @@ pub(super) fn source_box(placement: &Affine, inverse: &[[f64; 3]; 3], bounds: &B
     [min, max]
 }
 
-/// By how much the shortest way becomes shorter at the most under the inverse map: the reciprocal of the
-/// longest column of the map, about.
+/// The length of the shortest column of the inverse: approximately, the smallest factor by which the inverse
+/// map scales a length.
 pub(super) fn shrinkage(inverse: &[[f64; 3]; 3]) -> f64 {
     let square = |j: usize| (0..3).map(|i| inverse[i][j] * inverse[i][j]).sum::<f64>();
     sqrt(square(0).min(square(1)).min(square(2)))

@@ -30,28 +30,28 @@ use surfaces::Surfaces;
 
 /// A solid, known on a frame of its own, under an affine placement.
 ///
-/// A cell is FULL or EMPTY if all the cells of the solid's own frame are that its inverse image touches:
-/// cells of about its size, or larger ones that are decided. So a surface that is not parallel to the lattice
-/// blurs by about a cell, which a finer frame makes as small as one likes, down to the depth of the solid's
-/// own. Rounding is outward.
+/// A cell is FULL (or EMPTY) if its inverse image touches only FULL (or only EMPTY) cells of the solid's own
+/// frame: cells of about its size, or larger cells that are decided. So a surface that is not parallel to the
+/// lattice blurs by about a cell. A finer frame makes the blur as small as desired, down to the depth of the
+/// solid's own frame. Rounding is outward.
 ///
-/// Where the map takes lattice planes to lattice planes (a permutation of the axes, with signs and powers of
-/// two as scales, and an offset of whole cells) no rounding occurs and nothing blurs: of cells of one size
-/// each finest cell of the result is one of the solid's.
+/// Some maps take lattice planes to lattice planes: a permutation of the axes, with signs and powers of two
+/// as scales, and an offset by whole cells. Then nothing is rounded and nothing blurs: with cells of the same
+/// size, each finest cell of the result is one of the solid's.
 ///
-/// What sticks out of the solid's own universe is as [`exterior`](Classifier::exterior) tells: undecided,
-/// unless the solid is proven to end inside. Centres ([`Rule::Sampled`](crate::Rule::Sampled)) are decided
-/// where cells of the solid's own depth decide them, or, if the placement is an offset of whole cells, by the
-/// solid. With [`nearest`](Self::nearest) every centre is decided.
+/// Beyond the solid's own universe, [`exterior`](Classifier::exterior) decides: the result is undecided
+/// there, unless the solid is proven to end inside. Centres ([`Rule::Sampled`](crate::Rule::Sampled)) are
+/// decided where cells of the solid's own depth decide them, or, if the placement is an offset by whole
+/// cells, by the solid. With [`nearest`](Self::nearest) every centre is decided.
 ///
-/// What the solid knows of its surface in cells ([`Enclosure`]) is known of the result: one slab a cell, as
-/// thin as the surface is flat there, and where nothing blurs the solid's own enclosure, exactly.
+/// The solid's enclosures of its surface ([`Enclosure`]) give enclosures of the result: one slab a cell, as
+/// thin as the surface is flat there. Where nothing blurs, they are the solid's own enclosures, exactly.
 ///
-/// Surfaces that a stored solid keeps ([`build_extended`](crate::build_extended)) are moved exactly. Where
-/// one function of up to six of them is what all the cells are that a cell touches, the result is known as
-/// its source is, and splits below any depth; so a tree that is built from it keeps the same surfaces. So are
-/// faces in planes of the solid's own lattice, which cross no cell and which no cell keeps, if they are few.
-/// What the source gave up stays undecided.
+/// The surfaces of a stored solid ([`build_extended`](crate::build_extended)) are moved exactly. Where all
+/// the cells that a cell touches agree with one function of up to six surfaces, the result is known as its
+/// source is, and splits below any depth. A tree that is built from the result keeps the same surfaces. Faces
+/// in planes of the solid's own lattice, which cross no cell and which no cell keeps, are moved exactly too,
+/// if they are few. Cells that the source gave up stay undecided.
 ///
 /// ```
 /// use leafless::{Affine, Control, Csg, Frame, Rule, build, solid::Transform};
@@ -84,55 +84,56 @@ pub struct TransformClassifier<C> {
     bounds: Option<Bounds>,
     placement: Affine,
     proof: Proof,
-    /// Of a stored solid that keeps surfaces.
+    /// The moved surfaces of a stored solid that keeps surfaces.
     surfaces: Option<Arc<Surfaces>>,
-    /// Whether the cell that a centre comes from decides it.
+    /// Whether the cell that contains the inverse image of a centre decides the centre.
     nearest: bool,
 }
 
-/// A worker on a placed solid: lists of cells of the solid's own frame, one for each PARTIAL cell.
+/// A worker on a placed solid. It keeps a list of cells of the solid's own frame for each PARTIAL cell.
 pub struct TransformWorker<W: Worker> {
     inner: W,
     own: Frame,
     maps: Maps,
     placement: Affine,
     frame: Frame,
-    /// What is known of the space around the solid's own universe.
+    /// The state of the space around the solid's own universe.
     exterior: Tag,
     surfaces: Option<Arc<Surfaces>>,
     nearest: bool,
     known: Vec<Known<W::Part>>,
-    /// Per list its end among the cells, and the height that the solid's own memory had when it was made.
+    /// For each list, its end among the cells, and the height of the solid's own memory when the list was
+    /// made.
     lists: Vec<(usize, usize)>,
-    /// Cells at hand during a split, each with the children that it touches.
+    /// The cells at hand during a split, each with the children that touch it.
     at_hand: Vec<(Known<W::Part>, u8)>,
 }
 
-/// What is known of a PARTIAL cell.
+/// The data about a PARTIAL cell.
 #[derive(Debug, Clone, Copy)]
 pub struct TransformPart(What);
 
 #[derive(Debug, Clone, Copy)]
 enum What {
-    /// Where the cells of the solid's own frame that the cell touches lie in the scratch memory.
+    /// The number of the list in scratch memory of the cells of the solid's own frame that the cell touches.
     List(usize),
-    /// Which function of the moved surfaces the solid is.
+    /// The function of the moved surfaces that the solid is in the cell.
     Function(OpenSurfaces),
 }
 
-/// What was found before an error, if there was one.
+/// The results before an error, and the error, if there was one.
 type SoFar<T> = (T, Result<(), Error>);
 
-/// What is known of one cell of the solid's own frame.
+/// A cell of the solid's own frame, with its verdict.
 type Known<P> = (Cell, Verdict<P>);
 
-/// In which of up to eight cells (bit k: cell k) something has been met.
+/// The cells (bit k: cell k, of up to eight) in which each verdict was found.
 #[derive(Default)]
 struct Met {
     empty: u8,
     full: u8,
     undecided: u8,
-    /// What may yet be decided by splitting.
+    /// The cells that a further split may decide.
     part: u8,
 }
 
@@ -147,32 +148,32 @@ impl Met {
 }
 
 impl<S: Solid> Transform<S> {
-    /// The image under `placement` of a solid that is known on the frame `own`, and there to no more than its
-    /// depth.
+    /// The image under `placement` of a solid that is known on the frame `own`, down to the depth of that
+    /// frame.
     pub fn new(solid: S, own: &Frame, placement: &Affine) -> Transform<S> {
         Transform { solid: Arc::new(solid), own: Some(*own), placement: *placement, nearest: false }
     }
 
     /// The image under `placement` of a solid that is known on a frame of its own ([`home`](Solid::home)), or
-    /// on any. Then the frame is chosen, for each frame that the image is asked on: the inverse image of that
-    /// where cells are the images of cells, else the least cube around what there is of the solid, in cells
-    /// that are no larger.
+    /// on any frame. For a solid without a frame of its own, an own frame is chosen for each frame of the
+    /// image. Where the cells are images of cells, it is the inverse image of the frame. Otherwise it is the
+    /// least cube around the solid, with cells that are no larger.
     pub fn of(solid: S, placement: &Affine) -> Transform<S> {
         let own = solid.home();
         Transform { solid: Arc::new(solid), own, placement: *placement, nearest: false }
     }
 
-    /// The same, but that centres are decided by the nearest centre of the solid's own frame: a finest cell
-    /// is FULL under [`Rule::Sampled`](crate::Rule::Sampled) if the own cell from which its centre comes is,
-    /// or has its own centre inside. So an octree that is made of samples is sampled again, on a lattice that
-    /// is turned, coarser or finer. This is how voxels have always been moved: the nearest voxel, without
-    /// interpolation. A surface is displaced by up to half a diagonal of the solid's own cells. Verdicts on
-    /// cells stay as they are, and so do the other rules.
+    /// The same transform, with centres decided by the nearest centre of the solid's own frame. Under
+    /// [`Rule::Sampled`](crate::Rule::Sampled), a finest cell is FULL if the own cell that contains the
+    /// inverse image of its centre is FULL or has its own centre inside. So an octree that is made of samples
+    /// is sampled again, on a lattice that is turned, coarser or finer. This is the customary way to move
+    /// voxels: the nearest voxel, without interpolation. A surface is displaced by up to half a diagonal of
+    /// the solid's own cells. Verdicts on cells do not change, and neither do the other rules.
     ///
-    /// A centre that comes from a face between cells belongs to the cell above, as it does where cells hold
-    /// points. Only a centre that comes from a cell of which the solid itself does not know whether its
-    /// centre lies inside, like a PARTIAL cell of a stored octree, is [`Error::NotSampled`]:
-    /// [`resolve`](crate::op::resolve) decides those before.
+    /// An inverse image on a face between cells belongs to the upper cell, as points on faces always do.
+    /// [`Error::NotSampled`] is returned if the own cell that contains the inverse image does not know
+    /// whether its own centre lies inside, like a PARTIAL cell of a stored octree.
+    /// [`resolve`](crate::op::resolve) decides such cells beforehand.
     ///
     /// ```
     /// use leafless::{Affine, Control, Csg, Frame, Rule, build, solid::Transform};
@@ -180,7 +181,7 @@ impl<S: Solid> Transform<S> {
     /// let tree = build(&Csg::ball([8.0; 3], 4.0)?, &frame, Rule::Sampled, &control)?;
     /// let turned = Affine::new([[0.8, -0.6, 0.0, 3.0], [0.6, 0.8, 0.0, 0.0], [0.0, 0.0, 1.0, 0.0]])?;
     /// let moved = Transform::of(tree, &turned).nearest();
-    /// // Centres of cells that are twice as large come from corners of the tree's own.
+    /// // The centres of cells twice as large come from corners of the tree's own cells.
     /// let coarse = build(&moved, &Frame::new([0.0; 3], 16.0, 5)?, Rule::Sampled, &control)?;
     /// assert!((coarse.statistics().volume().lower / 268.1 - 1.0).abs() < 0.05);
     /// # Ok::<(), leafless::Error>(())
@@ -195,13 +196,13 @@ impl<S: Solid> Transform<S> {
         &self.solid
     }
 
-    /// The frame for the solid where it has none of its own.
+    /// Chooses an own frame for a solid that has none.
     fn own_frame(&self, frame: &Frame) -> Result<Frame, Error> {
         let inverse = self.placement.inverse_linear();
         if let Some(exact) = image::source_frame(&self.placement, &inverse, frame) {
             return Ok(exact);
         }
-        // The universe's inverse image, rounded generously.
+        // The inverse image of the universe, rounded generously.
         let [min, max] = image::source_box(&self.placement, &inverse, &Bounds::of(frame));
         let seen = Bounds::new(min, max);
         let cell = frame.cell_size() * image::shrinkage(&inverse);
@@ -211,15 +212,16 @@ impl<S: Solid> Transform<S> {
             let depth = (1..=MAX_DEPTH).find(fits);
             Ok((own.with_depth(depth.unwrap_or(MAX_DEPTH))?, depth.is_some()))
         };
-        // All there is of the solid, so that it ends inside; if that is too much, what can be seen of it.
+        // A frame around the whole solid, so that the solid ends inside. If that is too large, around its
+        // visible part.
         let bounds = self.solid.bounds();
         if let Some(Ok((own, true))) = bounds.map(around) {
             return Ok(own);
         }
         let common = seen.and_then(|seen| seen.common(&bounds?)).or(seen).or(bounds);
-        // (What both have in common may be flat.)
+        // (The intersection of both boxes may be flat.)
         let found = [common, seen].into_iter().flatten().find_map(|bounds| around(bounds).ok());
-        let problem = "takes the universe beyond what doubles can tell";
+        let problem = "moves the universe so far that doubles cannot resolve it";
         found.map(|(own, _)| own).ok_or(Error::Argument { name: "placement", problem })
     }
 }
@@ -258,7 +260,7 @@ impl<S: Solid> Solid for Transform<S> {
         Some(transform.numbers(self.placement.rows().as_flattened()).finish())
     }
 
-    /// What has not been moved yet is moved but once.
+    /// A transform that is the identity takes the new placement, so that the solid is moved only once.
     fn placed(&self, placement: &Affine) -> Result<Option<Self>, Error> {
         let moved = || Transform { placement: *placement, ..self.clone() };
         Ok(self.placement.is_identity().then(moved))
@@ -276,8 +278,8 @@ impl<S> Clone for Transform<S> {
 }
 
 impl<C: Classifier> TransformClassifier<C> {
-    /// The solid of a classifier under a placement: a pose changes a map, and nothing else. `bounds` is a box
-    /// around the placed solid, if one is known. O(1).
+    /// Places the solid of a classifier: a pose changes a map, and nothing else. `bounds` is a box around the
+    /// placed solid, if one is known. O(1).
     pub(crate) fn new(inner: C, placement: &Affine, frame: &Frame, bounds: Option<Bounds>) -> Self {
         let own = *inner.frame();
         let maps = Maps::new(placement, &placement.inverse_linear(), frame, &own);
@@ -298,7 +300,7 @@ impl<C: Classifier> TransformClassifier<C> {
         }
     }
 
-    /// Lets cells be decided by the moved surfaces of the solid, if it keeps any. O(surfaces).
+    /// Lets the moved surfaces of the solid decide cells, if the solid keeps any. O(surfaces).
     fn keep_surfaces(&mut self, control: &Control<'_>) -> Result<(), Error> {
         let surfaces = Surfaces::of(&self.inner, &self.placement, &self.frame, control)?;
         self.surfaces = surfaces.map(Arc::new);
@@ -310,8 +312,8 @@ impl<C: Classifier> TransformClassifier<C> {
         extent(&self.own, cell)
     }
 
-    /// Whether cells that are not EMPTY (not FULL, if `hollow`) may reach beyond the universe: some cells
-    /// that do are split to see.
+    /// Returns whether cells that are not EMPTY (not FULL, if `hollow`) may reach beyond the universe. Some
+    /// cells that do are split to find out.
     fn reaches_beyond(&self, hollow: bool) -> Result<bool, Error> {
         const MOST: usize = 512;
         let outward = self.maps.outward;
@@ -364,11 +366,12 @@ impl<C: Classifier> Classifier for TransformClassifier<C> {
         })
     }
 
-    /// Some hundred cells may be split to tell.
+    /// May split some hundred cells to find out.
     fn exterior(&self) -> Tag {
         match self.inner.exterior() {
             Tag::Empty if self.bounds.is_some_and(|bounds| bounds.is_within(&self.frame)) => Tag::Empty,
-            // What is FULL around its own universe must be so around the frame's.
+            // If the space around the solid's own universe is FULL, it must also be FULL around the frame's
+            // universe.
             Tag::Full if self.reaches_beyond(true).is_ok_and(|beyond| !beyond) => Tag::Full,
             Tag::Empty if self.reaches_beyond(false).is_ok_and(|beyond| !beyond) => Tag::Empty,
             _ => Tag::Partial,
@@ -383,7 +386,7 @@ impl<C: Classifier> Classifier for TransformClassifier<C> {
         self.inner.kept_bytes() + self.surfaces.as_ref().map_or(0, |surfaces| surfaces.bytes() as u64)
     }
 
-    /// Surfaces move along, and so do points.
+    /// Surfaces and points are moved.
     fn answer_whole(&self, question: WholeQuestion<'_>, control: &Control<'_>) -> Result<(), Error> {
         match question {
             WholeQuestion::Surfaces(known) => {
@@ -418,7 +421,7 @@ fn extent(frame: &Frame, cell: Cell) -> ([f64; 3], f64) {
 }
 
 impl<W: Worker> TransformWorker<W> {
-    /// Where the list of a part lies; of one that has none nowhere.
+    /// The range of a part's list among the cells; empty for a part without a list.
     fn range(&self, part: TransformPart) -> Range<usize> {
         let What::List(list) = part.0 else { return 0..0 };
         let first = list.checked_sub(1).map_or(0, |before| self.lists[before].0);
@@ -438,10 +441,10 @@ impl<W: Worker> TransformWorker<W> {
         Ok(TransformPart(What::List(self.lists.len() - 1)))
     }
 
-    /// What is known of a cell with a list, which is the last: a function of the moved surfaces in its place,
-    /// if there is one.
+    /// The verdict on a cell whose list is the last one. If the cell is a function of the moved surfaces,
+    /// that function replaces the list.
     fn known_of(&mut self, cell: Cell, part: TransformPart) -> Result<Verdict<TransformPart>, Error> {
-        // (What is known of a source is known of its image.)
+        // (A cell that is the image of a cell takes its answers from that cell.)
         let Some(surfaces) = self.surfaces.clone().filter(|_| self.source(cell, part).is_none()) else {
             return Ok(Verdict::Partial(part));
         };
@@ -457,17 +460,18 @@ impl<W: Worker> TransformWorker<W> {
         let mut target = surfaces::Target::new(&surfaces, &self.maps, &self.frame, cell);
         sources.extend(target.beyond(self.own.cells() as f64, self.exterior));
         let Some(known) = target.function(&sources)? else { return Ok(Verdict::Partial(part)) };
-        // (What the solid's own worker remembers is wanted for the cells at hand.)
+        // (The memory of the solid's own worker is still needed for the cells at hand.)
         self.known.truncate(range.start);
         self.lists.pop();
         Ok(verdict_of(known))
     }
 
-    /// Puts the cells of a list at hand that touch a target, those larger than its grain replaced by their
-    /// children. Where rounding makes a target so large that too many cells touch it, they stay larger.
+    /// Collects, from a list, the cells at hand that touch a target. Cells larger than the grain are replaced
+    /// by their children. Where rounding makes a target so large that too many cells touch it, the cells stay
+    /// larger.
     fn gather(&mut self, part: TransformPart, target: &impl Target, grain: f64) -> Result<(), Error> {
         let (range, own) = (self.range(part), self.own);
-        // (Points need the smallest cells, and where cells are the images of cells these are wanted.)
+        // (Points need the smallest cells; so do cells that are the images of cells.)
         let all = self.surfaces.is_none() || grain == 0.0 || self.maps.inward.is_exact();
         let TransformWorker { known, at_hand, inner, .. } = self;
         let is_complete = gather(&own, &known[range], target, grain, &mut AtOnce(inner, all), at_hand)?;
@@ -475,15 +479,16 @@ impl<W: Worker> TransformWorker<W> {
         Ok(())
     }
 
-    /// The same for many targets, whose cells are split together, round by round. With an error comes what is
-    /// known.
+    /// Collects cells for many targets; the cells to split are split together, round by round. An error comes
+    /// with the results so far.
     fn gather_many<T: Target>(
         &mut self,
         targets: &[(TransformPart, T, f64)],
         control: &Control<'_>,
     ) -> Result<SoFar<Gathered<W::Part>>, Error> {
         let mut splits = Gathered::new();
-        // The cells of a list are at most some levels too large, and each round splits all of one level.
+        // The cells of a list are at most some levels too large, and each round splits the cells of one
+        // level.
         loop {
             for (part, target, grain) in targets {
                 let (range, own) = (self.range(*part), self.own);
@@ -495,7 +500,7 @@ impl<W: Worker> TransformWorker<W> {
                 true => Ok(()),
                 false => control.check().and_then(|()| self.inner.split_many(&wanted, control, &mut answers)),
             };
-            // What does not answer does not go on.
+            // Without new answers another round would find nothing.
             let is_last = answers.is_empty() || done.is_err();
             splits.learn(&wanted, answers)?;
             if is_last {
@@ -504,7 +509,7 @@ impl<W: Worker> TransformWorker<W> {
         }
     }
 
-    /// Puts the cells of a list at hand by splits that were asked for before; `false` if some are missing.
+    /// Collects the cells at hand from splits that were requested before; `false` if some splits are missing.
     fn gather_known(
         &mut self,
         part: TransformPart,
@@ -516,8 +521,8 @@ impl<W: Worker> TransformWorker<W> {
         gather(&own, &self.known[range], target, grain, splits, &mut self.at_hand)
     }
 
-    /// What the cells at hand say of the eight children of a cell, or (`count` = 1) of the cell itself.
-    /// Centres may be asked for of finest cells.
+    /// The verdicts of the cells at hand on the eight children of a cell, or (`count` = 1) on the cell
+    /// itself. Only finest cells may be sampled at their centres.
     fn verdicts(
         &mut self,
         images: &Images<'_>,
@@ -542,7 +547,8 @@ impl<W: Worker> TransformWorker<W> {
         Ok(verdicts)
     }
 
-    /// What has been met, in those that reach `beyond` the solid's own universe also what is there.
+    /// The verdicts that were found; for images that reach `beyond` the solid's own universe, with the
+    /// exterior.
     fn met(&self, beyond: u8) -> Met {
         let mut met = Met::default();
         if beyond != 0 {
@@ -561,7 +567,7 @@ impl<W: Worker> TransformWorker<W> {
     }
 }
 
-/// What a cell is of which a function of surfaces is known.
+/// The verdict on a cell with a known function of surfaces.
 fn verdict_of(known: OpenSurfaces) -> Verdict<TransformPart> {
     match known.settled() {
         Some(true) => Verdict::Full,
@@ -570,11 +576,11 @@ fn verdict_of(known: OpenSurfaces) -> Verdict<TransformPart> {
     }
 }
 
-/// From so many cells at hand on none is split. A grain leads to some hundred at the most, unless the
-/// rounding errors of a map are larger than cells.
+/// No cell is split once so many are at hand. A grain leads to some hundred at the most, unless the rounding
+/// errors of a map are larger than cells.
 const MOST_AT_HAND: usize = 1024;
 
-/// Whether a cell is to be split.
+/// Returns whether a cell must be split.
 #[inline(always)]
 fn is_to_be_split<P>(
     own: &Frame,
@@ -586,8 +592,8 @@ fn is_to_be_split<P>(
     Ok(cell.level < own.depth() && extent(own, *cell).1 > grain && !splits.is_function(*cell, part)?)
 }
 
-/// Puts the cells of a list at hand that touch a target, those larger than its grain replaced by their
-/// children; `false` if some of these are not known.
+/// Collects, from a list, the cells at hand that touch a target. Cells larger than the grain are replaced by
+/// their children. Returns `false` if some of these are not known.
 fn gather<P: Clone>(
     own: &Frame,
     list: &[Known<P>],
@@ -610,7 +616,7 @@ fn gather<P: Clone>(
             memory::push(at_hand, (known.clone(), touched))?;
         }
     }
-    // Mostly one step is all; the first, and that to a point, may take more.
+    // Usually one step suffices. The first descent to a point may take more.
     let mut i = 0;
     while let Some((known, _)) = at_hand.get(i) {
         if at_hand.len() < MOST_AT_HAND && is_to_be_split(own, known, grain, splits)? {
@@ -623,7 +629,7 @@ fn gather<P: Clone>(
     Ok(is_complete)
 }
 
-/// Puts the children of a PARTIAL cell at hand that touch a target; `false` if they are not known.
+/// Puts those children of a PARTIAL cell at hand that touch a target; returns `false` if they are not known.
 fn replace<P: Clone>(
     own: &Frame,
     (cell, verdict): &Known<P>,
@@ -684,7 +690,7 @@ impl<W: Worker> Batch for TransformWorker<W> {
         self.inner.likes_many()
     }
 
-    /// Cells that touch the same cells of the solid's own frame have these split once.
+    /// Cells of the solid's own frame that several cells touch are split once.
     fn split_many(
         &mut self,
         cells: &[(Cell, TransformPart)],
@@ -745,7 +751,7 @@ impl<W: Worker> Batch for TransformWorker<W> {
             for (&place, answer) in places.iter().zip(&found) {
                 inside[place] = *answer;
             }
-            // What the solid did not come to is not known.
+            // Samples that the solid did not reach are not returned.
             inside.truncate(places.get(found.len()).map_or(inside.len(), |&place| place));
         }
         self.inner.release(mark);
@@ -757,7 +763,7 @@ impl<W: Worker> Batch for TransformWorker<W> {
         let back = Inverse::of(&self.placement);
         let (mut exact, mut places) = (Vec::new(), Vec::new());
         for (place, &point) in points.iter().enumerate() {
-            // (The solid knows points of its own universe.)
+            // (The solid decides only points of its own universe.)
             if let Some(image) = back.exact_image(point).filter(|image| self.own.cell_of(*image).is_some()) {
                 memory::push(&mut exact, image)?;
                 memory::push(&mut places, place)?;
@@ -769,7 +775,8 @@ impl<W: Worker> Batch for TransformWorker<W> {
         Ok(())
     }
 
-    /// The cells of the solid's own frame that a cell touches are found on the way to it.
+    /// A part needs the path: the cells of the solid's own frame that a cell touches are found on the way to
+    /// it.
     fn recall(&mut self, _: Cell) -> Option<TransformPart> {
         None
     }
@@ -813,7 +820,7 @@ impl<W: Worker> Worker for TransformWorker<W> {
                     *known = self.inner.moments(source, &own)?.map(|known| turn.moments(&known));
                 }
             }
-            // (In half edges of cells, which the map stretches as the surface.)
+            // (The area is measured in half edges of cells, which the map scales as it does the surface.)
             Question::Area(known) => {
                 if let Some((_, source, own)) = self.source(cell, *part) {
                     *known = self.inner.area(source, &own)?;
@@ -847,7 +854,7 @@ impl<W: Worker> Worker for TransformWorker<W> {
 }
 
 impl<W: Worker> TransformWorker<W> {
-    /// Whether the centre of a finest cell lies inside.
+    /// Returns whether the centre of a finest cell lies inside.
     fn contains_centre(&mut self, cell: Cell, part: TransformPart) -> Result<Option<bool>, Error> {
         let (inward, mark) = (self.maps.inward, self.inner.mark());
         let point = Point::centre(&inward, cell);
@@ -860,8 +867,8 @@ impl<W: Worker> TransformWorker<W> {
         Ok(inside)
     }
 
-    /// What the cells at hand say of the image of a centre; and the finest cell of the solid's own frame that
-    /// has the image as its centre, if that is left to ask.
+    /// The verdict of the cells at hand on the image of a centre; and, if that leaves the point open, the
+    /// finest cell of the solid's own frame whose centre is the image.
     #[allow(clippy::type_complexity)]
     fn at_point(&self, point: &Point<'_>) -> (Option<bool>, Option<(Cell, W::Part)>) {
         let Met { empty, full, undecided, part } = self.met(point.reaches_beyond(self.own.cells() as f64));
@@ -878,7 +885,7 @@ impl<W: Worker> TransformWorker<W> {
         }
     }
 
-    /// The same of the one cell from which the centre comes, as it was computed.
+    /// The same for the one cell that contains the computed image of the centre.
     #[allow(clippy::type_complexity)]
     fn at_nearest(&self, point: &Point<'_>) -> (Option<bool>, Option<(Cell, W::Part)>) {
         let holds = |cell: Cell| {
@@ -897,14 +904,14 @@ impl<W: Worker> TransformWorker<W> {
         }
     }
 
-    /// The cell of the solid's own frame that a cell is just the image of, with its part.
+    /// The cell of the solid's own frame whose image the cell is, exactly, with its part.
     fn source(&self, cell: Cell, part: TransformPart) -> Option<(Turn, Cell, W::Part)> {
         let [(source, Verdict::Partial(own))] = &self.known[self.range(part)] else { return None };
         let turn = Turn::of(&self.maps, &self.frame, cell, &self.own, *source)?;
         Some((turn, *source, own.clone()))
     }
 
-    /// What the cells of the solid's own frame know of a cell.
+    /// The enclosure of a cell from the cells of the solid's own frame.
     fn slab(&mut self, cell: Cell, part: TransformPart) -> Result<Option<Enclosure>, Error> {
         let range = self.range(part);
         let mut sources = memory::with_capacity(range.len())?;

@@ -1,25 +1,25 @@
-//! A cube that planes clip again and again.
+//! A cube that is clipped by planes.
 //!
-//! Faces are closed polygons, and each edge belongs to two faces, once in each direction. Both find the same
-//! point where a plane cuts the edge, and the edges that are left without a second face make loops, which
-//! become faces. So the surface stays closed however corners are rounded. What a plane cuts off lies beyond
-//! that plane, but for roundings, and winds around no point before it. So the surface goes on winding around
-//! all points that are further before each plane than rounding makes corners differ from the planes of their
-//! faces, and such points lie in the convex hull of the corners. Each plane is moved outward by more than
-//! that.
+//! Faces are closed polygons, and each edge belongs to two faces, once in each direction. Both faces find the
+//! same point where a plane cuts the edge. The edges that are left without a second face make loops, which
+//! become faces. So the surface stays closed, however corners are rounded. The part that a plane cuts off
+//! lies beyond that plane, up to roundings, and winds around no point before the plane. So the surface keeps
+//! winding around every point whose distance before each plane exceeds the rounding of corners relative to
+//! their planes. Such points lie in the convex hull of the corners. Each plane is moved outward by more than
+//! that rounding.
 
-/// Most corners, most faces, and most corners of a face. A body that would have more stays as it is, which is
-/// larger.
+/// The greatest numbers of corners, of faces, and of corners of a face. A body that would have more is not
+/// clipped, so that it stays larger.
 const CORNERS: usize = 64;
 const FACES: usize = 32;
 const AROUND: usize = 24;
 
-/// By so much planes are moved outward, relative to their coefficients. A corner is interpolated once a
-/// plane, and each time off by some units of the last place.
+/// The distance by which planes are moved outward, relative to their coefficients. Each plane interpolates a
+/// corner at most once, with an error of some units in the last place.
 const SLACK: f64 = 256.0 * f64::EPSILON;
 
-/// A convex body in the cube [−1, 1]³: no point of the cube on the inner sides of all planes lies outside of
-/// the hull of the corners.
+/// A convex body in the cube [−1, 1]³. Each point of the cube on the inner sides of all planes lies in the
+/// convex hull of the corners.
 #[derive(Clone)]
 pub(super) struct Polytope {
     corners: [[f64; 3]; CORNERS],
@@ -50,7 +50,7 @@ impl Face {
 }
 
 impl Polytope {
-    /// All of the cube.
+    /// The whole cube.
     pub(super) fn cube() -> Polytope {
         let mut own =
             Polytope { corners: [[0.0; 3]; CORNERS], count: 8, faces: [Face::EMPTY; FACES], face_count: 6 };
@@ -81,7 +81,7 @@ impl Polytope {
         (least - SLACK * size, most + SLACK * size)
     }
 
-    /// What of the body lies where `normal` · x + `offset` is not negative; `None` if nothing does.
+    /// The part of the body where `normal` · x + `offset` is not negative; `None` if it is empty.
     pub(super) fn clipped(&self, normal: [f64; 3], offset: f64) -> Option<Polytope> {
         let size: f64 = normal.iter().map(|c| c.abs()).sum::<f64>() + offset.abs();
         let offset = offset + SLACK * size;
@@ -97,14 +97,16 @@ impl Polytope {
         Some(if is_cut { self.cut(&values).unwrap_or_else(|| self.clone()) } else { self.clone() })
     }
 
-    /// The body without the corners whose values are negative; `None` if it has too many.
+    /// The body without the corners whose values are negative; `None` if it has too many corners or faces.
     fn cut(&self, values: &[f64; CORNERS]) -> Option<Polytope> {
         const NONE: u8 = u8::MAX;
         let mut own = Polytope { count: 0, face_count: 0, ..*self };
         let mut names = [NONE; CORNERS];
-        // Of the edges that are cut the corners before and beyond, and that between.
+        // For each edge that is cut: the corner before the plane, the corner beyond it, and the new corner
+        // between.
         let (mut cuts, mut cut_count) = ([(0u8, 0u8, 0u8); CORNERS], 0);
-        // From the corner where a face is left to that where it is come back to.
+        // For each new corner where the path around a face leaves the body, the corner where the path
+        // returns.
         let mut bridges = [NONE; CORNERS];
         for face in &self.faces[..self.face_count] {
             let (mut left, mut exit, mut first_entry) = (Face::EMPTY, NONE, NONE);
@@ -150,7 +152,7 @@ impl Polytope {
                 own.face_count += 1;
             }
         }
-        // The new face sees each bridge the other way round.
+        // The new face runs along each bridge in the opposite direction.
         let mut back = [NONE; CORNERS];
         for (from, &to) in bridges.iter().enumerate().filter(|(_, to)| **to != NONE) {
             back[usize::from(to)] = from as u8;
@@ -175,7 +177,7 @@ impl Polytope {
         Some(self.count as u8 - 1)
     }
 
-    /// Where an edge is cut.
+    /// The point where an edge is cut.
     fn between(&self, before: u8, beyond: u8, values: &[f64; CORNERS]) -> [f64; 3] {
         let [a, b] = [before, beyond].map(usize::from);
         let share = (values[a] / (values[a] - values[b])).clamp(0.0, 1.0);
@@ -183,7 +185,7 @@ impl Polytope {
         [0, 1, 2].map(|axis| from[axis] + share * (to[axis] - from[axis]))
     }
 
-    /// Whether it lies within so much of a straight line.
+    /// Returns whether the body lies within `radius` of a straight line.
     pub(super) fn is_needle(&self, radius: f64) -> bool {
         let corners = self.corners();
         let minus = |a: &[f64; 3], b: &[f64; 3]| [a[0] - b[0], a[1] - b[1], a[2] - b[2]];
@@ -204,7 +206,7 @@ impl Polytope {
     }
 }
 
-/// Whether a corner is cut off; what is no number cuts nothing off.
+/// Returns whether a corner is cut off; a NaN cuts nothing off.
 fn is_negative(value: f64) -> bool {
     value < 0.0
 }
@@ -241,7 +243,7 @@ mod tests {
         assert!((volume(&corner) - 1.0).abs() < 1e-9);
         assert_eq!(corner.corners().len(), 4);
         assert!(cube.clipped([1.0, 1.0, 1.0], -3.1).is_none());
-        // A thin one along an edge.
+        // A thin body along an edge.
         let needle = cube.clipped([1.0, 1.0, 0.0], -1.999).unwrap();
         assert!(needle.is_needle(2e-3) && !needle.is_needle(2e-4));
     }
@@ -254,7 +256,7 @@ mod tests {
             (state >> 11) as f64 / (1u64 << 52) as f64 - 1.0
         };
         for round in 0..2000 {
-            // Planes through or near one point, so that many are nearly in one.
+            // Planes through or near one point, so that many are nearly coplanar.
             let near = [random(), random(), random()];
             let mut body = Some(Polytope::cube());
             let mut sure = 48.0;

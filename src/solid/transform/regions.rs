@@ -1,12 +1,13 @@
-//! One function of few surfaces that says what pieces of a target say, told apart by where layers are known.
+//! One function of few surfaces that has the values of all pieces of a target, with layers taken into
+//! account.
 //!
-//! At a point a surface is known to be on one side, or the point lies in the width of a layer: that is the
-//! *state* of the point. What a table says there it says for all sides of the layers in whose widths the
-//! point lies. So a function may stand for a piece if for each state that occurs in the piece it says what
-//! the piece does, or nothing. It must not say anything where the piece says nothing. To say nothing where
-//! the piece does is to lose, which is allowed along lines: where two facets meet in a wall between two cells
-//! of the source, one of these knows both planes and the other one of them, and it is but in the widths
-//! around their edge that the other plane counts in that, too.
+//! At a point, a surface is known to be on one side, or the point lies within the width of a layer. These
+//! facts are the *state* of the point. A table's value at the point holds for all sides of the layers in
+//! whose widths the point lies. So a function may represent a piece if, for each state that occurs in the
+//! piece, it has the value of the piece or no value. It must not have a value where the piece has none. A
+//! missing value is a loss, which is allowed along lines. An example is two facets that meet in a wall
+//! between two cells of the source, where one cell knows both planes and the other cell knows one. The other
+//! plane counts in the second cell, too, but only within the widths around their edge.
 
 use super::polytope::Polytope;
 use crate::error::Error;
@@ -14,20 +15,21 @@ use crate::memory;
 use crate::solid::half_space::table::Table;
 use alloc::vec::Vec;
 
-/// Most states in a target.
+/// The greatest number of states in a target.
 const MOST_STATES: usize = 2048;
 
-/// Linear bounds of a surface's function over a target, from its centre in half edges.
+/// Linear bounds of a surface's function over a target, from the centre in half edges.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Flat {
     pub(super) gradient: [f64; 3],
     pub(super) low: f64,
     pub(super) high: f64,
-    /// Whether it is a layer, and then more than what `low` and `high` are off by.
+    /// For a layer, a number greater than the error of `low` and `high`; `None` for an exact surface.
     pub(super) layer: Option<f64>,
 }
 
-/// Where a point may lie: where the function is positive, in the width of a layer, and where it is negative.
+/// The possible places of a point: where the function is positive, in the width of a layer, and where the
+/// function is negative.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(super) struct Places {
     pub(super) inside: bool,
@@ -36,23 +38,23 @@ pub(super) struct Places {
 }
 
 impl Places {
-    /// On one side.
+    /// The places on one side.
     pub(super) fn side(inside: bool) -> Places {
         Places { inside, within: false, outside: !inside }
     }
 
-    /// The side, if that is all.
+    /// The side, if it is the only possible place.
     pub(super) fn known(self) -> Option<bool> {
         (!self.within && self.inside != self.outside).then_some(self.inside)
     }
 }
 
 impl Flat {
-    /// Of which nothing is known.
+    /// Bounds of a surface of which nothing is known.
     pub(super) const ANY: Flat =
         Flat { gradient: [0.0; 3], low: f64::NEG_INFINITY, high: f64::INFINITY, layer: None };
 
-    /// Where points of a body lie. (What is no number may be anywhere.)
+    /// The places of the points of a body. (A NaN may be anywhere.)
     #[allow(clippy::neg_cmp_op_on_partial_ord)]
     pub(super) fn places(&self, body: &Polytope) -> Places {
         let (least, most) = body.extremes(self.gradient);
@@ -70,8 +72,8 @@ impl Flat {
         }
     }
 
-    /// Whether it is a layer that is known nowhere in the cube but where the other is, and there to be on the
-    /// same side.
+    /// Returns whether this is a layer, and wherever in the cube its side is known, the other surface is
+    /// known to be on the same side.
     pub(super) fn holds(&self, other: &Flat) -> bool {
         let Some(margin) = self.layer else { return false };
         let length = |flat: &Flat| {
@@ -88,11 +90,11 @@ impl Flat {
         let ends = [self.low, self.high].map(|end| share * end);
         size += ends[0].abs() + ends[1].abs() + other.low.abs() + other.high.abs();
         let room = reach + share * margin + 16.0 * f64::EPSILON * size;
-        // (What is no number is not less.)
+        // (A comparison with NaN is false.)
         ends[0] + room <= other.low && other.high <= ends[1] - room
     }
 
-    /// What of a body lies in one of the places.
+    /// The part of a body that lies in one of the places.
     fn part(&self, body: &Polytope, place: Place) -> Option<Polytope> {
         let (up, down) = (self.gradient, self.gradient.map(|c| -c));
         match (place, self.layer) {
@@ -104,7 +106,7 @@ impl Flat {
         }
     }
 
-    /// How wide it is, in half edges.
+    /// The width of the layer, in half edges.
     fn width(&self) -> f64 {
         let [x, y, z] = self.gradient;
         (self.high - self.low) / libm::sqrt(x * x + y * y + z * z)
@@ -118,41 +120,41 @@ enum Place {
     Outside,
 }
 
-/// What is found of pieces.
+/// The result for all pieces.
 pub(super) enum Found {
     /// A function, and the combinations of signs for which it is known.
     Function(Table, Table),
-    /// None, because of this piece.
+    /// No function, because of this piece.
     Conflict(usize),
-    /// None.
+    /// No function.
     Nothing,
 }
 
 /// A state that occurs in a piece.
 struct State {
     piece: usize,
-    /// The combinations of signs that it has.
+    /// The combinations of signs of the state.
     signs: u64,
-    /// Whether a layer's width counts.
+    /// Whether the state lies within the width of a layer.
     is_wide: bool,
-    /// Whether to say nothing is a loss that does not matter.
+    /// Whether the loss of its value is allowed.
     may_be_lost: bool,
 }
 
-/// States of pieces, to be joined.
+/// The states of all pieces, to be joined.
 #[derive(Default)]
 pub(super) struct Regions {
     states: Vec<State>,
-    /// What each piece says.
+    /// The table of each piece.
     values: Vec<Table>,
 }
 
-/// Each surface, and where the points of a piece lie if that is known otherwise.
+/// For each surface, its bounds, and the side on which the piece lies, if that is known otherwise.
 pub(super) type Seen<'f> = [(Flat, Option<bool>)];
 
 impl Regions {
-    /// Takes in a piece, which says `value` of these surfaces; `false` if there are too many states. What is
-    /// lost must lie within `finest` of a line.
+    /// Adds a piece, whose function of these surfaces is `value`; returns `false` if there are too many
+    /// states. Losses must lie within `finest` of a line.
     pub(super) fn take(
         &mut self,
         body: &Polytope,
@@ -164,8 +166,8 @@ impl Regions {
         self.divide(body, seen, 0, (u64::MAX, 0.0), finest)
     }
 
-    /// Of those that lie in places of the first surfaces: these combinations of signs; the greatest width of
-    /// a layer in which they are.
+    /// Adds the states of the part of a body in given places of the first surfaces. `signs` are the
+    /// combinations of signs there; the width is the greatest of the layers that contain the part.
     fn divide(
         &mut self,
         body: &Polytope,
@@ -174,8 +176,7 @@ impl Regions {
         (signs, width): (u64, f64),
         finest: f64,
     ) -> Result<bool, Error> {
-        /// What is lost may be so many times as thick as the layers are wide: planes may meet at a small
-        /// angle.
+        /// The greatest thickness of a loss, in widths of the layers: planes may meet at a small angle.
         const SLENDER: f64 = 256.0;
         let Some(&(flat, side)) = seen.get(number) else {
             let piece = self.values.len() - 1;
@@ -214,10 +215,10 @@ impl Regions {
         Ok(true)
     }
 
-    /// One function that says what all pieces say.
+    /// Returns one function that has the values of all pieces.
     pub(super) fn joined(&self) -> Found {
         let (mut holds, mut fails) = (0, 0);
-        // What is known of points outside of all widths first.
+        // The values at points outside all widths come first.
         for is_wide in [false, true] {
             for state in self.states.iter().filter(|state| state.is_wide == is_wide) {
                 let value = self.values[state.piece].0;

@@ -1,18 +1,18 @@
-//! Cells that are the images of cells: what the solid knows of the one is known of the other, exactly.
+//! Cells that are images of cells: all answers carry over exactly.
 
 use super::image::Maps;
 use crate::lattice::{Cell, CellMoments, CubeMoments, Frame, Inverse, PAIRS, PLACES, axes};
 use crate::solid::{Crossing, Segment};
 
-/// A map of cells to cells as it acts on the coordinates of a cell, from its centre in half edges: y = P x
-/// with a signed permutation P.
+/// A map of cells to cells, as it acts on coordinates from a cell's centre in half edges: y = P x with a
+/// signed permutation P.
 pub(super) struct Turn {
     /// For each axis of the solid's own cell: the axis of the image, and the sign.
     axes: [(usize, f64); 3],
 }
 
 impl Turn {
-    /// The turn, if the source is just the inverse image of the cell, and nothing is rounded.
+    /// Returns the turn, if the source is exactly the inverse image of the cell, and nothing is rounded.
     pub(super) fn of(maps: &Maps, frame: &Frame, cell: Cell, own: &Frame, source: Cell) -> Option<Turn> {
         if !maps.inward.is_exact() {
             return None;
@@ -32,8 +32,8 @@ impl Turn {
         Some(Turn { axes: turn })
     }
 
-    /// Moments of the solid in the source as those in the cell. Axes change places and signs; the error
-    /// stays.
+    /// Converts moments of the solid in the source to moments in the cell. Axes change places and signs; the
+    /// error does not change.
     pub(super) fn moments(&self, known: &CellMoments) -> CellMoments {
         let CubeMoments { volume, first, second } = known.moments;
         let mut moved = CubeMoments { volume, first: [0.0; 3], second: [0.0; 6] };
@@ -47,7 +47,7 @@ impl Turn {
         CellMoments { moments: moved, error: known.error }
     }
 
-    /// A crossing in the source as one in the cell.
+    /// Converts a crossing in the source to a crossing in the cell.
     pub(super) fn crossing(&self, known: &Crossing) -> Crossing {
         let mut normal = [0.0; 3];
         for (i, (j, sign)) in self.axes.into_iter().enumerate() {
@@ -57,7 +57,7 @@ impl Turn {
     }
 }
 
-/// The inverse image of a segment, if no end is rounded.
+/// The inverse image of a segment, if neither end is rounded.
 pub(super) fn segment(back: &Inverse, segment: &Segment) -> Option<Segment> {
     Some(Segment { from: back.exact_image(segment.from)?, to: back.exact_image(segment.to)? })
 }

@@ -1,8 +1,8 @@
-//! The slab of a cell, from what the cells of the solid's own frame that it touches know of the surface.
+//! The slab of a cell, from the slabs of the cells of the solid's own frame that it touches.
 //!
 //! Each of these cells bounds the slab along one direction ν, the mean of their normals. A slab with normal n
-//! is one along ν if its offsets leave room for (ν − λ n) · u, which is small over a cell, whatever λ > 0 is.
-//! A FULL cell bounds the outer side by how far it reaches along ν, an EMPTY cell the inner side. A cell of
+//! becomes a slab along ν if its offsets leave room for (ν − λ n) · u, for any λ > 0. That term is small over
+//! a cell. A FULL cell bounds the outer side by its extent along ν, an EMPTY cell the inner side. A cell of
 //! which nothing is known bounds both. The worst bound of all cells counts.
 
 use super::image::Maps;
@@ -12,7 +12,7 @@ use crate::lattice::exact::sqrt;
 use crate::octree::Tag;
 use crate::solid::{Enclosure, Slab, SlabJoin};
 
-/// More than the roundings of a sum of a dozen products, each relative to the sum of the magnitudes.
+/// A bound of the roundings of a sum of a dozen products, each relative to the sum of the magnitudes.
 const ROUNDING: f64 = 32.0 * f64::EPSILON;
 
 /// A cell of the solid's own frame, in finest cells.
@@ -23,10 +23,10 @@ pub(super) struct Source {
     pub(super) enclosure: Option<Enclosure>,
 }
 
-/// A cell as it lies in the solid's own lattice, in finest cells.
+/// The position of a cell in the solid's own lattice, in finest cells.
 struct View<'m> {
     maps: &'m Maps,
-    /// Of the cell itself, in its own lattice.
+    /// The half edge of the cell itself, in its own lattice.
     half: f64,
     /// The image of its centre, rounded.
     centre: [f64; 3],
@@ -35,15 +35,15 @@ struct View<'m> {
     high: [f64; 3],
 }
 
-/// What is known along a direction: below `inner` all lies inside, beyond `outer` nothing does.
+/// Bounds along a direction: everything below `inner` lies inside, everything beyond `outer` lies outside.
 #[derive(Clone, Copy)]
 struct Known {
     inner: f64,
     outer: f64,
 }
 
-/// The slab of a cell, from those cells that it touches; `exterior` is what lies beyond the universe of
-/// `cells` finest cells.
+/// The slab of a cell, from the cells that it touches. `exterior` is the state beyond the universe of `cells`
+/// finest cells.
 pub(super) fn enclosure(
     maps: &Maps,
     cube: &Cube<'_>,
@@ -65,7 +65,7 @@ pub(super) fn enclosure(
     let slab = match view.mean(sources) {
         Some(direction) => view.slab(direction, known(direction)),
         None => {
-            // Where all cells are decided the surface may be a plane of their lattice.
+            // Where all cells are decided, the surface may be a plane of their lattice.
             let (mut best, mut thinnest) = (None, f64::INFINITY);
             for axis in 0..3 {
                 let [plus, minus] = [1.0, -1.0].map(|sign| {
@@ -74,7 +74,7 @@ pub(super) fn enclosure(
                     let known = known(direction);
                     (known.outer - known.inner, direction, known)
                 });
-                // (Of two that are as good as each other none is good.)
+                // (If both directions are equally good, neither is used.)
                 let thinner = if plus.0 < minus.0 { plus } else { minus };
                 if plus.0 != minus.0 && thinner.0 < thinnest {
                     (best, thinnest) = (Some((thinner.1, thinner.2)), thinner.0);
@@ -90,7 +90,7 @@ pub(super) fn enclosure(
 }
 
 impl<'m> View<'m> {
-    /// `None` if the cell's image is beyond what doubles can tell.
+    /// `None` if the cell's image is beyond the resolution of doubles.
     fn new(maps: &'m Maps, cube: &Cube<'_>) -> Option<View<'m>> {
         let (lower, upper) = cube.planes();
         let (corner, half) = (lower.map(f64::from), 0.5 * (upper[0] - lower[0]) as f64);
@@ -100,7 +100,7 @@ impl<'m> View<'m> {
         is_finite.then_some(View { maps, half, centre, low, high })
     }
 
-    /// The enclosure of a cell of which this one is the image, exactly.
+    /// The enclosure of the cell whose exact image this cell is.
     fn handed_on(&self, source: &Source) -> Option<Enclosure> {
         let mut enclosure = source.enclosure?;
         for slab in &mut enclosure.slabs {
@@ -119,7 +119,7 @@ impl<'m> View<'m> {
         })
     }
 
-    /// Up to six cubes around what of the cell's image lies beyond the universe.
+    /// Up to six cubes around the part of the cell's image beyond the universe.
     fn beyond(&self, cells: f64, exterior: Tag) -> [Option<Source>; 6] {
         let edge = (0..3).map(|axis| 2.0 * (self.high[axis] - self.low[axis])).fold(0.0, f64::max);
         [0, 1, 2, 3, 4, 5].map(|side| {
@@ -148,7 +148,7 @@ impl<'m> View<'m> {
         (sum != [0.0; 3]).then_some(sum)
     }
 
-    /// What all cells know along a direction.
+    /// The worst bounds of all cells along a direction.
     fn worst<'s>(&self, sources: impl Iterator<Item = &'s Source>, direction: [f64; 3]) -> Known {
         let nothing_against = Known { inner: f64::INFINITY, outer: f64::NEG_INFINITY };
         sources.fold(nothing_against, |worst, source| {
@@ -157,7 +157,7 @@ impl<'m> View<'m> {
         })
     }
 
-    /// What one cell knows along a direction, measured from the centre's image.
+    /// The bounds of one cell along a direction, measured from the centre's image.
     fn known(&self, source: &Source, direction: [f64; 3]) -> Known {
         let high = source.corner.map(|c| c + source.edge);
         let low = axes(|axis| source.corner[axis].max(self.low[axis]));
@@ -179,13 +179,13 @@ impl<'m> View<'m> {
                         .reduce(|a, b| Known { inner: a.inner.max(b.inner), outer: a.outer.max(b.outer) }),
                 };
                 let known = known.unwrap_or(NOTHING);
-                // Where the cell is not, it says nothing either.
+                // Outside its own extent, the cell restricts nothing.
                 Known { inner: known.inner.max(begin), outer: known.outer.min(end) }
             }
         }
     }
 
-    /// What one slab of a cell says along a direction in a box.
+    /// The bounds of one slab of a cell along a direction in a box.
     fn by_slab(
         &self,
         source: &Source,
@@ -203,7 +203,7 @@ impl<'m> View<'m> {
         }
         let centre = source.corner.map(|c| c + half);
         let rest = axes(|axis| direction[axis] - share * normal[axis]);
-        // What the components of the rest are off by, relative to these.
+        // The error of the components of the rest, relative to these.
         let size = axes(|axis| direction[axis].abs() + share * normal[axis].abs());
         let (least, most) = extremes(rest, low, high, centre, dot(size, [ROUNDING * half; 3]));
         let offset = axes(|axis| centre[axis] - self.centre[axis]);
@@ -227,7 +227,7 @@ impl<'m> View<'m> {
             let rounded = ROUNDING * self.half * ((a + b) + c);
             slack += direction[axis].abs() * (2.0 * inward.error[axis] + rounded);
         }
-        // (Rounding to a neighbour makes up for the difference itself.)
+        // (Rounding to a neighbour covers the error of the difference itself.)
         let Known { inner, outer } = known;
         Slab {
             normal: self.pulled_back(direction),
@@ -239,7 +239,7 @@ impl<'m> View<'m> {
 
 const NOTHING: Known = Known { inner: f64::NEG_INFINITY, outer: f64::INFINITY };
 
-/// Bounds of ν · (u − centre) over a box, and of `error` more.
+/// Bounds of ν · (u − centre) over a box, widened by `error`.
 fn extremes(direction: [f64; 3], low: [f64; 3], high: [f64; 3], centre: [f64; 3], error: f64) -> (f64, f64) {
     let (mut least, mut most, mut size) = (0.0, 0.0, 0.0);
     for axis in 0..3 {

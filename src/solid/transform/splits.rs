@@ -1,5 +1,4 @@
-//! Where the children of cells of the solid's own frame come from: from its worker at once, or from many
-//! splits that were asked for together.
+//! Sources of the children of cells of the solid's own frame: its worker, immediately, or batches of splits.
 
 use crate::error::Error;
 use crate::lattice::Cell;
@@ -13,14 +12,14 @@ pub(super) trait Splits<P> {
     /// The children of a cell; `None` if they are not known yet.
     fn children(&mut self, cell: Cell, part: &P) -> Result<Option<[Verdict<P>; 8]>, Error>;
 
-    /// Whether a cell is not to be split, because it is a function of surfaces: some of these may lie in
-    /// faces of its children.
+    /// Returns whether a cell must not be split because it is a function of surfaces: some of these may lie
+    /// in faces of its children.
     fn is_function(&mut self, _: Cell, _: &P) -> Result<bool, Error> {
         Ok(false)
     }
 }
 
-/// Splits at once, all cells or (`false`) those alone that are no functions of surfaces.
+/// Splits immediately: all cells, or (`false`) only cells that are no functions of surfaces.
 pub(super) struct AtOnce<'w, W>(pub(super) &'w mut W, pub(super) bool);
 
 impl<W: Worker> Splits<W::Part> for AtOnce<'_, W> {
@@ -35,7 +34,7 @@ impl<W: Worker> Splits<W::Part> for AtOnce<'_, W> {
     }
 }
 
-/// Splits that are known, and those that are wanted besides.
+/// Splits that are known, and splits that are still wanted.
 pub(super) struct Gathered<P> {
     known: HashMap<Cell, [Verdict<P>; 8]>,
     wanted: Vec<(Cell, P)>,
@@ -46,7 +45,7 @@ impl<P: Clone> Gathered<P> {
         Gathered { known: HashMap::new(), wanted: Vec::new() }
     }
 
-    /// What is wanted, each cell once; it is not wanted any more.
+    /// Returns the wanted cells, each once, and clears the list.
     pub(super) fn take_wanted(&mut self) -> Vec<(Cell, P)> {
         let mut wanted = core::mem::take(&mut self.wanted);
         wanted.sort_unstable_by_key(|(cell, _)| (cell.level, cell.at));
@@ -54,7 +53,7 @@ impl<P: Clone> Gathered<P> {
         wanted
     }
 
-    /// Takes answers in, in the order of the cells.
+    /// Stores the answers, in the order of the cells.
     pub(super) fn learn(&mut self, cells: &[(Cell, P)], answers: Vec<[Verdict<P>; 8]>) -> Result<(), Error> {
         self.known.try_reserve(answers.len())?;
         self.known.extend(cells.iter().map(|(cell, _)| *cell).zip(answers));

@@ -1,21 +1,21 @@
-//! The function of the moved surfaces that a solid is in a cell, from what the cells of its own frame say
-//! that the cell touches.
+//! The function of the moved surfaces that a solid is in a cell, from the functions in the cells of its own
+//! frame that the cell touches.
 //!
-//! Each of these cells knows a function of the surfaces that cross it. One function of up to six surfaces is
-//! looked for that has the value of each of them for all combinations of signs that are possible where it
-//! meets the target. What is possible there is told by the sides on which the target and the cell itself lie,
-//! exactly, and by bounds over a box around the piece that they have in common, in the target's coordinates
-//! and in those of the cell. Only where that does not suffice it is told by bounds of pairs, too.
+//! Each of these cells, the *sources*, knows a function of the surfaces that cross it. The search is for one
+//! function of up to six surfaces. It must have the value of each source for all combinations of signs that
+//! are possible where the source meets the target. The possible combinations follow exactly from the sides on
+//! which the target and the source lie. They also follow from bounds over a box around their intersection, in
+//! the target's coordinates and in those of the source. Bounds of pairs of surfaces are used only where that
+//! does not suffice.
 //!
-//! Where there are layers, pieces are convex bodies, and their values are told apart state by state
-//! ([`regions`](super::regions)). Layers of one plane that hold each other count as the widest of them, which
-//! is known in fewer places, and a surface that lies in a layer all over the target counts as that layer.
-//! Where that does not suffice either, because facets meet in a wall between two cells each of which knows
-//! one of them, the wall itself becomes a surface: on one side of it the solid is one function, on the other
-//! another.
+//! Where there are layers, the intersections are convex bodies, and their values are distinguished state by
+//! state ([`regions`](super::regions)). If layers of one plane contain each other, only the widest layer
+//! counts: its sides are known in fewer places. A surface that lies in a layer all over the target counts as
+//! that layer. That may not suffice if facets meet in a wall between two cells, each of which knows one
+//! facet. Then the wall itself becomes a surface, with one function on each side.
 //!
-//! Signs are those of the surfaces, so nothing is rounded that counts. From there on the cells below know
-//! nothing but the function.
+//! Signs are those of the surfaces, so that no decision depends on rounding. The cells below depend on the
+//! function alone.
 
 use super::faces::{LatticePlane, LatticePlanes, lattice_planes, lone};
 use super::image::Maps;
@@ -36,26 +36,26 @@ use crate::solid::{AskWhole, Batch, Classifier, HalfSpace, OpenSurfaces, PlacedH
 use alloc::sync::Arc;
 use alloc::vec::Vec;
 
-/// The surfaces of a solid that is moved: where they are, and where they are moved to.
+/// The surfaces of a solid that is moved: their original places and their new places.
 #[derive(Default)]
 pub(super) struct Surfaces {
     pub(super) moved: Vec<PlacedHalfSpace>,
-    /// On the universe of the solid's own frame.
+    /// The original surfaces, on the universe of the solid's own frame.
     before: Vec<Placed>,
-    /// On that of the frame.
+    /// The moved surfaces, on the universe of the frame.
     pub(super) after: Vec<Placed>,
-    /// For each of them the next wider layer of the same plane, if there is one.
+    /// For each surface, the next wider layer of the same plane, if there is one.
     wider: Vec<Option<u32>>,
-    /// The last of them: planes of the solid's own lattice, seams after faces.
+    /// The planes of the solid's own lattice, the last surfaces of the list: faces, then seams.
     planes: LatticePlanes,
 }
 
-/// By so much a layer is widened, and by the next once more, where two cells of the source cannot be told
-/// from each other otherwise: their facets meet in the wall between them, or nearly there, and one facet's
-/// width takes up more of it than the other's.
+/// The factors by which a layer is widened, one after the other, where two source cells cannot be
+/// distinguished otherwise. Their facets meet in the wall between the cells, or nearly there, and the width
+/// of one facet takes up more of the wall than that of the other.
 const WIDER: [f64; 4] = [3.0, 3.0, 8.0, 32.0];
 
-/// A layer that would be wider than that share of a finest cell stays as it is.
+/// The greatest width of a widened layer, in finest cells. A layer that would become wider is not widened.
 const MOST_WIDENED: f64 = 1.0;
 
 impl core::fmt::Debug for Surfaces {
@@ -64,26 +64,27 @@ impl core::fmt::Debug for Surfaces {
     }
 }
 
-/// A cell of the solid's own frame that a target touches, or a piece of what lies beyond the universe.
+/// A cell of the solid's own frame that a target touches, or a piece of the space beyond the universe.
 pub(super) struct Source {
     pub(super) cell: Option<Cell>,
-    /// Corners, in finest cells.
+    /// The lower and the upper corner, in finest cells.
     pub(super) low: [f64; 3],
     pub(super) high: [f64; 3],
-    /// What the solid is there.
+    /// The function that the solid is there.
     pub(super) known: OpenSurfaces,
 }
 
 impl Source {
-    /// What is decided.
+    /// The constant function of a decided cell.
     pub(super) fn constant(tag: Tag) -> OpenSurfaces {
         OpenSurfaces::constant(tag == Tag::Full)
     }
 }
 
 impl Surfaces {
-    /// Those of a classifier, and the planes of its lattice in which its boundary lies; `None` if there are
-    /// none, or one has no exact place. O(surfaces), and some thousand cells are split.
+    /// Collects the surfaces of a classifier, and the planes of its lattice that contain pieces of its
+    /// boundary. `None` if there are no surfaces, or if one has no exact place. O(surfaces), and some
+    /// thousand cells are split.
     pub(super) fn of<C: Classifier>(
         inner: &C,
         placement: &Affine,
@@ -92,7 +93,7 @@ impl Surfaces {
     ) -> Result<Option<Surfaces>, Error> {
         let list = inner.surfaces(control)?.unwrap_or_default();
         let mut worker = inner.worker()?;
-        // (What likes many questions at once does not like those that this takes.)
+        // (A worker that prefers batches would be slow here: the cells are split one by one.)
         if worker.likes_many() {
             return Ok(None);
         }
@@ -121,7 +122,7 @@ impl Surfaces {
         };
         match place_all() {
             Ok(()) => Ok((!own.moved.is_empty()).then_some(own)),
-            // (Without its surfaces the solid is moved all the same.)
+            // (The solid can be moved without its surfaces.)
             Err(Error::Limit { .. }) => Ok(None),
             Err(error) => Err(error),
         }
@@ -135,7 +136,7 @@ impl Surfaces {
         self.moved.len() - self.planes.seams.len()
     }
 
-    /// A plane of the lattice by its number.
+    /// The plane of the lattice with a number.
     fn plane(&self, index: u32) -> Option<LatticePlane> {
         let number = (index as usize).checked_sub(self.first_plane())?;
         let LatticePlanes { faces, seams } = &self.planes;
@@ -146,7 +147,7 @@ impl Surfaces {
         self.wider.get(index as usize).copied().flatten()
     }
 
-    /// Whether there are layers that may be told apart by their widths.
+    /// Returns whether there are layers, which have widths.
     fn has_layers(&self) -> bool {
         self.after.iter().any(|placed| placed.layer_slack().is_some())
     }
@@ -158,10 +159,10 @@ impl Surfaces {
     }
 }
 
-/// For each surface the next wider layer of the same plane, and those that are added for that.
+/// For each surface, the next wider layer of the same plane; and the layers that are added for that.
 #[allow(clippy::type_complexity)]
 fn wider(list: &[PlacedHalfSpace], most: f64) -> Result<(Vec<Option<u32>>, Vec<PlacedHalfSpace>), Error> {
-    /// Most layers of one plane.
+    /// The greatest number of layers of one plane that are searched.
     const NEAR: usize = 4;
     let mut wider = memory::filled(list.len(), None)?;
     let mut layers = Vec::new();
@@ -175,7 +176,7 @@ fn wider(list: &[PlacedHalfSpace], most: f64) -> Result<(Vec<Option<u32>>, Vec<P
             memory::push(&mut layers, (key, ends, number))?;
         }
     }
-    // Wider layers of a plane stand behind it.
+    // Wider layers of a plane come later.
     layers.sort_by(|(a, [from, to], _), (b, [other_from, other_to], _)| {
         a.cmp(b).then(other_from.total_cmp(from)).then(to.total_cmp(other_to))
     });
@@ -201,7 +202,7 @@ fn wider(list: &[PlacedHalfSpace], most: f64) -> Result<(Vec<Option<u32>>, Vec<P
     Ok((wider, added))
 }
 
-/// A plane of a lattice as a half-space, which lies above it.
+/// A plane of a lattice as a half-space above the plane.
 fn plane_of(frame: &Frame, (axis, at): LatticePlane) -> PlacedHalfSpace {
     let step = &Dyadic::new(f64::from(at)) * &Dyadic::new(frame.cell_size());
     let place = &Dyadic::new(frame.origin()[axis]) + &step;
@@ -209,28 +210,28 @@ fn plane_of(frame: &Frame, (axis, at): LatticePlane) -> PlacedHalfSpace {
     PlacedHalfSpace { half_space: HalfSpace::linear([x, y, z, -&place]), placements: Arc::new([]) }
 }
 
-/// Calls a surface by the name of another everywhere.
+/// Renames a surface in all functions.
 fn rename(values: &mut [OpenSurfaces], from: u32, to: u32) {
     for value in values.iter_mut().filter(|value| value.indices().contains(&from)) {
         *value = value.renamed(|index| if index == from { to } else { index });
     }
 }
 
-/// A cell for which a function is looked for.
+/// A cell for which a function is searched.
 pub(super) struct Target<'s> {
     surfaces: &'s Surfaces,
     maps: &'s Maps,
     cell: Cell,
-    /// Its centre, half its edge, and the image of the centre, rounded: in finest cells.
+    /// The centre and half the edge of the target, and the rounded image of the centre, all in finest cells.
     centre: [f64; 3],
     half: f64,
     image: [f64; 3],
-    /// A box around its inverse image.
+    /// A box around the inverse image of the target.
     low: [f64; 3],
     high: [f64; 3],
-    /// The length of a finest cell of the solid's own frame, in half edges.
+    /// The edge of a finest cell of the solid's own frame, in half edges of the target.
     finest: f64,
-    /// What was found out of surfaces.
+    /// The surfaces that were examined so far.
     met: Vec<Met>,
 }
 
@@ -238,7 +239,7 @@ pub(super) struct Target<'s> {
 #[derive(Clone, Copy)]
 struct Met {
     index: u32,
-    /// The side on which all of the target lies.
+    /// The side on which the whole target lies, if it is known.
     side: Option<bool>,
     bounds: Option<Bounds>,
     flat: Flat,
@@ -248,24 +249,24 @@ struct Met {
 #[derive(Clone, Copy)]
 struct Bounds {
     gradient: [f64; 3],
-    /// xx, yy, zz, xy, xz, yz.
+    /// The coefficients of xx, yy, zz, xy, xz, yz.
     squares: [f64; 6],
     low: f64,
     high: f64,
 }
 
-/// What a source has in common with a target: boxes around that.
+/// The intersection of a source with a target, as boxes around it.
 struct Piece<'p> {
     source: &'p Source,
-    /// From the target's centre, in its half edges.
+    /// The box from the target's centre, in its half edges.
     low: [f64; 3],
     high: [f64; 3],
-    /// From the centre's image, in finest cells of the solid's own frame.
+    /// The box from the centre's image, in finest cells of the solid's own frame.
     own_low: [f64; 3],
     own_high: [f64; 3],
 }
 
-/// More than the roundings of a sum of two dozen products, relative to the sum of their magnitudes.
+/// A bound of the roundings of a sum of two dozen products, relative to the sum of their magnitudes.
 const ROUNDING: f64 = 64.0 * f64::EPSILON;
 
 impl<'s> Target<'s> {
@@ -280,7 +281,7 @@ impl<'s> Target<'s> {
         Target { surfaces, maps, cell, centre, half, image, low, high, finest, met: Vec::new() }
     }
 
-    /// What lies beyond the universe of `cells` finest cells, as pieces that may overlap.
+    /// The space beyond the universe of `cells` finest cells, as pieces that may overlap.
     pub(super) fn beyond(&self, cells: f64, exterior: Tag) -> impl Iterator<Item = Source> {
         let (low, high) = (self.low, self.high);
         let known = Source::constant(exterior);
@@ -291,21 +292,21 @@ impl<'s> Target<'s> {
             } else {
                 ends.0[axis] = low[axis].max(cells);
             }
-            // (A number that is none may be anywhere.)
+            // (A NaN may be anywhere.)
             let is_within = ends.0[axis] >= ends.1[axis];
             (!is_within).then_some(Source { cell: None, low: ends.0, high: ends.1, known })
         })
     }
 
-    /// One function of up to six surfaces that is what all sources are, each where it meets the target;
-    /// `None` if there is none.
+    /// Returns one function of up to six surfaces that agrees with each source where the source meets the
+    /// target; `None` if there is none.
     pub(super) fn function(&mut self, sources: &[Source]) -> Result<Option<OpenSurfaces>, Error> {
         let mut pieces = memory::with_capacity(sources.len())?;
         pieces.extend(sources.iter().filter_map(|source| self.piece(source)));
         if self.surfaces.has_layers() {
             return self.by_regions(&pieces);
         }
-        // What is known of each piece by the sides of its own surfaces alone.
+        // The function in each piece, by the sides of its own surfaces alone.
         let mut all = OpenSurfaces::constant(false);
         let mut values = memory::with_capacity(pieces.len())?;
         for piece in &pieces {
@@ -329,7 +330,7 @@ impl<'s> Target<'s> {
             }
             for closely in [false, true] {
                 if let Some((table, known)) = self.joined(&all, &pieces, &values, closely)? {
-                    // (Where nothing at all is possible, rounding is at work.)
+                    // (If no combination is possible, rounding is the reason.)
                     let found = (known != Table::EMPTY).then(|| table.simplified(known));
                     return Ok(found.map(|table| all.with_table(table).shortened()));
                 }
@@ -338,9 +339,9 @@ impl<'s> Target<'s> {
         Ok(None)
     }
 
-    /// The same where there are layers.
+    /// As `function`, where there are layers.
     fn by_regions(&mut self, pieces: &[Piece<'_>]) -> Result<Option<OpenSurfaces>, Error> {
-        /// So often layers are made wider.
+        /// How often layers are widened.
         const MOST_TRIES: usize = 2;
         let mut bodies = memory::with_capacity(pieces.len())?;
         let mut values = memory::with_capacity(pieces.len())?;
@@ -391,7 +392,7 @@ impl<'s> Target<'s> {
         Ok(None)
     }
 
-    /// Of several layers of one plane takes the widest alone.
+    /// Replaces several layers of one plane by the widest of them.
     fn unite(&self, values: &mut [OpenSurfaces]) {
         let is_used =
             |values: &[OpenSurfaces], index: u32| values.iter().any(|value| value.indices().contains(&index));
@@ -412,7 +413,7 @@ impl<'s> Target<'s> {
         }
     }
 
-    /// Lets layers stand for surfaces that lie in them all over the target; `false` if none does.
+    /// Replaces surfaces by layers that contain them all over the target; returns `false` if there are none.
     fn absorb(&mut self, all: &OpenSurfaces, values: &mut [OpenSurfaces]) -> Result<bool, Error> {
         let mut left = *all;
         let mut is_any = false;
@@ -429,8 +430,8 @@ impl<'s> Target<'s> {
         Ok(is_any)
     }
 
-    /// Makes layers wider that the values depend on and a piece does not know of, or, if there are none, that
-    /// it does; `false` if no layer can be made wider.
+    /// Widens the layers on which the values depend and which a piece does not know; if there are none, the
+    /// layers that the piece does know. Returns `false` if no layer can be widened.
     fn widen(&self, all: &OpenSurfaces, values: &mut [OpenSurfaces], piece: usize) -> bool {
         let own = values[piece];
         for is_known in [false, true] {
@@ -472,14 +473,14 @@ impl<'s> Target<'s> {
         Ok(regions.joined())
     }
 
-    /// The side of a surface on which all of a piece lies, if that is known.
+    /// The side of a surface on which the whole piece lies, if it is known.
     fn place(&mut self, piece: &Piece<'_>, body: &Polytope, index: u32) -> Result<Option<bool>, Error> {
         if (index as usize) < self.surfaces.first_plane() {
             let met = self.met(index)?;
             if let Some(side) = met.side.or_else(|| met.flat.places(body).known()) {
                 return Ok(Some(side));
             }
-            // What is exact may touch.
+            // An exact surface may touch the piece.
             if met.flat.layer.is_some() {
                 return Ok(None);
             }
@@ -487,14 +488,14 @@ impl<'s> Target<'s> {
         self.side(piece, index)
     }
 
-    /// What a source has in common with the target, in half edges from its centre; `None` if that is nothing.
+    /// The intersection of a source with the target, in half edges from its centre; `None` if it is empty.
     fn body(&self, source: &Source) -> Option<Polytope> {
         let inward = &self.maps.inward;
         let mut body = Polytope::cube();
         for axis in 0..3 {
             let row = inward.linear[axis].map(|c| c * self.half);
             if inward.is_exact_along(axis) {
-                // What only touches does not count.
+                // A mere contact does not count.
                 let reach = row.iter().map(|c| c.abs()).sum::<f64>();
                 let (low, high) = (self.image[axis] - reach, self.image[axis] + reach);
                 if source.high[axis] <= low || source.low[axis] >= high {
@@ -509,8 +510,8 @@ impl<'s> Target<'s> {
         Some(body)
     }
 
-    /// Adds the planes of the solid's own lattice that the target's image reaches on both sides of; `false`
-    /// if there are none, or too many.
+    /// Adds the planes of the solid's own lattice that the target's image crosses; returns `false` if there
+    /// are none, or too many.
     fn add_planes(&self, all: &mut OpenSurfaces) -> bool {
         let before = all.indices().len();
         let first = self.surfaces.first_plane();
@@ -523,7 +524,7 @@ impl<'s> Target<'s> {
         all.indices().len() > before
     }
 
-    /// Adds the seams between these pieces; `false` if there are none, or too many.
+    /// Adds the seams between these pieces; returns `false` if there are none, or too many.
     fn add_seams(&self, all: &mut OpenSurfaces, bodies: &[(&Piece<'_>, Polytope)]) -> bool {
         let before = all.indices().len();
         let first = self.surfaces.first_seam();
@@ -545,8 +546,8 @@ impl<'s> Target<'s> {
         all.indices().len() > before
     }
 
-    /// A function that has the values of all pieces, and the combinations for which it has; `None` if two
-    /// differ. Bounds of pairs count if it is to be found out `closely`.
+    /// Returns a function that has the values of all pieces, and the combinations of signs for which it has a
+    /// value; `None` if two pieces differ. Bounds of pairs of surfaces are used if `closely` is set.
     fn joined(
         &mut self,
         all: &OpenSurfaces,
@@ -578,7 +579,7 @@ impl<'s> Target<'s> {
         Ok(Some(joined.tables()))
     }
 
-    /// What a source has in common with the target; `None` if they only touch.
+    /// The intersection of a source with the target; `None` if they only touch.
     fn piece<'p>(&self, source: &'p Source) -> Option<Piece<'p>> {
         let own_low = axes(|axis| source.low[axis].max(self.low[axis]) - self.image[axis]);
         let own_high = axes(|axis| source.high[axis].min(self.high[axis]) - self.image[axis]);
@@ -591,13 +592,13 @@ impl<'s> Target<'s> {
                 high[axis] = ((to[axis] - self.centre[axis]) / self.half + slack).min(1.0);
             }
         }
-        // (A number that is none separates nothing.)
+        // (A NaN separates nothing.)
         let apart = |low: &[f64; 3], high: &[f64; 3]| (0..3).any(|axis| low[axis] >= high[axis]);
         let are_apart = apart(&low, &high) || apart(&own_low, &own_high);
         (!are_apart).then_some(Piece { source, low, high, own_low, own_high })
     }
 
-    /// The side of a surface on which all of a piece lies, if that is known.
+    /// The side of a surface on which the whole piece lies, if it is known.
     fn side(&mut self, piece: &Piece<'_>, index: u32) -> Result<Option<bool>, Error> {
         if let Some((axis, at)) = self.surfaces.plane(index) {
             let (above, below) =
@@ -617,7 +618,7 @@ impl<'s> Target<'s> {
         })
     }
 
-    /// What is known of a surface in the target.
+    /// The data about a surface in the target, computed once.
     fn met(&mut self, index: u32) -> Result<Met, Error> {
         if let Some(met) = self.met.iter().find(|met| met.index == index) {
             return Ok(*met);
@@ -636,7 +637,7 @@ impl<'s> Target<'s> {
         Ok(met)
     }
 
-    /// The side by bounds over the boxes around a piece.
+    /// The side of a surface, by bounds over the boxes around a piece.
     fn side_by(&self, bounds: &Bounds, piece: &Piece<'_>) -> Option<bool> {
         let Bounds { gradient, squares, low, high } = *bounds;
         let size =
@@ -658,7 +659,7 @@ impl<'s> Target<'s> {
             );
             (here, bent) = (sum(here, ends), sum(bent, ends));
         }
-        // Along the axes of the solid's own frame.
+        // The same along the axes of the solid's own frame.
         let rows = &self.maps.outward.linear;
         let mut slack = ROUNDING * size;
         let (mut there, mut far) = (bent, 0.0);
@@ -672,7 +673,7 @@ impl<'s> Target<'s> {
         }
         slack += far;
         let (least, most) = (here.0.max(there.0 - far), here.1.min(there.1 + far));
-        // (What is no number proves nothing.)
+        // (A NaN proves nothing.)
         if least + low - slack >= 0.0 {
             Some(true)
         } else if most + high + slack <= 0.0 {
@@ -687,7 +688,7 @@ fn sum(a: (f64, f64), b: (f64, f64)) -> (f64, f64) {
     (a.0 + b.0, a.1 + b.1)
 }
 
-/// The least and the greatest value of slope x + bend x² between two ends.
+/// The least and the greatest value of slope · x + bend · x² between two ends.
 fn parabola(slope: f64, bend: f64, ends: (f64, f64)) -> (f64, f64) {
     let at = |x: f64| x * (slope + bend * x);
     let (a, b) = (at(ends.0), at(ends.1));
@@ -700,7 +701,7 @@ fn parabola(slope: f64, bend: f64, ends: (f64, f64)) -> (f64, f64) {
 }
 
 impl Bounds {
-    /// `None` of functions of the host.
+    /// `None` for functions of the host.
     fn of(placed: &Placed, cell: Cell) -> Option<Bounds> {
         let (centre, half) = (centre(cell), half_edge(cell));
         Some(match placed.taylor(centre, half) {

@@ -1,40 +1,40 @@
-//! Which voxels lie between planes of a frame, exactly.
+//! Finds the voxels between planes of a frame, exactly.
 
 use super::VoxelGrid;
 use super::grid::last_at_most;
 use crate::lattice::Frame;
 use crate::lattice::exact::{floor, sign_of_sum, two_diff, two_product};
 
-/// Where a plane of a frame cuts an axis of the grid, in voxels.
+/// The point where a plane of a frame cuts an axis of the grid, in voxels.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(super) struct Place {
-    /// The voxel that begins at the plane, or contains it: −1 below the grid, the extent above.
+    /// The voxel that begins at the plane, or contains it: −1 below the grid, the extent above it.
     pub(super) floor: i64,
-    /// Whether it begins there.
+    /// Whether the voxel begins exactly at the plane.
     pub(super) exact: bool,
 }
 
-/// Voxels between two planes.
+/// The voxels between two planes.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Run {
     pub(super) low: u32,
-    /// The first voxel beyond; not above `low` if there are none.
+    /// The first voxel beyond; not above `low` if there are no voxels.
     pub(super) high: u32,
-    /// Whether some of the way between the planes lies beyond the grid.
+    /// Whether a part of the range between the planes lies beyond the grid.
     pub(super) beyond: bool,
 }
 
-/// An axis of a frame over the same axis of a grid.
+/// An axis of a frame relative to the same axis of a grid.
 #[derive(Debug, Clone, Copy)]
 pub(super) enum Axis {
-    /// Half cell k of the frame begins at the voxel offset + k·2^shift: a whole number of cells is a voxel,
-    /// or of voxels a cell.
+    /// Half cell k of the frame begins at the voxel offset + k·2^shift: a voxel is a whole number of half
+    /// cells, or a half cell is a whole number of voxels.
     Lattice { offset: i64, shift: i32, extent: u32 },
-    /// Anything else: half cell k begins near the voxel offset + k·step.
+    /// Any other ratio: half cell k begins near the voxel offset + k·step.
     Free { axis: usize, offset: f64, step: f64, error: f64, extent: u32 },
 }
 
-/// Steps of a power of two beyond which the axes are not treated as one lattice.
+/// The greatest shift for which the axes are treated as one lattice.
 const MOST_SHIFT: i32 = 40;
 
 impl Axis {
@@ -54,13 +54,13 @@ impl Axis {
                 return Axis::Lattice { offset: whole, shift: power, extent };
             }
         }
-        // In voxels: each of the quotients, products and sums errs by less than a part in 2^52.
+        // In voxels: each of the quotients, products and sums has an error below a part in 2^52.
         let cells = f64::from(2 * frame.cells());
         let error = 8.0 * f64::EPSILON * (offset.abs() + cells * step + 1.0);
         Axis::Free { axis, offset, step, error, extent }
     }
 
-    /// Where the plane lies that half cell `k` begins at.
+    /// The place of the plane at which half cell `k` begins.
     pub(super) fn place(&self, grid: &VoxelGrid, frame: &Frame, k: u32) -> Place {
         match *self {
             Axis::Lattice { offset, shift, extent } => {
@@ -70,7 +70,7 @@ impl Axis {
                     (i64::from(k) >> -shift.max(-63), i64::from(k) & ((1 << -shift) - 1) == 0)
                 };
                 let floor = offset + steps;
-                // What lies beyond the grid begins nowhere in it.
+                // A plane beyond the grid is the beginning of no voxel.
                 let within = (0..i64::from(extent)).contains(&floor) || floor == i64::from(extent) && exact;
                 Place { floor: floor.clamp(-1, extent.into()), exact: exact && within }
             }
@@ -90,7 +90,7 @@ impl Axis {
                     let side = grid.plane_side(frame, axis, k, nearest);
                     return Place { floor: i64::from(nearest) - i64::from(side < 0), exact: side == 0 };
                 }
-                // So far away from the grid's corner that doubles cannot tell.
+                // So far away from the grid's corner, doubles cannot decide.
                 let begun = |j: u32| grid.plane_side(frame, axis, k, j);
                 if begun(0) < 0 {
                     return Place { floor: -1, exact: false };
@@ -101,7 +101,7 @@ impl Axis {
         }
     }
 
-    /// The voxels between two places, which have something in common with what lies between.
+    /// The voxels that overlap the range between two places.
     pub(super) fn run(&self, from: Place, to: Place) -> Run {
         let (Axis::Lattice { extent, .. } | Axis::Free { extent, .. }) = *self;
         let end = to.floor + i64::from(!to.exact);

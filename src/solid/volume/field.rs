@@ -1,10 +1,10 @@
-//! Which voxels are inside, block by block.
+//! The inside bits of voxels, block by block.
 
 use super::value::{Limits, Value};
 use super::{Samples, VoxelGrid};
 use crate::lattice::morton;
 
-/// The samples of a grid and which of their values are inside.
+/// The samples of a grid, and the values that are inside.
 #[derive(Debug, Clone)]
 pub(super) struct Field<'a> {
     pub(super) grid: VoxelGrid,
@@ -13,8 +13,8 @@ pub(super) struct Field<'a> {
 }
 
 impl Field<'_> {
-    /// Which of the 4³ voxels of the block `at` (in blocks) are inside, in Morton order; what lies beyond the
-    /// grid is not.
+    /// The inside bits of the 4³ voxels of the block `at` (in blocks), in Morton order. Voxels beyond the
+    /// grid are outside.
     pub(super) fn brick(&self, at: [u32; 3]) -> u64 {
         match &self.samples {
             Samples::Bits(words) => self.brick_of_bits(words.values(), at),
@@ -25,13 +25,13 @@ impl Field<'_> {
         }
     }
 
-    /// Whether the voxel at a place is inside; one beyond the grid is not.
+    /// Returns whether the voxel at a place is inside. A voxel beyond the grid is outside.
     pub(super) fn contains(&self, at: [u32; 3]) -> bool {
         self.samples.get(&self.grid, at).is_some_and(|value| self.limits.contains(value))
     }
 
-    /// Calls `row` with the index of each row of voxels in a block, counted through all rows, and y and z in
-    /// the block.
+    /// Calls `row` for each row of voxels in a block, with the index of the row among all rows, and with its
+    /// y and z in the block.
     #[inline(always)]
     fn rows(&self, at: [u32; 3], mut row: impl FnMut(usize, u32, u32)) {
         let [_, ny, nz] = self.grid.extents();
@@ -75,7 +75,7 @@ impl Field<'_> {
     }
 }
 
-/// Four bits along x at their places in Morton order.
+/// Spreads four bits along x to their places in Morton order.
 #[inline(always)]
 pub(super) fn spread(nibble: u64) -> u64 {
     nibble & 3 | (nibble & 12) << 6

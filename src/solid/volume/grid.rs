@@ -1,18 +1,18 @@
-//! Where the voxels of a volume lie in model space.
+//! The positions of a volume's voxels in model space.
 
 use crate::error::Error;
 use crate::lattice::axes;
 use crate::lattice::exact::{product_up, sign_of_sum, two_diff, two_product};
 use crate::lattice::{Bounds, Frame, MAX_DEPTH, valid};
 
-/// Most samples along an axis: 2^20, as many as an octree has cells.
+/// The greatest number of samples along an axis: 2^20, as many as an octree has cells.
 const MOST: u32 = 1 << MAX_DEPTH;
 
-/// The boxes of a volume's samples: on each axis voxel i reaches from corner + i·spacing to
-/// corner + (i + 1)·spacing, with its sample in the middle.
+/// The boxes of a volume's samples. On each axis, voxel i reaches from corner + i·spacing to corner + (i +
+/// 1)·spacing, with its sample in the middle.
 ///
 /// These planes are *real* numbers, whether or not doubles can represent them; comparisons with them are
-/// exact. The sample (x, y, z) is the one with the index x + nx·(y + ny·z): x varies fastest.
+/// exact. The sample (x, y, z) has the index x + nx·(y + ny·z): x varies fastest.
 ///
 /// ```
 /// use leafless::solid::VoxelGrid;
@@ -29,9 +29,9 @@ pub struct VoxelGrid {
 }
 
 impl VoxelGrid {
-    /// A grid of `extents` voxels along x, y and z (1 to 2^20 each) with the lower corner of the first voxel
-    /// at `corner` (model units; each coordinate zero or of a magnitude between 2^-256 and 2^256) and voxels
-    /// of the edges `spacing` (model units, 2^-256 to 2^256).
+    /// Makes a grid of `extents` voxels along x, y and z (1 to 2^20 each). `corner` is the lower corner of
+    /// the first voxel (model units; each coordinate is zero or of a magnitude between 2^-256 and 2^256).
+    /// `spacing` holds the edges of a voxel (model units, 2^-256 to 2^256).
     ///
     /// # Errors
     /// [`Error::Argument`] names the parameter that is out of range.
@@ -44,8 +44,9 @@ impl VoxelGrid {
         Ok(VoxelGrid { extents, corner: corner.map(|c| c + 0.0), spacing })
     }
 
-    /// The grid whose first sample lies at `sample`, as the files of most programs say it. The corner is
-    /// `sample` − `spacing` / 2, rounded to doubles: that may move the grid by half a last place.
+    /// Makes a grid whose first sample lies at `sample`, as most file formats specify it. The corner is
+    /// `sample` − `spacing` / 2, rounded to doubles. The rounding may move the grid by half a unit in the
+    /// last place.
     ///
     /// # Errors
     /// As [`new`](Self::new).
@@ -72,17 +73,17 @@ impl VoxelGrid {
         self.spacing
     }
 
-    /// How many samples there are.
+    /// The number of samples.
     pub fn count(&self) -> u64 {
         self.extents.iter().map(|&extent| u64::from(extent)).product()
     }
 
-    /// Words in a row of bits along x: see [`Samples::Bits`](crate::solid::Samples::Bits).
+    /// The number of words in a row of bits along x: see [`Samples::Bits`](crate::solid::Samples::Bits).
     pub fn words(&self) -> usize {
         self.extents[0].div_ceil(64) as usize
     }
 
-    /// The place of a sample (model units), each coordinate with a relative error of some 2^-52 of its
+    /// The position of a sample (model units). The error of each coordinate is some 2^-52, relative to its
     /// summands.
     pub fn centre(&self, at: [u32; 3]) -> [f64; 3] {
         axes(|axis| self.corner[axis] + (f64::from(at[axis]) + 0.5) * self.spacing[axis])
@@ -98,13 +99,13 @@ impl VoxelGrid {
         Bounds { min: self.corner, max }
     }
 
-    /// The frame whose finest cells are voxels: of the same corner and spacing, and of the least depth that
-    /// holds all of them. On this frame a voxel solid has no PARTIAL cell at the finest level. Other depths
-    /// come from [`Frame::with_depth`], and keep the universe.
+    /// The frame whose finest cells are voxels: it has the same corner and spacing, and the least depth at
+    /// which its universe contains all voxels. On this frame a voxel solid has no PARTIAL cell at the finest
+    /// level. [`Frame::with_depth`] gives other depths of the same universe.
     ///
     /// # Errors
-    /// [`Error::Argument`] if the spacing is not the same on all axes, because cells are cubes: such a volume
-    /// takes another frame, as [`Frame::around`] its bounds.
+    /// [`Error::Argument`] if the spacing is not the same on all axes, because cells are cubes. Such a volume
+    /// needs another frame, for example [`Frame::around`] its bounds.
     pub fn frame(&self) -> Result<Frame, Error> {
         let [spacing, y, z] = self.spacing;
         if spacing != y || spacing != z {
@@ -118,14 +119,14 @@ impl VoxelGrid {
         Frame::new(self.corner, spacing * f64::from(1u32 << depth), depth)
     }
 
-    /// Exact sign of `x` − (corner + j·spacing) on an axis.
+    /// The exact sign of `x` − (corner + j·spacing) on an axis.
     pub(super) fn side(&self, axis: usize, x: f64, j: u32) -> i32 {
         let (high, low) = two_diff(x, self.corner[axis]);
         let (product, error) = two_product(f64::from(j), self.spacing[axis]);
         sign_of_sum(&[low, -error, high, -product])
     }
 
-    /// Exact sign of (origin of `frame` + k·cell/2) − (corner + j·spacing) on an axis.
+    /// The exact sign of (origin of `frame` + k·cell/2) − (corner + j·spacing) on an axis.
     pub(super) fn plane_side(&self, frame: &Frame, axis: usize, k: u32, j: u32) -> i32 {
         let (high, low) = two_diff(frame.origin()[axis], self.corner[axis]);
         let (cells, cells_error) = two_product(f64::from(k), 0.5 * frame.cell_size());
@@ -133,7 +134,7 @@ impl VoxelGrid {
         sign_of_sum(&[low, cells_error, -voxels_error, high, cells, -voxels])
     }
 
-    /// Whether all voxels lie in the universe of a frame; exact.
+    /// Returns whether all voxels lie in the universe of a frame; exact.
     pub(super) fn is_within(&self, frame: &Frame) -> bool {
         let end = 2 * frame.cells();
         (0..3).all(|axis| {
@@ -142,7 +143,8 @@ impl VoxelGrid {
         })
     }
 
-    /// The voxel that contains a point; of two that share the face it lies on, the upper one. `None` outside.
+    /// The voxel that contains a point. A point on a common face belongs to the upper voxel. `None` outside
+    /// the grid.
     pub(crate) fn voxel_of(&self, point: [f64; 3]) -> Option<[u32; 3]> {
         let mut voxel = [0; 3];
         for axis in 0..3 {
@@ -155,7 +157,8 @@ impl VoxelGrid {
                 return None;
             }
             let near = ((x - self.corner[axis]) / self.spacing[axis]).clamp(0.0, f64::from(extent)) as u32;
-            // The guess is off by less than one voxel, unless the corner is far away; then a search finds it.
+            // The guess is off by less than one voxel, unless the corner is far away; then a search finds the
+            // voxel.
             let is_at = |j: u32| self.side(axis, x, j) >= 0 && (j == extent || self.side(axis, x, j + 1) < 0);
             let mut found = [near, near.saturating_sub(1), (near + 1).min(extent)].into_iter();
             let j = match found.find(|&j| is_at(j)) {
@@ -168,7 +171,8 @@ impl VoxelGrid {
     }
 }
 
-/// The greatest j in 0..=`most` of which `holds` is true: it is true of all below; 0 if it is of none.
+/// The greatest j in 0..=`most` for which `holds` is true, where `holds` is true for all smaller j; 0 if it
+/// is true for none.
 pub(super) fn last_at_most(most: u32, holds: impl Fn(u32) -> bool) -> u32 {
     let (mut low, mut high) = (0, most);
     while low < high {

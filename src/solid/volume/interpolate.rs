@@ -5,8 +5,8 @@ use crate::lattice::axes;
 
 impl Volume<'_> {
     /// The value of the field at a point (model units), interpolated trilinearly between the eight samples
-    /// around it. In the outer half of the outermost voxels, where there are samples on one side only, these
-    /// go on as they are. `None` outside of the grid; NaN where one of the samples that count is none.
+    /// around it. In the outer half of the outermost voxels, where there are samples on one side only, their
+    /// values continue unchanged. `None` outside the grid; NaN where one of the samples that count is NaN.
     ///
     /// The solid is the union of voxels, not a level set of this field. Each coordinate in voxels, each
     /// product and each sum is rounded once, in this order: x, y, z. O(1).
@@ -38,15 +38,15 @@ impl Volume<'_> {
         Some(mix(mix(a, b, parts[1]), mix(c, d, parts[1]), parts[2]))
     }
 
-    /// Where the field, interpolated linearly, leaves the band between a sample and the next one along an
-    /// axis: 0 is the sample at `at`, 1 the next. `None` if both are inside, or none is.
+    /// The position at which the linearly interpolated field leaves the band between a sample and the next
+    /// one along an axis: 0 is the sample at `at`, 1 the next. `None` if both are inside, or neither is.
     ///
-    /// What lies beyond the grid is outside, and coordinates may be those of its neighbours: there, between
-    /// bits, and where a sample is infinite or not a number, the answer is ½, the voxels' common face. (Such
-    /// points lie on the boundary of the solid, which consists of voxels; others lie within half a voxel of
-    /// it.) The quotient (end of the band − a) / (b − a) is rounded to doubles and lies in [0, 1]; it is 0 or
-    /// 1 where a sample that is inside has just that value. The end is the one that the outer sample lies
-    /// beyond. O(1).
+    /// Everything beyond the grid is outside, and `at` may be a neighbour of the grid. The answer is ½, the
+    /// common face of the voxels, if one of them lies beyond the grid, if the samples are bits, or if a
+    /// sample is infinite or NaN. (Such points lie on the boundary of the solid, which consists of voxels;
+    /// all other points lie within half a voxel of it.) Otherwise the answer is the quotient (end of the band
+    /// − a) / (b − a), rounded to doubles. It lies in [0, 1], and is 0 or 1 where the inner sample equals the
+    /// end of the band. The end is the one beyond which the outer sample lies. O(1).
     ///
     /// ```
     /// use leafless::{Control, Volume, solid::{Band, VoxelGrid}};

@@ -28,22 +28,22 @@ use value::Limits;
 /// A three-dimensional bitmap, or an array of samples with a threshold, as a solid.
 ///
 /// **The solid** is the union of all voxels whose sample lies in the [`Band`]. A voxel is the closed box
-/// around its sample ([`VoxelGrid`]). So the solid is a regularised closed set, as all solids are: a cell is
-/// FULL if all voxels that its interior meets are inside and the cell lies in the grid, EMPTY if none is, and
-/// no verdict is wider than that. What lies beyond the grid is outside. A sample that is not a number is
-/// outside.
+/// around its sample ([`VoxelGrid`]). So the solid is a regularised closed set, as all solids are. A cell is
+/// FULL if it lies in the grid and all voxels that its interior meets are inside. It is EMPTY if none of them
+/// is inside. No verdict is weaker than that. Everything beyond the grid is outside, and so is a sample that
+/// is not a number.
 ///
 /// On the frame of [`VoxelGrid::frame`], finest cells are voxels: nothing is PARTIAL there, and a tree built
-/// by [`Rule::Sampled`](crate::Rule::Sampled) is the bitmap, bit for bit. On any other frame, however its
-/// cells lie to voxels, and for voxels that are no cubes, verdicts come from exact comparisons, and PARTIAL
-/// cells are those that voxels of both kinds share. A centre that lies on a face between voxels counts as one
-/// in the upper one.
+/// by [`Rule::Sampled`](crate::Rule::Sampled) is the bitmap, bit for bit. On any other frame, and for voxels
+/// that are not cubes, verdicts come from exact comparisons. A cell is then PARTIAL if it contains parts of
+/// voxels of both kinds. A centre on a face between voxels belongs to the upper voxel.
 ///
-/// Samples are never copied. Beside them there are the least and the greatest value of each block of 4³
-/// samples (none for bits), which all clones and all thresholds share, and for each threshold two bits a
-/// block, and a pyramid of these: 1/32 and 1/256 of the memory of bytes, 1/32 of that of bits. Splitting a
-/// cell reads one or eight words of the pyramid if it consists of whole voxels on the grid's own lattice,
-/// else it is linear in the number of 4³ blocks that the cell's surface meets.
+/// Samples are never copied. Beside them, a volume keeps the least and the greatest value of each block of 4³
+/// samples (not for bits), which all clones and all thresholds share. For each threshold it keeps two bits a
+/// block, and a pyramid of these. The ranges and the pyramid take 1/32 and 1/256 of the memory of byte
+/// samples; for bits, the pyramid takes 1/32. Splitting a cell reads one or eight words of the pyramid if the
+/// cell consists of whole voxels on the grid's own lattice. Otherwise the cost is linear in the number of 4³
+/// blocks that the cell's surface meets.
 ///
 /// ```
 /// use leafless::{Control, Octree, Rule, Volume, build, solid::{Band, VoxelGrid}};
@@ -64,7 +64,7 @@ use value::Limits;
 /// let control = Control::default();
 /// let ball = Volume::new(samples.into(), &grid, Band::at_least(128.0)?, &control)?;
 ///
-/// // 128 cells per axis hold it; nothing is stored for the rest.
+/// // 128 cells per axis contain it; nothing is stored for the rest.
 /// let tree = build(&ball, &grid.frame()?, Rule::Sampled, &control)?;
 /// let volume = tree.statistics().volume();
 /// assert_eq!(volume.width(), 0.0);
@@ -85,12 +85,12 @@ pub struct Volume<'a> {
 }
 
 impl<'a> Volume<'a> {
-    /// The voxels of `grid` whose samples lie in `band`. Reads all samples once, by several threads: O(n),
-    /// and limited by the memory's speed.
+    /// Makes a solid of the voxels of `grid` whose samples lie in `band`. Several threads read all samples
+    /// once: O(n), limited by the bandwidth of the memory.
     ///
     /// # Errors
-    /// [`Error::Argument`] if `samples` has not as many elements as the grid needs; [`Error::OutOfMemory`],
-    /// and [`Error::Cancelled`] by `control`.
+    /// [`Error::Argument`] if the number of elements of `samples` is not the one that the grid needs;
+    /// [`Error::OutOfMemory`], and [`Error::Cancelled`] by `control`.
     pub fn new(
         samples: Samples<'a>,
         grid: &VoxelGrid,
@@ -104,9 +104,9 @@ impl<'a> Volume<'a> {
         Ok(Volume { field, band, ranges, occupancy })
     }
 
-    /// The same samples with another band. O(n / 64) for samples that are no bits, and some more for a band
-    /// with two ends or samples that are not numbers: it reads those blocks of 4³ samples of which the least
-    /// and the greatest value do not tell.
+    /// Makes a solid of the same samples with another band. O(n / 64), except for bits. A band with two ends,
+    /// or samples that are not numbers, may cost more: blocks of 4³ samples that their least and greatest
+    /// values do not decide are read again.
     ///
     /// # Errors
     /// [`Error::OutOfMemory`], and [`Error::Cancelled`] by `control`.
@@ -117,7 +117,7 @@ impl<'a> Volume<'a> {
         Ok(Volume { field, band, ranges: self.ranges.clone(), occupancy })
     }
 
-    /// Where the voxels lie.
+    /// The grid: the positions of the voxels.
     pub fn grid(&self) -> &VoxelGrid {
         &self.field.grid
     }
@@ -127,7 +127,7 @@ impl<'a> Volume<'a> {
         &self.field.samples
     }
 
-    /// Which values are inside.
+    /// The values that are inside.
     pub fn band(&self) -> &Band {
         &self.band
     }
@@ -142,13 +142,13 @@ impl<'a> Volume<'a> {
         self.field.samples.get(&self.field.grid, at)
     }
 
-    /// Whether the voxel (x, y, z) is inside. One beyond the grid is not.
+    /// Returns whether the voxel (x, y, z) is inside. A voxel beyond the grid is outside.
     pub fn contains_voxel(&self, at: [u32; 3]) -> bool {
         self.field.contains(at)
     }
 
-    /// Which of the 4³ voxels from (4x, 4y, 4z) on are inside, in Morton order (bits 0 to 2 of a place are
-    /// the lowest bits of x, y, z, bits 3 to 5 the next). Those beyond the grid are not.
+    /// The inside bits of the 4³ voxels from (4x, 4y, 4z) on, in Morton order: bits 0 to 2 of a place are the
+    /// lowest bits of x, y, z, bits 3 to 5 the next. Voxels beyond the grid are outside.
     pub fn brick(&self, at: [u32; 3]) -> u64 {
         self.field.brick(at)
     }
@@ -159,13 +159,13 @@ impl<'a> Volume<'a> {
         Ok(Volume { field: Field { grid, ..self.field.clone() }, ..self.clone() })
     }
 
-    /// The voxel that the first of a frame's finest cells is, if these are voxels, or would be beyond the
+    /// The voxel of the first of a frame's finest cells, if finest cells are voxels. It may lie beyond the
     /// grid.
     pub(crate) fn first_voxel(&self, frame: &Frame) -> Option<[i64; 3]> {
         VolumeOnFrame::new(self.clone(), frame).first_voxel()
     }
 
-    /// Bytes that are kept beside the samples.
+    /// The number of bytes that are kept beside the samples.
     pub fn bytes(&self) -> usize {
         self.ranges.bytes() + self.occupancy.bytes()
     }
@@ -183,7 +183,7 @@ impl<'a> Solid for Volume<'a> {
         Some(self.field.grid.bounds())
     }
 
-    /// Of all samples. O(n).
+    /// Covers all samples. O(n).
     fn fingerprint(&self) -> Option<Fingerprint> {
         let Field { grid, samples, limits } = &self.field;
         let all = Fingerprinter::new("volume")
@@ -220,7 +220,7 @@ impl<'a> Solid for Volume<'a> {
         Some(all.finish())
     }
 
-    /// The samples, unless they are borrowed, and what was found out about them.
+    /// Counts the samples, unless they are borrowed, and the data beside them.
     fn kept_bytes(&self) -> u64 {
         let samples = if self.field.samples.is_borrowed() { 0 } else { self.field.samples.bytes() };
         (samples + self.bytes()) as u64

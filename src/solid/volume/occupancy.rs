@@ -1,8 +1,10 @@
-//! Which blocks of voxels lie inside, and which touch the solid: a pyramid of the grain of octree elements.
+//! The blocks of voxels that lie inside, and those that touch the solid: a pyramid with the grain of octree
+//! elements.
 //!
 //! A group is 64 blocks of 4^k voxels along an edge, as two words in Morton order: the blocks that are inside
-//! as a whole, and those that have a voxel inside. So on a frame that has the voxels as cells, splitting two
-//! levels is reading one group. All of it takes 1/32 of the memory of a bitmap, 1/256 of that of bytes.
+//! as a whole, and the blocks that contain an inside voxel. So on a frame whose cells are the voxels,
+//! splitting two levels reads one group. The pyramid takes 1/32 of the memory of a bitmap, 1/256 of that of
+//! bytes.
 
 use super::field::{Field, spread};
 use super::ranges::Ranges;
@@ -29,7 +31,7 @@ pub(super) struct Occupancy {
     levels: Vec<Level>,
 }
 
-/// What was seen of a box of voxels so far.
+/// The findings in a box of voxels so far.
 #[derive(Clone, Copy, Default)]
 pub(super) struct Seen {
     pub(super) inside: bool,
@@ -79,7 +81,7 @@ impl Occupancy {
     }
 
     /// The 64 blocks, each of 4^(level + 1) voxels along an edge, of the group at a place counted in groups.
-    /// Beyond the grid all is EMPTY, and there is no end of levels.
+    /// Everything beyond the grid is EMPTY, and there is no greatest level.
     pub(super) fn group(&self, level: usize, at: [i64; 3]) -> Planes {
         if at.iter().any(|&a| a < 0) {
             return Planes::uniform(Tag::Empty);
@@ -93,18 +95,18 @@ impl Occupancy {
         groups.get(index(*size, at.map(|a| a as u32))).copied().unwrap_or(Planes::uniform(Tag::Partial))
     }
 
-    /// A group larger than the grid, which lies in its first block.
+    /// A group larger than the grid, which lies in the group's first block.
     fn above(&self, level: usize, at: [i64; 3]) -> Planes {
         let top = self.levels.last().and_then(|top| top.groups.first());
         let top = top.copied().filter(|_| at == [0; 3]).unwrap_or(Planes::uniform(Tag::Empty));
-        // On the next level the block is the last group, above it is greater than the grid.
+        // On the next level the first block is the last group; above that level it is larger than the grid.
         let filled = level == self.levels.len() && top.lower == !0;
         Planes { lower: filled.into(), upper: u64::from(top.upper != 0) }
     }
 
-    /// Whether the box of voxels from `low` to before `high`, not empty and within the grid, has some that
-    /// are inside, and some that are not. O(1) if the box is a cell of an octree over the grid, else linear
-    /// in its surface.
+    /// Finds out whether a box of voxels contains inside voxels, and whether it contains outside voxels. The
+    /// box reaches from `low` to before `high`, is not empty and lies within the grid. O(1) if the box is a
+    /// cell of an octree over the grid, else linear in its surface.
     pub(super) fn look(&self, field: &Field<'_>, low: [u32; 3], high: [u32; 3]) -> Seen {
         let longest = (0..3).map(|axis| high[axis] - low[axis]).max().unwrap_or(1);
         let mut level = 0;
@@ -126,7 +128,7 @@ impl Occupancy {
         seen
     }
 
-    /// Looks at what a box of voxels has in one group. As deep as there are levels.
+    /// Examines the part of a box of voxels in one group. The recursion is as deep as there are levels.
     fn look_at(&self, field: &Field<'_>, level: usize, at: [u32; 3], voxels: [[u32; 3]; 2], seen: &mut Seen) {
         let shift = 2 * level as u32 + 2;
         let planes = self.group(level, at.map(i64::from));
@@ -153,7 +155,7 @@ impl Occupancy {
         }
     }
 
-    /// Bytes that it takes.
+    /// The number of bytes of the pyramid.
     pub(super) fn bytes(&self) -> usize {
         self.levels.iter().map(|level| level.groups.len() * size_of::<Planes>()).sum()
     }
@@ -165,7 +167,8 @@ fn index(size: [u32; 3], at: [u32; 3]) -> usize {
     (z * size[1] as usize + y) * size[0] as usize + x
 }
 
-/// Which of the 64 blocks of 2^shift voxels from `origin` on a box of voxels touches, or holds as a whole.
+/// The blocks, of 64 with 2^shift voxels along an edge from `origin` on, that a box of voxels touches; if
+/// `whole`, the blocks that it contains.
 fn blocks_between(origin: [u32; 3], shift: u32, [low, high]: [[u32; 3]; 2], whole: bool) -> u64 {
     let mut blocks = !0;
     for axis in 0..3 {
@@ -184,8 +187,8 @@ fn blocks_between(origin: [u32; 3], shift: u32, [low, high]: [[u32; 3]; 2], whol
     blocks
 }
 
-/// Sixteen rows of blocks along x, a slab of groups: bits of those that are inside as a whole, and of those
-/// that touch.
+/// Sixteen rows of blocks along x, for a slab of groups: bits of the blocks that are inside as a whole, and
+/// of those that touch the solid.
 struct Rows {
     z: u32,
     words: usize,
@@ -199,7 +202,7 @@ impl Rows {
         Ok(Rows { z, words, all: memory::filled(16 * words, 0)?, any: memory::filled(16 * words, 0)? })
     }
 
-    /// Fills the groups of the slab.
+    /// Computes the groups of the slab.
     fn gather(&mut self, field: &Field<'_>, ranges: &Ranges, size: [u32; 3], groups: &mut [Planes]) {
         for (y, row) in (0..).zip(groups.chunks_mut(size[0] as usize)) {
             self.read(field, ranges, y);
@@ -242,12 +245,12 @@ impl Rows {
     }
 }
 
-/// The lowest bits of a word, as many as said, at most all.
+/// The lowest `count` bits of a word; all bits if `count` is 64 or more.
 fn below(count: usize) -> u64 {
     if count < 64 { (1 << count) - 1 } else { !0 }
 }
 
-/// A row of blocks by what is known of their samples.
+/// A row of blocks, from the ranges of their samples.
 fn of_ranges<T: Value>(field: &Field<'_>, ranges: &[[T; 2]], at: [u32; 2], all: &mut [u64], any: &mut [u64]) {
     let blocks = field.grid.extents().map(|extent| extent.div_ceil(4) as usize);
     let first = (at[1] as usize * blocks[1] + at[0] as usize) * blocks[0];
@@ -309,7 +312,7 @@ fn of_bits(field: &Field<'_>, at: [u32; 2], all: &mut [u64], any: &mut [u64]) {
     }
 }
 
-/// Bits 0, 4, 8 … side by side.
+/// Gathers bits 0, 4, 8 … side by side.
 fn every_fourth(word: u64) -> u64 {
     let word = word & 0x1111_1111_1111_1111;
     let word = (word | word >> 3) & 0x0303_0303_0303_0303;

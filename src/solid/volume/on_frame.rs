@@ -14,14 +14,15 @@ use crate::solid::{
 };
 use alloc::vec::Vec;
 
-/// A volume on a frame: handle and worker. A cell is decided by the cell itself, so that its part is nothing.
+/// A volume on a frame: both handle and worker. The cell alone decides its verdict, so that its part is
+/// empty.
 #[derive(Debug, Clone)]
 pub struct VolumeOnFrame<'a> {
     volume: Volume<'a>,
     frame: Frame,
     axes: [Axis; 3],
-    /// If the finest cells are voxels, or cubes of 2^k voxels: how many steps the first of them is away from
-    /// the first voxel, in voxels, and k.
+    /// The position of the first finest cell relative to the first voxel, in voxels, and k, if finest cells
+    /// are cubes of 2^k voxels along an edge that lie on voxels.
     aligned: Option<([i64; 3], u32)>,
 }
 
@@ -39,7 +40,7 @@ impl<'a> VolumeOnFrame<'a> {
         VolumeOnFrame { volume, frame: *frame, axes, aligned }
     }
 
-    /// The voxel that the first of the finest cells is, if these are voxels.
+    /// The voxel of the first finest cell, if finest cells are voxels.
     pub(super) fn first_voxel(&self) -> Option<[i64; 3]> {
         self.aligned.filter(|&(_, k)| k == 0).map(|(first, _)| first)
     }
@@ -48,7 +49,7 @@ impl<'a> VolumeOnFrame<'a> {
         self.volume.grid()
     }
 
-    /// The voxels between the planes of a frame's half cells.
+    /// The voxels between two planes, counted in half cells of the frame.
     fn run(&self, axis: usize, planes: [u32; 2]) -> Run {
         let [from, to] = planes.map(|k| self.axes[axis].place(self.grid(), &self.frame, k));
         self.axes[axis].run(from, to)
@@ -68,8 +69,8 @@ impl<'a> VolumeOnFrame<'a> {
         }
     }
 
-    /// The cell in voxels, if it is a cube of 2^k of them that lies on multiples of its edge: its place
-    /// counted in cubes of this size, and k.
+    /// The cell in voxels, if it is a cube of 2^k of them along an edge and lies on a multiple of its edge:
+    /// its place counted in cubes of this size, and k.
     fn cube(&self, cell: Cell) -> Option<([i64; 3], u32)> {
         let (offset, finest) = self.aligned?;
         let k = u32::from(self.frame.depth() - cell.level) + finest;
@@ -78,8 +79,8 @@ impl<'a> VolumeOnFrame<'a> {
         (k < 62 && (0..3).all(is_on)).then_some((at, k))
     }
 
-    /// The 64 cubes that the cube of 4^(level + 2) voxels along an edge at a place consists of: voxels if the
-    /// level is −1.
+    /// The 64 cubes that make up the cube of 4^(level + 2) voxels along an edge at a place. If the level is
+    /// −1 they are voxels.
     fn group(&self, level: i32, at: [i64; 3]) -> Planes {
         if level >= 0 {
             return self.volume.occupancy.group(level as usize, at);
@@ -91,7 +92,8 @@ impl<'a> VolumeOnFrame<'a> {
         Planes::binary(self.volume.field.brick(at.map(|a| a as u32)))
     }
 
-    /// The 64 grandchildren of a cube of 2^k voxels, k ≥ 2: their sure and their possible ones.
+    /// The 64 grandchildren of a cube of 2^k voxels along an edge, k ≥ 2: those that are certainly inside,
+    /// and those that may be.
     fn grandchildren(&self, at: [i64; 3], k: u32) -> Planes {
         if k.is_multiple_of(2) {
             return self.group(k as i32 / 2 - 2, at);
@@ -102,7 +104,7 @@ impl<'a> VolumeOnFrame<'a> {
             let child = [2 * at[0] + bit(0), 2 * at[1] + bit(1), 2 * at[2] + bit(2)];
             let group = self.group(k as i32 / 2 - 2, child);
             let [empty, full, _] = Planes { lower: group.lower, upper: group.upper | group.lower }.octants();
-            // The low bits of the bytes, side by side.
+            // Gathers the low bits of the bytes side by side.
             let bits = |low: u64| low.wrapping_mul(0x0102_0408_1020_4080) >> 56;
             planes.lower |= bits(full) << (8 * octant);
             planes.upper |= (bits(empty) ^ 0xFF) << (8 * octant);
@@ -112,11 +114,11 @@ impl<'a> VolumeOnFrame<'a> {
 }
 
 impl VolumeOnFrame<'_> {
-    /// Whether the centre of a finest cell lies in the solid.
+    /// Returns whether the centre of a finest cell lies in the solid.
     fn contains_centre(&self, cell: Cell) -> bool {
         let mut voxel = [0; 3];
         for axis in 0..3 {
-            // Shifted upward, a centre on a voxel's face lies in the upper one.
+            // Shifted upward, a centre on a face between voxels lies in the upper voxel.
             let place = self.axes[axis].place(self.grid(), &self.frame, 2 * cell.at[axis] + 1);
             match u32::try_from(place.floor) {
                 Ok(floor) if floor < self.grid().extents()[axis] => voxel[axis] = floor,
@@ -202,7 +204,7 @@ impl Worker for VolumeOnFrame<'_> {
     }
 
     fn split(&mut self, cell: Cell, _: &()) -> Result<[Verdict<()>; 8], Error> {
-        // Planes of half cells, so that the middle of a finest cell is one, too.
+        // Planes of half cells, because the middle of a finest cell is one of them.
         let shift = 1 + self.frame.depth().saturating_sub(cell.level);
         let halves = axes(|axis| {
             let first = cell.at[axis] << shift;

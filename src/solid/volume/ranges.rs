@@ -1,5 +1,5 @@
-//! The least and the greatest sample of every block of 4³: what tells without the samples, for any band,
-//! which blocks lie inside as a whole, and which do not touch the solid.
+//! The least and the greatest sample of every block of 4³. For any band, they usually tell, without the
+//! samples, whether a block lies inside as a whole or does not touch the solid.
 
 use super::slices::in_slices;
 use super::value::Value;
@@ -9,11 +9,11 @@ use crate::error::Error;
 use crate::memory;
 use alloc::vec::Vec;
 
-/// `[least, greatest]` of each block, x fastest. In a block with samples that are not numbers, the least is
-/// none, and the greatest is that of the others.
+/// `[least, greatest]` of each block, x fastest. In a block with NaN samples, the least is NaN, and the
+/// greatest is that of the other samples.
 #[derive(Debug)]
 pub(super) enum Ranges {
-    /// Of bits, which are read as fast.
+    /// Bits have no ranges: reading the bits is as fast.
     None,
     U8(Vec<[u8; 2]>),
     U16(Vec<[u16; 2]>),
@@ -37,7 +37,7 @@ impl Ranges {
         })
     }
 
-    /// Bytes that they take.
+    /// The number of bytes of the ranges.
     pub(super) fn bytes(&self) -> usize {
         match self {
             Ranges::None => 0,
@@ -48,7 +48,7 @@ impl Ranges {
         }
     }
 
-    /// The least and the greatest of all samples; `None` of bits, and if one is not a number.
+    /// The least and the greatest of all samples; `None` for bits, and if one sample is NaN.
     pub(super) fn all(&self) -> Option<[f64; 2]> {
         fn of<T: Value>(ranges: &[[T; 2]]) -> Option<[f64; 2]> {
             let mut all = [f64::INFINITY, f64::NEG_INFINITY];
@@ -86,7 +86,7 @@ fn ranges<T: Value>(grid: &VoxelGrid, values: &[T], control: &Control<'_>) -> Re
                 for y in 4 * by..ny.min(4 * by + 4) {
                     let first = (z * ny + y) * nx;
                     let samples = values.get(first..first + nx).unwrap_or(&[]);
-                    // Two loops, each of which becomes one of vectors.
+                    // Two loops, so that each can be vectorised.
                     for (least, &value) in least.iter_mut().zip(samples) {
                         *least = if value < *least { value } else { *least };
                     }

@@ -1,4 +1,4 @@
-//! The samples of a volume, borrowed or shared, and which of them are inside.
+//! The samples of a volume, borrowed or shared, and the band of values that are inside.
 
 use super::VoxelGrid;
 use crate::error::Error;
@@ -6,11 +6,12 @@ use alloc::sync::Arc;
 use alloc::vec::Vec;
 use core::fmt;
 
-/// An array that a volume reads: borrowed, or shared with whoever owns it. It is never copied.
+/// An array that a volume reads, borrowed or shared with its owner. It is never copied.
 pub enum SampleArray<'a, T> {
-    /// Somebody else's, for as long as the volume is used.
+    /// A borrowed slice, which must live as long as the volume is used.
     Borrowed(&'a [T]),
-    /// Kept alive by the volume and its clones: a vector, a mapped file. It must always be the same slice.
+    /// A value that the volume and its clones keep alive: a vector, a mapped file. It must always return the
+    /// same slice.
     Shared(Arc<dyn AsRef<[T]> + Send + Sync + 'a>),
 }
 
@@ -55,18 +56,17 @@ impl<T: Send + Sync + 'static> From<Vec<T>> for SampleArray<'static, T> {
 /// The samples of a volume, x fastest, then y, then z.
 #[derive(Debug, Clone)]
 pub enum Samples<'a> {
-    /// Bits with the values 0 and 1. Each row along x begins with a word of its own: the bit of the sample
-    /// (x, y, z) is bit x mod 64 of word x / 64 + w·(y + ny·z), where w = ⌈nx / 64⌉. Other bits of a row's
-    /// last word do not count. [`OctreeRef::bitmap`](crate::OctreeRef::bitmap) writes the same.
+    /// Bits with the values 0 and 1. Each row along x begins with a new word: the bit of the sample (x, y, z)
+    /// is bit x mod 64 of word x / 64 + w·(y + ny·z), where w = ⌈nx / 64⌉. Other bits of a row's last word do
+    /// not count. [`OctreeRef::bitmap`](crate::OctreeRef::bitmap) writes the same layout.
     Bits(SampleArray<'a, u64>),
-    /// Whole numbers from 0 to 255.
+    /// Integers from 0 to 255.
     U8(SampleArray<'a, u8>),
-    /// Whole numbers from 0 to 65 535.
+    /// Integers from 0 to 65 535.
     U16(SampleArray<'a, u16>),
-    /// Whole numbers from −32 768 to 32 767, as the Hounsfield units of tomography.
+    /// Integers from −32 768 to 32 767, as the Hounsfield units of tomography.
     I16(SampleArray<'a, i16>),
-    /// Numbers of single precision. One that is not a number is never inside; infinite ones are compared as
-    /// numbers.
+    /// Numbers of single precision. A NaN is never inside; infinite values are compared as numbers.
     F32(SampleArray<'a, f32>),
 }
 
@@ -88,7 +88,7 @@ macro_rules! samples_of {
 samples_of!(U8(u8), U16(u16), I16(i16), F32(f32));
 
 impl Samples<'_> {
-    /// How many elements the array has: words of bits, or samples.
+    /// The number of elements of the array: words of bits, or samples.
     fn len(&self) -> usize {
         match self {
             Samples::Bits(words) => words.values().len(),
@@ -99,7 +99,7 @@ impl Samples<'_> {
         }
     }
 
-    /// Whether the array is somebody else's.
+    /// Returns whether the array is borrowed.
     pub(super) fn is_borrowed(&self) -> bool {
         match self {
             Samples::Bits(words) => matches!(words, SampleArray::Borrowed(_)),
@@ -110,7 +110,7 @@ impl Samples<'_> {
         }
     }
 
-    /// Bytes that the array takes, whoever owns it.
+    /// The number of bytes of the array, borrowed or not.
     pub fn bytes(&self) -> usize {
         match self {
             Samples::Bits(words) => size_of_val(words.values()),
@@ -121,10 +121,10 @@ impl Samples<'_> {
         }
     }
 
-    /// Refuses an array that does not have one element for each sample of a grid.
+    /// Checks that the array has one element for each sample of a grid.
     ///
     /// # Errors
-    /// [`Error::Argument`].
+    /// [`Error::Argument`] if it does not.
     pub fn check(&self, grid: &VoxelGrid) -> Result<(), Error> {
         let [_, y, z] = grid.extents().map(u64::from);
         let (count, problem) = match self {
@@ -158,7 +158,7 @@ impl Samples<'_> {
     }
 }
 
-/// Which values are inside: those from `low` to `high`, both included.
+/// The values that are inside: those from `low` to `high`, both included.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Band {
     low: f64,
@@ -166,7 +166,7 @@ pub struct Band {
 }
 
 impl Band {
-    /// The values that are not less than `threshold`.
+    /// Makes the band of the values that are not less than `threshold`.
     ///
     /// # Errors
     /// [`Error::Argument`] if `threshold` is not a number.
@@ -174,7 +174,7 @@ impl Band {
         Band::between(threshold, f64::INFINITY)
     }
 
-    /// The values that are not greater than `threshold`.
+    /// Makes the band of the values that are not greater than `threshold`.
     ///
     /// # Errors
     /// [`Error::Argument`] if `threshold` is not a number.
@@ -182,7 +182,7 @@ impl Band {
         Band::between(f64::NEG_INFINITY, threshold)
     }
 
-    /// The values from `low` to `high`, both included; both may be infinite.
+    /// Makes the band of the values from `low` to `high`, both included; both may be infinite.
     ///
     /// # Errors
     /// [`Error::Argument`] if one of them is not a number, or if low > high.
@@ -204,7 +204,7 @@ impl Band {
         self.high
     }
 
-    /// Whether a value is inside.
+    /// Returns whether a value is inside.
     pub fn contains(&self, value: f64) -> bool {
         self.low <= value && value <= self.high
     }

@@ -1,10 +1,11 @@
-//! Work on the slices of an array, by several threads.
+//! Parallel work on the slices of an array.
 
 use crate::control::Control;
 use crate::error::Error;
 use crate::parallel::each;
 
-/// Does `work` on each slice of `length` elements, with its index. The last may be shorter.
+/// Calls `work` with the index of each slice of `length` elements, and the slice. The last slice may be
+/// shorter.
 pub(super) fn in_slices<T: Send>(
     values: &mut [T],
     length: usize,

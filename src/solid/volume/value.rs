@@ -1,4 +1,4 @@
-//! What kinds of samples have in common.
+//! The common interface of all kinds of samples.
 
 use super::{Band, Samples};
 
@@ -8,20 +8,20 @@ pub(super) trait Value: Copy + PartialOrd + Send + Sync + 'static {
     const LEAST: Self;
     const GREATEST: Self;
 
-    /// The value that a double is, which is one of this kind.
+    /// Converts a double that is a value of this kind.
     fn of(x: f64) -> Self;
 
-    /// As a double.
+    /// Converts the value to a double.
     fn to_f64(self) -> f64;
 
-    /// The least value that is not less, and the greatest that is not greater; as doubles.
+    /// The least value that is not less than `x`, and the greatest that is not greater, as doubles.
     fn ceil(x: f64) -> f64;
     fn floor(x: f64) -> f64;
 
-    /// What stands for the least of values one of which is not a number: no comparison with it is true.
+    /// The least value of a block in which one sample is NaN: no comparison with it is true.
     const NONE: Self;
 
-    /// Whether it is no number.
+    /// Returns whether the value is NaN.
     fn is_nan(self) -> bool;
 }
 
@@ -90,8 +90,8 @@ impl Value for f32 {
     }
 }
 
-/// A band whose ends are values of the samples' kind: the same samples lie in it as in the one it was made
-/// from.
+/// A band whose ends are values of the samples' kind. It contains the same samples as the band that it was
+/// made from.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(super) struct Limits {
     pub(super) low: f64,
@@ -103,7 +103,7 @@ impl Limits {
         fn of<T: Value>(band: &Band) -> Limits {
             let low = T::ceil(band.low()).max(T::LEAST.to_f64());
             let high = T::floor(band.high()).min(T::GREATEST.to_f64());
-            // A band between two values has none.
+            // A band between two neighbouring values contains none.
             if low <= high { Limits { low, high } } else { Limits { low: 1.0, high: 0.0 } }
         }
         match samples {
@@ -125,7 +125,7 @@ impl Limits {
         self.low <= value && value <= self.high
     }
 
-    /// What of a word of bits is inside.
+    /// The inside bits of a word of bits.
     #[inline(always)]
     pub(super) fn word(&self, word: u64) -> u64 {
         match (self.contains(0.0), self.contains(1.0)) {
