@@ -36,9 +36,9 @@ const MOST: usize = 1 << 19;
 
 /// The triangles of a closed mesh for which it is unknown whether they bound the solid, as pieces.
 pub(crate) struct Pieces {
-    /// They belong to the boundary.
+    /// The pieces that belong to the boundary.
     pub(crate) sure: Vec<[Point; 3]>,
-    /// They may, and no other ones do.
+    /// The pieces that may belong to the boundary; no other pieces do.
     pub(crate) doubtful: Vec<[Point; 3]>,
     /// Maximum distance of corners from the mesh.
     pub(crate) rounding: f64,
@@ -53,12 +53,12 @@ struct Piece {
 
 impl TriangleMesh {
     /// Divides the triangles of a mesh, closed under `rule`, for which `sides` has no answer. Pieces that
+    /// Divides the triangles of a mesh, closed under `rule`, for which `sides` has no answer. Pieces that
     /// meet other triangles have sides no longer than `size` (model units). `None` if there would be too many
     /// pieces, or if triangles lie on each other and would meet everywhere.
     ///
     /// O(l / size) for lines of intersection of the length l, where each line counts once for each triangle
     /// that meets a piece.
-    /// meet a piece.
     ///
     /// # Errors
     /// [`Error::OutOfMemory`], and [`Error::Cancelled`] by `control`.

@@ -143,7 +143,7 @@ impl TriangleTree<'_> {
 }
 
 impl TriangleTree<'_> {
-    /// The normal of a triangle, twice as long as its area is large.
+    /// Returns the normal of a triangle; its length is twice the area.
     pub(crate) fn normal(&self, triangle: u32) -> Point {
         let [a, b, c] = corners(self.mesh, triangle);
         let [u, v]: [Point; 2] = [b, c].map(|p| array(|axis| p[axis] - a[axis]));

@@ -71,15 +71,15 @@ pub struct MeshReport {
     /// a fill rule encloses. Without such bodies, undecided bodies, inverted bodies and bodies that cross
     /// themselves, the two are equal.
     pub overlapping_bodies: u64,
-    /// Other closed bodies that may overlap another one: they touch in a way that is not decided, such as a
-    /// peg that fits its hole exactly, or there was too much to look at.
+    /// Number of other closed bodies that may overlap another one: they touch in a way that is not decided,
+    /// such as a peg that fits its hole exactly, or the limit of work was reached.
     pub undecided_bodies: u64,
     /// Number of faces of more than three corners from which the triangles were made: faces of OBJ, PLY and
     /// OFF files and of a [`Polyhedron`](crate::mesh::Polyhedron). 0 for other meshes.
     pub polygons: u64,
-    /// Those that are not flat: corners lie beside the face's plane, by more than 2^-40 of its extent. Such a
-    /// face has no shape of its own. The mesh is one of its triangulations, and whatever is proven of the
-    /// mesh is proven of that one.
+    /// Number of such faces that are not flat: corners lie off the face's plane by more than 2^-40 of its
+    /// extent. Such a face has no definite shape. The mesh is one of its triangulations, and every proof
+    /// about the mesh is about that triangulation.
     pub bent_polygons: u64,
     /// Half the distance, in model units and up to rounding, between the two planes parallel to a face that
     /// enclose all its corners, for the face where it is greatest. Each triangulation of the face lies
