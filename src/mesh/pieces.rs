@@ -53,7 +53,6 @@ struct Piece {
 
 impl TriangleMesh {
     /// Divides the triangles of a mesh, closed under `rule`, for which `sides` has no answer. Pieces that
-    /// Divides the triangles of a mesh, closed under `rule`, for which `sides` has no answer. Pieces that
     /// meet other triangles have sides no longer than `size` (model units). `None` if there would be too many
     /// pieces, or if triangles lie on each other and would meet everywhere.
     ///

@@ -180,7 +180,6 @@ impl Grid {
         array(|axis| (p[axis] - self.centre[axis]) * scale)
     }
 
-    /// Returns a triangle's first corner relative to the centre, and its edges from there, scaled. The error
     /// Returns a triangle's first corner relative to the centre, and its edges from there, scaled. The errors
     /// are those of [`scaled`](Self::scaled).
     #[inline(always)]
