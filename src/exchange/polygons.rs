@@ -35,7 +35,7 @@ impl Polygons {
         memory::push(&mut self.vertices, vertex)
     }
 
-    /// Adds a face; one of fewer than three corners adds nothing.
+    /// Adds a face; a face of fewer than three corners adds nothing.
     #[inline]
     pub fn push_face(&mut self, corners: &[u32]) -> Result<(), Error> {
         match *corners {

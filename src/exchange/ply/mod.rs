@@ -15,9 +15,9 @@
 //!
 //! **Elements** come in any order. Elements of other names, and all properties that are not needed, single
 //! ones and lists, are skipped. `vertex` needs `x`, `y` and `z` of any type. `face` needs a list of integers
-//! named `vertex_indices` or `vertex_index`, of three or more vertices each. Without such a list, all lists
-//! of the elements' faces are absent and there are no faces, with a warning. `tristrips`, as in the Stanford
-//! scans, needs a list of that name, in which -1 ends a strip; every second triangle is reversed.
+//! named `vertex_indices` or `vertex_index`, of three or more vertices each. Without such a list, the header
+//! must announce no faces, and there is a warning. `tristrips`, as in the Stanford scans, needs a list of
+//! that name, in which -1 ends a strip; every second triangle is reversed.
 //!
 //! **ASCII.** The values of an element are separated by white space, also by line ends; each element begins
 //! on a new line. If the first element of a kind has more values on its line than the header announces, these

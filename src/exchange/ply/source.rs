@@ -30,8 +30,9 @@ pub(super) trait Source: Copy {
     /// Takes `count` indices below `vertices`; in a strip also -1, which becomes the greatest `u32`.
     fn indices(&mut self, out: &mut Vec<u32>, count: u64, of: &Indices, vertices: u64) -> Result<(), Error>;
 
-    /// Takes the end of an element that began at `start`, and before it so many values that the header does
-    /// not announce; `None`: any number, all on the line where the element began. Tells how many there were.
+    /// Takes the end of an element that began at `start`, after skipping `more` values that the header does
+    /// not announce. `None`: any number of such values, all on the line where the element began. Returns
+    /// their number.
     fn end_element(&mut self, start: &Self, more: Option<u64>) -> Result<u64, MeshFileError>;
 
     /// Returns the current line.

@@ -58,7 +58,7 @@ pub(super) enum Purpose {
 }
 
 pub(super) enum Shape {
-    /// Nothing that is known here.
+    /// Unknown content.
     Unknown,
     /// Ranges of vertices and triangles.
     Mesh(Range<usize>, Range<usize>),

@@ -114,7 +114,7 @@ impl VolumeFile {
     /// use leafless::{Control, Rule, build, solid::Band};
     /// let (file, control) = (open_volume("scan.nrrd")?, Control::default());
     /// let part = file.solid(Some(Band::at_least(900.0)?), &control)?;
-    /// The frame of the voxels, which suits a file without a placement.
+    /// // The frame of the voxels, which suits a file without a placement.
     /// let tree = build(&part, &file.grid.frame()?, Rule::Sampled, &control)?;
     /// # Ok::<(), leafless::Error>(())
     /// ```

@@ -79,7 +79,7 @@ pub fn write_grouped_polygons(
     let mut starts = memory::with_capacity(arrays.faces.len())?;
     for (face, loops) in arrays.faces.windows(2).enumerate() {
         starts.push(polygons.ends.len());
-        // (The offsets were found to be right.)
+        // (The offsets were checked.)
         let loops = &arrays.loops[loops[0] as usize..=loops[1] as usize];
         let corners = &arrays.corners[loops[0] as usize..loops[loops.len() - 1] as usize];
         if loops.len() == 2 {
