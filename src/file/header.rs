@@ -144,8 +144,9 @@ pub(super) struct Head {
 impl Head {
     /// Reads the first 128 of `bytes`.
     ///
-    /// The order of the checks: what kind of file it is, then its version, because a newer one may have
-    /// changed all that follows, then the checksum, so that damage is called damage, then each field.
+    /// The order of the checks: first the kind of file; then its version, because a newer version may have
+    /// changed everything that follows; then the checksum, so that damage is reported as damage; then each
+    /// field.
     pub(super) fn read(bytes: &[u8]) -> Result<Head, FormatError> {
         let known = bytes.len().min(MAGIC.len());
         if bytes[..known] != MAGIC[..known] {
@@ -287,8 +288,8 @@ impl Head {
     }
 }
 
-/// Whether the signature is there but for what a transfer in text mode does to line ends: whatever stands
-/// between the letters and the end-of-file mark, and after it, are still line ends.
+/// Returns whether the signature was altered by a text-mode transfer, which rewrites line ends: there are
+/// still line ends between the letters and the end-of-file mark, and one after the mark.
 fn is_text_mode(bytes: &[u8]) -> bool {
     let Some(rest) = bytes.strip_prefix(b"\x89LFL") else { return false };
     let is_end = |byte: &u8| *byte == b'\r' || *byte == b'\n';

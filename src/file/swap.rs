@@ -25,11 +25,11 @@ pub(super) fn swap_bytes(
     for (channel, _) in channels {
         sections.extend(channel.numbers());
     }
-    // Sections with the same bytes have the same elements, as the section table was checked to say.
+    // The check of the section table ensures that sections with the same bytes have the same elements.
     sections.sort_unstable_by_key(|(range, _)| range.start);
     sections.dedup_by_key(|(range, _)| range.start);
     for (range, element) in sections {
-        // All of them lie in the file, as was checked.
+        // All of them lie in the file; this was checked.
         let Some(section) = bytes.get_mut(range.start as usize..range.end as usize) else { continue };
         match element {
             Element::Record => swap_all::<Object>(section),
@@ -54,7 +54,7 @@ mod tests {
     use crate::op::Rule;
     use crate::solid::Csg;
 
-    /// What a big-endian machine does when it reads a file, seen from a little-endian one.
+    /// Simulates on a little-endian machine how a big-endian machine reads a file.
     #[test]
     fn every_number_of_a_file_is_swapped_once() {
         let frame = Frame::new([0.0; 3], 1.0, 7).unwrap();

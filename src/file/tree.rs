@@ -33,8 +33,8 @@ const _: () = {
 /// The start of each element level of a tree.
 pub(super) type Starts = [usize; MAX_ELEMENT_LEVELS + 1];
 
-/// Returns a view of the arrays of an object with a tree, whose numbers have this machine's byte order. As
-/// yet, its cells prove nothing and its exterior is EMPTY.
+/// Returns a view of the arrays of an object with a tree, whose numbers have this machine's byte order. Its
+/// exterior is EMPTY and its proof is that of certified cells; octrees replace both.
 pub(super) fn view<'a>(
     object: &Object,
     sections: &Sections,
