@@ -53,7 +53,7 @@ impl core::fmt::Debug for Control<'_> {
 }
 
 impl Control<'_> {
-    /// The default with this number of threads.
+    /// Returns the default with this number of threads.
     pub fn threads(threads: usize) -> Control<'static> {
         Control { threads, ..Control::default() }
     }
@@ -110,7 +110,7 @@ impl<'a> Job<'a> {
         Job { control, nodes: AtomicUsize::new(0), bytes: AtomicUsize::new(0), done: AtomicUsize::new(0) }
     }
 
-    /// The control of this run.
+    /// Returns the control of this run.
     pub(crate) fn control(&self) -> &'a Control<'a> {
         self.control
     }

@@ -16,7 +16,7 @@ pub(super) struct Bytes<'a, const BIG: bool> {
 }
 
 impl<'a, const BIG: bool> Bytes<'a, BIG> {
-    /// The file after the first `taken` bytes.
+    /// Makes a reader of the file after the first `taken` bytes.
     pub fn new(all: &'a [u8], taken: usize) -> Self {
         Self { all, rest: all.get(taken..).unwrap_or(&[]) }
     }

@@ -194,7 +194,7 @@ impl<'a> Reader<'a> {
     }
 }
 
-const NOTHING: &str = "vertices (`v`) and faces (`f`), of which this file has none";
+const NOTHING: &str = "vertices (`v`) and faces (`f`), but this file has neither";
 const CORNER: &str = "numbers of vertices, such as 7, 7/1, 7//2 or 7/1/2";
 
 /// Takes the first word of a statement; empty at the end of the text.

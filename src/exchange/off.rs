@@ -121,8 +121,8 @@ impl Layout {
     }
 }
 
-const DIMENSION: &str = "three dimensions: `nOFF` of others is no surface in space";
-const FOURTH: &str = "a fourth coordinate by which the others can be divided";
+const DIMENSION: &str = "three dimensions: in any other number `nOFF` is no surface in space";
+const FOURTH: &str = "a fourth coordinate that can divide the others";
 const LITTLE_ENDIAN: &str =
     "big-endian numbers, which an OFF BINARY has; the counts make sense in little-endian order only";
 const NO_CORNER: &str = "a face of at least one corner";

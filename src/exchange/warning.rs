@@ -58,7 +58,7 @@ impl fmt::Display for MeshWarning {
             Self::HeaderLine { line, lines } => {
                 write!(
                     f,
-                    "line {line}{} of the header has no keyword and was taken for a comment",
+                    "line {line}{} of the header has no keyword and was treated as a comment",
                     also(lines)
                 )
             }

@@ -294,7 +294,7 @@ impl Kind {
         }
     }
 
-    /// Metadata and cuts are optional for readers.
+    /// Returns the flags of a section. Metadata and cuts are optional for readers.
     pub(super) fn flags(self) -> u32 {
         if self == Kind::Metadata || self.is_of_cuts() { 0 } else { SECTION_REQUIRED }
     }

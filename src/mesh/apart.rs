@@ -153,7 +153,7 @@ struct Axis {
 }
 
 impl Turned {
-    /// `linear` maps from the grid of the second mesh.
+    /// Returns the axes after the linear map from the grid of the second mesh; `None` if boxes change shape.
     fn new(linear: &[Point; 3]) -> Option<Turned> {
         let columns: [Point; 3] = array(|k| linear.map(|row| row[k]));
         let sizes = columns.map(|column| sqrt(dot(&column, &column)));
@@ -181,7 +181,7 @@ struct Boxes {
 impl Boxes {
     const NONE: Boxes = Boxes { middle: [[0.0; WIDTH]; 3], half: [[0.0; WIDTH]; 3], own: [[0.0; WIDTH]; 3] };
 
-    /// The boxes of a node of the first mesh. `unit` is the unit of the tree's grid.
+    /// Returns the boxes of a node of the first mesh. `unit` is the unit of the tree's grid.
     #[inline(always)]
     fn own(node: &Node, unit: f64) -> Boxes {
         let mut boxes = Boxes::NONE;
@@ -197,7 +197,7 @@ impl Boxes {
         boxes
     }
 
-    /// The boxes around the images of these boxes.
+    /// Returns the boxes around the images of these boxes.
     #[inline(always)]
     fn moved(&self, linear: &[Point; 3], offset: &Point) -> Boxes {
         let mut boxes = Boxes { own: self.half, ..Boxes::NONE };
@@ -213,7 +213,7 @@ impl Boxes {
         boxes
     }
 
-    /// The squares of the distances of box k from the others, and of the distances of their middles. For
+    /// Returns the squared distances of box k from the others, and of the distances of their middles. For
     /// turned boxes the axes of both are tried as separating directions.
     #[inline(always)]
     fn squares(&self, k: usize, others: &Boxes, turned: Option<&Turned>) -> ([f64; WIDTH], [f64; WIDTH]) {
@@ -251,7 +251,7 @@ impl Boxes {
         (squares, between)
     }
 
-    /// The ends of the boxes along a direction of length 1.
+    /// Returns the ends of the boxes along a direction of length 1.
     #[inline(always)]
     fn ends(&self, way: &Point) -> [f64; WIDTH] {
         let Boxes { middle, half, .. } = self;
@@ -301,8 +301,8 @@ fn larger(a: f64, b: f64) -> f64 {
 type Parts = (f64, f64, u8, u8);
 
 impl<'m> MeshPair<'m> {
-    /// The second mesh is placed by `placement`. The vertices of both meshes together may be displaced by
-    /// `off` (model units).
+    /// Makes a pair whose second mesh is placed by `placement`. The vertices of both meshes together may be
+    /// displaced by `off` (model units).
     pub(crate) fn new(
         own: Facets<'m>,
         other: Facets<'m>,
@@ -313,8 +313,8 @@ impl<'m> MeshPair<'m> {
         MeshPair { own, other, map, off }
     }
 
-    /// The distance of the meshes, as precisely as `enough` demands. The bounds hold for the triangles as
-    /// given, moved exactly.
+    /// Returns the distance of the meshes, as precisely as `enough` demands. The bounds hold for the
+    /// triangles as given, moved exactly.
     ///
     /// About O(log n) for meshes that are near to each other in one place; O(n) if they run alongside each
     /// other.
@@ -515,8 +515,8 @@ impl<'m> Search<'_, 'm> {
         Ok(())
     }
 
-    /// Lowers the ends of a node's children along a direction to the ends of their discs. `way` and `offset`
-    /// convert to the units of the grid.
+    /// Lowers the ends of a node's children along a direction to the ends of their discs. `way` is the
+    /// direction in the units of the grid, and `offset` is added to the ends of discs.
     #[inline(always)]
     fn sharpen(&self, side: usize, place: Place, ends: &mut [f64; WIDTH], (way, offset): (&Point, f64)) {
         let (facets, tree) = ([&self.pair.own, &self.pair.other][side], self.trees()[side]);

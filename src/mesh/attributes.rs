@@ -63,7 +63,7 @@ enum Rows {
 }
 
 impl MeshAttribute {
-    /// Bytes of memory that the attribute keeps.
+    /// Returns the bytes of memory that the attribute keeps.
     pub fn bytes(&self) -> u64 {
         let table = match &self.table {
             Table::Labels => 0,
@@ -169,17 +169,17 @@ impl MeshAttribute {
         Self { names, ..self }
     }
 
-    /// The name. All attributes of a mesh have different names.
+    /// Returns the name. All attributes of a mesh have different names.
     pub fn name(&self) -> &str {
         &self.name
     }
 
-    /// The number of numbers in a value: 1 to 4.
+    /// Returns the number of components of a value: 1 to 4.
     pub fn components(&self) -> usize {
         self.components
     }
 
-    /// The elements that bear values: triangles or corners.
+    /// Returns the elements that bear values: triangles or corners.
     pub fn domain(&self) -> AttributeDomain {
         match self.rows {
             Rows::Triangles(_) => AttributeDomain::Triangle,
@@ -187,7 +187,7 @@ impl MeshAttribute {
         }
     }
 
-    /// The number of triangles.
+    /// Returns the number of triangles.
     pub fn len(&self) -> usize {
         match &self.rows {
             Rows::Triangles(rows) => rows.len(),
@@ -200,7 +200,7 @@ impl MeshAttribute {
         self.len() == 0
     }
 
-    /// The names of the values 0, 1, 2 …, if they have names. There may be more values than names.
+    /// Returns the names of the values 0, 1, 2 …, if they have names. There may be more values than names.
     pub fn names(&self) -> &[String] {
         &self.names
     }

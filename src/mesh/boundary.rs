@@ -13,7 +13,7 @@ pub(crate) struct Loops {
 }
 
 impl Loops {
-    /// Bytes that the lists take.
+    /// Returns the bytes that the lists take.
     pub(crate) fn bytes(&self) -> usize {
         memory::bytes_of(&self.vertices) + memory::bytes_of(&self.ends)
     }

@@ -46,7 +46,7 @@ pub struct MeshDefect {
 }
 
 impl MeshDefect {
-    /// The longest side of the bounds.
+    /// Returns the longest side of the bounds.
     pub fn extent(&self) -> f64 {
         let (low, high) = (DVec3::from(self.bounds.0), DVec3::from(self.bounds.1));
         (high - low).max_element()

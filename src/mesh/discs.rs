@@ -23,7 +23,7 @@ const MARGIN: f64 = 1.0 / (1_u64 << 47) as f64;
 #[derive(Clone, Copy)]
 struct Disc {
     centre: Point,
-    /// Of length 1.
+    /// A unit vector.
     normal: Point,
     /// Half of the thickness.
     half: f64,

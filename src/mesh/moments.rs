@@ -105,7 +105,7 @@ impl TriangleMesh {
         Ok(MeshMoments::Known(sums.finish(&grid, grid.bits(self.vertices()), self.tube(&grid))))
     }
 
-    /// The region in which the true surface may lie, and its effect on the moments.
+    /// Returns the size of the region in which the true surface may lie.
     fn tube(&self, grid: &Grid) -> Tube {
         let mut tube = Tube::default();
         if self.radius() == 0.0 {

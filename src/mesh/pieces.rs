@@ -56,8 +56,8 @@ impl TriangleMesh {
     /// meet other triangles have sides no longer than `size` (model units). `None` if there would be too many
     /// pieces, or if triangles lie on each other and would meet everywhere.
     ///
-    /// O(l / size) for lines of intersection of the length l, where each line counts once for each triangle
-    /// that meets a piece.
+    /// O(l / size) pieces for lines of intersection of the length l; a piece costs time in proportion to the
+    /// number of triangles that meet it.
     ///
     /// # Errors
     /// [`Error::OutOfMemory`], and [`Error::Cancelled`] by `control`.

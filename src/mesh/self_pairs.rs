@@ -46,7 +46,7 @@ struct Pairs<'m> {
     /// The common busy vertices of each node; empty if no vertex is busy.
     common: Vec<Common>,
     turned: Option<Vec<Turned>>,
-    /// Steps left before oriented boxes are made.
+    /// Oriented boxes are made once fewer steps than this remain.
     before: u64,
 }
 

@@ -261,12 +261,12 @@ impl TriangleMesh {
         (self.vertices, self.triangles)
     }
 
-    /// The vertices, all different.
+    /// Returns the vertices, all different.
     pub fn vertices(&self) -> &[[f64; 3]] {
         &self.vertices
     }
 
-    /// The triangles as indices into [`vertices`](Self::vertices).
+    /// Returns the triangles as indices into [`vertices`](Self::vertices).
     pub fn triangles(&self) -> &[[u32; 3]] {
         &self.triangles
     }
@@ -283,12 +283,12 @@ impl TriangleMesh {
         (arrays + known) as u64 + attributes.iter().map(MeshAttribute::bytes).sum::<u64>()
     }
 
-    /// The attributes of the triangles, in the order in which they were added.
+    /// Returns the attributes of the triangles, in the order in which they were added.
     pub fn attributes(&self) -> &[MeshAttribute] {
         &self.attributes
     }
 
-    /// The attribute with this name.
+    /// Returns the attribute with this name.
     pub fn attribute(&self, name: &str) -> Option<&MeshAttribute> {
         self.attributes.iter().find(|attribute| attribute.name() == name)
     }
@@ -310,7 +310,8 @@ impl TriangleMesh {
         core::mem::take(&mut self.attributes)
     }
 
-    /// The least and the greatest coordinates of the vertices that triangles use; zeros if there are none.
+    /// Returns the least and the greatest coordinates of the vertices that triangles use; zeros if there are
+    /// none.
     ///
     /// O(t), computed anew on each call.
     pub fn bounds(&self) -> ([f64; 3], [f64; 3]) {

@@ -32,7 +32,7 @@ pub(super) struct Fineness {
 }
 
 impl Fineness {
-    /// Missing values have the defaults of OpenSCAD.
+    /// Makes the fineness; missing values have the defaults of OpenSCAD.
     pub fn new([count, angle, size]: [Option<f64>; 3]) -> Fineness {
         let positive = |given: Option<f64>, default| given.unwrap_or(default).max(0.01);
         Fineness { count: count.unwrap_or(0.0), angle: positive(angle, 12.0), size: positive(size, 2.0) }

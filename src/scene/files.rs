@@ -40,7 +40,7 @@ impl Checker<'_> {
         })
     }
 
-    /// `deviation` is the maximum distance of the true boundary from the mesh.
+    /// Reads the mesh of a file. `deviation` is the maximum distance of the true boundary from it.
     pub(super) fn mesh(
         &mut self,
         call: &Call<'_>,

@@ -113,7 +113,7 @@ pub(super) fn shown(name: &str) -> String {
 
 type Parsed<O> = Result<O, EmptyError>;
 
-/// White space and comments.
+/// Parses white space and comments.
 fn space(input: &mut &str) -> Parsed<()> {
     let comment = (("/*", take_until(0.., "*/")), "*/");
     repeat(0.., alt((multispace1.void(), ("//", till_line_ending).void(), comment.void()))).parse_next(input)

@@ -28,7 +28,7 @@ pub struct SceneOptions {
 }
 
 impl SceneOptions {
-    /// The defaults with this choice of curved calls that are drawn as polygons.
+    /// Returns the defaults with this choice of curved calls that are drawn as polygons.
     pub fn with_facets(facets: Facets) -> SceneOptions {
         SceneOptions { facets, ..SceneOptions::default() }
     }

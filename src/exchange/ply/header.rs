@@ -44,7 +44,7 @@ impl<'a> Header<'a> {
     pub fn read(bytes: &'a [u8], warnings: &mut Vec<MeshWarning>) -> Result<Self, Error> {
         let mut text = Text::beginning(bytes);
         if text.word() != b"ply" {
-            return Err(Text::beginning(bytes).error("`ply`, with which every PLY file begins").into());
+            return Err(Text::beginning(bytes).error("`ply` at the beginning of a PLY file").into());
         }
         text.skip_blanks();
         // If lines end with CR alone, an LF after the header is part of the data.

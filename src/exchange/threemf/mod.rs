@@ -19,7 +19,7 @@
 //!
 //! **Properties.** Base materials and colour groups become attributes of the mesh: `colour` and `material`. A
 //! triangle has the properties to which it refers, or else the properties of its object, wherever the object
-//! is placed. A group belongs to the part that refers to it. Base materials are not mixed: the material of
+//! is placed. A reference means a group of the same part. Base materials are not mixed: the material of
 //! the first corner counts. Groups of other kinds (textures, composites, multiproperties) are not read. If a
 //! property does not exist, or is no colour, the triangle has none, and a warning counts these triangles. If
 //! several objects are built, `object` is the number of each triangle's object.

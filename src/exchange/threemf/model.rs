@@ -310,7 +310,8 @@ impl Models {
         Ok(())
     }
 
-    /// Only the first `finished` objects in the same part may be referred to, hence there are no cycles.
+    /// Reads a component. In the same part it may only refer to the first `finished` objects, so there are no
+    /// cycles.
     fn read_component(
         &self,
         xml: &Xml,

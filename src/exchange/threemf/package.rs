@@ -53,7 +53,7 @@ impl<'a> Package<'a> {
             |error: rawzip::Error| broken("", alloc::format!("the ZIP archive is damaged: {error}"));
         let archive = ZipArchive::from_slice(bytes).map_err(|error| {
             if is_markup(bytes) {
-                broken("", "this is plain XML: a 3MF is a ZIP archive, of which such a text is one part")
+                broken("", "this is plain XML, but a 3MF is a ZIP archive that contains such a text")
             } else {
                 damaged(error)
             }

@@ -247,7 +247,7 @@ impl<'a> Xml<'a> {
                     let encoding = declaration.encoding().transpose().ok().flatten();
                     if encoding.is_some_and(|encoding| !encoding.eq_ignore_ascii_case(self.encoding)) {
                         let problem =
-                            alloc::format!("the encoding is not {}, in which the text is", self.encoding);
+                            alloc::format!("the encoding is not {}, but the text is", self.encoding);
                         return Err(self.error(offset, problem));
                     }
                 }
@@ -295,7 +295,7 @@ impl<'a> Xml<'a> {
         empty: bool,
     ) -> Result<Markup<'a>, Error> {
         if depth == 1 && core::mem::replace(&mut self.rooted, true) {
-            return Err(self.error(offset, "a second element stands beside the one around all others"));
+            return Err(self.error(offset, "there is a second element beside the root element"));
         }
         let qualified = tag.get(..name_length).unwrap_or(tag);
         self.read_attributes(tag, name_length, offset)?;
@@ -353,7 +353,7 @@ impl<'a> Xml<'a> {
             sorted.windows(2).find(|pair| pair[0].0 == pair[1].0).map(|pair| *pair[1].1)
         };
         match twice {
-            Some(attribute) => Err(self.attribute_error(&attribute, "stands there a second time")),
+            Some(attribute) => Err(self.attribute_error(&attribute, "occurs a second time")),
             None => Ok(()),
         }
     }

@@ -291,9 +291,7 @@ fn axes(fields: &Fields<'_>, extents: [u32; 3], chosen: [usize; 3], count: u64) 
         return in_space(fields, &line, chosen, count, &given);
     }
     if let Some(line) = fields.origin {
-        return Err(line
-            .error("space directions besides, without which an origin in space says nothing")
-            .into());
+        return Err(line.error("space directions as well, because an origin in space needs them").into());
     }
     let chosen_ones = |line: Option<Line<'_>>, all: Option<Vec<f64>>, default: f64| {
         let (Some(line), Some(all)) = (line, all) else { return Ok([None; 3]) };

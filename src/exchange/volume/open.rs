@@ -100,7 +100,7 @@ fn content(real: &Path) -> Result<Vec<u8>, Error> {
     // A special file may have no end, and opening a pipe may wait for ever.
     let check = |metadata: fs::Metadata| match metadata.is_file() {
         true => Ok(()),
-        false => Err(unsupported("samples in what is no regular file")),
+        false => Err(unsupported("samples in a file that is not regular")),
     };
     check(fs::metadata(real)?)?;
     let mut file = File::open(real)?;

@@ -102,7 +102,7 @@ pub(super) struct Materials<'a> {
 }
 
 impl<'a> Materials<'a> {
-    /// `None` if the mesh has no materials. The first `MOST` numbers have names.
+    /// Returns the materials of a mesh; `None` if it has none. The first `MOST` numbers have names.
     pub fn of(mesh: &'a TriangleMesh) -> Result<Option<Materials<'a>>, Error> {
         /// Number of materials that get their number as a name, if they have none.
         const MOST: usize = 1 << 16;

@@ -126,7 +126,7 @@ fn refuse(mesh: &TriangleMesh, format: MeshFormat, options: &WriteOptions) -> Re
     match format {
         // A file with neither vertices nor faces cannot be told from other text.
         MeshFormat::Obj if mesh.vertices().is_empty() => {
-            Err(Error::Argument { name: "mesh", problem: "has no vertices, of which an OBJ must have some" })
+            Err(Error::Argument { name: "mesh", problem: "has no vertices, but an OBJ must have some" })
         }
         #[cfg(not(feature = "threemf"))]
         MeshFormat::ThreeMf => Err(WITHOUT_3MF.into()),
