@@ -7,6 +7,7 @@ use core::sync::atomic::{AtomicBool, AtomicUsize, Ordering::Relaxed};
 
 /// Limits for a long operation, and ways to watch and cancel it. The default has no limit, uses all
 /// processors and reports no progress.
+///
 /// No field but `max_splits` changes a result: with any other field set, an operation returns the same
 /// result, bit for bit, or an error. (Whether damage in unverified bytes is noticed may depend on the number
 /// of threads.)
@@ -32,7 +33,7 @@ pub struct Control<'a> {
     pub max_bytes: Option<u64>,
     /// Maximum number of cells to split; `None` means no limit, or the limit that the operation documents.
     /// Only operations that split on demand use this field, and their documentation says so. When the splits
-    /// are spent, these operations stop and keep or return their bounds so far, without an error.
+    /// are spent, these operations stop and keep or return their results so far, without an error.
     pub max_splits: Option<u64>,
     /// A flag that ends the operation with [`Error::Cancelled`] when any thread sets it.
     pub cancel: Option<&'a AtomicBool>,

@@ -37,7 +37,7 @@
 //! | compare two solids | [`interference`], [`clearance`], [`deviation`] |
 //! | extract a triangle mesh | [`marching_cubes`] and the module [`surface`] |
 //! | read and write Leafless files | the module [`file`](mod@file) |
-//! | read STL, OBJ, PLY, OFF, 3MF or volumes | the module [`exchange`] |
+//! | read and write STL, OBJ, PLY, OFF, 3MF and volumes | the module [`exchange`] |
 //! | limit threads, memory or work; cancel; watch progress | [`Control`] |
 //!
 //! # Three principles

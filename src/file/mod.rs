@@ -32,8 +32,7 @@
 //!
 //! # Files from strangers
 //!
-//! For any bytes whatsoever, the functions of this module do not panic, do not read beyond the bytes, and
-//! terminate:
+//! For any bytes, the functions of this module do not panic, do not read beyond the bytes, and terminate:
 //!
 //! * [`open`], [`from_bytes`], [`map_verified`], [`verify`] and [`verify_path`] accept only a well-formed
 //!   tree and well-formed channels with right checksums. All later answers are then those of a tree that was

@@ -44,7 +44,7 @@ wire_struct! {
 const _: () = assert!(size_of::<Entry>() == ENTRY_LENGTH);
 
 impl Entry {
-    /// Returns the byte range of the section in the file. For an entry that [`Table::read`] accepted, nothing
+    /// Returns the byte range of the section in the file. For an entry that [`read_table`] accepted, nothing
     /// overflows. For any other entry the range may lie outside of the file.
     pub(super) fn range(&self) -> Range<u64> {
         self.offset..self.offset.saturating_add(self.length)
