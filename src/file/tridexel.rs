@@ -288,7 +288,7 @@ pub unsafe fn map(path: impl AsRef<Path>) -> Result<TriDexel, Error> {
     unsafe { read::map(path.as_ref(), false) }
 }
 
-/// Maps a file as [`map`] does, after verifying all of it in one scan: everything that
+/// Maps a file as [`map`] does, and verifies all of it in one scan: everything that
 /// [`verify`](super::verify) checks.
 ///
 /// # Errors
