@@ -171,7 +171,7 @@ fn model(
     for (number, placement) in items.iter().filter(|(number, _)| !objects[*number].is_empty()) {
         write!(out, "<item objectid=\"{}\"", id(*number))?;
         if !placement.is_identity() {
-            // (Of row vectors.)
+            // (Transposed, because a 3MF multiplies row vectors.)
             let rows = placement.rows();
             for column in 0..4 {
                 let [x, y, z] = rows.map(|row| Number(row[column]));
