@@ -636,7 +636,7 @@ int main(int argc, char **argv) {
         static const uint8_t cut[] = "NRRD0004\ntype: uchar\ndimension: 3\nsizes: 2 2 2\nencoding: raw\n\n1234567";
         leafless_volume *volume = (leafless_volume *)UNTOUCHED;
         FAILS(LEAFLESS_E_VOLUME_FILE, volume_from_bytes(cut, sizeof cut - 1, NULL, 0, &volume));
-        failed(LEAFLESS_E_VOLUME_FILE, "LEAFLESS_E_VOLUME_FILE", "8 bytes of samples are expected, and there are 7");
+        failed(LEAFLESS_E_VOLUME_FILE, "LEAFLESS_E_VOLUME_FILE", "8 bytes of samples are expected, but 7 were found");
         check_write("errors.nrrd", cut, 20);
         FAILS(LEAFLESS_E_VOLUME_FILE, volume_open("errors.nrrd", 11, &volume));
         failed(LEAFLESS_E_VOLUME_FILE, "LEAFLESS_E_VOLUME_FILE", "errors.nrrd: ");
@@ -754,9 +754,9 @@ int main(int argc, char **argv) {
             CHECK(file != NULL);
             OK(tridexel_to_bytes(model, file, file_length, &file_length));
             FAILS(LEAFLESS_E_ARGUMENT, octree_from_bytes(file, file_length, &octree));
-            failed(LEAFLESS_E_ARGUMENT, "LEAFLESS_E_ARGUMENT", "the file holds a tri-dexel model, where an octree is wanted");
+            failed(LEAFLESS_E_ARGUMENT, "LEAFLESS_E_ARGUMENT", "the file holds a tri-dexel model, but an octree is needed");
             FAILS(LEAFLESS_E_ARGUMENT, tridexel_from_bytes(bytes, length, &result));
-            failed(LEAFLESS_E_ARGUMENT, "LEAFLESS_E_ARGUMENT", "the file holds an octree, where a tri-dexel model is wanted");
+            failed(LEAFLESS_E_ARGUMENT, "LEAFLESS_E_ARGUMENT", "the file holds an octree, but a tri-dexel model is needed");
             OK(probe_bytes(file, file_length, &probe, sections, COUNT(sections)));
             for (i = 0; i < probe.sections; i++) {
                 if (strstr(sections[i].name, "spans") != NULL) {
@@ -765,7 +765,7 @@ int main(int argc, char **argv) {
             }
             OK(tridexel_view_bytes(file, file_length, &viewed));
             FAILS(LEAFLESS_E_DAMAGED, leafless_tridexel_check(viewed));
-            failed(LEAFLESS_E_DAMAGED, "LEAFLESS_E_DAMAGED", "the tri-dexel model is damaged: its rays along axis 0");
+            failed(LEAFLESS_E_DAMAGED, "LEAFLESS_E_DAMAGED", "the tri-dexel model is damaged along axis 0");
             FAILS(LEAFLESS_E_DAMAGED, check_tridexels(LEAFLESS_OPERATION_UNION, model, viewed, NULL, &result));
             FAILS(LEAFLESS_E_DAMAGED, leafless_tridexel_editor_combine(editor, LEAFLESS_OPERATION_DIFFERENCE, viewed, NULL, NULL));
             FAILS(LEAFLESS_E_DAMAGED, tridexel_save(viewed, "damaged.lfl", 11));

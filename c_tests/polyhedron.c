@@ -372,7 +372,7 @@ static void bad_arrays(void) {
     refused(LEAFLESS_E_MESH, &arrays, "the loops of face 0");
     AGAIN;
     corners[1] = corners[0];
-    refused(LEAFLESS_E_MESH, &arrays, "face 0 has an edge without length");
+    refused(LEAFLESS_E_MESH, &arrays, "face 0 has an edge of zero length");
     AGAIN;
     loops[1] = 2;
     refused(LEAFLESS_E_MESH, &arrays, "loop 0 has 2 corners");

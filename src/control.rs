@@ -1,42 +1,43 @@
-//! Cancelling, watching and limiting long work.
+//! Limits, cancelling and progress of long operations.
 
 use crate::error::Error;
 use crate::parallel;
 use alloc::vec::Vec;
 use core::sync::atomic::{AtomicBool, AtomicUsize, Ordering::Relaxed};
 
-/// How a long operation may proceed. The default has no limit, uses all processors and reports to nobody.
+/// Limits for a long operation, and ways to watch and cancel it. The default has no limit, uses all
+/// processors and reports no progress.
 ///
-/// No field but `max_splits` changes a result: an operation either returns what it would have returned
-/// without them, bit for bit, or an error. (Which damage to unverified bytes is noticed may depend on the
-/// number of threads.)
+/// No field but `max_splits` changes a result: with any other field set, an operation returns the same
+/// result, bit for bit, or an error. (Whether damage in unverified bytes is noticed may depend on the number
+/// of threads.)
 #[derive(Clone, Copy, Default)]
 pub struct Control<'a> {
-    /// Threads to use; 0 means as many as the machine has processors, numbers beyond 1024 mean 1024. Without
-    /// the feature `parallel`, and where the system refuses to start threads, there is one: the calling
-    /// thread.
+    /// Number of threads. 0 means as many as the machine has processors; numbers beyond 1024 mean 1024.
+    /// Without the feature `parallel`, or if the system refuses to start threads, only the calling thread
+    /// works.
     pub threads: usize,
-    /// Refuse results of more than this many octree nodes with [`Error::Limit`]. (What is refined on demand
-    /// stops there.)
+    /// Refuses results of more than this many octree nodes with [`Error::Limit`]. (Refinement on demand stops
+    /// there.)
     pub max_nodes: Option<u64>,
-    /// Refuse results whose working form is larger than this many bytes. Where the size is known beforehand,
-    /// the refusal is [`Error::TooLarge`] and nothing is done; where it is found out on the way, it is
-    /// [`Error::Limit`]. (What is refined on demand stops there.) When a result is put together, it takes as
-    /// much again for a moment. Interference, clearance, deviations, bounding boxes and areas of sections end
-    /// with what they know, as with `max_splits` spent, before what they remember of a solid's parts takes so
-    /// much.
+    /// Refuses results whose working form is larger than this many bytes. If the size is known beforehand,
+    /// the error is [`Error::TooLarge`] and no work is done; if the size is found during the work, the error
+    /// is [`Error::Limit`]. (Refinement on demand stops there.) While a result is assembled, it briefly takes
+    /// twice its memory. Interference, clearance, deviations, bounding boxes and areas of sections remember
+    /// parts of the solids. They stop before these parts exceed the limit, and return their bounds so far, as
+    /// they do when `max_splits` is spent.
     ///
-    /// A small solid may have a large result: a file of some hundred bytes holds a cell of depth 20, whose
-    /// surface has 2^43 triangles at the finest level. Set a limit where a solid or its depth is not your own
-    /// choice.
+    /// A small solid may have a large result: a file of some hundred bytes can hold one cell of depth 20,
+    /// whose surface has 2^43 triangles at the finest level. Set a limit if the solid or its depth comes from
+    /// somebody else.
     pub max_bytes: Option<u64>,
-    /// Split at most this many cells; `None` means no limit, or the one that the operation names. Only
-    /// operations that split on demand heed it, and say so: with it spent they stop, and keep or return what
-    /// they have; it is no error.
+    /// Maximum number of cells to split; `None` means no limit, or the limit that the operation documents.
+    /// Only operations that split on demand use this field, and their documentation says so. When the splits
+    /// are spent, these operations stop and keep or return their results so far, without an error.
     pub max_splits: Option<u64>,
-    /// Setting this flag, from any thread, ends the operation with [`Error::Cancelled`].
+    /// A flag that ends the operation with [`Error::Cancelled`] when any thread sets it.
     pub cancel: Option<&'a AtomicBool>,
-    /// Called now and then, from any of the threads, with the fraction done (0 to 1).
+    /// A function that is called now and then, from any of the threads, with the fraction done (0 to 1).
     pub progress: Option<&'a (dyn Fn(f64) + Sync)>,
 }
 
@@ -53,17 +54,17 @@ impl core::fmt::Debug for Control<'_> {
 }
 
 impl Control<'_> {
-    /// The default with a number of threads.
+    /// Returns the default with this number of threads.
     pub fn threads(threads: usize) -> Control<'static> {
         Control { threads, ..Control::default() }
     }
 
-    /// Whether the caller cancelled.
+    /// Returns whether the caller cancelled.
     pub fn is_cancelled(&self) -> bool {
         self.cancel.is_some_and(|flag| flag.load(Relaxed))
     }
 
-    /// Does `work` that is the part between two fractions of all that there is to do.
+    /// Calls `work`, which covers the given range of fractions of all progress.
     pub(crate) fn share<R>(&self, [from, to]: [f64; 2], work: impl FnOnce(&Control<'_>) -> R) -> R {
         let report = |done: f64| {
             if let Some(progress) = self.progress {
@@ -74,7 +75,7 @@ impl Control<'_> {
         work(&Control { progress, ..*self })
     }
 
-    /// Refuses what is known to take more bytes than the caller allows.
+    /// Refuses work that is known to take more bytes than the caller allows.
     pub(crate) fn afford(&self, what: &'static str, needed: u64) -> Result<(), Error> {
         match self.max_bytes.filter(|&limit| needed > limit) {
             Some(limit) => Err(Error::TooLarge { what, needed, limit }),
@@ -82,19 +83,19 @@ impl Control<'_> {
         }
     }
 
-    /// Refuses when the caller cancelled.
+    /// Returns [`Error::Cancelled`] if the caller cancelled.
     pub(crate) fn check(&self) -> Result<(), Error> {
         if self.is_cancelled() { Err(Error::Cancelled) } else { Ok(()) }
     }
 
-    /// Runs `work` where the functions of [`parallel`] use the threads that were asked for, if the work is
-    /// `worth` starting them; `work` is told whether there is more than one.
+    /// Runs `work` with the functions of [`parallel`] set to the number of threads that the caller chose, if
+    /// the work is `worth` starting threads. The argument of `work` is true if there is more than one thread.
     pub(crate) fn run<R: Send>(&self, worth: bool, work: impl FnOnce(bool) -> R + Send) -> R {
         if worth { parallel::run(self.threads, work) } else { work(false) }
     }
 }
 
-/// One run of an operation under a [`Control`]: the counters that its threads share.
+/// One run of an operation under a [`Control`], with the counters that its threads share.
 pub(crate) struct Job<'a> {
     control: &'a Control<'a>,
     nodes: AtomicUsize,
@@ -102,7 +103,7 @@ pub(crate) struct Job<'a> {
     done: AtomicUsize,
 }
 
-/// Parts that progress is counted in.
+/// Number of parts in which progress is counted.
 pub(crate) const WHOLE: usize = 1 << 18;
 
 impl<'a> Job<'a> {
@@ -110,17 +111,17 @@ impl<'a> Job<'a> {
         Job { control, nodes: AtomicUsize::new(0), bytes: AtomicUsize::new(0), done: AtomicUsize::new(0) }
     }
 
-    /// Whom it runs under.
+    /// Returns the control of this run.
     pub(crate) fn control(&self) -> &'a Control<'a> {
         self.control
     }
 
-    /// Whether octree nodes must be counted.
+    /// Returns whether octree nodes must be counted.
     pub(crate) fn counts_nodes(&self) -> bool {
         self.control.max_nodes.is_some()
     }
 
-    /// Reports stored nodes and bytes; refuses when a limit is passed or the caller cancelled.
+    /// Counts stored nodes and bytes. Refuses when a limit is exceeded or the caller cancelled.
     pub(crate) fn spend(&self, nodes: usize, bytes: usize) -> Result<(), Error> {
         let within = |counter: &AtomicUsize, amount: usize, limit: Option<u64>, what| match limit {
             Some(limit) => {
@@ -134,12 +135,12 @@ impl<'a> Job<'a> {
         self.check()
     }
 
-    /// Refuses when the caller cancelled.
+    /// Returns [`Error::Cancelled`] if the caller cancelled.
     pub(crate) fn check(&self) -> Result<(), Error> {
         self.control.check()
     }
 
-    /// Does all tasks as [`parallel::each`], which are all that there is to do.
+    /// Does all tasks with [`parallel::each`]. The tasks are the whole work of this run.
     ///
     /// # Errors
     /// As [`parallel::each`].
@@ -159,7 +160,7 @@ impl<'a> Job<'a> {
         })
     }
 
-    /// Reports all that is left as done.
+    /// Reports all remaining work as done.
     #[cfg(feature = "std")]
     pub(crate) fn finish(&self) {
         self.advance(WHOLE.saturating_sub(self.done.load(Relaxed)));

@@ -1,20 +1,21 @@
 //! Run-time choice of instructions for hot loops.
 //!
-//! Ranking a child is one population count, which baseline x86-64 lacks. A loop that ranks is compiled
-//! twice and the better copy is chosen when it is entered; results never depend on the choice.
+//! Ranking a child is one population count, which baseline x86-64 lacks. A loop that ranks children is
+//! compiled twice, and the better copy is chosen when the loop is entered. Results never depend on the
+//! choice.
 
-/// A loop worth compiling twice. `run` must be marked `#[inline(always)]`, and so must what it calls to take
-/// part. (A type instead of a closure, because a closure may be left out of line, and then nothing is
-/// gained.)
+/// A loop that is worth compiling twice. `run` must be marked `#[inline(always)]`, and so must the functions
+/// that it calls, if they are to be compiled twice as well. (This is a type and not a closure, because the
+/// compiler may leave a closure out of line, and then nothing is gained.)
 pub trait Hot {
-    /// What the loop returns.
+    /// The loop's result.
     type Output;
 
-    /// The loop.
+    /// Runs the loop.
     fn run(self) -> Self::Output;
 }
 
-/// Runs `hot` compiled with POPCNT and BMI2 where the processor has them. Pays for one cached feature test.
+/// Runs `hot` compiled with POPCNT and BMI2 if the processor has them. Costs one cached feature test.
 #[inline(always)]
 pub fn with_popcount<H: Hot>(hot: H) -> H::Output {
     #[cfg(all(target_arch = "x86_64", feature = "std", not(target_feature = "popcnt")))]
@@ -32,8 +33,8 @@ pub fn with_popcount<H: Hot>(hot: H) -> H::Output {
     hot.run()
 }
 
-/// As [`with_popcount`], with AVX2 besides where the processor has it: for loops over the coordinates of a
-/// point.
+/// Runs `hot` as [`with_popcount`] does, with AVX2 as well if the processor has it. Meant for loops over the
+/// coordinates of a point.
 #[inline(always)]
 pub fn with_vectors<H: Hot>(hot: H) -> H::Output {
     #[cfg(all(target_arch = "x86_64", feature = "std", not(target_feature = "avx2")))]

@@ -1,28 +1,28 @@
-//! Every way in which the library can refuse.
+//! Errors: every way in which the library can refuse.
 //!
-//! One enum for the whole crate. Each variant carries what was found, and its text is a sentence that a
-//! user can act on. What is read from or written to a path names the path.
+//! One enum for the whole crate. Each variant carries the offending values, and its text is a sentence on
+//! which a user can act. An error of reading or writing a path names the path.
 
 use alloc::boxed::Box;
 use core::fmt;
 
 use thiserror::Error;
 
-/// Why an operation was refused. Nothing is changed, and nothing half-made is returned, when one occurs. (An
-/// octree that is refined on demand keeps what was found out before.)
+/// The reason why an operation was refused. An operation that fails changes nothing and returns no partial
+/// result. (An octree that is refined on demand keeps its earlier refinements.)
 #[non_exhaustive]
 #[derive(Debug, Error)]
 pub enum Error {
     /// An argument is outside of its documented range.
     #[error("{name}: {problem}")]
     Argument {
-        /// The parameter's name.
+        /// The name of the parameter.
         name: &'static str,
-        /// What is wrong with it.
+        /// The problem with its value.
         problem: &'static str,
     },
-    /// Two operands do not lie on one lattice. A stored octree is known on the frame that it was made on and
-    /// on that frame with another depth.
+    /// Two operands do not lie on one lattice. A stored octree can be used on the frame on which it was made,
+    /// and on that frame with another depth.
     #[error(
         "different frames: origin {:?}, edge {}, depth {} and origin {:?}, edge {}, depth {}; give both the same \
          bounds and depth", origins[0], edges[0], depths[0], origins[1], edges[1], depths[1]
@@ -35,15 +35,11 @@ pub enum Error {
         /// Depths of both.
         depths: [u8; 2],
     },
-    /// An octree that is to be refined was made from another solid than this one.
-    #[error(
-        "the octree was not made from this solid: its fingerprint, or what it says of a cell, is another"
-    )]
+    /// An octree that is to be refined was made from another solid than the given one.
+    #[error("the octree was not made from this solid: its fingerprint, or its answer about a cell, differs")]
     SourceMismatch,
-    /// The producer cannot decide the centre of a cell, so the sampled rule cannot be used on it.
-    #[error(
-        "this solid cannot decide single points, which the sampled rule needs; any other rule can be used"
-    )]
+    /// The solid cannot classify the centre of a cell, so the sampled rule cannot be used on it.
+    #[error("this solid cannot classify single points, which the sampled rule needs; use any other rule")]
     NotSampled,
     /// A triangle mesh that does not bound a solid.
     #[error(transparent)]
@@ -57,27 +53,28 @@ pub enum Error {
     /// A 3MF package that cannot be read.
     #[error(transparent)]
     Package(#[from] PackageError),
-    /// A file of a volume that cannot be read.
+    /// A volume file that cannot be read.
     #[error(transparent)]
     VolumeFile(#[from] VolumeFileError),
     /// A scene that cannot be read.
     #[error(transparent)]
     Scene(#[from] SceneError),
-    /// The bytes are not a Leafless file, or a damaged one.
+    /// The bytes are not a Leafless file, or are a damaged one.
     #[error(transparent)]
     Format(#[from] FormatError),
     /// The arrays of an octree contradict each other.
     #[error("the octree is damaged: {0}")]
     Damaged(#[from] Damage),
     /// The arrays of a tri-dexel model contradict each other.
-    #[error("the tri-dexel model is damaged: its rays along axis {axis}, at ray {ray} of them")]
+    #[error("the tri-dexel model is damaged along axis {axis}, at ray {ray}")]
     DamagedRays {
-        /// The axis that the rays run along.
+        /// The axis of the rays' direction: 0, 1 or 2.
         axis: u8,
-        /// The first ray that is not sound; 0 if the arrays as a whole are not.
+        /// The first invalid ray; 0 if the arrays as a whole are invalid.
         ray: u64,
     },
-    /// More nodes or bytes than the caller allowed, or than a pipe may have that is read whole.
+    /// A result has more nodes or bytes than the caller allowed, or a pipe has more bytes than may be read at
+    /// once.
     #[error("the limit of {limit} {what} was reached")]
     Limit {
         /// `"nodes"` or `"bytes"`.
@@ -89,51 +86,53 @@ pub enum Error {
     /// [`Control::max_bytes`](crate::Control::max_bytes).
     #[error("{what} would take {needed} bytes or more, and the limit is {limit} bytes")]
     TooLarge {
-        /// What would take the memory, such as `"the triangles of the surface"`.
+        /// The object that would take the memory, such as `"the triangles of the surface"`.
         what: &'static str,
-        /// The bytes that the result takes at least, with what is needed to make it; `u64::MAX` if it is more
-        /// than that.
+        /// The least number of bytes that the result takes, including its scratch memory; `u64::MAX` stands
+        /// for all larger numbers.
         needed: u64,
         /// The limit that the caller set, in bytes.
         limit: u64,
     },
     /// An allocation failed, in the library or in the operating system.
     ///
-    /// Every allocation whose size depends on an input or a result is asked for in a way that can be refused,
-    /// and this is the refusal. What remains is small, at most 2 KiB a piece: counted references, the numbers
-    /// per level behind statistics, exact signs, what the standard library and `tempfile` need to handle a
-    /// path; what threads cost; polygons that are no fans, which another crate triangulates: about 320 bytes
-    /// a corner are asked for, and given back, before it begins; and compressing, for which it is half a
-    /// megabyte. If even that cannot be had, the process ends, as Rust programs do. (So it does where an
-    /// allocator refuses to make a piece of memory smaller, which none is known to.)
+    /// Every allocation whose size depends on an input or a result is fallible, and a failure is this error.
+    /// The remaining allocations are small, at most 2 KiB each: counted references, the numbers per level
+    /// behind statistics, exact signs, and the handling of paths by the standard library and `tempfile`; and
+    /// the costs of threads. Two tasks are done by other crates. Triangulating a polygon that is no fan takes
+    /// about 320 bytes a corner; the library reserves and releases that amount first, so that a shortage is
+    /// an error. Compressing takes half a megabyte, and the library reserves and releases that amount
+    /// likewise. If one of the remaining allocations fails, the process ends, as is usual for Rust programs.
+    /// (It also ends if an allocator refuses to shrink an allocation, which no known allocator does.)
     #[error("out of memory")]
     OutOfMemory,
-    /// The caller asked to stop.
+    /// The caller cancelled the operation.
     #[error("cancelled")]
     Cancelled,
     /// A function of the host program, which classifies its own shape, failed.
     #[error("a function of the host program stopped the work with the code {code}")]
     Callback {
-        /// What the function returned.
+        /// The code that the function returned.
         code: i32,
     },
     /// The operating system refused to read or write.
     #[cfg(feature = "std")]
     #[error("{}", system_text(.0))]
     Io(std::io::Error),
-    /// A file at a path cannot be read or written; [`cause`](Error::cause) tells why.
+    /// A file at a path cannot be read or written; [`cause`](Error::cause) returns the reason.
     #[cfg(feature = "std")]
     #[error("{}: {error}", path.display())]
     File {
-        /// The path that was asked for.
+        /// The path as the caller gave it.
         path: Box<std::path::Path>,
-        /// What is wrong with the file.
+        /// The problem with the file.
         error: Box<Error>,
     },
 }
 
 impl Error {
-    /// The error without the name of a file: of [`Error::File`] what is wrong with the file, else the error.
+    /// Returns the error without the name of a file: for [`Error::File`] the problem with the file, otherwise
+    /// the error itself.
     pub fn cause(&self) -> &Error {
         match self {
             #[cfg(feature = "std")]
@@ -142,7 +141,7 @@ impl Error {
         }
     }
 
-    /// The error with the name of the file that it is about, if it is about a file.
+    /// Returns the error with the path of its file, if it is an error about a file.
     #[cfg(feature = "std")]
     pub fn of_file(self, path: &std::path::Path) -> Error {
         match self {
@@ -159,7 +158,7 @@ impl Error {
     }
 }
 
-/// What the system says, without its number.
+/// Returns the system's message without the error number.
 #[cfg(feature = "std")]
 fn system_text(error: &std::io::Error) -> alloc::string::String {
     let mut text = alloc::string::ToString::to_string(error);
@@ -174,7 +173,7 @@ fn system_text(error: &std::io::Error) -> alloc::string::String {
 #[cfg(feature = "std")]
 impl From<std::io::Error> for Error {
     fn from(error: std::io::Error) -> Error {
-        // Reading into memory and mapping can run out of it, too.
+        // Reading into memory and mapping can run out of memory, too.
         match error.kind() {
             std::io::ErrorKind::OutOfMemory => Error::OutOfMemory,
             _ => Error::Io(error),
@@ -182,14 +181,14 @@ impl From<std::io::Error> for Error {
     }
 }
 
-/// Why a triangle mesh does not bound a solid.
+/// The reason why a triangle mesh does not bound a solid.
 #[non_exhaustive]
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Error)]
 pub enum MeshError {
     /// No triangle is left (after degenerate ones are dropped).
     #[error("the mesh has no triangle of non-zero area")]
     Empty,
-    /// All vertices lie in one point, so that no frame can be put around them.
+    /// All vertices lie at one point, so that no frame can be put around them.
     #[error("the mesh has no extent")]
     NoExtent,
     /// A coordinate is infinite or not a number.
@@ -204,14 +203,14 @@ pub enum MeshError {
         /// Index of the first such vertex.
         vertex: u64,
     },
-    /// A triangle names a vertex that does not exist.
+    /// A triangle refers to a vertex that does not exist.
     #[error("triangle {triangle} refers to vertex {vertex}, but there are only {vertices}")]
     Index {
         /// Index of the triangle.
         triangle: u64,
-        /// The vertex that it names.
+        /// The vertex to which it refers.
         vertex: u64,
-        /// How many vertices there are.
+        /// Number of vertices.
         vertices: u64,
     },
     /// More vertices or triangles than 32-bit indices can name.
@@ -220,24 +219,24 @@ pub enum MeshError {
     /// The surface has holes.
     #[error("the mesh is not closed: {edges} edges bound a hole")]
     Open {
-        /// Edges on which an odd number of triangles meet.
+        /// Number of edges on which an odd number of triangles meet.
         edges: u64,
     },
-    /// The surface is closed, but neighbouring triangles face opposite sides.
-    #[error("the mesh is not consistently oriented: across {edges} edges the facing changes")]
+    /// The surface is closed, but the orientations of neighbouring triangles disagree.
+    #[error("the mesh is not consistently oriented: its orientation changes across {edges} edges")]
     Unoriented {
-        /// Edges on which an even number of triangles meet whose directions do not cancel.
+        /// Number of edges on which an even number of triangles meet whose directions do not cancel.
         edges: u64,
     },
 }
 
-/// Why arrays do not describe solids of plane faces. Loops, faces and shells are counted from 0 through all
-/// solids.
+/// The reason why arrays do not describe solids of plane faces. Loops, faces and shells are numbered from 0
+/// through all solids.
 #[non_exhaustive]
 #[derive(Debug, Clone, Copy, PartialEq, Error)]
 pub enum PolyhedronError {
-    /// An array of offsets does not begin with 0, does not rise, or does not end at the length of what it
-    /// divides.
+    /// An array of offsets does not begin with 0, does not rise, or does not end at the length of the array
+    /// that it divides.
     #[error(
         "the offsets of the {array} are wrong at index {index}: they must rise from 0 to the count of {parts}"
     )]
@@ -246,29 +245,29 @@ pub enum PolyhedronError {
         array: &'static str,
         /// `"corners"`, `"loops"`, `"faces"` or `"shells"`.
         parts: &'static str,
-        /// Index of the first offset that is wrong.
+        /// Index of the first wrong offset.
         index: u64,
     },
     /// A loop has one or two corners.
-    #[error("loop {index} has {corners} corners, and three are the fewest")]
+    #[error("loop {index} has {corners} corners, but needs at least three")]
     FewCorners {
         /// Index of the loop.
         index: u64,
-        /// How many it has.
+        /// Number of corners of the loop.
         corners: u64,
     },
-    /// A corner names a vertex that does not exist.
+    /// A corner refers to a vertex that does not exist.
     #[error("corner {corner} refers to vertex {vertex}, but there are only {vertices}")]
     Vertex {
         /// Index into the array of corners.
         corner: u64,
-        /// The vertex that it names.
+        /// The vertex to which it refers.
         vertex: u64,
-        /// How many vertices there are.
+        /// Number of vertices.
         vertices: u64,
     },
     /// Two consecutive corners of a loop are one vertex or lie at one place.
-    #[error("face {face} has an edge without length from vertex {from} to vertex {to}")]
+    #[error("face {face} has an edge of zero length from vertex {from} to vertex {to}")]
     NoLength {
         /// Index of the face.
         face: u64,
@@ -277,7 +276,7 @@ pub enum PolyhedronError {
         /// The vertex of the next corner.
         to: u64,
     },
-    /// An edge of a face is no edge of another face of its shell.
+    /// An edge of a face is not an edge of another face of its shell.
     #[error(
         "shell {shell} is open: the edge of face {face} from vertex {from} to vertex {to} has no counterpart"
     )]
@@ -310,7 +309,7 @@ pub enum PolyhedronError {
     },
     /// More than two faces of a shell meet on an edge.
     #[error(
-        "on the edge of face {face} from vertex {from} to vertex {to}, {uses} faces of shell {shell} meet"
+        "{uses} faces of shell {shell} meet on the edge of face {face} from vertex {from} to vertex {to}"
     )]
     NonManifold {
         /// Index of the shell.
@@ -321,7 +320,7 @@ pub enum PolyhedronError {
         from: u64,
         /// Vertex at which it ends.
         to: u64,
-        /// How often the shell's loops run along the edge.
+        /// Number of times that the shell's loops use the edge.
         uses: u64,
     },
     /// The outer loop of a face encloses no area.
@@ -332,18 +331,18 @@ pub enum PolyhedronError {
     },
     /// The corners of a face do not lie in a plane.
     #[error(
-        "face {face} is not plane: its corners lie up to {deviation} beside a plane, where {tolerance} is allowed"
+        "face {face} is not plane: its corners lie up to {deviation} off a plane, and {tolerance} is allowed"
     )]
     NotPlane {
         /// Index of the face.
         face: u64,
-        /// Half the distance between two planes, parallel to the face, that have all its corners between
-        /// them, in model units.
+        /// Half the distance between the two planes parallel to the face that enclose all its corners, in
+        /// model units.
         deviation: f64,
-        /// The most that is allowed.
+        /// The maximum that is allowed.
         tolerance: f64,
     },
-    /// Two edges of a face cross, or a vertex of it lies within one of its edges.
+    /// Two edges of a face cross, or a vertex of the face lies within one of its edges.
     #[error("the edge of face {face} from vertex {from} to vertex {to} meets another edge of the face")]
     Crossing {
         /// Index of the face.
@@ -353,30 +352,30 @@ pub enum PolyhedronError {
         /// Vertex at which it ends.
         to: u64,
     },
-    /// A loop of a face lies on the wrong side of another one: a hole outside of the outer loop, within
-    /// another hole, or one that turns as the outer loop does.
+    /// A loop of a face lies on the wrong side of another one: a hole outside of the outer loop or within
+    /// another hole, or a hole with the same orientation as the outer loop.
     #[error(
-        "the loops of face {face} do not enclose one area: holes must lie within the outer loop and turn against it"
+        "the loops of face {face} do not enclose one area: holes must lie within the outer loop and run the other way"
     )]
     Loops {
         /// Index of the face.
         face: u64,
     },
-    /// The first shell of a solid encloses a negative volume, or none: its loops turn clockwise, seen from
+    /// The first shell of a solid encloses a negative volume, or none: its loops turn clockwise, as seen from
     /// outside.
-    #[error("shell {shell} bounds its solid from outside, but is inside out")]
+    #[error("shell {shell} is the outer boundary of its solid, but is oriented inward")]
     InsideOut {
         /// Index of the shell.
         shell: u64,
     },
-    /// A further shell of a solid encloses a positive volume, or none: its loops turn clockwise, seen from
+    /// A further shell of a solid encloses a positive volume, or none: its loops turn clockwise, as seen from
     /// the void.
-    #[error("shell {shell} bounds a void, but is not inside out")]
+    #[error("shell {shell} bounds a void, but is oriented like an outer boundary")]
     VoidOutward {
         /// Index of the shell.
         shell: u64,
     },
-    /// A void reaches out of its solid's first shell.
+    /// A void extends beyond its solid's first shell.
     #[error("shell {shell} bounds a void that does not lie within its solid")]
     VoidOutside {
         /// Index of the shell.
@@ -384,36 +383,34 @@ pub enum PolyhedronError {
     },
 }
 
-/// Why a mesh file cannot be read.
+/// The reason why a mesh file cannot be read.
 #[non_exhaustive]
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Error)]
 pub enum MeshFileError {
-    /// The file has no byte at all.
+    /// The file has no bytes.
     #[error("the file is empty")]
     Empty,
-    /// Neither the content nor the name tells the format.
-    #[error("what format this is can be told neither from the content nor from the name")]
+    /// Neither the content nor the name shows the format.
+    #[error("the format can be recognised neither from the content nor from the name")]
     UnknownFormat,
     /// The file uses, or is, something that this library, or this build of it, cannot read.
     #[error("{what} cannot be read")]
     Unsupported {
-        /// What the file uses or is.
+        /// The unsupported feature or format.
         what: &'static str,
     },
-    /// A conversion of units was asked for, but the file does not say in which unit its numbers are.
-    #[error(
-        "the file does not say in which unit its numbers are, so they cannot be converted unless it is given"
-    )]
+    /// A conversion of units was requested, but the file does not state the unit of its numbers.
+    #[error("the file does not state the unit of its numbers, so the unit must be given to convert them")]
     UnknownUnit,
     /// A binary STL whose length contradicts its facet count.
     #[error(
-        "this is no ASCII STL and no whole binary one: {facets} facets, as it seems to say, need {expected} bytes \
-         and the file has {found}"
+        "this is neither an ASCII STL nor a complete binary STL: if it is binary, it announces {facets} facets, \
+         which need {expected} bytes, and the file has {found}"
     )]
     Length {
         /// The count in the file's header.
         facets: u64,
-        /// Length that this count asks for.
+        /// The length for this count.
         expected: u64,
         /// Length of the file.
         found: u64,
@@ -423,35 +420,35 @@ pub enum MeshFileError {
     Syntax {
         /// Line, counted from 1.
         line: u64,
-        /// What should have stood there.
+        /// The syntax that was expected there.
         expected: &'static str,
     },
-    /// In a text a face names a vertex that does not exist.
+    /// A face in a text refers to a vertex that does not exist.
     #[error("line {line}: there is no vertex {index}, because the number of vertices is {vertices}")]
     Index {
         /// Line, counted from 1.
         line: u64,
-        /// The vertex as the file names it: counted as the format does.
+        /// The vertex number in the file, counted as the format does.
         index: i64,
-        /// How many vertices there are; for an index that counts backwards, how many come before it.
+        /// Number of vertices; for an index that counts backwards, the number of vertices before it.
         vertices: u64,
     },
     /// A binary file departs from its format.
     #[error("byte {offset}: expected {expected}")]
     Binary {
-        /// Where, in bytes from the beginning of the file.
+        /// Offset in bytes from the beginning of the file.
         offset: u64,
-        /// What should have stood there.
+        /// The content that was expected there.
         expected: &'static str,
     },
-    /// In a binary file a face names a vertex that does not exist.
+    /// A face in a binary file refers to a vertex that does not exist.
     #[error("byte {offset}: there is no vertex {index}, because the number of vertices is {vertices}")]
     BinaryIndex {
-        /// Where, in bytes from the beginning of the file.
+        /// Offset in bytes from the beginning of the file.
         offset: u64,
-        /// The vertex that is named, counted from 0.
+        /// The vertex number, counted from 0.
         index: i64,
-        /// How many vertices there are.
+        /// Number of vertices.
         vertices: u64,
     },
     /// A coordinate of a binary STL is infinite or not a number.
@@ -462,7 +459,7 @@ pub enum MeshFileError {
     },
 }
 
-/// Why a 3MF package cannot be read: what is wrong where.
+/// The reason why a 3MF package cannot be read: the problem and its place.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct PackageError {
     part: Box<str>,
@@ -478,22 +475,23 @@ impl PackageError {
         Self { part: part.into(), line, offset, problem: problem.into() }
     }
 
-    /// Name of the part of the package, shortened if it is very long. Empty for the package as a whole.
+    /// Returns the name of the part of the package, shortened if it is very long. Empty for the package as a
+    /// whole.
     pub fn part(&self) -> &str {
         &self.part
     }
 
-    /// Line in the decompressed part, counted from 1; 0 for the part as a whole.
+    /// Returns the line in the decompressed part, counted from 1; 0 for the part as a whole.
     pub fn line(&self) -> u64 {
         self.line
     }
 
-    /// Bytes of the decompressed part before the element or the place in question.
+    /// Returns the number of bytes of the decompressed part before the element or the place in question.
     pub fn offset(&self) -> u64 {
         self.offset
     }
 
-    /// What is wrong, as a sentence without its subject or with one of its own.
+    /// Returns the problem, as a sentence that has a subject of its own or takes the part as its subject.
     pub fn problem(&self) -> &str {
         &self.problem
     }
@@ -512,11 +510,11 @@ impl fmt::Display for PackageError {
 
 impl core::error::Error for PackageError {}
 
-/// Why a file of a volume cannot be read.
+/// The reason why a volume file cannot be read.
 #[non_exhaustive]
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Error)]
 pub enum VolumeFileError {
-    /// The file has no byte at all.
+    /// The file has no bytes.
     #[error("the file is empty")]
     Empty,
     /// The content is neither NRRD nor MetaImage.
@@ -525,13 +523,13 @@ pub enum VolumeFileError {
     /// The file uses something that this library cannot read.
     #[error("{what} cannot be read")]
     Unsupported {
-        /// What the file uses.
+        /// The unsupported feature.
         what: &'static str,
     },
-    /// The header leaves something out.
+    /// The header is incomplete.
     #[error("missing: {what}")]
     Missing {
-        /// The field, or what else is missing.
+        /// The missing field, or other missing data.
         what: &'static str,
     },
     /// A line of the header departs from the format.
@@ -539,29 +537,29 @@ pub enum VolumeFileError {
     Syntax {
         /// Line, counted from 1.
         line: u64,
-        /// What should have stood there.
+        /// The syntax that was expected there.
         expected: &'static str,
     },
-    /// The spacing, the origin or the directions of the samples are not such as a solid can have: a spacing
-    /// of zero, directions that lie in one plane up to 2^-40, or a magnitude that is not between 2^-256 and
-    /// 2^256 (2^64 if the axes are turned).
+    /// A solid cannot have the spacing, the origin or the directions of the samples: a spacing is zero, the
+    /// directions lie in one plane up to 2^-40, or a magnitude is not between 2^-256 and 2^256 (2^64 if the
+    /// axes are turned).
     #[error(
         "the spacing, the origin or the directions of the samples are zero, out of range, or lie in one plane"
     )]
     Place,
-    /// There are more or fewer bytes of samples than the header, or the caller, asks for.
-    #[error("{expected} bytes of samples are expected, and there are {found}")]
+    /// There are more or fewer bytes of samples than the header, or the caller, states.
+    #[error("{expected} bytes of samples are expected, but {found} were found")]
     Length {
-        /// Bytes that are asked for, with those that are to be skipped. Of a text the fewest; of compressed
-        /// samples what they should become.
+        /// Number of expected bytes, including those to be skipped. For a text the least number; for
+        /// compressed samples the decompressed length.
         expected: u64,
-        /// Bytes that there are, as they are stored.
+        /// Number of bytes found, as stored.
         found: u64,
     },
     /// Compressed samples are damaged.
     #[error("the file is damaged in {what}")]
     Damaged {
-        /// Where.
+        /// The damaged place.
         what: &'static str,
     },
     /// A sample in a text is no number of its type, is missing, or is one too many.
@@ -572,7 +570,7 @@ pub enum VolumeFileError {
     },
 }
 
-/// Why a scene cannot be read: what is wrong where.
+/// The reason why a scene cannot be read: the problem and its place.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct SceneError {
     line: u64,
@@ -586,17 +584,17 @@ impl SceneError {
         Self { line, column, problem: problem.into() }
     }
 
-    /// Line, counted from 1.
+    /// Returns the line, counted from 1.
     pub fn line(&self) -> u64 {
         self.line
     }
 
-    /// Column in characters, counted from 1.
+    /// Returns the column in characters, counted from 1.
     pub fn column(&self) -> u64 {
         self.column
     }
 
-    /// What is wrong there.
+    /// Returns the problem.
     pub fn problem(&self) -> &str {
         &self.problem
     }
@@ -610,7 +608,7 @@ impl fmt::Display for SceneError {
 
 impl core::error::Error for SceneError {}
 
-/// Why bytes are not a readable Leafless file.
+/// The reason why bytes are not a readable Leafless file.
 #[non_exhaustive]
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Error)]
 pub enum FormatError {
@@ -620,7 +618,7 @@ pub enum FormatError {
     /// The signature was altered by a transfer in text mode.
     #[error("the file was damaged by a text-mode transfer (line ends were rewritten)")]
     TextMode,
-    /// The format's major version is one that this reader does not know.
+    /// This reader does not know the format's major version.
     #[error("format version {major}.{minor} is not readable by this version of the library")]
     Version {
         /// Major version in the file.
@@ -628,15 +626,15 @@ pub enum FormatError {
         /// Minor version in the file.
         minor: u16,
     },
-    /// The file demands a feature that this reader does not know.
+    /// The file requires a feature that this reader does not know.
     #[error("the file needs a feature that this version of the library does not have ({name} {value:#x})")]
     Required {
-        /// Which field demands it.
+        /// The field that requires it.
         name: &'static str,
         /// The unknown bits or kind.
         value: u64,
     },
-    /// The file ends early, or goes on after its end.
+    /// The file is too short or too long.
     #[error("the file should have {expected} bytes and has {found}")]
     Length {
         /// Length according to the header.
@@ -652,81 +650,81 @@ pub enum FormatError {
         /// The value found.
         value: u64,
     },
-    /// A section that the header's fields make necessary is absent, stands twice, or has another number of
-    /// elements than they demand.
-    #[error("section {name} is missing, stands twice or contradicts the header")]
+    /// A section that the header requires is absent, occurs twice, or has a number of elements that
+    /// contradicts the header.
+    #[error("section {name} is missing, occurs twice or contradicts the header")]
     Section {
         /// The section's name in the specification.
         name: &'static str,
     },
-    /// The record of the solid does not repeat what the header says of it.
+    /// The record of the solid does not repeat the values of the header.
     #[error("the record of the solid contradicts the header")]
     Object,
-    /// The file is good, but its solid is of another kind than the one that was asked for.
-    #[error("the file holds {found}, where {wanted} is wanted")]
+    /// The file is good, but its solid is of another kind than the requested one.
+    #[error("the file holds {found}, but {wanted} is needed")]
     OtherModel {
-        /// What the solid is: an octree or a tri-dexel model.
+        /// The kind of the solid: an octree or a tri-dexel model.
         found: &'static str,
-        /// What was asked for.
+        /// The requested kind.
         wanted: &'static str,
     },
     /// A checksum does not match.
     #[error("the checksum of {name} is wrong")]
     Checksum {
-        /// What the checksum covers.
+        /// The data that the checksum covers.
         name: &'static str,
     },
     /// The metadata cannot be read.
     #[error("the metadata are not UTF-8 texts with ascending keys")]
     Metadata,
-    /// The bytes are not aligned in memory as a view needs them.
-    #[error("the bytes must begin on an address that is a multiple of 8; from_bytes copies any")]
+    /// The address of the bytes does not have the alignment that a view needs.
+    #[error("the bytes must begin at an address that is a multiple of 8; from_bytes accepts any address")]
     Alignment,
-    /// Multi-byte numbers of this machine have the other order, so a file cannot be used in place.
-    #[error("files can only be mapped on little-endian machines; open copies instead")]
+    /// This machine is big-endian, so a file cannot be used in place.
+    #[error("files can be read in place only on little-endian machines; use open, which copies")]
     Endianness,
     /// A pipe, device or folder cannot be mapped.
-    #[error("only a regular file can be mapped; open reads others, too")]
+    #[error("only a regular file can be mapped; use open, which reads other files, too")]
     NotRegular,
 }
 
-/// How the arrays of an octree contradict each other: what [`OctreeRef::check`](crate::OctreeRef::check)
-/// reports, and what a bulk operation reports when it runs into it.
+/// Contradictions between the arrays of an octree. [`OctreeRef::check`](crate::OctreeRef::check) reports
+/// them, and so does a bulk operation that encounters one.
 #[non_exhaustive]
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Error)]
 pub enum Damage {
-    /// The children of an element do not lie where level order demands.
+    /// The children of an element are not where level order requires them.
     #[error("the children of element {element} are not where level order puts them")]
     Link {
         /// Index of the element.
         element: u64,
     },
     /// A level has more or fewer elements than its parents have branches.
-    #[error("level {level} holds {found} elements where its parents demand {expected}")]
+    #[error("level {level} has {found} elements, but its parents require {expected}")]
     Count {
         /// Element level, 0 = root.
         level: u8,
-        /// Elements that the parents' branches demand.
+        /// Number of elements that the parents' branches require.
         expected: u64,
-        /// Elements found.
+        /// Number of elements found.
         found: u64,
     },
-    /// All cells of an element agree, so it should not exist.
+    /// All cells of an element agree, so the element should not exist.
     #[error("element or brick {index} is uniform and should have been merged")]
     Uniform {
-        /// Index; bricks are counted on after the elements.
+        /// Index; bricks are numbered after the elements.
         index: u64,
     },
-    /// A brick's cell claims to have children.
-    #[error("brick {brick} has a cell that claims to have children")]
+    /// A cell of a brick is marked as having children.
+    #[error("brick {brick} has a cell that is marked as having children")]
     BrickBranch {
         /// Index of the brick.
         brick: u64,
     },
-    /// Of an odd depth the root has only one octant, but others are not empty.
+    /// In a tree of odd depth, octants of the root outside of the universe are not empty.
     #[error("the root of a tree of odd depth has cells outside of its universe")]
     Padding,
-    /// A dictionary index or segment leads outside of the dictionary.
+    /// A dictionary index or segment points outside of the dictionary.
     #[error("brick {brick} has no entry in the dictionary")]
     Dictionary {
         /// Index of the brick.
@@ -738,57 +736,57 @@ pub enum Damage {
         /// Index of the entry.
         entry: u64,
     },
-    /// Two-plane bricks although nothing is undecided.
+    /// The bricks have two planes although no cell is undecided.
     #[error("the bricks have two planes although no cell is undecided")]
     NeedlessPlane,
-    /// One-plane bricks although something is undecided.
+    /// The bricks have one plane although a cell is undecided.
     #[error("the bricks have one plane although a cell is undecided")]
     MissingPlane,
-    /// Of a channel, the number of values before an element is wrong.
-    #[error("the values before element or brick {index} of a channel are counted wrongly")]
+    /// In a channel, the number of values before an element is wrong.
+    #[error("the number of values before element or brick {index} of a channel is wrong")]
     Rank {
-        /// Index; bricks are counted on after the elements.
+        /// Index; bricks are numbered after the elements.
         index: u64,
     },
-    /// A value of a channel is not legal, or equals the one before.
-    #[error("value {index} of a channel is not legal, or equals the one before")]
+    /// A value of a channel is invalid, or equals the one before.
+    #[error("value {index} of a channel is invalid, or equals the one before")]
     Value {
         /// Index of the value.
         index: u64,
     },
     /// The number of cuts before an element is not the number of PARTIAL cells before it.
-    #[error("the cuts before element or brick {index} are counted wrongly")]
+    #[error("the number of cuts before element or brick {index} is wrong")]
     CutCount {
-        /// Index; bricks are counted on after the elements.
+        /// Index; bricks are numbered after the elements.
         index: u64,
     },
-    /// What is counted before a block of cuts is wrong.
-    #[error("the surfaces before block {block} of the cuts are counted wrongly")]
+    /// The counts before a block of cuts are wrong.
+    #[error("the counts before block {block} of the cuts are wrong")]
     CutBlock {
         /// Index of the block.
         block: u64,
     },
-    /// A cut is not legal: its table, its surfaces, or a split into cells that are too small. Or there are
-    /// too few or too many.
-    #[error("cut {record} is not legal")]
+    /// A cut is invalid: its table, its surfaces, or a split into cells that are too small. Or there are too
+    /// few or too many cuts.
+    #[error("cut {record} is invalid")]
     CutRecord {
-        /// Number of the cut, the number of all cuts if it is missing.
+        /// Number of the cut; the number of all cuts if it is missing.
         record: u64,
     },
-    /// The numbers of a surface make none, or not all of them are used.
-    #[error("surface {surface} is not legal")]
+    /// The numbers of a surface do not define one, or not all of the numbers are used.
+    #[error("surface {surface} is invalid")]
     Surface {
-        /// Number of the surface, the number of all surfaces if more is stored than they use.
+        /// Number of the surface; the number of all surfaces if more numbers are stored than they use.
         surface: u64,
     },
-    /// A map that places surfaces cannot be inverted, or has entries beyond all bounds.
-    #[error("the placement {placement} of surfaces is not legal")]
+    /// A map that places surfaces cannot be inverted, or has entries out of bounds.
+    #[error("placement {placement} of surfaces is invalid")]
     Placement {
         /// Number of the map.
         placement: u64,
     },
-    /// The moments that are stored are no intervals.
-    #[error("the moments of the solid are not legal")]
+    /// The stored moments are not intervals.
+    #[error("the moments of the solid are invalid")]
     Moments,
     /// The level table does not describe the tree.
     #[error("the level table is wrong at level {level}")]

@@ -1,17 +1,11 @@
-//! Leafless is a solid-modelling kernel. A solid is an octree **without leaves**, in dense arrays that are
-//! also its file: mapped, and queried in place.
+//! Leafless is a solid-modelling kernel. It builds solids as octrees with certified cells, combines them by
+//! exact Booleans, and answers queries about points, rays, volumes and distances.
 //!
-//! Three ideas carry everything:
-//!
-//! 1. **A solid is what can split a cell.** Primitives, triangle meshes, stored octrees and a host program's
-//!    callback are all a [`Solid`]; whatever wants a shape puts it on a frame ([`Solid::on`]) and only calls
-//!    [`Worker::split`].
-//! 2. **Certified.** inner ⊆ true ⊆ outer: a FULL cell is proven inside, an EMPTY one proven outside, and
-//!    doubt stays PARTIAL through every operation. So a volume is an interval that contains the truth.
-//!    (Whoever wants a plain yes or no builds by another [`Rule`], and then the answers are about the tree,
-//!    not the shape.)
-//! 3. **Closed and exact.** On one lattice the Booleans are exact set algebra, and their results canonical:
-//!    the same bits for any number of threads on any platform.
+//! A [`Solid`] is a shape: a primitive or a set operation of primitives ([`Csg`]), a triangle mesh
+//! ([`MeshSolid`]), a volume of samples ([`Volume`]), a stored octree, or a callback of the host program
+//! ([`Callback`]). A [`Frame`] is a cube in model space, divided into 2^depth cells per axis. [`build`] turns
+//! a solid on a frame into an [`Octree`], whose cells are FULL, EMPTY or PARTIAL (undecided). The octree
+//! stores no leaves. Its dense arrays are also its file, which is mapped and queried in place.
 //!
 //! ```
 //! use leafless::{Control, Csg, Frame, Membership, Rule, build, difference};
@@ -29,65 +23,95 @@
 //! # Ok::<(), leafless::Error>(())
 //! ```
 //!
-//! What the cells of an octree prove travels with it ([`Proof`]), through every operation and in its file.
+//! # First steps
 //!
-//! What everyone uses stands at the root; everything else is in the module of its topic. A name that ends
-//! with `_of` is about any number of operands.
-//!
-//! The modules from the bottom up; none uses one above it:
-//!
-//! | module | what it holds |
+//! | task | where |
 //! |---|---|
-//! | `lattice` | cells, cubes, frames: integers and model space |
-//! | `cut` | cubes that planes and curved surfaces cut: slabs, moments, areas |
+//! | describe a shape | [`Csg`], [`MeshSolid`], [`Volume`], [`Callback`], or the trait [`Solid`] |
+//! | choose the cube and the cell size | [`Frame`] |
+//! | build an octree, or split cells on demand | [`build`], [`LazyOctree`] |
+//! | keep exact surfaces in the cells | [`build_extended`] |
+//! | combine octrees | [`union`], [`intersection`], [`difference`], [`xor`], [`complement`] |
+//! | classify points, cast rays | [`contains`], [`cast_rays`] |
+//! | compute volume, mass properties, a bounding box | [`measure`], [`bounding_box`] |
+//! | compare two solids | [`interference`], [`clearance`], [`deviation`] |
+//! | extract a triangle mesh | [`marching_cubes`] and the module [`surface`] |
+//! | read and write Leafless files | the module [`file`](mod@file) |
+//! | read and write STL, OBJ, PLY, OFF, 3MF and volumes | the module [`exchange`] |
+//! | limit threads, memory or work; cancel; watch progress | [`Control`] |
+//!
+//! # Three principles
+//!
+//! 1. **A solid is anything that can split a cell.** Every shape implements [`Solid`]. An algorithm puts the
+//!    shape on a frame ([`Solid::on`]) and then only calls [`Worker::split`], which divides an undecided cell
+//!    into eight classified children.
+//! 2. **Results are certified.** Inner bound ⊆ true solid ⊆ outer bound: a FULL cell is proven to lie inside,
+//!    an EMPTY cell is proven to lie outside, and an undecided cell stays PARTIAL through every operation.
+//!    A volume is therefore an interval that contains the true volume. ([`Rule`] has other ways to build, for
+//!    a plain yes or no. The answers are then about the octree, and no longer about the shape.) [`Proof`]
+//!    records what the cells of an octree prove. Every operation passes it on, and files store it.
+//! 3. **Booleans are closed and exact.** On one lattice they are exact set algebra, and their results are
+//!    canonical: the same bits for any number of threads, on any platform.
+//!
+//! # Modules
+//!
+//! The most used items are at the root of the crate; all others are in the module of their topic. A function
+//! whose name ends with `_of` takes any number of operands.
+//!
+//! The modules from the bottom up; no module uses a module below it in this table:
+//!
+//! | module | contents |
+//! |---|---|
+//! | `lattice` | cells, cubes and frames: integer coordinates and model space |
+//! | `cut` | cubes cut by planes and curved surfaces: slabs, moments, areas |
 //! | `octree` | tags, the word algebra, views, the writer, checks, statistics |
 //! | `mesh` | triangle meshes as data: welding, topology, defects, repair |
 //! | `dexel` | intervals along the rays of a lattice |
-//! | `solid` | what can split a cell: one file or folder a producer |
-//! | `walk` | what walks through the cells of a solid, for all that stands above |
-//! | `op` | building, splitting on demand, and the set algebra of stored trees |
+//! | `solid` | solids: one file or folder for each kind |
+//! | `walk` | traversals of the cells of a solid, used by the modules that follow |
+//! | `op` | building, splitting on demand, and the set algebra of stored octrees |
 //! | `query` | points, boxes and rays, measures, interference |
 //! | `layout` | placements of solids in a container |
-//! | `attribute` | what has a value at points, inside or outside of solids |
+//! | `attribute` | values at points inside or outside of solids |
 //! | `voxel` | voxels as records, sorted by code |
 //! | `surface` | triangle meshes of solids |
 //! | `render` | pictures of solids, meshes and volumes |
-//! | `file` | the file format |
-//! | `exchange` | the files of other programs |
+//! | `file` | the Leafless file format |
+//! | `exchange` | file formats of other programs |
 //! | `scene` | the language of OpenSCAD's CSG dumps |
 //!
-//! Below them all lie `error`, `memory` (allocations that may be refused), `parallel` (work that threads
-//! share), `control` (limits, cancelling) and `dispatch` (run-time choice of instructions). The C interface
-//! and the program are packages of their own, `capi` and `cli`.
+//! All of them may use `error`, `memory` (fallible allocation), `parallel` (work shared between threads),
+//! `control` (limits and cancelling) and `dispatch` (run-time choice of instructions). The C interface and
+//! the command-line program are packages of their own, `capi` and `cli`.
 //!
-//! Where is …
+//! # Finding your way in the sources
 //!
-//! | question | file |
+//! | topic | file |
 //! |---|---|
-//! | … the one operation that all is made of? | `solid/mod.rs` |
-//! | … a sphere, a prism, a torus? | `solid/csg/primitive.rs`, `faceted.rs`; `solid/half_space/torus.rs` |
-//! | … the sign of a polynomial decided exactly? | `lattice/exact/` |
-//! | … the winding number of an open mesh? | `solid/mesh/winding.rs` |
-//! | … a hole in a mesh found, a crack closed? | `mesh/defects.rs`, `mesh/sew.rs` |
-//! | … the union of two stored octrees? | `op/boolean.rs`; of ones that keep surfaces `op/extended/combine.rs` |
-//! | … a child of an element found? | `octree/links.rs` |
-//! | … the cell beside a cell, all cells of a tag, the faces between them? | `octree/neighbour.rs`, `cells.rs`, `faces.rs` |
-//! | … what cells prove? | `octree/proof.rs` |
-//! | … an STL read? | `exchange/stl.rs` |
-//! | … a bitmap or an array of samples a solid, and an octree a bitmap? | `solid/volume/`, `query/bitmap.rs` |
-//! | … a byte of a file checked? | `file/header.rs`, `object.rs`, `section.rs`, `layout.rs`, `tree.rs`, `tridexel.rs` |
-//! | … an allocation refused? | `memory.rs` |
-//! | … where a ray meets a solid, how high it is? | `query/ray/`, `query/columns/` |
-//! | … a ray of a mesh, of a half-space? | `solid/mesh/chords.rs`, `solid/half_space/lines.rs` |
-//! | … a closed triangle mesh of a solid? | `surface/cubes.rs`, `simple.rs`, `shrink.rs`, `solid.rs`, `volume.rs`, `dexel.rs` |
-//! | … plane faces as polygons, the kind of a surface and its radius? | `surface/boundary/regions.rs`, `solid/half_space/shape.rs` |
-//! | … a mesh that an STL keeps? | `mesh/single.rs` |
-//! | … a picture taken, a triangle drawn, a plane section, a volume, a legend? | `render/tile.rs`, `coverage.rs`, `slice.rs`, `volume/`, `legend.rs` |
-//! | … the normal of a surface of which only cells are known? | `render/normals.rs` |
-//! | … the list of voxels, their depth order? | `voxel/walk.rs`, `records.rs`, `order.rs` |
-//! | … the volume of a solid, the distance of two, or of a point? | `query/measure/`, `query/clearance/`, `query/distance/` |
-//! | … how far two boundaries are from each other? | `query/deviation/` |
-//! | … the area of a plane section? | `query/section.rs`, `cut/section.rs` |
+//! | the one operation that every solid provides | `solid/mod.rs` |
+//! | spheres, prisms, tori | `solid/csg/primitive.rs`, `faceted.rs`; `solid/half_space/torus.rs` |
+//! | the exact sign of a polynomial | `lattice/exact/` |
+//! | the winding number of an open mesh | `solid/mesh/winding.rs` |
+//! | finding holes in a mesh, closing cracks | `mesh/defects.rs`, `mesh/sew.rs` |
+//! | the union of two stored octrees | `op/boolean.rs`; of octrees that keep surfaces: `op/extended/combine.rs` |
+//! | finding a child of an element | `octree/links.rs` |
+//! | neighbours of a cell, all cells of a tag, faces between cells | `octree/neighbour.rs`, `cells.rs`, `faces.rs` |
+//! | what the cells prove | `octree/proof.rs` |
+//! | reading an STL | `exchange/stl.rs` |
+//! | a bitmap or samples as a solid; an octree as a bitmap | `solid/volume/`, `query/bitmap.rs` |
+//! | checking the bytes of a file | `file/header.rs`, `object.rs`, `section.rs`, `layout.rs`, `tree.rs`, `tridexel.rs` |
+//! | refusing an allocation | `memory.rs` |
+//! | rays that meet a solid, height maps | `query/ray/`, `query/columns/` |
+//! | rays through a mesh, through a half-space | `solid/mesh/chords.rs`, `solid/half_space/lines.rs` |
+//! | a closed triangle mesh of a solid | `surface/cubes.rs`, `simple.rs`, `shrink.rs`, `solid.rs`, `volume.rs`, `dexel.rs` |
+//! | plane faces as polygons, the kind of a surface and its radius | `surface/boundary/regions.rs`, `solid/half_space/shape.rs` |
+//! | a mesh that survives the rounding of STL | `mesh/single.rs` |
+//! | pictures: tiles, triangles, plane sections, volumes, legends | `render/tile.rs`, `coverage.rs`, `slice.rs`, `volume/`, `legend.rs` |
+//! | surface normals where only cells are stored | `render/normals.rs` |
+//! | the list of voxels, their depth order | `voxel/walk.rs`, `records.rs`, `order.rs` |
+//! | the volume of a solid, the distance of two solids, the distance of a point | `query/measure/`, `query/clearance/`, `query/distance/` |
+//! | how far two boundaries deviate from each other | `query/deviation/` |
+//! | the area of a plane section | `query/section.rs`, `cut/section.rs` |
 
 #![no_std]
 #![deny(unsafe_code)]
@@ -124,7 +148,7 @@ pub mod surface;
 pub mod voxel;
 mod walk;
 
-// What everyone uses. Everything else is in the module of its topic.
+// The most used items. All others are in the module of their topic.
 pub use control::Control;
 pub use dexel::TriDexel;
 pub use error::Error;
@@ -142,7 +166,7 @@ pub use query::{
 pub use solid::{AnySolid, Callback, Classifier, Csg, MeshSolid, Solid, Verdict, Volume, Worker};
 pub use surface::marching_cubes;
 
-/// The README's example is compiled and run.
+/// Compiles and runs the examples of the README.
 #[cfg(all(doctest, feature = "mmap"))]
 #[doc = include_str!("../README.md")]
 struct Readme;

@@ -1,13 +1,14 @@
-//! A value that threads share, one at a time.
+//! A mutex for values that threads share.
 
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::sync::{Mutex, PoisonError};
 
 /// A mutex that is held for one closure.
 ///
-/// The mutex alone is enough. The standard library takes a contended mutex in code of its own, which comes
-/// compiled without ThreadSanitizer. `mark` repeats in code of this crate what the mutex says there: each
-/// owner stores it at the end, and loads it at the start. The price is two plain moves of a byte.
+/// The mutex alone would be enough. `mark` is there for ThreadSanitizer: the standard library locks a
+/// contended mutex in its own code, which is compiled without ThreadSanitizer. `mark` repeats the mutex's
+/// ordering in code of this crate: each owner loads it at the start and stores it at the end. The price is
+/// two plain moves of a byte.
 #[derive(Default)]
 pub(crate) struct Lock<T> {
     mark: AtomicBool,
@@ -20,9 +21,9 @@ impl<T> Lock<T> {
         Lock { mark: AtomicBool::new(false), value: Mutex::new(value) }
     }
 
-    /// Calls `work` with the value, which no other thread has meanwhile.
+    /// Calls `work` with exclusive access to the value.
     ///
-    /// A panic in `work` leaves the value as it is then: the next owner gets it like any other.
+    /// A panic in `work` leaves the value as it is at that moment. The next owner gets it in that state.
     pub(crate) fn with<R>(&self, work: impl FnOnce(&mut T) -> R) -> R {
         let mut value = self.value.lock().unwrap_or_else(PoisonError::into_inner);
         self.mark.load(Ordering::Acquire);
@@ -31,7 +32,7 @@ impl<T> Lock<T> {
         result
     }
 
-    /// The value.
+    /// Returns the value.
     #[cfg(feature = "parallel")]
     pub(crate) fn into_inner(self) -> T {
         self.value.into_inner().unwrap_or_else(PoisonError::into_inner)

@@ -1,5 +1,5 @@
-//! Memory that can be refused: every allocation whose size depends on an input or a result goes through here
-//! or through `try_reserve`, and a refusal is [`Error::OutOfMemory`].
+//! Fallible allocation. Every allocation whose size depends on an input or a result goes through this module
+//! or through `try_reserve`; a refusal is [`Error::OutOfMemory`].
 
 use crate::error::Error;
 use alloc::boxed::Box;
@@ -19,14 +19,14 @@ impl From<hashbrown::TryReserveError> for Error {
     }
 }
 
-/// An empty vector with room for exactly `count`.
+/// Returns an empty vector with room for exactly `count` items.
 pub fn with_capacity<T>(count: usize) -> Result<Vec<T>, Error> {
     let mut list = Vec::new();
     list.try_reserve_exact(count)?;
     Ok(list)
 }
 
-/// Appends; O(1) amortised.
+/// Appends an item; O(1) amortised.
 #[inline(always)]
 pub fn push<T>(list: &mut Vec<T>, item: T) -> Result<(), Error> {
     list.try_reserve(1)?;
@@ -34,14 +34,14 @@ pub fn push<T>(list: &mut Vec<T>, item: T) -> Result<(), Error> {
     Ok(())
 }
 
-/// `count` times `value`.
+/// Returns a vector of `count` times `value`.
 pub fn filled<T: Clone>(count: usize, value: T) -> Result<Vec<T>, Error> {
     let mut list = with_capacity(count)?;
     list.resize(count, value);
     Ok(list)
 }
 
-/// `count` times `value`, in the memory of a list as far as that is large enough.
+/// Returns a vector of `count` times `value`, which reuses the memory of `list` if that is large enough.
 pub fn refilled<T: Clone>(mut list: Vec<T>, count: usize, value: T) -> Result<Vec<T>, Error> {
     list.clear();
     list.try_reserve_exact(count)?;
@@ -49,26 +49,26 @@ pub fn refilled<T: Clone>(mut list: Vec<T>, count: usize, value: T) -> Result<Ve
     Ok(list)
 }
 
-/// The bytes that a list takes in memory, with its room to spare.
+/// Returns the bytes of memory that a list takes, including its spare capacity.
 pub fn bytes_of<T>(list: &Vec<T>) -> usize {
     list.capacity() * size_of::<T>()
 }
 
-/// What an iterator yields that knows how much that is.
+/// Collects the items of an iterator of known length.
 pub fn collected<T>(items: impl ExactSizeIterator<Item = T>) -> Result<Vec<T>, Error> {
     let mut list = with_capacity(items.len())?;
     list.extend(items);
     Ok(list)
 }
 
-/// A copy.
+/// Returns a copy of a slice.
 pub fn copied<T: Copy>(slice: &[T]) -> Result<Vec<T>, Error> {
     let mut copy = with_capacity(slice.len())?;
     copy.extend_from_slice(slice);
     Ok(copy)
 }
 
-/// A copy of a text.
+/// Returns a copy of a text.
 pub fn text(text: &str) -> Result<String, Error> {
     let mut copy = String::new();
     copy.try_reserve_exact(text.len())?;
@@ -76,14 +76,14 @@ pub fn text(text: &str) -> Result<String, Error> {
     Ok(copy)
 }
 
-/// A value with an address of its own.
+/// Returns a value in an allocation of its own.
 pub fn boxed<T>(value: T) -> Result<Box<[T; 1]>, Error> {
     let mut one = with_capacity(1)?;
     one.push(value);
     one.into_boxed_slice().try_into().map_err(|_| Error::OutOfMemory)
 }
 
-/// `N` times zero.
+/// Returns `N` times zero.
 pub fn zeros<T: Copy + Default, const N: usize>() -> Result<Box<[T; N]>, Error> {
     filled(N, T::default())?.into_boxed_slice().try_into().map_err(|_| Error::OutOfMemory)
 }

@@ -1,19 +1,17 @@
-//! Work that several threads share. Whatever takes more than one thread comes here, and nowhere else is it
-//! asked whether there may be more than one.
+//! Work shared between several threads. All code that may use more than one thread goes through this module.
 //!
-//! The threads are those of a pool that stands as long as [`run`] takes. Tasks go to them through one
-//! function that knows nothing of what they are, so that the machinery which shares them out is compiled once
-//! and not for every kind of task. A task costs two locks that nobody else holds, some 50 ns: it should be
-//! worth ten times that.
+//! The threads belong to a pool that lives as long as one call of [`run`]. One function hands out tasks by
+//! number, whatever their type, so that the scheduling code is compiled once and not once for every kind of
+//! task. A task costs two uncontended locks, about 50 ns; a task should take at least ten times as long.
 
 use crate::error::Error;
 use crate::memory;
 use alloc::vec::Vec;
 use core::ops::Range;
 
-/// Does `work` where the functions below use `threads` threads (0: as many as the machine has processors),
-/// and tells it whether there is more than one. Without the feature `parallel`, and where the system refuses
-/// to start threads, there is one.
+/// Calls `work` with the functions below set to use `threads` threads (0: as many as the machine has
+/// processors). The argument of `work` is true if there is more than one thread. Without the feature
+/// `parallel`, or if the system refuses to start threads, there is one.
 pub(crate) fn run<R: Send>(threads: usize, work: impl FnOnce(bool) -> R + Send) -> R {
     #[cfg(not(feature = "parallel"))]
     let _ = threads;
@@ -30,7 +28,7 @@ pub(crate) fn run<R: Send>(threads: usize, work: impl FnOnce(bool) -> R + Send) 
     work(false)
 }
 
-/// Threads at work.
+/// Returns the number of threads at work.
 pub(crate) fn threads() -> usize {
     #[cfg(feature = "parallel")]
     return rayon::current_num_threads();
@@ -38,10 +36,10 @@ pub(crate) fn threads() -> usize {
     1
 }
 
-/// Does all tasks, on the threads at hand if `parallel`: the results in the order of the tasks.
+/// Does all tasks, on the current threads if `parallel`. The results are in the order of the tasks.
 ///
 /// # Errors
-/// One of those of `work`. Tasks that have not begun by then are not done.
+/// One of the errors of `work`. Tasks that have not begun by then are not done.
 pub(crate) fn each<T: Send, R: Send>(
     parallel: bool,
     tasks: impl ExactSizeIterator<Item = T>,
@@ -50,7 +48,8 @@ pub(crate) fn each<T: Send, R: Send>(
     each_with(parallel, tasks, || (), |(), task| work(task))
 }
 
-/// As [`each`], with something of its own for every thread, which one task leaves to the next.
+/// Does all tasks as [`each`] does, with a state of its own for each thread. A thread keeps its state from
+/// one task to the next.
 ///
 /// # Errors
 /// As [`each`].
@@ -73,7 +72,7 @@ pub(crate) fn each_with<S: Send, T: Send, R: Send>(
     Ok(done)
 }
 
-/// Does two things, at the same time if `parallel`: on the threads of [`run`].
+/// Does two things, at the same time if `parallel`, on the threads of [`run`].
 pub(crate) fn both<A: Send, B: Send>(
     parallel: bool,
     one: impl FnOnce() -> A + Send,
@@ -87,8 +86,8 @@ pub(crate) fn both<A: Send, B: Send>(
     (one(), other())
 }
 
-/// Appends what `make` makes of each number. For items of a few instructions; `list` has room for them. `own`
-/// is made for every share of neighbours.
+/// Appends the item that `make` returns for each number. Meant for items of a few instructions. `list` must
+/// have room for the items. `own` makes a state for each run of consecutive numbers.
 pub(crate) fn extend<S, T: Send>(
     parallel: bool,
     list: &mut Vec<T>,
@@ -107,7 +106,7 @@ pub(crate) fn extend<S, T: Send>(
     list.extend(numbers.map(|number| make(&mut own, number)));
 }
 
-/// Sorts a list. Equal items cannot be told apart, so that any number of threads leaves the same.
+/// Sorts a list. Equal items are indistinguishable, so the result does not depend on the number of threads.
 pub(crate) fn sort<T: Ord + Send>(list: &mut [T], parallel: bool) {
     #[cfg(feature = "parallel")]
     if parallel {
@@ -127,10 +126,10 @@ mod pool {
     use rayon::prelude::*;
     use std::thread;
 
-    /// Most threads that an operation starts.
+    /// Maximum number of threads that an operation starts.
     const MOST: usize = 1024;
 
-    /// Does `work` in a pool, if more than one thread is wanted and the system starts them.
+    /// Calls `work` in a pool, if more than one thread is wanted and the system starts them.
     pub(super) fn run(threads: usize, work: &mut (dyn FnMut() + Send)) {
         let threads = match threads {
             0 => thread::available_parallelism().map_or(1, |n| n.get()),
@@ -139,8 +138,8 @@ mod pool {
         if threads < 2 {
             return;
         }
-        // All are joined, and not only done with their work, as a scope alone sees to: no thread outlives the
-        // call, not even by what it tidies up at its end.
+        // All threads are joined. A scope alone would only wait until their work is done; with the joins no
+        // thread outlives the call, not even by its clean-up at the end.
         thread::scope(|scope| {
             let mut joinable = Vec::new();
             let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).spawn_handler(|thread| {
@@ -151,13 +150,13 @@ mod pool {
                 pool.install(work);
             }
             for thread in joinable {
-                // A panic in one has reached `install`.
+                // A panic in a thread has already reached `install`.
                 let _ = thread.join();
             }
         });
     }
 
-    /// A task, and then what came of it.
+    /// A task, and later its result.
     enum Slot<T, R> {
         Task(T),
         Taken,
@@ -188,7 +187,7 @@ mod pool {
         Ok(done)
     }
 
-    /// Shares out the numbers of tasks.
+    /// Calls `work` with the number of each task, on all threads.
     fn share(count: usize, work: &(dyn Fn(usize) -> Result<(), Error> + Sync)) -> Result<(), Error> {
         (0..count).into_par_iter().try_for_each(work)
     }

@@ -12,17 +12,17 @@ use crate::error::{Error, MeshFileError};
 use crate::mesh::TriangleMesh;
 use alloc::vec::Vec;
 
-/// How a mesh file is to be taken. The default takes everything from the file and changes nothing.
+/// Options for reading a mesh file. The default takes everything from the file and changes nothing.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct MeshOptions {
     /// The file's format; `None`: [detected](MeshFormat::detect).
     pub format: Option<MeshFormat>,
-    /// The unit of the numbers in the file. `None`: what the file says, which only a 3MF does. If given, it
-    /// overrides that.
+    /// The unit of the numbers in the file; overrides the unit that the file states. `None`: the unit that
+    /// the file states, which only a 3MF does.
     pub unit: Option<LengthUnit>,
-    /// The unit that the mesh shall have; `None`: that of the file, and no conversion.
+    /// The unit of the resulting mesh; `None`: the unit of the file, without conversion.
     pub target: Option<LengthUnit>,
-    /// What all coordinates are multiplied by besides, from 2^-256 to 2^256.
+    /// An additional factor for all coordinates, from 2^-256 to 2^256.
     pub scale: f64,
 }
 
@@ -32,57 +32,59 @@ impl Default for MeshOptions {
     }
 }
 
-/// A mesh from a file, and what else the file says.
+/// A mesh from a file, with further data of the file.
 #[non_exhaustive]
 #[derive(Debug, Clone)]
 pub struct MeshFile {
     /// The mesh, converted and scaled, with the colours and materials of the file as its
     /// [attributes](TriangleMesh::attributes).
     pub mesh: TriangleMesh,
-    /// The format that the file has.
+    /// The format of the file.
     pub format: MeshFormat,
     /// The unit of the mesh's coordinates (apart from [`MeshOptions::scale`]), if it is known.
     pub unit: Option<LengthUnit>,
-    /// Instances of objects that the file does not mean to be solid, such as supports, and that the mesh
-    /// therefore does not contain. 0 for all formats but 3MF.
+    /// Number of instances of objects that the file does not declare as solid, such as supports. The mesh
+    /// does not contain them. 0 for all formats but 3MF.
     pub skipped: u64,
-    /// How far, as a PLY, OBJ, OFF or 3MF that was written with
-    /// [`WriteOptions::deviation`](super::WriteOptions::deviation) says, the true boundary may lie from the
-    /// mesh: converted and scaled as its coordinates are. The file is not believed:
-    /// [`TriangleMesh::with_deviation`] states it, for who does.
+    /// The deviation that the file states, converted and scaled like the coordinates: the maximum distance of
+    /// the true boundary from the mesh. Only a PLY, OBJ, OFF or 3MF that was written with
+    /// [`WriteOptions::deviation`](super::WriteOptions::deviation) states one. The reader does not apply it.
+    /// A caller who trusts the file sets it with [`TriangleMesh::with_deviation`].
     pub deviation: Option<f64>,
-    /// Where the file departs from its format, though it could be read.
+    /// Departures of the file from its format that did not prevent reading.
     pub warnings: Vec<MeshWarning>,
 }
 
 /// Reads a mesh file of any format.
 ///
-/// What the single formats allow stands at [`read_stl`] and its neighbours. Everything in the file becomes
-/// one mesh, whose vertices are welded where they are equal. That the mesh is closed is not checked.
+/// [`read_stl`] and its neighbours document the formats. The whole file becomes one mesh, whose equal
+/// vertices are welded. The reader does not check that the mesh is closed.
 ///
-/// A conversion of units and the scale are applied together: one product and, where the factor is no whole
-/// number, one quotient, so that coordinates of up to 40 bits (all of binary STL are) are the exact result
-/// rounded once. Without both, or if they cancel, coordinates stay as they are, bit by bit.
+/// A conversion of units and the scale are applied together, as one product and, if the factor is no whole
+/// number, one quotient. Coordinates of up to 40 bits (which include all of binary STL) are therefore the
+/// exact result rounded once. Without conversion and scale, or if they cancel, coordinates stay as they are,
+/// bit by bit.
 ///
 /// A file that departs from its format in a way that leaves no doubt about the mesh is read, and
-/// [`MeshFile::warnings`] tells of it.
+/// [`MeshFile::warnings`] lists the departures.
 ///
 /// O(n).
 ///
 /// # Errors
-/// [`Error::Argument`] for a scale that is not allowed, [`MeshFileError::UnknownFormat`],
-/// [`MeshFileError::UnknownUnit`] if a conversion is asked for and nobody says from which unit,
-/// [`MeshFileError::Unsupported`] for text in UTF-16 and for a format that was left out of this build,
+/// [`Error::Argument`] for a scale out of range, [`MeshFileError::UnknownFormat`],
+/// [`MeshFileError::UnknownUnit`] if a conversion is requested and neither the options nor the file state the
+/// unit, [`MeshFileError::Unsupported`] for text in UTF-16 and for a format that was left out of this build,
 /// [`MeshError::TooLarge`](crate::error::MeshError::TooLarge) if scaling exceeds ±2^256, and the reader's
 /// errors.
 pub fn read_mesh(bytes: &[u8], options: &MeshOptions) -> Result<MeshFile, Error> {
     read(bytes, None, options)
 }
 
-/// Reads a mesh file of any format from a path, whose extension helps to tell the format.
+/// Reads a mesh file of any format from a path, whose extension helps to detect the format.
 ///
-/// As [`read_mesh`]. What is wrong with the file is the cause of an [`Error::File`] with the path, and may be
-/// [`Error::Io`] besides, or [`Error::Limit`] for a pipe or a device that goes on after 1 GiB.
+/// Reads as [`read_mesh`] does. Errors of the file are the cause of an [`Error::File`] with the path. They
+/// are those of [`read_mesh`], [`Error::Io`], and [`Error::Limit`] for a pipe or a device with more than 1
+/// GiB.
 #[cfg(feature = "std")]
 pub fn open_mesh(path: impl AsRef<std::path::Path>, options: &MeshOptions) -> Result<MeshFile, Error> {
     let path = path.as_ref();
@@ -92,13 +94,13 @@ pub fn open_mesh(path: impl AsRef<std::path::Path>, options: &MeshOptions) -> Re
 }
 
 fn read(bytes: &[u8], extension: Option<&str>, options: &MeshOptions) -> Result<MeshFile, Error> {
-    // Refused before any work is done.
+    // Check the scale before any work is done.
     Factor::new(None, options.scale)?;
     if bytes.is_empty() {
         return Err(MeshFileError::Empty.into());
     }
     if options.format != Some(MeshFormat::ThreeMf) {
-        // Before the format is detected, which the bytes of such a text do not tell.
+        // Before the format is detected, because the bytes of such a text do not show it.
         refuse_utf16(bytes)?;
     }
     let format = (options.format)
@@ -138,7 +140,7 @@ fn read(bytes: &[u8], extension: Option<&str>, options: &MeshOptions) -> Result<
         (None, Some(_)) => return Err(MeshFileError::UnknownUnit.into()),
     };
     let factor = Factor::new(conversion, options.scale)?;
-    // (What is rounded is rounded up. What is too large says nothing.)
+    // (Rounded up. A value that is too large says nothing.)
     let scaled = |said: f64| if said > 0.0 { factor.apply(said).next_up() } else { said };
     let deviation = if factor.is_one() { said } else { said.map(scaled).filter(|said| said.is_finite()) };
     let mesh = if factor.is_one() { mesh } else { mesh.scaled(|x| factor.apply(x))? };
@@ -193,7 +195,7 @@ mod tests {
         }
         let far = read_mesh(&triangle(1e30), &with(None, None, 1e50));
         assert!(matches!(far, Err(Error::Mesh(MeshError::TooLarge { vertex: 1 }))), "{far:?}");
-        // What becomes too small to compute with is one place.
+        // Coordinates that become too small to compute with coincide.
         let near = read_mesh(&triangle(0.5), &with(None, None, 1e-77)).unwrap();
         let report = near.mesh.report().unwrap();
         assert_eq!((report.triangles, report.degenerate, report.vertices, report.welded), (0, 1, 2, 1));
@@ -201,7 +203,7 @@ mod tests {
 
     #[test]
     fn counts_outlive_a_scale() {
-        // Two triangles with an edge in common, and one of no extent.
+        // Two triangles with a common edge, and one without extent.
         let square = [[0.0, 0.0, 0.0], [1.0, 0.0, 0.0], [1.0, 1.0, 0.0], [0.0, 1.0, 0.0]];
         let [a, b, c, d] = square;
         let mesh = TriangleMesh::from_facets([[a, b, c], [a, c, d], [a, a, b]]).unwrap();
@@ -227,13 +229,13 @@ mod tests {
             assert_eq!(file.mesh.triangles(), [[0, 1, 2]]);
             assert_eq!(file.warnings, []);
         }
-        // What is warned of reaches the caller.
+        // Warnings reach the caller.
         let strange = [&ply[..21], b"by hand\n", &ply[21..]].concat();
         let file = read_mesh(&strange, &MeshOptions::default()).unwrap();
         assert_eq!(file.warnings, [MeshWarning::HeaderLine { line: 3, lines: 1 }]);
     }
 
-    /// Every model file has the format that its name says, by its content alone.
+    /// The content alone identifies the format of every model file.
     #[cfg(feature = "std")]
     #[test]
     fn model_files() {
@@ -251,7 +253,7 @@ mod tests {
         assert!(count >= 12);
     }
 
-    /// Text in UTF-16 is called so, by the reader of every format.
+    /// The reader of every format recognises text in UTF-16.
     #[cfg(feature = "std")]
     #[test]
     fn utf_16() {

@@ -3,12 +3,12 @@
 use super::is_space;
 use crate::error::MeshFileError;
 
-/// What was expected where a file ends.
+/// The expectation in the error for a file that ends too early.
 pub(super) const TOO_SHORT: &str = "more data: the file is shorter than its header says";
-/// What was expected where a file goes on.
+/// The expectation in the error for a file that is too long.
 pub(super) const TOO_LONG: &str = "the end of the file: it is longer than its header says";
 
-/// A file whose numbers have the most significant byte first if `BIG`, and of which a part has been taken.
+/// A partly consumed file. Its numbers are big-endian if `BIG`.
 #[derive(Clone, Copy)]
 pub(super) struct Bytes<'a, const BIG: bool> {
     all: &'a [u8],
@@ -16,12 +16,12 @@ pub(super) struct Bytes<'a, const BIG: bool> {
 }
 
 impl<'a, const BIG: bool> Bytes<'a, BIG> {
-    /// The file from behind the first `taken` bytes.
+    /// Makes a reader of the file after the first `taken` bytes.
     pub fn new(all: &'a [u8], taken: usize) -> Self {
         Self { all, rest: all.get(taken..).unwrap_or(&[]) }
     }
 
-    /// What has not been taken yet.
+    /// Returns the bytes that are left.
     #[inline]
     pub fn rest(&self) -> &'a [u8] {
         self.rest
@@ -35,7 +35,7 @@ impl<'a, const BIG: bool> Bytes<'a, BIG> {
         Ok(taken)
     }
 
-    /// Takes the bytes of a number, which come in little-endian order.
+    /// Takes the bytes of a number and returns them in little-endian order.
     #[inline]
     pub fn number<const N: usize>(&mut self) -> Result<[u8; N], MeshFileError> {
         let (bytes, rest) = self.rest.split_first_chunk::<N>().ok_or_else(|| self.too_short())?;
@@ -43,7 +43,7 @@ impl<'a, const BIG: bool> Bytes<'a, BIG> {
         Ok(Self::in_order(*bytes))
     }
 
-    /// A number's bytes in little-endian order.
+    /// Returns a number's bytes in little-endian order.
     #[inline]
     pub fn in_order<const N: usize>(mut bytes: [u8; N]) -> [u8; N] {
         if BIG {
@@ -52,7 +52,7 @@ impl<'a, const BIG: bool> Bytes<'a, BIG> {
         bytes
     }
 
-    /// Takes the end of the file, before which there may be padding.
+    /// Takes the end of the file. Padding may precede it.
     pub fn end(&self) -> Result<(), MeshFileError> {
         if self.rest.iter().all(|&byte| is_space(byte) || matches!(byte, 0 | 0x1A)) {
             Ok(())
@@ -61,13 +61,13 @@ impl<'a, const BIG: bool> Bytes<'a, BIG> {
         }
     }
 
-    /// The error that something else than what comes next was expected.
+    /// Returns the error that something else was expected at the current byte.
     #[cold]
     pub fn error(&self, expected: &'static str) -> MeshFileError {
         MeshFileError::Binary { offset: (self.all.len() - self.rest.len()) as u64, expected }
     }
 
-    /// The error that the index that stands `ahead` bytes ahead is one of no vertex.
+    /// Returns the error that the index at `ahead` bytes from here refers to no vertex.
     #[cold]
     pub fn index_error(&self, ahead: usize, index: i64, vertices: u64) -> MeshFileError {
         let offset = (self.all.len() - self.rest.len() + ahead) as u64;

@@ -1,4 +1,4 @@
-//! Colours as files have them, on the way to an attribute of a mesh.
+//! Colours of files, collected for an attribute of a mesh.
 
 use alloc::vec::Vec;
 
@@ -9,12 +9,12 @@ use crate::mesh::MeshAttribute;
 #[derive(Default)]
 pub(super) struct Colours {
     values: Vec<f64>,
-    /// Those that could not be read.
+    /// Number of colours that could not be read.
     pub unreadable: u64,
 }
 
 impl Colours {
-    /// Adds a colour. One whose channels are not all numbers that round to 0 to 255 counts as none.
+    /// Adds a colour. If a channel is not a number that rounds to 0 to 255, the element has no colour.
     #[inline]
     pub fn push(&mut self, channels: [f64; 4]) -> Result<(), Error> {
         let is_channel = |channel: &f64| (-0.5..=255.5).contains(channel);
@@ -29,17 +29,17 @@ impl Colours {
         Ok(())
     }
 
-    /// How many there are.
+    /// Returns the number of colours.
     pub fn len(&self) -> usize {
         self.values.len() / 4
     }
 
-    /// The colours that corners have.
+    /// Returns the colours as an attribute of corners.
     pub fn of_corners(self, name: &str, rows: Vec<[u32; 3]>) -> Result<MeshAttribute, Error> {
         MeshAttribute::by_corner(name, 4, self.values, rows)
     }
 
-    /// The colours that triangles have.
+    /// Returns the colours as an attribute of triangles.
     pub fn of_triangles(self, name: &str, rows: Vec<u32>) -> Result<MeshAttribute, Error> {
         MeshAttribute::by_triangle(name, 4, self.values, rows)
     }

@@ -1,8 +1,8 @@
-//! Decimal numbers as text, read fast and rounded correctly.
+//! Parsing of decimal numbers: fast, and correctly rounded.
 //!
-//! A number of at most 19 digits whose digits make an integer below 2^53 and whose power of ten is at most 22
-//! in magnitude is one product or quotient of two `f64` that are both exact, so the one rounding is the right
-//! one. All others go to [`str::parse`].
+//! If a number has at most 19 digits, its digits form an integer below 2^53, and the magnitude of its power
+//! of ten is at most 22, then the number is one product or quotient of two `f64` that are both exact. The one
+//! rounding is then the right one. All other numbers go to [`str::parse`].
 
 /// The powers of ten that `f64` holds exactly.
 const POWERS: [f64; 23] = [
@@ -10,13 +10,13 @@ const POWERS: [f64; 23] = [
     1e19, 1e20, 1e21, 1e22,
 ];
 
-/// The same as integers, for up to eight digits at once.
+/// Powers of ten as integers, for up to eight digits at once.
 const TENS: [u64; 9] = [1, 10, 100, 1_000, 10_000, 100_000, 1_000_000, 10_000_000, 100_000_000];
 
-/// The finite number that `text` begins with, which ends where no letter, digit, sign or point follows, and
-/// what stands behind it: the nearest `f64`, ties to even.
+/// Parses the finite number at the beginning of `text`, and returns the nearest `f64` (ties to even) and the
+/// text after the number. The number must not be followed by a letter, digit, sign or point.
 ///
-/// Accepted is what [`f64`] parses, without infinities and NaN: `1`, `+1.`, `-.5`, `1e-3`, `1E+05`.
+/// Accepts the numbers that [`f64`] parses, without infinities and NaN: `1`, `+1.`, `-.5`, `1e-3`, `1E+05`.
 #[inline]
 pub(super) fn number(text: &[u8]) -> Option<(f64, &[u8])> {
     let (negative, unsigned) = sign(text);
@@ -48,7 +48,8 @@ pub(super) fn number(text: &[u8]) -> Option<(f64, &[u8])> {
     Some((if negative { -value } else { value }, rest))
 }
 
-/// The integer that `text` begins with and what stands behind it, whatever that is. At most 18 digits.
+/// Parses the integer at the beginning of `text`, and returns it and the rest, whatever follows. At most 18
+/// digits.
 #[inline]
 pub(super) fn integer(text: &[u8]) -> Option<(i64, &[u8])> {
     let (negative, unsigned) = sign(text);
@@ -66,13 +67,15 @@ fn sign(text: &[u8]) -> (bool, &[u8]) {
     }
 }
 
-/// `value` with the digits appended that `text` begins with, modulo 2^64, and what stands behind them.
+/// Appends the digits at the beginning of `text` to `value`, modulo 2^64, and returns the result and the
+/// rest.
 #[inline]
 fn digits(mut value: u64, mut text: &[u8]) -> (u64, &[u8]) {
     while let Some((chunk, behind)) = text.split_first_chunk::<8>() {
         // Digits become 0 to 9, and every other byte is at least 10.
         let bytes = u64::from_le_bytes(*chunk) ^ 0x3030_3030_3030_3030;
-        // The topmost bit of a byte tells that it is no digit. A carry reaches only bytes behind such a one.
+        // The topmost bit of a byte is set if the byte is no digit. A carry only reaches bytes behind such a
+        // byte.
         let others = (bytes.wrapping_add(0x7676_7676_7676_7676) | bytes) & 0x8080_8080_8080_8080;
         if others == 0 {
             value = value.wrapping_mul(TENS[8]).wrapping_add(eight_digits(bytes));
@@ -81,7 +84,7 @@ fn digits(mut value: u64, mut text: &[u8]) -> (u64, &[u8]) {
         }
         let count = others.trailing_zeros() as usize / 8;
         if count > 0 {
-            // Moved to the end, with zeros before them.
+            // Shift the digits to the end, so that zeros precede them.
             let low = eight_digits(bytes << (64 - 8 * count));
             value = value.wrapping_mul(TENS[count]).wrapping_add(low);
         }
@@ -94,7 +97,8 @@ fn digits(mut value: u64, mut text: &[u8]) -> (u64, &[u8]) {
     (value, text)
 }
 
-/// The number that eight digits make, the first in the lowest byte: pairs of digits, then fours, then all.
+/// Returns the number of eight digits, the first in the lowest byte: combines pairs of digits, then fours,
+/// then all.
 #[inline]
 fn eight_digits(bytes: u64) -> u64 {
     let pairs = bytes.wrapping_mul(10).wrapping_add(bytes >> 8);
@@ -103,7 +107,7 @@ fn eight_digits(bytes: u64) -> u64 {
     low.wrapping_add(high) >> 32
 }
 
-/// Whether a number with this byte behind it is none, or a longer one.
+/// Returns whether a byte after a number makes it invalid or longer.
 #[inline]
 pub(super) fn continues(byte: u8) -> bool {
     byte.is_ascii_alphanumeric() || matches!(byte, b'.' | b'+' | b'-' | b'_')
@@ -126,7 +130,7 @@ mod tests {
     use alloc::string::String;
     use proptest::prelude::*;
 
-    /// The definition.
+    /// The reference implementation.
     fn slowly(text: &str) -> Option<f64> {
         text.parse::<f64>().ok().filter(|x| x.is_finite())
     }

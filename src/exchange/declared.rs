@@ -1,8 +1,8 @@
-//! Attributes in a PLY: comments in its header say which properties of faces they are.
+//! Attributes in a PLY: comments in its header declare properties of faces as attributes.
 //!
 //! `comment leafless attribute N NAME` announces an attribute of N numbers. Its property is NAME, or NAME_0,
-//! NAME_1 … if there are several. Of the type `uint` it is a label, of which the greatest is none.
-//! `comment leafless name NAME TEXT` adds the name of the next label.
+//! NAME_1 … if there are several. A property of the type `uint` is a label; the greatest `uint` means no
+//! label. `comment leafless name NAME TEXT` adds the name of the next label.
 
 use crate::error::Error;
 use crate::exchange::colours::fill;
@@ -11,15 +11,15 @@ use crate::mesh::MeshAttribute;
 use alloc::string::String;
 use alloc::vec::Vec;
 
-/// Begins a comment that announces an attribute.
+/// The beginning of a comment that announces an attribute.
 pub(super) const ATTRIBUTE: &str = "leafless attribute ";
-/// Attributes that are heeded.
+/// Maximum number of attributes; further ones are ignored.
 const MOST: usize = 64;
 
-/// Begins a comment that names a label.
+/// The beginning of a comment that names a label.
 pub(super) const LABEL: &str = "leafless name ";
 
-/// An attribute that a header announces, and what was read of it.
+/// An attribute that a header announces, with its values.
 pub(super) struct Declared<'a> {
     pub name: &'a str,
     pub components: usize,
@@ -30,7 +30,7 @@ pub(super) struct Declared<'a> {
     rows: Vec<u32>,
 }
 
-/// Takes a comment of a header for what it says of attributes. Others mean nothing.
+/// Evaluates a comment of a header that concerns attributes. Other comments are ignored.
 pub(super) fn declare<'a>(declared: &mut Vec<Declared<'a>>, comment: &'a [u8]) -> Result<(), Error> {
     let Ok(comment) = core::str::from_utf8(comment) else { return Ok(()) };
     let comment = comment.trim();
@@ -57,7 +57,7 @@ pub(super) fn declare<'a>(declared: &mut Vec<Declared<'a>>, comment: &'a [u8]) -
     Ok(())
 }
 
-/// Whether properties of faces, or attributes, of this name mean something else.
+/// Returns whether this name is reserved for other properties of faces or other attributes.
 pub(super) fn is_taken(name: &str) -> bool {
     let name = name.strip_prefix("diffuse_").unwrap_or(name);
     matches!(
@@ -66,12 +66,12 @@ pub(super) fn is_taken(name: &str) -> bool {
     )
 }
 
-/// Whether a name may be that of a property.
+/// Returns whether a property may have this name.
 pub(super) fn is_property(name: &str) -> bool {
     !name.is_empty() && name.bytes().all(|byte| byte.is_ascii_graphic())
 }
 
-/// Which number of which attribute a property is.
+/// Returns the attribute and the component that a property belongs to.
 pub(super) fn place_of(declared: &[Declared<'_>], property: &[u8]) -> Option<(usize, usize)> {
     let property = core::str::from_utf8(property).ok()?;
     declared.iter().enumerate().find_map(|(place, attribute)| {
@@ -85,25 +85,25 @@ pub(super) fn place_of(declared: &[Declared<'_>], property: &[u8]) -> Option<(us
 }
 
 impl Declared<'_> {
-    /// One of its properties is there, of whole numbers or others.
+    /// Records that one of its properties is present, with whole numbers or others.
     pub fn found(&mut self, is_whole: bool) {
         self.is_found = true;
         self.is_label = is_whole && self.components == 1;
     }
 
-    /// Whether a property of it is there.
+    /// Returns whether one of its properties is present.
     pub fn is_found(&self) -> bool {
         self.is_found
     }
 
-    /// Gives values to the triangles up to a number of them, those of a face.
+    /// Assigns the values of a face to the triangles of that face, up to the given number of triangles.
     pub fn push(&mut self, before: usize, triangles: usize, values: &[f64; 4]) -> Result<(), Error> {
         if !self.is_found {
             return Ok(());
         }
         fill(&mut self.rows, before, MeshAttribute::NO_ROW)?;
         if self.is_label {
-            // (What is no number is none.)
+            // (NaN means no label.)
             let label = if values[0] >= 0.0 { values[0] as u32 } else { MeshAttribute::NO_ROW };
             return fill(&mut self.rows, triangles, label);
         }

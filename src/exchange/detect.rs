@@ -1,4 +1,4 @@
-//! Which format a mesh file has, from its bytes.
+//! Detection of a mesh file's format from its bytes.
 
 use super::stl::is_binary_of_exact_length;
 use core::fmt;
@@ -20,10 +20,10 @@ pub enum MeshFormat {
 }
 
 impl MeshFormat {
-    /// All of them.
+    /// All formats.
     pub const ALL: [MeshFormat; 5] = [Self::Stl, Self::Obj, Self::Ply, Self::Off, Self::ThreeMf];
 
-    /// The extension of the names of such files, in lower case and without a dot.
+    /// Returns the usual file name extension, in lower case and without a dot.
     pub const fn extension(self) -> &'static str {
         match self {
             Self::Stl => "stl",
@@ -34,19 +34,20 @@ impl MeshFormat {
         }
     }
 
-    /// The format of files whose names end in this extension, given without a dot, in any letter case.
+    /// Returns the format with this file name extension, given without a dot, in any letter case.
     pub fn from_extension(extension: &str) -> Option<Self> {
         Self::ALL.into_iter().find(|format| format.extension().eq_ignore_ascii_case(extension))
     }
 
-    /// The format of a file with this content and, if it has one, this extension of its name.
+    /// Returns the format of a file with this content and this file name extension, if there is one.
     ///
-    /// Content decides where it is unmistakable: the length of a binary STL, the signatures of ZIP and PLY,
-    /// the first words of an ASCII STL and of an OFF. Then the extension does. A file without a known one is
-    /// an OBJ if its first line that is neither blank nor a comment begins with a keyword of that format, an
-    /// OFF if that line begins with numbers only, and an STL if it is long enough and no text; else `None`.
+    /// The content decides where it is unmistakable: the length of a binary STL, the signatures of ZIP and
+    /// PLY, the first words of an ASCII STL and of an OFF. Otherwise a known extension decides. A file
+    /// without a known extension is an OBJ if its first line that is neither blank nor a comment begins with
+    /// a keyword of that format, an OFF if that line begins with numbers only, and an STL if it is long
+    /// enough and no text; otherwise the result is `None`.
     ///
-    /// O(1) but for comments and blank lines at the beginning.
+    /// O(1), not counting comments and blank lines at the beginning.
     pub fn detect(bytes: &[u8], extension: Option<&str>) -> Option<Self> {
         by_signature(bytes).or_else(|| extension.and_then(Self::from_extension)).or_else(|| by_look(bytes))
     }
@@ -64,9 +65,9 @@ impl fmt::Display for MeshFormat {
     }
 }
 
-/// The format whose signature the file bears.
+/// Returns the format whose signature the file has.
 fn by_signature(bytes: &[u8]) -> Option<MeshFormat> {
-    // First, because the header of a binary STL may hold anything.
+    // First, because the header of a binary STL may contain anything.
     if is_binary_of_exact_length(bytes) {
         return Some(MeshFormat::Stl);
     }
@@ -87,7 +88,7 @@ fn by_signature(bytes: &[u8]) -> Option<MeshFormat> {
     }
 }
 
-/// The format that a file without a signature is most likely to have.
+/// Returns the most likely format of a file without a signature.
 fn by_look(bytes: &[u8]) -> Option<MeshFormat> {
     if let Some(mut words) = first_line(bytes)
         && let Some(word) = words.next()
@@ -122,23 +123,24 @@ fn by_look(bytes: &[u8]) -> Option<MeshFormat> {
     (start.len() == 84 && start.contains(&0)).then_some(MeshFormat::Stl)
 }
 
-/// `OFF` and what may stand before it: texture coordinates, colours, normals, and so on.
+/// Returns whether a word is `OFF` with its optional prefixes for texture coordinates, colours, normals, and
+/// so on.
 fn is_off_keyword(word: &[u8]) -> bool {
     let mut rest = word;
     for prefix in [&b"ST"[..], b"C", b"N", b"4", b"n"] {
         rest = rest.strip_prefix(prefix).unwrap_or(rest);
     }
-    // The counts may follow at once.
+    // The counts may follow immediately.
     rest.strip_prefix(b"OFF").is_some_and(|counts| counts.iter().all(u8::is_ascii_digit))
 }
 
-/// The words of the first line that is neither blank nor a comment.
+/// Returns the words of the first line that is neither blank nor a comment.
 fn first_line(bytes: &[u8]) -> Option<impl Iterator<Item = &[u8]>> {
     let bytes = bytes.strip_prefix(b"\xEF\xBB\xBF").unwrap_or(bytes);
     let words = |line| <[u8]>::split(line, u8::is_ascii_whitespace).filter(|word| !word.is_empty());
     (bytes.split(|&b| b == b'\n' || b == b'\r'))
         .find(|line| words(line).next().is_some_and(|word| !word.starts_with(b"#")))
-        // What stands behind the first words of a very long line tells nothing more.
+        // The first words of a very long line are enough.
         .map(|line| words(&line[..line.len().min(256)]))
 }
 
@@ -191,7 +193,7 @@ mod tests {
         }
         assert_eq!(MeshFormat::detect(b"# no keyword\n8 6 12\n0 0 0", None), Some(MeshFormat::Off));
         assert_eq!(MeshFormat::detect(b"8 6\n", None), Some(MeshFormat::Off));
-        // A binary STL that was cut off: its reader says so.
+        // A binary STL that was cut off; the STL reader reports it.
         let mut cut: Vec<u8> = b"binary".to_vec();
         cut.resize(90, 0);
         assert_eq!(MeshFormat::detect(&cut, None), Some(MeshFormat::Stl));

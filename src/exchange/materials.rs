@@ -1,4 +1,4 @@
-//! The materials of an OBJ, on the way to an attribute of a mesh.
+//! Materials of an OBJ, collected for an attribute of a mesh.
 
 use super::colours::fill;
 use super::{is_line_end, is_space};
@@ -9,12 +9,12 @@ use alloc::string::String;
 use alloc::vec::Vec;
 use hashbrown::HashMap;
 
-/// Which material triangles have.
+/// The materials of triangles.
 pub(super) struct Materials<'a> {
     numbers: HashMap<&'a str, u32>,
     names: Vec<&'a str>,
     rows: Vec<u32>,
-    /// That of the next face.
+    /// The material of the next face.
     current: u32,
 }
 
@@ -26,13 +26,13 @@ impl Default for Materials<'_> {
 }
 
 impl<'a> Materials<'a> {
-    /// Chooses the material of the next faces by what follows the keyword on its line: none if there is no
-    /// name. A comment begins with a blank and `#`.
+    /// Sets the material of the next faces from the text after the keyword: none if there is no name. A
+    /// comment begins with a blank and `#`.
     pub fn choose(&mut self, rest: &'a [u8]) -> Result<(), Error> {
         let line = rest.split(|&byte| is_line_end(byte)).next().unwrap_or(&[]);
         let comment = line.windows(2).position(|pair| is_space(pair[0]) && pair[1] == b'#');
         let line = &line[..comment.unwrap_or(line.len())];
-        // (What is no text has no name.)
+        // (A name that is not UTF-8 counts as no name.)
         let name = core::str::from_utf8(line).unwrap_or("").trim();
         if name.is_empty() {
             self.current = MeshAttribute::NO_ROW;
@@ -47,7 +47,7 @@ impl<'a> Materials<'a> {
         Ok(())
     }
 
-    /// Gives it to all triangles up to a number of them.
+    /// Assigns the current material to all triangles up to a number.
     #[inline]
     pub fn give(&mut self, triangles: usize) -> Result<(), Error> {
         if self.names.is_empty() {
@@ -56,13 +56,13 @@ impl<'a> Materials<'a> {
         fill(&mut self.rows, triangles, self.current)
     }
 
-    /// Leaves triangles up to a number of them, which came before the first material, without one.
+    /// Leaves the triangles up to a number, which precede the first material, without a material.
     #[inline]
     pub fn begin(&mut self, triangles: usize) -> Result<(), Error> {
         fill(&mut self.rows, triangles, MeshAttribute::NO_ROW)
     }
 
-    /// The attribute, if a triangle has a material.
+    /// Returns the attribute, if a triangle has a material.
     pub fn attributes(mut self, triangles: usize) -> Result<Vec<MeshAttribute>, Error> {
         let mut attributes = Vec::new();
         if self.rows.iter().any(|&row| row != MeshAttribute::NO_ROW) {

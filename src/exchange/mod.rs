@@ -1,7 +1,7 @@
-//! The files of other programs.
+//! Readers and writers for file formats of other programs.
 //!
-//! [`read_mesh`] and `open_mesh` (with the feature `std`) read mesh files of all formats, tell which it is,
-//! and convert units; [`read_stl`], `read_obj`, `read_ply` and `read_off` read one.
+//! [`read_mesh`] and `open_mesh` (with the feature `std`) read mesh files of all formats, detect the format,
+//! and convert units. [`read_stl`], `read_obj`, `read_ply` and `read_off` read one format each.
 //!
 //! | format | what is read |
 //! |---|---|
@@ -11,40 +11,45 @@
 //! | OFF | text and binary, with and without a keyword, with colours, normals and textures, which are skipped |
 //! | 3MF | (feature `threemf`) the core specification, its draft 0.93 and parts of the production extension: units, components, the build's transforms, base materials, colour groups |
 //!
-//! **Deviation.** A mesh may be known to lie within a distance of the true boundary only
+//! **Deviation.** A mesh may be known to lie only within a distance of the true boundary
 //! ([`TriangleMesh::with_deviation`]). [`WriteOptions::deviation`] writes that distance into a file, and
-//! [`MeshFile::deviation`] tells what a file says. Nobody is believed: the mesh that is read has no deviation
-//! before it is stated.
+//! [`MeshFile::deviation`] returns the distance that a file states. The statement is not applied: the mesh
+//! that is read has no deviation until the caller sets one.
 //!
-//! **Colours and materials** are [attributes](TriangleMesh::attributes) of the mesh. `colour` has four
-//! numbers from 0 to 255: red, green and blue, in sRGB as a rule, and alpha, which is 255 where the file has
-//! none. In a PLY vertices have colours, and the corners of triangles take them over; if faces have colours
-//! besides, these are `face_colour`. In a 3MF corners or triangles have colours: those of a colour group, or
-//! how a base material is displayed. `material` is the number of a triangle's base material, with the
-//! materials' names, and `object` that of the object of a 3MF, if several are built, in the order in which
-//! they are first placed, with the objects' names. In an OBJ `material` is what `usemtl` names, numbered as
-//! the names come. A PLY that this library wrote has any other attributes. A file without such things gives a
-//! mesh without attributes.
+//! **Colours and materials** are [attributes](TriangleMesh::attributes) of the mesh. A file without them
+//! gives a mesh without attributes.
+//!
+//! - `colour` has four numbers from 0 to 255: red, green and blue, usually in sRGB, and alpha, which is 255
+//!   if the file has none. In a PLY, vertices have colours, and the corners of triangles take them over. In a
+//!   3MF, corners or triangles have colours, either from a colour group or the display colours of base
+//!   materials.
+//! - `face_colour` has the colours of a PLY's faces if its vertices have colours as well.
+//! - `material` is the number of a triangle's material, with the materials' names. In a 3MF it is the base
+//!   material, in an OBJ the name after `usemtl`, numbered in order of appearance.
+//! - `object` is the number of the object of a 3MF, if several are built, in the order in which they are
+//!   first placed, with the objects' names.
+//! - Other attributes come from a PLY that this library wrote.
 //!
 //! Some files depart from their format in a way that leaves no doubt about the mesh. They are read, and
-//! [`MeshFile::warnings`] tells of it.
+//! [`MeshFile::warnings`] lists the departures.
 //!
-//! [`write_mesh`] writes a file of any of them, `write_polygons` an OBJ or OFF of polygons, and
+//! [`write_mesh`] writes a file of any of these formats, `write_polygons` an OBJ or OFF of polygons, and
 //! `write_placed_meshes` (feature `threemf`) a 3MF of several objects, each in any number of places. STL
-//! rounds coordinates to 32 bits: [`written_form`] tells the mesh that is read back, and what is lost.
+//! rounds coordinates to 32 bits: [`written_form`] returns the mesh that a reader gets back, and counts the
+//! losses.
 //!
-//! An error says in which line, or at which byte or element, and for a 3MF in which part. Bytes may be
-//! anything: no reader panics, and memory is linear in the length of the file, with two exceptions of 3MF:
-//! its parts may be up to 64 times as long as the file and 16 MiB, and instances of one object, up to 2^25
-//! vertices and triangles altogether, are stored one by one. Of a 3MF the items of the build become one mesh:
-//! objects of type `model`, each as often as it is placed; supports and what else is no solid are left out
-//! and counted. A model that requires an extension other than production, materials and triangle sets is
-//! refused, as are encryption and document type declarations.
+//! An error names the line, or the byte or element, and for a 3MF the part. Bytes may be anything: no reader
+//! panics. Memory is linear in the length of the file, with two exceptions for 3MF: its parts may be up to 64
+//! times as long as the file plus 16 MiB, and instances of one object, up to 2^25 vertices and triangles
+//! altogether, are stored one by one. The build items of a 3MF become one mesh: objects of type `model`, each
+//! as often as it is placed. Supports and other objects that are no solids are left out and counted. A model
+//! that requires an extension other than production, materials and triangle sets is refused, as are
+//! encryption and document type declarations.
 //!
-//! With the feature `volumes`, [`open_volume`] reads volumes, as NRRD and MetaImage, [`read_raw_volume`]
-//! arrays without a header, and [`write_nrrd`] writes them.
+//! With the feature `volumes`, [`open_volume`] reads volumes (NRRD and MetaImage), [`read_raw_volume`] reads
+//! arrays without a header, and [`write_nrrd`] writes volumes.
 //!
-//! Formats of polygons are read only with the feature `std`, which cutting polygons into triangles needs.
+//! Formats of polygons are read only with the feature `std`, because the triangulation of polygons needs it.
 
 use crate::error::{Error, MeshFileError};
 #[cfg(doc)]
@@ -117,7 +122,7 @@ pub use write::{WriteOptions, WrittenForm, write_mesh, write_stl, written_form};
 #[cfg(feature = "std")]
 pub use write::{write_grouped_polygons, write_polygons};
 
-/// Refuses text in UTF-16. Of the formats that are one text, none can be read in it.
+/// Refuses text in UTF-16, which no single-text format can use.
 fn refuse_utf16(bytes: &[u8]) -> Result<(), Error> {
     if !matches!(bytes, [0xFE, 0xFF, ..] | [0xFF, 0xFE, ..]) || stl::is_binary_of_exact_length(bytes) {
         return Ok(());

@@ -1,25 +1,25 @@
-//! OBJ files: polygons, of whatever else such a file may hold.
+//! OBJ files: reads polygons and materials.
 //!
-//! **Lines.** A line ends with LF, CR or both. A statement is a keyword and its arguments, with blanks or
-//! tabs between them; a backslash at the end of a line continues it. `#` begins a comment, also behind
-//! arguments. A comment, and a statement that is skipped, end with their line even if there is a backslash:
-//! so no name like `C:\` can swallow a face.
+//! **Lines.** A line ends with LF, CR or both. A statement is a keyword and its arguments, separated by
+//! blanks or tabs; a backslash at the end of a line continues it. `#` begins a comment, also after arguments.
+//! A comment or a skipped statement ends with its line even if there is a backslash, so that no name like
+//! `C:\` can swallow a face.
 //!
-//! **`v`** and three finite coordinates. More numbers may follow (a weight, which for polygons has no
-//! meaning, or a colour) and are skipped. A coordinate becomes the nearest `f64`.
+//! **`v`** and three finite coordinates. More numbers may follow (a weight, which has no meaning for
+//! polygons, or a colour) and are skipped. A coordinate becomes the nearest `f64`.
 //!
 //! **`f`** and three or more corners, each `v`, `v/vt`, `v//vn` or `v/vt/vn`; textures and normals are
-//! skipped, and whether there are such is not checked. Vertices are counted from 1; -1 is the last one before
-//! the face. A face may come before its vertices. `fo`, which old files have, means the same.
+//! skipped, and their existence is not checked. Vertices are counted from 1; -1 is the last vertex before the
+//! face. A face may precede its vertices. `fo`, which old files use, means the same.
 //!
-//! **`usemtl`** names the material of the faces behind it: the rest of its line, up to a blank and `#`.
-//! Without a name they have none. Files of materials (`mtllib`) are not read.
+//! **`usemtl`** names the material of the faces that follow: the rest of its line, up to a blank and `#`.
+//! Without a name the faces have none. Files of materials (`mtllib`) are not read.
 //!
-//! **Skipped** are all other statements: textures, normals, points, lines, groups, names, curves, and
-//! keywords that nobody knows. All groups and objects become one mesh.
+//! **Skipped** are all other statements: textures, normals, points, lines, groups, names, curves, and unknown
+//! keywords. All groups and objects become one mesh.
 //!
-//! **Refused**, since what is missing would be missed, are surfaces that are no polygons (`surf`, `bsp`,
-//! `bzp`) and parts that stand in another file (`call`). So is a file with neither `v` nor `f`.
+//! **Refused** are statements whose loss would change the shape: surfaces that are no polygons (`surf`,
+//! `bsp`, `bzp`) and parts in another file (`call`). A file with neither `v` nor `f` is refused as well.
 
 use alloc::vec::Vec;
 
@@ -33,11 +33,11 @@ use crate::mesh::TriangleMesh;
 
 /// Reads an OBJ file; all of its groups and objects become one mesh.
 ///
-/// Triangles keep the order of the faces. A face of more than three corners is cut into triangles that do not
-/// leave it; only where that cannot be, because its edges cross or it has no area, into the fan around its
-/// first corner. Equal vertices are welded, and triangles that two equal vertices make degenerate are dropped
-/// and counted, as in [`TriangleMesh::new`]. The mesh need not be closed, and may be empty. Where `usemtl`
-/// names materials, they are the attribute `material`.
+/// Triangles keep the order of the faces. A face of more than three corners is triangulated within the face.
+/// If that is impossible, because its edges cross or it has no area, it becomes the fan around its first
+/// corner. Equal vertices are welded, and triangles that become degenerate by that are dropped and counted,
+/// as in [`TriangleMesh::new`]. The mesh need not be closed, and may be empty. If `usemtl` names materials,
+/// they become the attribute `material`.
 ///
 /// O(n), or O(n log n) for faces that are not convex. Memory is at most 128 times the length of the file.
 ///
@@ -54,7 +54,7 @@ pub fn read_obj(bytes: &[u8]) -> Result<TriangleMesh, Error> {
     file.read(Text::new(bytes))?;
     let vertices = file.mesh.vertices.len() as u64;
     if file.most > vertices {
-        // Some face refers to a vertex that never came: the first one is found by reading again.
+        // Some face refers to a vertex that does not exist: the first such face is found by reading again.
         drop(file);
         file = Reader { limit: Some(vertices), ..Reader::default() };
         file.read(Text::new(bytes))?;
@@ -68,9 +68,9 @@ struct Reader<'a> {
     mesh: Polygons,
     materials: Materials<'a>,
     corners: Vec<u32>,
-    /// The greatest number of a vertex in a face, counted from 1.
+    /// The greatest vertex number in a face, counted from 1.
     most: u64,
-    /// How many vertices there are in the end, if that is known.
+    /// The total number of vertices, if it is known.
     limit: Option<u64>,
 }
 
@@ -113,7 +113,7 @@ impl<'a> Reader<'a> {
         }
     }
 
-    /// Reads what follows `v`.
+    /// Reads the arguments of `v`.
     #[inline]
     fn read_vertex(&mut self, text: &mut Text) -> Result<(), Error> {
         let mut vertex = [0.0; 3];
@@ -124,7 +124,8 @@ impl<'a> Reader<'a> {
         loop {
             skip_gap(text);
             match text.rest() {
-                // Whatever is printed for a number, like `-nan(ind)`; but no statement that lost its end.
+                // Any printed form of a number, such as `-nan(ind)`, but no statement whose line end was
+                // lost.
                 [b'0'..=b'9' | b'+' | b'-' | b'.' | b'i' | b'I' | b'n' | b'N', ..] => {
                     text.word();
                 }
@@ -136,7 +137,7 @@ impl<'a> Reader<'a> {
         self.mesh.push_vertex(vertex)
     }
 
-    /// Reads what follows `f`.
+    /// Reads the arguments of `f`.
     #[inline]
     fn read_face(&mut self, text: &mut Text) -> Result<(), Error> {
         self.corners.clear();
@@ -161,7 +162,7 @@ impl<'a> Reader<'a> {
     fn read_corner(&mut self, text: &mut Text) -> Result<u32, Error> {
         let start = *text;
         let index = integer(text).ok_or_else(|| start.error(CORNER))?;
-        // Texture and normal.
+        // Skip texture and normal.
         for _ in 0..2 {
             if let [b'/', rest @ ..] = text.rest() {
                 text.continue_with(rest);
@@ -175,7 +176,7 @@ impl<'a> Reader<'a> {
             _ => return Err(start.error(CORNER).into()),
         }
         let known = self.mesh.vertices.len() as u64;
-        // Counted from 1.
+        // Vertices are counted from 1.
         let number = match u64::try_from(index) {
             Ok(index) => Some(index),
             Err(_) => known.checked_sub(index.unsigned_abs()).map(|before| before + 1),
@@ -193,10 +194,10 @@ impl<'a> Reader<'a> {
     }
 }
 
-const NOTHING: &str = "vertices (`v`) and faces (`f`), of which this file has none";
+const NOTHING: &str = "vertices (`v`) and faces (`f`), but this file has neither";
 const CORNER: &str = "numbers of vertices, such as 7, 7/1, 7//2 or 7/1/2";
 
-/// Takes the first word of a statement; nothing at the end of the text.
+/// Takes the first word of a statement; empty at the end of the text.
 #[inline]
 fn keyword<'a>(text: &mut Text<'a>) -> &'a [u8] {
     match text.rest() {
@@ -205,7 +206,7 @@ fn keyword<'a>(text: &mut Text<'a>) -> &'a [u8] {
             text.continue_with(rest);
             word
         }
-        // A continuation may follow at once.
+        // A continuation may follow immediately.
         rest => {
             let length = rest.iter().position(|&b| is_space(b) || b == b'\\').unwrap_or(rest.len());
             let (word, rest) = rest.split_at(length);
@@ -215,7 +216,7 @@ fn keyword<'a>(text: &mut Text<'a>) -> &'a [u8] {
     }
 }
 
-/// Takes an integer, whatever follows.
+/// Takes an integer, whatever follows it.
 #[inline]
 fn integer(text: &mut Text) -> Option<i64> {
     let (integer, rest) = super::decimal::integer(text.rest())?;
@@ -235,7 +236,7 @@ fn skip_gap(text: &mut Text) {
     }
 }
 
-/// What stands behind a backslash and a line end.
+/// Returns the text after a backslash and a line end.
 #[inline]
 fn continuation(rest: &[u8]) -> Option<&[u8]> {
     match rest {
@@ -320,7 +321,7 @@ mod tests {
     fn faces_before_their_vertices() {
         assert_tetrahedron(format!("{FACES}{CORNERS}"));
         assert_tetrahedron(CORNERS.replacen("v 0 2", "f 1 3 2\nv 0 2", 1) + &FACES[8..]);
-        // The first face that refers to nothing is named, though a later one asks for more.
+        // The error names the first face with a missing vertex, though a later face has a greater number.
         assert_index(format!("f 1 2 3\nf 1 2 4\nf 1 2\\\n 5\nf 1 2 9\n{CORNERS}"), 4, 5, 4);
         assert_index(plain() + "f 1 2 5\n", 9, 5, 4);
     }
@@ -346,7 +347,7 @@ mod tests {
             assert_syntax(format!("{}{face}\n", plain()), line, "three corners");
             assert_syntax(format!("{}{face}", plain()), line, "three corners");
         }
-        // Those of which two are equal are dropped by the mesh, and counted.
+        // Triangles with two equal corners are dropped by the mesh, and counted.
         let report = read_obj((plain() + "f 1 1 2\n").as_bytes()).unwrap().report().unwrap();
         assert_eq!((report.facets_read, report.degenerate), (5, 1));
     }
@@ -377,11 +378,11 @@ mod tests {
             assert_tetrahedron(plain.replace(' ', &format!(" \\{end}\\{end}\t")));
             assert_tetrahedron(plain.replace('\n', &format!(" \\{end}{end}")));
         }
-        // They are none in comments and in what is skipped.
+        // A backslash is no continuation in comments and in skipped statements.
         assert_tetrahedron(plain.replace('\n', " # C:\\\n"));
         assert_tetrahedron(plain.replace("f ", "usemtl C:\\\nf "));
         assert_tetrahedron(plain.replace("f ", "g a b \\\nc d\nf "));
-        // A backslash elsewhere is nothing that a face may have.
+        // A backslash elsewhere is a syntax error.
         assert_syntax(plain.clone() + "f 1 2 \\ 3\n", 9, "7/1/2");
         assert_syntax(plain.clone() + "f 1 2 3 \\", 9, "7/1/2");
     }
@@ -413,7 +414,7 @@ mod tests {
         assert_syntax("solid a\nfacet normal 0 0 1\nouter loop\nvertex 0 0 0\n", 4, "none");
         assert_syntax("ply\nformat ascii 1.0\n", 2, "none");
         assert_syntax([0; 100], 1, "none");
-        // Vertices alone are a file without faces.
+        // A file of vertices alone is a file without faces.
         assert_eq!(read_obj(CORNERS.as_bytes()).unwrap().triangles().len(), 0);
     }
 
@@ -424,7 +425,7 @@ mod tests {
         {
             assert_tetrahedron(plain().replacen(" 0\n", &format!(" 0{more}\n"), 1));
         }
-        // A line end that was lost would lose a vertex or a face.
+        // A lost line end would lose a vertex or a face.
         assert_syntax(plain().replacen(" 0\nv", " 0 v", 1), 1, "end of the line");
         assert_syntax(plain().replacen("1e-3\nf", "1e-3 f", 1), 4, "end of the line");
     }
@@ -476,7 +477,7 @@ mod tests {
     fn truncated_and_damaged() {
         let text = plain().replace("f 2 3", "# c\r\nf 2/1/1 \\\n 3//1") + "vn 1 2 3\nf -1 -2 -3 -4\n";
         truncations_and_damages(read_obj, text.as_bytes());
-        // What is cut inside of a number or between lines cannot be told; whatever else is, is.
+        // Cuts inside of a number or between lines cannot be detected; all others are.
         for length in (0..text.len()).filter(|&length| text.is_char_boundary(length)) {
             if let Ok(mesh) = read_obj(&text.as_bytes()[..length]) {
                 let last = text[..length].lines().rfind(|line| !line.is_empty()).unwrap();

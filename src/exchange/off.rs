@@ -1,26 +1,25 @@
-//! OFF files, as Geomview defines them: text and binary.
+//! OFF files as Geomview defines them, text and binary: reader.
 //!
 //! **Header.** `OFF` with any of the prefixes `ST`, `C`, `N`, `4` and `n`, then the numbers of vertices,
-//! faces and edges. The keyword may be absent, and the counts may follow it at once (`OFF8 6 12`, as some
-//! collections have it). The number of edges has no meaning, and may be absent after others on one line.
+//! faces and edges. The keyword may be absent, and the counts may follow it immediately (`OFF8 6 12`, as in
+//! some collections). The number of edges has no meaning, and may be absent if the other two are on one line.
 //! `#` begins a comment anywhere.
 //!
-//! **Vertices** are three finite coordinates each, with any white space between them; a coordinate becomes
-//! the nearest `f64`. Of `4OFF` there are four, and the others are divided by the fourth. `nOFF` says its
-//! dimension, which must be 3. Behind its coordinates a vertex has what the prefixes announce, all of which
-//! is skipped: a normal of three numbers (`N`), a colour of three or four (`C`; those that are left on the
-//! line), two of a texture (`ST`).
+//! **Vertices** have three finite coordinates each, separated by any white space; a coordinate becomes the
+//! nearest `f64`. In `4OFF` there are four, and the first three are divided by the fourth. `nOFF` states its
+//! dimension, which must be 3. After its coordinates a vertex has the data that the prefixes announce, all of
+//! which is skipped: a normal of three numbers (`N`), a colour of three or four numbers (`C`; the remaining
+//! numbers of the line), two texture coordinates (`ST`).
 //!
-//! **Faces** are a number of corners, vertices counted from 0, and up to the end of the line the at most four
-//! numbers of a colour, which is skipped. Faces of one or two corners, which stand for points and lines, are
-//! skipped too.
+//! **Faces** have a number of corners, the vertices counted from 0, and up to the end of the line at most
+//! four numbers of a colour, which is skipped. Faces of one or two corners, which stand for points and lines,
+//! are skipped too.
 //!
-//! **Binary** files (`OFF BINARY`) have integers of 32 bits and floating point numbers of 32 bits, both
-//! big-endian, and a count before each colour. A file in little-endian order, as some programs write it, is
-//! refused by that name.
+//! **Binary** files (`OFF BINARY`) have 32-bit integers and 32-bit floating point numbers, both big-endian,
+//! and a count before each colour. A little-endian file, which some programs write, is refused as such.
 //!
-//! **The end.** Behind the last face only white space and comments may follow, of a binary file also zero
-//! bytes: if there is more, the counts are wrong. Nothing is allocated beyond what the file holds.
+//! **The end.** Only white space and comments may follow the last face, in a binary file also zero bytes: if
+//! there is more, the counts are wrong. Nothing is allocated beyond the content of the file.
 
 use alloc::vec::Vec;
 
@@ -34,13 +33,13 @@ use crate::mesh::TriangleMesh;
 
 /// Reads an OFF file, text or binary.
 ///
-/// Triangles keep the order of the faces. A face of more than three corners is cut into triangles that do not
-/// leave it; only where that cannot be, because its edges cross or it has no area, into the fan around its
-/// first corner. Equal vertices are welded, and triangles that two equal vertices make degenerate are dropped
-/// and counted, as in [`TriangleMesh::new`]. The mesh need not be closed, and may be empty.
+/// Triangles keep the order of the faces. A face of more than three corners is triangulated within the face.
+/// If that is impossible, because its edges cross or it has no area, it becomes the fan around its first
+/// corner. Equal vertices are welded, and triangles that become degenerate by that are dropped and counted,
+/// as in [`TriangleMesh::new`]. The mesh need not be closed, and may be empty.
 ///
 /// O(n), or O(n log n) for faces that are not convex. Memory is at most 128 times the length of the file,
-/// whatever its header claims.
+/// whatever the header claims.
 ///
 /// # Errors
 /// [`MeshFileError::Empty`], [`MeshFileError::Unsupported`] (UTF-16), [`MeshFileError::Syntax`] and
@@ -68,7 +67,7 @@ pub fn read_off(bytes: &[u8]) -> Result<TriangleMesh, Error> {
     read_binary(&layout, Bytes::new(bytes, data))
 }
 
-/// What the keyword says of the vertices.
+/// The layout of vertices, as the keyword announces it.
 #[derive(Default)]
 struct Layout {
     texture: bool,
@@ -95,7 +94,7 @@ impl Layout {
                 [b'N', rest @ ..] => (&mut layout.normal, rest),
                 [b'4', rest @ ..] => (&mut layout.homogeneous, rest),
                 [b'n', rest @ ..] => (&mut layout.dimension, rest),
-                // No keyword: it begins with the counts.
+                // No keyword: the file begins with the counts.
                 _ => return Ok(Self::default()),
             };
             if core::mem::replace(flag, true) {
@@ -109,12 +108,12 @@ impl Layout {
         Ok(layout)
     }
 
-    /// Numbers behind the coordinates of a vertex, but for its colour.
+    /// Returns the number of numbers after the coordinates of a vertex, without its colour.
     fn others(&self) -> usize {
         3 * self.normal as usize + 2 * self.texture as usize
     }
 
-    /// The coordinates without the fourth one, by which they are divided.
+    /// Returns the coordinates divided by the fourth one, if there is one.
     #[inline]
     fn position(&self, [x, y, z, w]: [f64; 4]) -> Option<[f64; 3]> {
         let position = if self.homogeneous { [x / w, y / w, z / w] } else { [x, y, z] };
@@ -122,8 +121,8 @@ impl Layout {
     }
 }
 
-const DIMENSION: &str = "three dimensions: `nOFF` of others is no surface in space";
-const FOURTH: &str = "a fourth coordinate by which the others can be divided";
+const DIMENSION: &str = "three dimensions: in any other number `nOFF` is no surface in space";
+const FOURTH: &str = "a fourth coordinate that can divide the others";
 const LITTLE_ENDIAN: &str =
     "big-endian numbers, which an OFF BINARY has; the counts make sense in little-endian order only";
 const NO_CORNER: &str = "a face of at least one corner";
@@ -142,7 +141,7 @@ fn skip(text: &mut Text) {
     }
 }
 
-/// Takes blanks; whether the line ends there, perhaps with a comment.
+/// Takes blanks; returns whether the line ends there, perhaps with a comment.
 #[inline]
 fn line_ends(text: &mut Text) -> bool {
     text.skip_blanks();
@@ -160,7 +159,7 @@ fn coordinate(text: &mut Text) -> Result<f64, Error> {
     text.number().ok_or_else(|| error(text, "a finite number"))
 }
 
-/// Takes an integer that is at least zero.
+/// Takes an integer that is not negative.
 #[inline]
 fn count(text: &mut Text, expected: &'static str) -> Result<u64, Error> {
     skip(text);
@@ -168,7 +167,7 @@ fn count(text: &mut Text, expected: &'static str) -> Result<u64, Error> {
     text.integer().and_then(|count| u64::try_from(count).ok()).ok_or_else(|| error(&start, expected))
 }
 
-/// Takes what should be a number but is not needed.
+/// Takes a number that is not needed.
 #[inline]
 fn skip_number(text: &mut Text, expected: &'static str) -> Result<(), Error> {
     if !matches!(text.rest(), [b'0'..=b'9' | b'+' | b'-' | b'.' | b'i' | b'I' | b'n' | b'N', ..]) {
@@ -199,7 +198,7 @@ fn read_text(layout: &Layout, mut text: Text) -> Result<TriangleMesh, Error> {
         text.integer().ok_or_else(|| error(&text, "the number of edges"))?;
     }
     let mut mesh = Polygons::default();
-    // Of a vertex the shortest text is `0 0 0 `, of a face that counts `3 0 0 0 `.
+    // The shortest text of a vertex is `0 0 0 `, of a face with three corners `3 0 0 0 `.
     let present =
         |count: u64, length: usize| count.min(text.rest().len() as u64 / length as u64 + 1) as usize;
     mesh.reserve(present(vertices, 6), present(faces, 8))?;
@@ -266,15 +265,15 @@ const COLOUR: &str = "the end of the line, or at most four numbers of a colour";
 
 // ---- binary ---------------------------------------------------------------------------------------------
 
-/// Whether the counts in the header can only be those of a file in little-endian order, which OFF has not:
-/// the file is too short for what they are otherwise.
+/// Returns whether the header's counts only make sense in little-endian order, which OFF does not allow: in
+/// big-endian order the file would be too short.
 fn is_little_endian(layout: &Layout, data: &[u8]) -> bool {
     let counts = data.get(4 * layout.dimension as usize..).unwrap_or(&[]);
     let number = |k: usize, order: fn([u8; 4]) -> i32| {
         let bytes = counts.get(4 * k..).and_then(|rest| rest.first_chunk::<4>())?;
         u64::try_from(order(*bytes)).ok()
     };
-    // A face has at least its length, a corner and the length of its colour.
+    // A face has at least its number of corners, one corner and the length of its colour.
     let vertex = 4 * (3 + layout.homogeneous as u64 + layout.others() as u64 + 4 * layout.colour as u64);
     let is_whole = |order| match (number(0, order), number(1, order)) {
         (Some(vertices), Some(faces)) => 12 + vertices * vertex + faces * 12 <= counts.len() as u64,
@@ -297,12 +296,12 @@ fn read_binary(layout: &Layout, mut bytes: Bytes<true>) -> Result<TriangleMesh, 
     }
     let vertices = number_of("the number of vertices")?;
     let faces = number_of("the number of faces")?;
-    // Edges.
+    // Skip the number of edges.
     bytes.take(4)?;
     let coordinates = 3 + layout.homogeneous as usize;
     let others = 4 * (layout.others() + 4 * layout.colour as usize);
     let mut mesh = Polygons::default();
-    // Of a face that counts there are at least its length, three corners and the length of its colour.
+    // A face with three corners has at least its number of corners, the corners and the length of its colour.
     let present = |count: u32, length: usize| (count as usize).min(bytes.rest().len() / length);
     mesh.reserve(present(vertices, 4 * coordinates + others), present(faces, 20))?;
     for _ in 0..vertices {
@@ -357,7 +356,7 @@ mod tests {
     const CORNERS: [[f64; 3]; 4] = [[0., 0., 0.], [1.5, 0., 0.], [0., 2.25, 0.], [0., 0., 0.125]];
     const FACES: &str = "3 0 2 1\n3 0 1 3\n3 1 2 3\n3 2 0 3\n";
 
-    /// A tetrahedron; of each vertex there is more behind its coordinates.
+    /// A tetrahedron whose vertices have more numbers after the coordinates.
     fn with(header: &str, more: &str) -> String {
         let line = |[x, y, z]: [f64; 3]| format!("{x} {y} {z}{more}\n");
         format!("{header}\n4 4 6\n{}{FACES}", CORNERS.map(line).concat())
@@ -390,7 +389,7 @@ mod tests {
         assert_tetrahedron(plain.replace("OFF\n", ""));
         assert_tetrahedron(plain.replace("OFF\n", "\r\n# OFF\n\n  OFF # OFF\n# 1 2 3\n"));
         assert_tetrahedron(format!("\u{FEFF}{plain}"));
-        // Edges.
+        // The number of edges.
         for edges in ["4 4", "4 4 # 6", "4 4 -1", "4 4 999", "4\n4\n6", "4\n4 6", "4 # a\n\n 4 # b\n6"] {
             assert_tetrahedron(plain.replace("4 4 6", edges));
             assert_tetrahedron(plain.replace("OFF\n4 4 6", edges));
@@ -418,7 +417,7 @@ mod tests {
             assert_tetrahedron(with("nOFF 3", ""));
             assert_tetrahedron(with("4nOFF 3", " 1"));
         }
-        // Where the line ends does not matter unless there are colours.
+        // Line ends do not matter unless there are colours.
         assert_tetrahedron(with("NOFF", "\n0 0\n1"));
         assert_tetrahedron(plain().replace(' ', "\n"));
         let mesh = read_off(b"4OFF 1 0 0 1 2 3 4").unwrap();
@@ -493,7 +492,7 @@ mod tests {
                 other => panic!("{other:?}"),
             }
         }
-        // Colours that are not announced.
+        // Colours that the keyword does not announce.
         assert_syntax(with("OFF", " 255 0 0"), 5, "at least one");
         assert_syntax(with("COFF", ""), 3, "as the keyword has it");
         assert_syntax(with("COFF", " 1 2"), 3, "as the keyword has it");
@@ -516,7 +515,7 @@ mod tests {
         assert_syntax(&text[..text.len() - 4], 11, "shorter");
     }
 
-    /// A binary file of which each vertex has so many numbers, the coordinates before others.
+    /// A binary file whose vertices have the given numbers, the coordinates first.
     fn binary(
         header: &str,
         start: &[i32],

@@ -1,8 +1,9 @@
-//! Faces of any number of corners, on the way to a triangle mesh.
+//! Faces with any number of corners, collected for a triangle mesh.
 //!
-//! A face of more than three corners is cut into triangles that do not leave it, also where it is not convex.
-//! Where that cannot be, because its edges cross or it has no area as it is seen along its normal, it becomes
-//! the fan around its first corner. In both cases the triangles keep the face's boundary: neighbours meet.
+//! A face of more than three corners is triangulated within the face, also if it is not convex. If that is
+//! impossible, because its edges cross or it has no area in the projection along its normal, it becomes the
+//! fan around its first corner. In both cases the triangles keep the face's boundary, so neighbours still
+//! meet.
 
 use alloc::vec::Vec;
 
@@ -10,20 +11,20 @@ use crate::error::{Error, MeshError};
 use crate::memory;
 use crate::mesh::{Faces, MeshAttribute, TriangleMesh, flatness, triangulate_facet};
 
-/// A mesh of polygons with shared vertices, whose vertices need not be known before the faces.
+/// A mesh of polygons with shared vertices. The vertices need not be known before the faces.
 ///
-/// A face of n corners is stored as the n - 2 triangles of a fan, and if n is more than three it is noted:
-/// how it is cut is decided once all vertices are there.
+/// A face of n corners is stored as the n - 2 triangles of a fan, and recorded if n is more than three. The
+/// final triangulation is made once all vertices are known.
 #[derive(Default)]
 pub(crate) struct Polygons {
     pub vertices: Vec<[f64; 3]>,
     triangles: Vec<[u32; 3]>,
-    /// Of each face that is no triangle its first triangle and the number of its triangles.
+    /// The first triangle and the number of triangles of each face that is no triangle.
     fans: Vec<[u32; 2]>,
 }
 
 impl Polygons {
-    /// Makes room for vertices and for faces, of which so many must be backed by data that exists.
+    /// Makes room for vertices and for faces. The data of that many must exist.
     pub fn reserve(&mut self, vertices: usize, faces: usize) -> Result<(), Error> {
         self.vertices.try_reserve_exact(vertices)?;
         Ok(self.triangles.try_reserve_exact(faces)?)
@@ -34,7 +35,7 @@ impl Polygons {
         memory::push(&mut self.vertices, vertex)
     }
 
-    /// Adds a face; one of fewer than three corners adds nothing.
+    /// Adds a face; a face of fewer than three corners adds nothing.
     #[inline]
     pub fn push_face(&mut self, corners: &[u32]) -> Result<(), Error> {
         match *corners {
@@ -53,19 +54,20 @@ impl Polygons {
         memory::push(&mut self.fans, fan)
     }
 
-    /// How many triangles the faces so far have. Cutting the faces leaves each triangle in its face.
+    /// Returns the number of triangles of the faces so far. The final triangulation keeps each triangle in
+    /// its face.
     #[inline]
     pub fn triangle_count(&self) -> usize {
         self.triangles.len()
     }
 
-    /// The mesh. All corners must be vertices.
+    /// Returns the mesh. All corners must be vertices.
     pub fn finish(self) -> Result<TriangleMesh, Error> {
         self.finish_with(|_| Ok(Vec::new()))
     }
 
-    /// The mesh with attributes of its triangles, whose corners are vertices as they were added. All corners
-    /// must be vertices.
+    /// Returns the mesh with attributes of its triangles. The corners of these triangles are numbers of the
+    /// vertices as they were added. All corners must be vertices.
     pub fn finish_with(
         mut self,
         attributes: impl FnOnce(&[[u32; 3]]) -> Result<Vec<MeshAttribute>, Error>,
@@ -82,7 +84,7 @@ impl Polygons {
             let (deviation, extent) = flatness(&self.vertices, &corners, &corners).unwrap_or_default();
             found.add(deviation, extent);
             triangulate_facet(&self.vertices, &corners, &mut cut)?;
-            // Where corners coincide there are fewer triangles; the mesh counts the rest as degenerate.
+            // If corners coincide there are fewer triangles; the mesh counts the rest as degenerate.
             if cut.len() <= fan.len() {
                 fan.fill([corners[0]; 3]);
                 fan[..cut.len()].copy_from_slice(&cut);
@@ -98,7 +100,7 @@ mod tests {
     use super::*;
     use alloc::vec;
 
-    /// Twice the area of each triangle in the plane of x and y.
+    /// Returns twice the area of each triangle in the xy plane.
     fn areas(mesh: &TriangleMesh) -> Vec<f64> {
         let of = |t: &[u32; 3]| {
             let [a, b, c] = t.map(|v| mesh.vertices()[v as usize]);
@@ -107,7 +109,7 @@ mod tests {
         mesh.triangles().iter().map(of).collect()
     }
 
-    /// The faces, read before the vertices as an OBJ may have it.
+    /// Reads the faces before the vertices, as in some OBJ files.
     fn mesh(vertices: &[[f64; 3]], faces: &[&[u32]]) -> TriangleMesh {
         let mut polygons = Polygons::default();
         faces.iter().for_each(|face| polygons.push_face(face).unwrap());
@@ -115,7 +117,7 @@ mod tests {
         polygons.finish().unwrap()
     }
 
-    /// An L, of which a fan around the first corner leaves the polygon.
+    /// An L, whose fan around the first corner leaves the polygon.
     const L: [[f64; 3]; 6] =
         [[2., 0., 0.], [2., 1., 0.], [1., 1., 0.], [1., 2., 0.], [0., 2., 0.], [0., 0., 0.]];
 
@@ -154,7 +156,7 @@ mod tests {
 
     #[test]
     fn faces_that_cannot_be_cut_keep_their_boundary() {
-        // A bow tie, and a face in one line.
+        // A bow tie, and a face on one line.
         let mesh = mesh(
             &[[0., 0., 0.], [1., 1., 0.], [1., 0., 0.], [0., 1., 0.], [0., 2., 0.], [0., 3., 0.]],
             &[&[0, 1, 2, 3], &[0, 3, 5, 4]],

@@ -1,16 +1,16 @@
-//! How far the true boundary may lie beside a mesh, as files that were written here tell it.
+//! The deviation of the true boundary that files written by this library state.
 
 use super::MeshFormat;
 use crate::error::Error;
 use crate::mesh::TriangleMesh;
 
-/// What begins the line, behind the mark of a comment.
+/// The beginning of the line, after the comment mark.
 const NAME: &str = "leafless deviation ";
 
-/// The line stands near the beginning of a file.
+/// Number of bytes from the beginning of a file within which the line must be found.
 const NEAR: usize = 4096;
 
-/// Refuses what is no deviation.
+/// Refuses an invalid deviation.
 pub(super) fn check(deviation: Option<f64>) -> Result<(), Error> {
     match deviation {
         Some(deviation) => TriangleMesh::from_welded(Default::default(), Default::default(), 0, 0)
@@ -20,14 +20,14 @@ pub(super) fn check(deviation: Option<f64>) -> Result<(), Error> {
     }
 }
 
-/// A deviation in words of a file, if it is one.
+/// Returns the deviation that a text states, if it is valid.
 pub(super) fn parsed(text: &str) -> Option<f64> {
     let deviation = text.trim().parse().ok()?;
     check(Some(deviation)).ok()?;
     Some(deviation)
 }
 
-/// What a file of lines says.
+/// Returns the deviation that a text file states.
 pub(super) fn find(bytes: &[u8], format: MeshFormat) -> Option<f64> {
     let mark: &[u8] = match format {
         MeshFormat::Obj | MeshFormat::Off => b"# ",
@@ -42,7 +42,7 @@ pub(super) fn find(bytes: &[u8], format: MeshFormat) -> Option<f64> {
     parsed(core::str::from_utf8(line).ok()?)
 }
 
-/// The line of a comment.
+/// The comment line.
 pub(super) struct Line(pub &'static str, pub f64);
 
 impl core::fmt::Display for Line {

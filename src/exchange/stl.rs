@@ -1,45 +1,46 @@
-//! STL files, binary and ASCII: triangle soups, welded to a mesh on reading.
+//! STL files, binary and ASCII: reads triangle soups and welds them to a mesh.
 //!
-//! **Which of the two.** A file whose length is exactly 84 + 50 n, where n is the facet count that a binary
-//! file has in its bytes 80 to 83, is binary, even if its header begins with `solid`. (An ASCII file cannot
-//! look like this below 7 gigabytes, since four text characters make n at least 0x09090909.) Any other file
-//! is ASCII if its first word is `solid` and none of the bytes 80 to 83 is zero, which in a binary file of
-//! less than 2^24 facets the last one always is. What remains is binary.
+//! **Binary or ASCII.** Let n be the number in bytes 80 to 83, where a binary file has its facet count. A
+//! file whose length is exactly 84 + 50 n is binary, even if its header begins with `solid`. (An ASCII file
+//! below 7 gigabytes cannot have this length, because four text characters make n at least 0x09090909.) Any
+//! other file is ASCII if its first word is `solid` and none of the bytes 80 to 83 is zero; in a binary file
+//! of less than 2^24 facets the last of them always is. All remaining files are binary.
 //!
-//! **Binary.** Coordinates are `f32` and taken over exactly. After the counted facets there may be up to 49
-//! bytes, or any number of zero bytes, as block-wise transfers append them; if there is more, the count must
-//! be wrong, and the file is refused rather than read in part. Headers, colours and normals are ignored.
+//! **Binary.** Coordinates are `f32` and kept exactly. The counted facets may be followed by up to 49 bytes,
+//! or by any number of zero bytes, as block-wise transfers append them. If there is more, the count must be
+//! wrong, and the file is refused rather than read in part. Headers, colours and normals are ignored.
 //!
-//! **ASCII.** Keywords have any letter case and any white space and line ends between them. A file may hold
-//! any number of solids, which all become one mesh; the bodies stay apart because they share no edge. A name
-//! is whatever stands behind `solid` or `endsolid` on the same line, in any encoding. Normals are ignored and
-//! may be garbage or absent, since programs that cannot compute one print things like `-nan(ind)`. A loop of
-//! more than three vertices is cut into a fan from its first vertex; for a planar polygon this is right even
-//! where it is not convex, because the winding numbers around the surface are the same for every
-//! triangulation. `endsolid` may be missing where the file ends, but only behind a complete facet.
+//! **ASCII.** Keywords may have any letter case, and any white space and line ends between them. A file may
+//! contain any number of solids, which all become one mesh; the bodies stay apart because they share no edge.
+//! A name is all text after `solid` or `endsolid` on the same line, in any encoding. Normals are ignored and
+//! may be garbage or absent, because programs that cannot compute one print texts like `-nan(ind)`. A loop of
+//! more than three vertices is divided into a fan from its first vertex. For a planar polygon this is right
+//! even if it is not convex, because the winding numbers around the surface are the same for every
+//! triangulation. `endsolid` may be missing at the end of the file, but only after a complete facet.
 //!
-//! A decimal coordinate becomes the nearest `f64`, not the nearest `f32`: this is nearer to what was written.
-//! Two facets that print a common vertex alike share it, those that print it with different digits do not.
+//! A decimal coordinate becomes the nearest `f64`, not the nearest `f32`, because this is nearer to the
+//! written number. Two facets share a common vertex if they print it alike; with different digits they do
+//! not.
 //!
-//! **Numerical noise.** Some CAD programs write 0 for a coordinate in one facet and 1e-16 in the next, and
-//! such a file is open as it stands. Nothing is rounded here behind the user's back; [`TriangleMesh::sewn`]
-//! closes such cracks and says how far it moved anything.
+//! **Numerical noise.** Some CAD programs write 0 for a coordinate in one facet and 1e-16 in the next. The
+//! surface in such a file is open. The reader does not round it silently; [`TriangleMesh::sewn`] closes such
+//! cracks and reports how far it moved vertices.
 
 use super::{is_line_end, is_space, refuse_utf16};
 use crate::error::{Error, MeshFileError};
 use crate::mesh::{FacetWelder, TriangleMesh};
 
-/// Bytes of a binary file before its facets: 80 of header, 4 of count.
+/// Number of bytes of a binary file before its facets: 80 of header, 4 of count.
 pub(super) const HEADER: usize = 84;
-/// Bytes of a facet in a binary file: normal, three vertices, two bytes of attributes.
+/// Number of bytes of a facet in a binary file: normal, three vertices, two bytes of attributes.
 const FACET: usize = 50;
 
-/// Reads a binary or ASCII STL file; which of the two is found out from the bytes.
+/// Reads a binary or ASCII STL file; the bytes decide which of the two it is.
 ///
-/// Vertices at equal positions are welded, and facets that two equal vertices make degenerate are dropped and
-/// counted, as in [`TriangleMesh::from_facets`]. That the mesh is closed is not checked.
+/// Vertices at equal positions are welded, and facets that become degenerate by that are dropped and counted,
+/// as in [`TriangleMesh::from_facets`]. The reader does not check that the mesh is closed.
 ///
-/// O(n). Memory is allocated for facets that are there, not for facets that a header claims.
+/// O(n). Memory is allocated for existing facets only, not for the facets that a header claims.
 ///
 /// # Errors
 /// [`MeshFileError::Empty`], [`MeshFileError::Length`], [`MeshFileError::NotFinite`],
@@ -61,13 +62,13 @@ pub fn read_stl(bytes: &[u8]) -> Result<TriangleMesh, Error> {
     read_ascii(bytes)
 }
 
-/// Whether the file has just the length that a binary STL with its facet count has.
+/// Returns whether the file has exactly the length of a binary STL with its facet count.
 pub(super) fn is_binary_of_exact_length(bytes: &[u8]) -> bool {
     let count = bytes.get(HEADER - 4..HEADER).and_then(|b| <[u8; 4]>::try_from(b).ok());
     count.is_some_and(|count| binary_length(u32::from_le_bytes(count)) == bytes.len() as u64)
 }
 
-/// Bytes of a binary file with so many facets.
+/// Returns the number of bytes of a binary file with this number of facets.
 pub(super) fn binary_length(facets: u32) -> u64 {
     HEADER as u64 + FACET as u64 * u64::from(facets)
 }
@@ -135,9 +136,9 @@ fn read_ascii(bytes: &[u8]) -> Result<TriangleMesh, Error> {
     }
 }
 
-/// Reads a facet from behind the word `facet`.
+/// Reads a facet, starting after the word `facet`.
 fn read_facet(words: &mut Words, welder: &mut FacetWelder) -> Result<(), Error> {
-    // `normal` and up to three words of whatever kind.
+    // `normal` and up to three words of any kind.
     let start = words.clone();
     let mut skipped = 0;
     while !words.next().is_some_and(|w| w.eq_ignore_ascii_case(b"outer")) {
@@ -168,7 +169,7 @@ fn read_vertex(words: &mut Words) -> Result<[f64; 3], MeshFileError> {
     Ok([words.number()?, words.number()?, words.number()?])
 }
 
-/// The words of a text, which are separated by white space.
+/// The words of a text, separated by white space.
 #[derive(Clone)]
 struct Words<'a> {
     text: &'a [u8],
@@ -178,12 +179,12 @@ struct Words<'a> {
 impl<'a> Words<'a> {
     fn new(text: &'a [u8]) -> Self {
         let position = if text.starts_with(b"\xEF\xBB\xBF") { 3 } else { 0 };
-        // Zero bytes and Ctrl-Z are what block-wise transfers and DOS programs append.
+        // Block-wise transfers and DOS programs append zero bytes and Ctrl-Z.
         let end = text.iter().rposition(|b| !matches!(b, 0 | 0x1A)).map_or(0, |last| last + 1);
         Self { text: &text[..end], position: position.min(end) }
     }
 
-    /// The next word, or `None` at the end of the text.
+    /// Returns the next word, or `None` at the end of the text.
     #[inline]
     fn next(&mut self) -> Option<&'a [u8]> {
         let rest = &self.text[self.position..];
@@ -216,7 +217,7 @@ impl<'a> Words<'a> {
         }
     }
 
-    /// Skips a name, which goes on to the end of the line. In a file without line ends it goes on to the
+    /// Skips a name, which extends to the end of the line. In a file without line ends it extends to the
     /// words `facet normal`, so that no facet can be lost in a name.
     fn skip_name(&mut self) {
         let mut facet = None;
@@ -239,15 +240,15 @@ impl<'a> Words<'a> {
         }
     }
 
-    /// The error that something else than the next word was expected. Its line is that of the next word, or
-    /// of the last one if none follows. Only now are the lines counted.
+    /// Returns the error that something else was expected in place of the next word. Its line is that of the
+    /// next word, or of the last word if none follows. Lines are counted only here.
     #[cold]
     fn error(&self, expected: &'static str) -> MeshFileError {
         let rest = &self.text[self.position..];
         let blank = rest.iter().position(|&b| !is_space(b)).unwrap_or(0);
         let before = &self.text[..self.position + blank];
         let line_feeds = before.iter().filter(|&&b| b == b'\n').count();
-        // A carriage return ends a line of its own unless a line feed follows.
+        // A carriage return is a line end unless a line feed follows.
         let returns = before.iter().zip(before.iter().skip(1).chain(&[0]));
         let lone_returns = returns.filter(|&(&b, &next)| b == b'\r' && next != b'\n').count();
         MeshFileError::Syntax { line: 1 + (line_feeds + lone_returns) as u64, expected }
@@ -378,7 +379,7 @@ mod tests {
                 "{result:?}"
             );
         }
-        // No other number is too large.
+        // Every finite number is accepted.
         let mut facets = TETRAHEDRON;
         facets[2][1][2] = f32::MAX;
         assert_eq!(read_stl(&binary(b"", 4, &facets)).unwrap().bounds().1[2], f64::from(f32::MAX));
@@ -416,7 +417,7 @@ mod tests {
         let two = ascii("a") + &ascii("b b");
         assert_tetrahedra(&two, 2);
         assert_tetrahedra(format!("{two}\nsolid\nendsolid\n{}", ascii("")), 3);
-        // All on one line: names end where a facet begins, and no facet is lost.
+        // All on one line: names end at the next facet, and no facet is lost.
         assert_tetrahedra(two.replace('\n', " "), 2);
         assert_tetrahedra(two.replace('\n', " ").replace("endsolid a", "endsolid"), 2);
         let apart = ascii("a") + &ascii("b").replace("vertex 0e0", "vertex 7");
@@ -500,7 +501,7 @@ mod tests {
         for length in 0..text.len() {
             if let Ok(mesh) = read_stl(&text.as_bytes()[..length]) {
                 accepted.push(mesh.triangles().len());
-                // Only between facets and behind `endsolid`.
+                // Only between facets and after `endsolid`.
                 let words = text[..length].trim_end();
                 assert!(
                     words.ends_with("endfacet")
@@ -517,7 +518,7 @@ mod tests {
 
     #[test]
     fn damaged_bytes() {
-        // Whatever stands at whatever place: an answer or an error, no panic.
+        // Any byte at any place gives an answer or an error, no panic.
         for bytes in [binary(b"solid", 4, &TETRAHEDRON), (ascii("a") + &ascii("b")).into_bytes()] {
             for i in 0..bytes.len() {
                 for value in [0, b'\n', b' ', b'9', b'e', 0x7F, 0xFF] {
@@ -571,7 +572,7 @@ mod tests {
     #[cfg(feature = "std")]
     #[test]
     fn real_files() {
-        // Triangles, edges on which the file as it stands is open, volume.
+        // Number of triangles, number of edges on which the file is open, volume.
         let facts = [
             ("featuretype.STL", 3476, 576, 11.627733),
             ("plate_holes.STL", 1252, 0, 767362.11259),
@@ -590,8 +591,8 @@ mod tests {
             assert_eq!(again.triangles(), mesh.triangles(), "{name}");
             assert_eq!(again.vertices(), mesh.vertices(), "{name}");
 
-            // Two of the files write 0 for a coordinate here and some 1e-16 there. Rounding to 2^-40 is far
-            // finer than the parts' dimensions and closes them.
+            // Two of the files have 0 for a coordinate at one place and about 1e-16 at another. Rounding to
+            // 2^-40, which is far finer than the parts' dimensions, closes them.
             let grid = f64::from(1 << 20) * f64::from(1 << 20);
             let rounded = mesh.transformed(|p| p.map(|x| (x * grid).round() / grid)).unwrap();
             rounded.check_closed(FillRule::NonZero).unwrap();
@@ -608,12 +609,12 @@ mod tests {
         let mesh = read_stl(&bytes).unwrap();
         let report = mesh.report().unwrap();
         assert_eq!((report.facets_read, report.triangles, report.bodies), (32, 32, 2));
-        // In each body some faces look inwards.
+        // In each body some faces are inverted.
         assert_eq!((report.boundary_edges, report.misoriented_edges), (0, 12));
         mesh.check_closed(FillRule::EvenOdd).unwrap();
         let result = mesh.check_closed(FillRule::NonZero);
         assert!(matches!(result, Err(Error::Mesh(MeshError::Unoriented { edges: 12 }))), "{result:?}");
-        // Solid by solid.
+        // Each solid by itself.
         let text = String::from_utf8(bytes).unwrap();
         let (first, second) = text.split_at(text.find("solid bodyA").unwrap());
         for (solid, triangles, turned) in [(first, 12, 4), (second, 20, 8)] {

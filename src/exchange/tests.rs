@@ -1,4 +1,4 @@
-//! What the tests of all readers share.
+//! Helpers for the tests of all readers.
 
 extern crate std;
 
@@ -10,11 +10,11 @@ use std::path::PathBuf;
 use crate::error::{Error, MeshFileError};
 use crate::mesh::TriangleMesh;
 
-/// The folder of models; without one `None`, and a line tells so.
+/// Returns the folder of models, or `None` and prints a line if it is not set.
 pub(super) fn models() -> Option<PathBuf> {
     let folder = std::env::var_os("LEAFLESS_MODELS");
     if folder.is_none() {
-        // Past the capture of output, which would hide the line because the test passes.
+        // Written to the standard error itself, because captured output of passing tests is hidden.
         let test = std::thread::current();
         let test = test.name().unwrap_or_default();
         let _ = writeln!(std::io::stderr(), "SKIPPED {test}: LEAFLESS_MODELS is not set");
@@ -22,7 +22,7 @@ pub(super) fn models() -> Option<PathBuf> {
     folder.map(PathBuf::from)
 }
 
-/// A model file, or `None` if the tests run without them.
+/// Returns a model file, or `None` if the tests run without models.
 pub(super) fn model(name: &str) -> Option<Vec<u8>> {
     let path = models()?.join(name);
     Some(std::fs::read(&path).unwrap_or_else(|e| panic!("{}: {e}", path.display())))
@@ -39,8 +39,8 @@ pub(super) fn is_syntax_error(result: Result<TriangleMesh, Error>, at: u64, what
     }
 }
 
-/// Different vertices with coordinates of all kinds, and faces that are fans: of three to six corners, the
-/// vertices of each on a parabola, hence convex and in one plane.
+/// Different vertices with coordinates of all kinds, and faces that are fans: each has three to six corners
+/// on a parabola, and is therefore convex and plane.
 pub(super) fn random_polygons() -> impl Strategy<Value = (Vec<[f64; 3]>, Vec<Vec<u32>>)> {
     let shift = prop_oneof![
         Just(0.0),
@@ -56,7 +56,7 @@ pub(super) fn random_polygons() -> impl Strategy<Value = (Vec<[f64; 3]>, Vec<Vec
     })
 }
 
-/// Checks that `mesh` is of these vertices and faces.
+/// Checks that `mesh` has these vertices and faces.
 #[track_caller]
 pub(super) fn same(mesh: TriangleMesh, vertices: Vec<[f64; 3]>, faces: &[Vec<u32>]) {
     let fan = |face: &Vec<u32>| {
@@ -68,8 +68,8 @@ pub(super) fn same(mesh: TriangleMesh, vertices: Vec<[f64; 3]>, faces: &[Vec<u32
     assert_eq!(mesh.triangles(), expected.triangles());
 }
 
-/// Reads `bytes` cut at every length and with every byte changed in several ways: an answer or an error, but
-/// no panic. That most of it is an error is a test that something is checked at all.
+/// Reads `bytes` cut at every length and with every byte changed in several ways: each gives an answer or an
+/// error, but no panic. That most results are errors shows that checks take place at all.
 pub(super) fn truncations_and_damages(read: fn(&[u8]) -> Result<TriangleMesh, Error>, bytes: &[u8]) {
     read(bytes).unwrap();
     for length in 0..bytes.len() {

@@ -1,9 +1,9 @@
-//! Text of words and lines, taken from the front.
+//! A reader for text made of words and lines.
 
 use super::{decimal, is_line_end, is_space};
 use crate::error::MeshFileError;
 
-/// A text, of which a part has been taken.
+/// A partly consumed text.
 #[derive(Clone, Copy)]
 pub(super) struct Text<'a> {
     all: &'a [u8],
@@ -11,32 +11,32 @@ pub(super) struct Text<'a> {
 }
 
 impl<'a> Text<'a> {
-    /// A file that is text from beginning to end.
+    /// Makes a reader of a file that is text from beginning to end.
     pub fn new(bytes: &'a [u8]) -> Self {
-        // Zero bytes and Ctrl-Z are what block-wise transfers and DOS programs append.
+        // Block-wise transfers and DOS programs append zero bytes and Ctrl-Z.
         let end = bytes.iter().rposition(|b| !matches!(b, 0 | 0x1A)).map_or(0, |last| last + 1);
         let all = &bytes[..end];
-        // A byte order mark.
+        // Skip a byte order mark.
         Self { all, rest: all.strip_prefix(b"\xEF\xBB\xBF").unwrap_or(all) }
     }
 
-    /// A file that begins with text.
+    /// Makes a reader of a file that begins with text.
     pub fn beginning(bytes: &'a [u8]) -> Self {
         Self { all: bytes, rest: bytes }
     }
 
-    /// How many bytes of the file have been taken.
+    /// Returns the number of bytes that were taken.
     pub fn taken(&self) -> usize {
         self.all.len() - self.rest.len()
     }
 
-    /// What has not been taken yet.
+    /// Returns the bytes that are left.
     #[inline]
     pub fn rest(&self) -> &'a [u8] {
         self.rest
     }
 
-    /// Goes on with `rest`, which must be an end of [`rest`](Self::rest).
+    /// Continues with `rest`, which must be an end of [`rest`](Self::rest).
     #[inline]
     pub fn continue_with(&mut self, rest: &'a [u8]) {
         debug_assert!(rest.len() <= self.rest.len());
@@ -59,7 +59,7 @@ impl<'a> Text<'a> {
         }
     }
 
-    /// Takes what is left of the line, with its end.
+    /// Takes the rest of the line, with its end.
     #[inline]
     pub fn skip_line(&mut self) {
         let end = self.rest.iter().position(|&b| is_line_end(b)).unwrap_or(self.rest.len());
@@ -69,13 +69,13 @@ impl<'a> Text<'a> {
         };
     }
 
-    /// Whether all has been taken.
+    /// Returns whether everything was taken.
     #[inline]
     pub fn is_at_end(&self) -> bool {
         self.rest.is_empty()
     }
 
-    /// Whether the line, or the text, ends here.
+    /// Returns whether the line, or the text, ends here.
     #[inline]
     pub fn is_at_line_end(&self) -> bool {
         self.rest.first().is_none_or(|&b| is_line_end(b))
@@ -90,7 +90,7 @@ impl<'a> Text<'a> {
         word
     }
 
-    /// Takes a finite number, if one stands here.
+    /// Takes a finite number, if there is one here.
     #[inline]
     pub fn number(&mut self) -> Option<f64> {
         let (number, rest) = decimal::number(self.rest)?;
@@ -98,7 +98,7 @@ impl<'a> Text<'a> {
         Some(number)
     }
 
-    /// Takes an integer, if one stands here and no letter, digit, sign or point follows it.
+    /// Takes an integer, if there is one here and no letter, digit, sign or point follows it.
     #[inline]
     pub fn integer(&mut self) -> Option<i64> {
         let (integer, rest) = decimal::integer(self.rest)?;
@@ -109,14 +109,14 @@ impl<'a> Text<'a> {
         Some(integer)
     }
 
-    /// The error that something else than what comes next was expected.
+    /// Returns the error that something else was expected at the current place.
     #[cold]
     pub fn error(&self, expected: &'static str) -> MeshFileError {
         MeshFileError::Syntax { line: self.line(), expected }
     }
 
-    /// The line of what comes next, counted from 1; at the end of the text that of its last word. O(n): lines
-    /// are counted only for errors.
+    /// Returns the line of the next byte, counted from 1; at the end of the text the line of the last word.
+    /// O(n): lines are counted only for errors.
     #[cold]
     pub fn line(&self) -> u64 {
         let mut taken = self.taken();
@@ -125,7 +125,7 @@ impl<'a> Text<'a> {
         }
         let before = &self.all[..taken];
         let line_feeds = before.iter().filter(|&&b| b == b'\n').count();
-        // A carriage return ends a line of its own unless a line feed follows.
+        // A carriage return is a line end unless a line feed follows.
         let returns = before.iter().zip(self.all.iter().skip(1).chain(&[0]));
         let lone_returns = returns.filter(|&(&b, &next)| b == b'\r' && next != b'\n').count();
         1 + (line_feeds + lone_returns) as u64

@@ -6,7 +6,7 @@ use core::str::FromStr;
 use crate::error::Error;
 use crate::lattice::valid;
 
-/// A unit of length. Any two of them are in an exact rational ratio.
+/// A unit of length. The ratio of any two units is exactly rational.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, PartialOrd, Ord)]
 pub enum LengthUnit {
     /// 1/1000 of a millimetre.
@@ -24,11 +24,11 @@ pub enum LengthUnit {
 }
 
 impl LengthUnit {
-    /// All of them.
+    /// All units.
     pub const ALL: [LengthUnit; 6] =
         [Self::Micrometre, Self::Millimetre, Self::Centimetre, Self::Metre, Self::Inch, Self::Foot];
 
-    /// The symbol: `um`, `mm`, `cm`, `m`, `in` or `ft`.
+    /// Returns the symbol: `um`, `mm`, `cm`, `m`, `in` or `ft`.
     pub const fn symbol(self) -> &'static str {
         match self {
             Self::Micrometre => "um",
@@ -40,7 +40,7 @@ impl LengthUnit {
         }
     }
 
-    /// The number of micrometres, which is whole for each of them.
+    /// Returns the number of micrometres, which is whole for each unit.
     pub const fn micrometres(self) -> u32 {
         match self {
             Self::Micrometre => 1,
@@ -62,7 +62,7 @@ impl fmt::Display for LengthUnit {
 impl FromStr for LengthUnit {
     type Err = Error;
 
-    /// Takes the symbol or a name (`µm`, `micron`, `millimetre`, `meters`, `inch`, `feet` …) in any letter
+    /// Parses the symbol or a name (`µm`, `micron`, `millimetre`, `meters`, `inch`, `feet` …) in any letter
     /// case.
     fn from_str(text: &str) -> Result<Self, Error> {
         const NAMES: [(LengthUnit, &[&str]); 6] = [
@@ -93,11 +93,11 @@ impl FromStr for LengthUnit {
     }
 }
 
-/// What coordinates are multiplied by: `numerator / denominator`.
+/// The factor of coordinates: `numerator / denominator`.
 ///
-/// The denominator is a whole number and stands apart because the factors between units are ratios of small
-/// whole numbers that are seldom floating point numbers (127/5 from inches to millimetres): the product with
-/// the numerator is exact for coordinates of up to 40 bits, and so the quotient is rounded only once.
+/// The denominator is a whole number. It is separate because the factors between units are ratios of small
+/// whole numbers, which are seldom floating point numbers (127/5 from inches to millimetres). The product
+/// with the numerator is exact for coordinates of up to 40 bits, so the quotient is the only rounding.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(super) struct Factor {
     numerator: f64,
@@ -105,7 +105,8 @@ pub(super) struct Factor {
 }
 
 impl Factor {
-    /// From one unit to another and by `scale` besides, which must be between 2^-256 and 2^256.
+    /// Returns the factor of a conversion between two units and of `scale`, which must be between 2^-256 and
+    /// 2^256.
     pub fn new(conversion: Option<(LengthUnit, LengthUnit)>, scale: f64) -> Result<Self, Error> {
         valid::length("scale", scale)?;
         let (from, to) = conversion.map_or((1, 1), |(from, to)| (from.micrometres(), to.micrometres()));
@@ -113,12 +114,12 @@ impl Factor {
         Ok(Self { numerator: f64::from(from / divisor) * scale, denominator: f64::from(to / divisor) })
     }
 
-    /// Whether every coordinate stays the same, bit by bit.
+    /// Returns whether every coordinate stays the same, bit by bit.
     pub fn is_one(&self) -> bool {
         self.numerator == self.denominator
     }
 
-    /// The scaled coordinate. Of a coordinate up to 2^256 in magnitude the result is finite.
+    /// Returns the scaled coordinate. The result is finite for coordinates up to 2^256 in magnitude.
     #[inline]
     pub fn apply(&self, x: f64) -> f64 {
         x * self.numerator / self.denominator
@@ -167,7 +168,7 @@ mod tests {
     fn factors_are_exact() {
         let convert = |x, from, to| Factor::new(Some((from, to)), 1.0).unwrap().apply(x);
         assert_eq!(convert(1.0, Inch, Millimetre), 25.4);
-        // 3 × 25.4 with 25.4 rounded first is another number.
+        // With 25.4 rounded first, 3 × 25.4 is another number.
         assert_eq!(convert(3.0, Inch, Millimetre), 76.2);
         assert_eq!(convert(76.2, Millimetre, Inch), 3.0);
         assert_eq!(convert(9.0, Millimetre, Metre), 0.009);
@@ -179,7 +180,7 @@ mod tests {
             assert!(Factor::new(Some((from, from)), 1.0).unwrap().is_one());
             for to in LengthUnit::ALL {
                 assert_eq!(Factor::new(Some((from, to)), 1.0).unwrap().is_one(), from == to);
-                // From micrometres exactly, for all numbers of few bits.
+                // Exact from micrometres, for all numbers of few bits.
                 let exact = f64::from(from.micrometres()) * 1357.0 / f64::from(to.micrometres());
                 assert_eq!(convert(1357.0, from, to), exact);
             }

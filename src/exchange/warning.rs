@@ -2,26 +2,26 @@
 
 use core::fmt;
 
-/// Where a mesh file departs from its format, and how it was read all the same.
+/// A departure of a mesh file from its format, which did not prevent reading.
 ///
 /// A file has at most one warning of each kind.
 #[non_exhaustive]
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
 pub enum MeshWarning {
     /// An ASCII PLY has more values on the line of every element of one kind than the header announces. The
-    /// first values of each line were taken, and the others skipped.
+    /// first values of each line were read, and the others were skipped.
     MoreValues {
         /// The first such line, counted from 1.
         line: u64,
-        /// How many lines there are.
+        /// Number of such lines.
         lines: u64,
     },
-    /// The header of a PLY has lines without a keyword before its first element. They were taken for
+    /// The header of a PLY has lines without a keyword before its first element. They were treated as
     /// comments.
     HeaderLine {
         /// The first such line, counted from 1.
         line: u64,
-        /// How many lines there are.
+        /// Number of such lines.
         lines: u64,
     },
     /// The header of a PLY has an element of faces without a list of vertices. It announces no face, so
@@ -30,19 +30,19 @@ pub enum MeshWarning {
         /// The line of the element, counted from 1.
         line: u64,
     },
-    /// Colours cannot be read: no hexadecimal number in a 3MF, a number beyond the range of its type's
-    /// colours in a PLY. What bears them has no colour.
+    /// Some colours cannot be read: no hexadecimal number in a 3MF, or a number out of range for its type in
+    /// a PLY. The elements with these colours have no colour.
     Colours {
-        /// How many.
+        /// Number of such colours.
         colours: u64,
     },
     /// Triangles of a 3MF refer to a group of properties, or to a property, that the part does not have. They
     /// have no colour and no material.
     Properties {
-        /// How many, in the build.
+        /// Number of such triangles in the build.
         triangles: u64,
     },
-    /// A model part of a 3MF is of the draft 0.93. What it says of shapes has the same meaning in 1.0.
+    /// A model part of a 3MF is of the draft 0.93. Its shapes have the same meaning as in 1.0.
     Draft,
 }
 
@@ -58,7 +58,7 @@ impl fmt::Display for MeshWarning {
             Self::HeaderLine { line, lines } => {
                 write!(
                     f,
-                    "line {line}{} of the header has no keyword and was taken for a comment",
+                    "line {line}{} of the header has no keyword and was treated as a comment",
                     also(lines)
                 )
             }
@@ -78,7 +78,7 @@ impl fmt::Display for MeshWarning {
     }
 }
 
-/// A number of one or more things.
+/// A number with its noun in singular or plural.
 struct Count(u64, &'static str, &'static str);
 
 impl fmt::Display for Count {
@@ -87,7 +87,7 @@ impl fmt::Display for Count {
     }
 }
 
-/// How many more lines are meant.
+/// The number of further lines.
 struct Also(u64);
 
 impl fmt::Display for Also {

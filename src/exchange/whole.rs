@@ -1,4 +1,4 @@
-//! All bytes of a file, if it ends.
+//! Reading of whole files, limited for pipes and devices.
 
 use crate::error::Error;
 use alloc::vec::Vec;
@@ -6,15 +6,13 @@ use std::fs::File;
 use std::io::Read;
 use std::path::Path;
 
-/// Most bytes of what is no regular file: a pipe or a device does not say how long it is, and may have no
-/// end.
+/// Maximum number of bytes of a pipe or a device, whose length is unknown and may be infinite.
 const STREAM: u64 = 1 << 30;
 
-/// The bytes of a file.
+/// Returns the bytes of a file.
 ///
 /// # Errors
-/// [`Error::Io`], [`Error::OutOfMemory`]; [`Error::Limit`] for what is no regular file and goes on after 1
-/// GiB.
+/// [`Error::Io`], [`Error::OutOfMemory`]; [`Error::Limit`] for a pipe or a device with more than 1 GiB.
 pub fn read_whole(path: &Path) -> Result<Vec<u8>, Error> {
     let file = File::open(path)?;
     let metadata = file.metadata()?;

@@ -1,4 +1,4 @@
-//! Files in memory.
+//! Files read into memory.
 
 #[cfg(feature = "std")]
 use super::header::{HEADER_LENGTH, Head};
@@ -9,7 +9,7 @@ use alloc::vec::Vec;
 #[cfg(feature = "std")]
 use std::{fs::File, io::Read, path::Path};
 
-/// A file in memory that begins on a multiple of 8.
+/// A file in memory that begins at an address that is a multiple of 8.
 #[derive(Default)]
 pub(super) struct Buffer {
     words: Vec<u64>,
@@ -17,7 +17,7 @@ pub(super) struct Buffer {
 }
 
 impl Buffer {
-    /// A copy of `bytes`.
+    /// Returns a copy of `bytes`.
     pub fn copy(bytes: &[u8]) -> Result<Buffer, Error> {
         let mut buffer = Buffer::default();
         buffer.extend(bytes.len())?;
@@ -25,7 +25,7 @@ impl Buffer {
         Ok(buffer)
     }
 
-    /// Grows to `length` bytes; those that are new are zero.
+    /// Grows to `length` bytes; new bytes are zero.
     fn extend(&mut self, length: usize) -> Result<(), Error> {
         let words = length.div_ceil(size_of::<u64>());
         let fresh = words.saturating_sub(self.words.len());
@@ -50,7 +50,7 @@ impl AsRef<[u8]> for Buffer {
     }
 }
 
-/// All of the file at `path`, if `wanted` lets its header pass.
+/// Reads the whole file at `path`, if `wanted` accepts its header.
 #[cfg(feature = "std")]
 pub(super) fn read(
     path: &Path,
@@ -70,10 +70,10 @@ pub(super) fn read(
     let length = usize::try_from(expected).map_err(|_| Error::OutOfMemory)?;
     let mut buffer = Buffer::default();
     let mut filled = start.len();
-    // Where nobody knows the length beforehand, memory is only asked for as bytes arrive.
+    // If the length is not known beforehand, memory is only allocated as bytes arrive.
     let most = |filled: usize| if known.is_some() { length } else { filled.saturating_mul(2).max(1 << 16) };
     buffer.extend(length.min(most(0)))?;
-    // A header's file is longer than the header.
+    // The header's file is longer than the header.
     buffer.bytes_mut()[..filled].copy_from_slice(&start);
     while filled < length {
         if filled == buffer.length {
@@ -92,7 +92,7 @@ pub(super) fn read(
     Ok(buffer)
 }
 
-/// The length of a file that has one: not of a pipe or device.
+/// Returns the length of a regular file; `None` for a pipe or device.
 #[cfg(feature = "std")]
 pub(super) fn regular_length(file: &File) -> Result<Option<u64>, Error> {
     let metadata = file.metadata()?;

@@ -1,4 +1,4 @@
-//! The channels in a file.
+//! Channels in a file.
 
 use super::compose::{Section, bytes_of};
 use super::elements::Elements;
@@ -22,15 +22,14 @@ use alloc::vec::Vec;
 use bytemuck::Zeroable;
 use core::ops::Range;
 
-/// Most channels of a file; part of the format.
+/// Maximum number of channels of a file; part of the format.
 const MOST_CHANNELS: usize = 256;
 
-/// Most bytes that the metadata of a channel may take; part of the format. It bounds the work of mapping a
-/// file.
+/// Maximum number of bytes of a channel's metadata; part of the format. It bounds the work of mapping a file.
 const MAX_METADATA: u64 = 1 << 16;
 const _: () = assert!(MAX_METADATA == MetadataLimit::CHANNEL.bytes() as u64);
 
-/// All that must be known of a channel to read it in place.
+/// The data needed to read a channel in place.
 #[derive(Debug, Clone)]
 pub(super) struct ChannelLayout {
     object: Object,
@@ -40,7 +39,8 @@ pub(super) struct ChannelLayout {
     starts: Starts,
 }
 
-/// The channels of a file whose solid has been found right, in their order, which is that of their names.
+/// Reads the channels of a file whose solid has been checked, in the order of the file, which is that of
+/// their names.
 pub(super) fn read(layout: &Layout, bytes: &[u8]) -> Result<Vec<(ChannelLayout, Metadata)>, Error> {
     let mut channels: Vec<(ChannelLayout, Metadata)> = Vec::new();
     if layout.head.header.minor < CHANNEL_MINOR {
@@ -104,7 +104,7 @@ impl ChannelLayout {
         Ok(ChannelLayout { object, frame, value_type, sections, starts })
     }
 
-    /// The channel in `bytes`, whose numbers have this machine's order.
+    /// Returns the channel in `bytes`, whose numbers have this machine's byte order.
     fn view<'a>(&self, bytes: &'a [u8]) -> Result<ChannelRef<'a>, FormatError> {
         Ok(ChannelRef {
             tree: tree::view(&self.object, &self.sections, self.frame, &self.starts, bytes)?,
@@ -115,12 +115,12 @@ impl ChannelLayout {
         })
     }
 
-    /// Checks all of the channel in `bytes`.
+    /// Checks the whole channel in `bytes`.
     pub(super) fn verify(&self, bytes: &[u8]) -> Result<(), Error> {
         self.view(bytes)?.check()
     }
 
-    /// The channel in the bytes that `owner` has. Its links are checked on first use unless all of it is
+    /// Returns the channel in the bytes of `owner`. Its links are checked on first use unless all of it is
     /// `verified`.
     pub(super) fn attach<C: AsRef<[u8]> + Send + Sync + 'static>(
         &self,
@@ -131,13 +131,13 @@ impl ChannelLayout {
         Ok(Channel::attach(owner, metadata, verified, |owner| self.view(owner.as_ref()))?)
     }
 
-    /// Where the channel's sections lie, and what their numbers are.
+    /// Returns the ranges of the channel's sections and the types of their numbers.
     pub(super) fn numbers(&self) -> impl Iterator<Item = (Range<u64>, Element)> {
         self.sections.numbers(&self.object)
     }
 }
 
-/// A channel, with what a file needs besides.
+/// A channel with the additional data that a file needs.
 pub(super) struct PreparedChannel<'a> {
     view: &'a ChannelRef<'a>,
     metadata: Vec<u8>,
@@ -146,7 +146,7 @@ pub(super) struct PreparedChannel<'a> {
 }
 
 impl<'a> PreparedChannel<'a> {
-    /// Checks all of `channel`.
+    /// Checks the whole of `channel`, and prepares it.
     pub(super) fn of(channel: &'a Channel) -> Result<PreparedChannel<'a>, Error> {
         let view = channel.view()?;
         view.check()?;

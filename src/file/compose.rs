@@ -1,4 +1,4 @@
-//! The bytes of a file from its header, its records and its sections.
+//! Composition of a file from its header, its records and its sections.
 
 use super::elements::{Elements, Sink};
 use super::header::{HEADER_LENGTH, Header};
@@ -14,18 +14,18 @@ use alloc::vec::Vec;
 use bytemuck::Zeroable;
 use core::mem::offset_of;
 
-/// Writes a file into whatever sink it is given.
+/// A function that writes a file into a given sink.
 pub(super) type WriteFile<'w> = &'w dyn Fn(Sink<'_>) -> Result<(), Error>;
 
-/// Takes the length of a file and what writes it.
+/// A function that receives the length of a file and a function that writes it.
 pub(super) type Deliver<'d> = &'d mut dyn FnMut(u64, WriteFile<'_>) -> Result<(), Error>;
 
-/// A section that is to be written: its owner, the kind and the elements.
+/// A section to write: its owner, its kind and its elements.
 pub(super) type Section<'a> = (u32, Kind, Elements<'a>);
 
-/// Lays out a file and tells `deliver` its length and how to write it. The first section, that of the
-/// records, is added to `sections`, which lie in the order of owners and kinds; those without elements are
-/// left out.
+/// Lays out a file and calls `deliver` with its length and a function that writes it. The first section, the
+/// records, is added to `sections`. The sections must be in the order of owners and kinds; sections without
+/// elements are left out.
 pub(super) fn compose(
     mut header: Header,
     objects: &[Object],
@@ -39,7 +39,7 @@ pub(super) fn compose(
     let head_length = HEADER_LENGTH + present().count() * size_of::<Entry>();
     let mut head = memory::filled(head_length, 0u8)?;
     let (start, table) = head.split_at_mut(HEADER_LENGTH);
-    // Offsets cannot overflow: all of it lies in memory.
+    // Offsets cannot overflow: everything lies in memory.
     let mut end = head_length as u64;
     for (&(owner, kind, elements), raw) in present().zip(table.chunks_exact_mut(size_of::<Entry>())) {
         let mut crc = crc32fast::Hasher::new();
@@ -83,7 +83,7 @@ pub(super) fn compose(
     })
 }
 
-/// The metadata as they stand in a file.
+/// Returns the metadata in the form of a file.
 pub(super) fn bytes_of(metadata: &Metadata, limit: MetadataLimit) -> Result<Vec<u8>, Error> {
     limit.check(metadata.len_in_file())?;
     metadata.to_bytes()

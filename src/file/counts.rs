@@ -1,4 +1,4 @@
-//! What a header or a record says of the arrays of a tree.
+//! The sizes of a tree's arrays, as a header or a record states them.
 
 use super::field::{demand, illegal};
 use crate::error::FormatError;
@@ -11,10 +11,10 @@ pub(super) const ENCODING_RAW: u8 = 0;
 /// Bricks through a dictionary; part of the format.
 pub(super) const ENCODING_DICTIONARY: u8 = 1;
 
-/// Smallest base-2 logarithm of the bricks of a segment; part of the format.
+/// The smallest base-2 logarithm of the number of bricks in a segment; part of the format.
 const LEAST_SEGMENT_SHIFT: u8 = 16;
 
-/// How many elements, bricks and dictionary entries a tree has, and how its bricks are coded.
+/// The numbers of elements, bricks and dictionary entries of a tree, and the encoding of its bricks.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Counts {
     pub depth: u8,
@@ -27,7 +27,7 @@ pub(super) struct Counts {
 }
 
 impl Counts {
-    /// Checks what can be known without the arrays. The depth is a legal one.
+    /// Checks everything that can be checked without the arrays. The depth is legal already.
     pub(super) fn check(&self) -> Result<(), FormatError> {
         match self.brick_encoding {
             ENCODING_RAW => {
@@ -36,7 +36,7 @@ impl Counts {
             }
             ENCODING_DICTIONARY => {
                 let shift = self.segment_shift;
-                // A single segment has one spelling only.
+                // A single segment has only one representation.
                 let whole = self.segments() == 1;
                 if !(LEAST_SEGMENT_SHIFT..=dictionary::WHOLE).contains(&shift)
                     || whole != (shift == dictionary::WHOLE)
@@ -59,7 +59,7 @@ impl Counts {
         Ok(())
     }
 
-    /// Segments of the dictionary.
+    /// Returns the number of segments of the dictionary.
     pub(super) fn segments(&self) -> u64 {
         match 1u64.checked_shl(self.segment_shift.into()) {
             Some(length) => self.bricks.div_ceil(length),

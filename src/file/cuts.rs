@@ -12,7 +12,7 @@ use crate::octree::cuts::{
 };
 use core::mem::offset_of;
 
-// The elements of sections are the structures in memory.
+// The elements of sections have the layout of the structures in memory.
 const _: () = {
     assert!(size_of::<Block>() == 8 && offset_of!(Block, ids) == 0 && offset_of!(Block, splits) == 4);
     assert!(size_of::<SurfaceRecord>() == 16 && align_of::<SurfaceRecord>() == 4);
@@ -30,7 +30,8 @@ const _: () = {
     assert!(offset_of!(StoredMoments, second) == 88);
 };
 
-/// The cuts of an octree on a frame, whose numbers have this machine's order; `None` if it has none.
+/// Returns the cuts of an octree on a frame, whose numbers have this machine's byte order; `None` if there
+/// are none.
 pub(super) fn view<'a>(
     sections: &Sections,
     bytes: &'a [u8],
@@ -59,7 +60,7 @@ pub(super) fn view<'a>(
     }))
 }
 
-/// The sections of cuts.
+/// Returns the sections of cuts.
 pub(super) fn sections<'a>(owner: u32, cuts: &CutsRef<'a>) -> [Section<'a>; Kind::CUTS.len()] {
     let surfaces = &cuts.surfaces;
     [

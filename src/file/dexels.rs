@@ -1,10 +1,10 @@
 //! Files of tri-dexel models: the functions of [`file`](super) for [`TriDexel`](crate::TriDexel) in place of
 //! [`Octree`](crate::Octree).
 //!
-//! The format is the same, version 0.3: header, section table, and sections that are the model's arrays as
-//! they lie in memory. A file holds an octree or a tri-dexel model, and the functions for one refuse a file
-//! of the other with [`FormatError::OtherModel`](crate::error::FormatError::OtherModel).
-//! [`file::probe`](super::probe) and [`file::verify`](super::verify) know both.
+//! The format is the same, version 0.3: header, section table, and sections, which are the model's arrays as
+//! they lie in memory. A file holds either an octree or a tri-dexel model. The functions for one refuse a
+//! file of the other with [`FormatError::OtherModel`](crate::error::FormatError::OtherModel).
+//! [`file::probe`](super::probe) and [`file::verify`](super::verify) accept both.
 //!
 //! | function | reads | checks | cost |
 //! |---|---|---|---|
@@ -12,10 +12,10 @@
 //! | [`map_verified`], [`verify`](super::verify) (bytes) | in place | everything | O(n) |
 //! | [`open`], [`from_bytes`] | a copy | everything | O(n) |
 //!
-//! After [`view`], [`map`] or [`from_static`] nothing has looked at the intervals. Whatever they are, asking
-//! for single rays and cells is safe, and meets each interval at most once; what is read is what stands
-//! there. Operations on the whole model, such as Booleans, [check](crate::dexel::TriDexelRef::check) it first
-//! and return [`Error::DamagedRays`](crate::Error::DamagedRays) if it is damaged.
+//! After [`view`], [`map`] or [`from_static`] the intervals are unchecked. Queries about single rays and
+//! cells are safe whatever the intervals are, and visit each interval at most once; they return what the file
+//! contains. Operations on the whole model, such as Booleans, [check](crate::dexel::TriDexelRef::check) it
+//! first and return [`Error::DamagedRays`](crate::Error::DamagedRays) if it is damaged.
 //!
 //! ```no_run
 //! use leafless::{Control, file::dexels, dexel::DexelEditor};

@@ -1,4 +1,4 @@
-//! The elements of sections on their way into a file.
+//! Elements of sections, and their conversion to the bytes of a file.
 
 use super::object::Object;
 use super::wire::Wire;
@@ -23,7 +23,7 @@ pub(super) enum Elements<'a> {
     Levels(&'a [LevelCounts]),
     Objects(&'a [Object]),
     Bytes(&'a [u8]),
-    /// Values of so many bytes, made of numbers of so many bytes.
+    /// Values of `value` bytes each, made of numbers of `number` bytes each.
     Values {
         bytes: &'a [u8],
         value: usize,
@@ -31,7 +31,7 @@ pub(super) enum Elements<'a> {
     },
 }
 
-/// Takes bytes of a file, in order.
+/// A function that receives the bytes of a file, in order.
 pub(super) type Sink<'s> = &'s mut dyn FnMut(&[u8]) -> Result<(), Error>;
 
 impl Elements<'_> {
@@ -75,7 +75,7 @@ impl Elements<'_> {
         }
     }
 
-    /// Hands the bytes to `sink` in the file's order.
+    /// Passes the bytes to `sink` in the file's byte order.
     pub fn write(&self, sink: Sink<'_>) -> Result<(), Error> {
         match self {
             Elements::Planes(elements) => write_elements(elements, sink),

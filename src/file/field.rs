@@ -1,4 +1,4 @@
-//! Fields that must have one of a few values.
+//! Checks of fields that allow only a few values.
 
 use crate::error::FormatError;
 

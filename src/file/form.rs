@@ -1,25 +1,25 @@
-//! What of a tri-dexel model is stored, in one byte.
+//! The stored properties of a tri-dexel model, in one byte.
 
 use crate::dexel::{DexelEnds, DexelFormat, DexelNormals};
 
-/// What is stored of intervals, and which directions have rays.
+/// The stored properties of intervals, and the directions that have rays.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 pub(super) struct Form {
     pub format: DexelFormat,
     pub directions: [bool; 3],
 }
 
-/// Ends are doubles; part of the format, as all of these bits are.
+/// Set if ends are doubles; part of the format, like all of these bits.
 const DOUBLE: u8 = 1;
-/// Two bits: 0 for no normals, 1 for those of 16 bits, 2 for those of 32 bits.
+/// Two bits: 0 for no normals, 1 for normals of 16 bits, 2 for normals of 32 bits.
 const NORMALS_SHIFT: u32 = 1;
 const SURFACES: u8 = 1 << 3;
 const MATERIALS: u8 = 1 << 4;
-/// Three bits: x, y, z.
+/// Three bits, for the directions x, y and z.
 const DIRECTIONS_SHIFT: u32 = 5;
 
 impl Form {
-    /// What the byte says; `None` for no direction, and for normals of an unknown kind.
+    /// Decodes the byte; `None` for no direction, and for normals of an unknown kind.
     pub fn from_bits(bits: u8) -> Option<Form> {
         let normals = match bits >> NORMALS_SHIFT & 3 {
             0 => DexelNormals::None,
@@ -60,7 +60,7 @@ mod tests {
     fn each_byte_that_means_something_is_written_again() {
         let good =
             (0..=u8::MAX).filter(|&bits| Form::from_bits(bits).is_some_and(|form| form.bits() == bits));
-        // Seven sets of directions, two bits, two of ends, three of normals.
+        // Seven sets of directions, two single bits, two kinds of ends, three kinds of normals.
         assert_eq!(good.count(), 7 * 4 * 2 * 3);
         let refused = (0..=u8::MAX).filter(|&bits| Form::from_bits(bits).is_none());
         assert!(refused.clone().all(|bits| bits >> 5 == 0 || bits & 6 == 6));

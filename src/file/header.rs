@@ -11,41 +11,43 @@ use bytemuck::Zeroable;
 use core::mem::offset_of;
 use core::ops::Range;
 
-/// The first eight bytes of every file; part of the format. The first byte is not ASCII, the line ends and
-/// the end-of-file mark are what transfers in text mode change.
+/// The first eight bytes of every file; part of the format. The first byte is not ASCII. The line ends and
+/// the end-of-file mark are bytes that transfers in text mode change.
 pub const MAGIC: [u8; 8] = *b"\x89LFL\r\n\x1a\n";
 
 /// Major version that this library reads and writes; part of the format.
 pub const MAJOR: u16 = 0;
 
-/// The newest minor version that this library knows; part of the format. Newer ones of the same major are
-/// readable. A file has the oldest version that knows all of its objects and sections.
+/// The newest minor version that this library knows; part of the format. Files of newer minor versions of the
+/// same major version are readable. A file has the oldest version that defines all of its objects and
+/// sections.
 pub const MINOR: u16 = 4;
 
-/// The oldest minor version that is readable, and of files without channels: 0.0 had another section table.
+/// The oldest minor version that is readable, and the version of files without channels: 0.0 had another
+/// section table.
 pub(super) const OLDEST_MINOR: u16 = 1;
 
-/// Required flag of a file whose solid is a tri-dexel model; part of the format.
+/// The required flag of a file whose solid is a tri-dexel model; part of the format.
 pub(super) const FLAG_DEXELS: u32 = 1;
 
-/// The oldest minor version that knows tri-dexel models.
+/// The oldest minor version that defines tri-dexel models.
 pub(super) const DEXELS_MINOR: u16 = 3;
 
-/// Most intervals of a tri-dexel model along one axis; part of the format.
+/// Maximum number of intervals of a tri-dexel model along one axis; part of the format.
 const MOST_INTERVALS: u64 = u32::MAX as u64 - 1;
 
 /// Length of the header, and offset of the section table; part of the format.
 pub(super) const HEADER_LENGTH: usize = size_of::<Header>();
 
-/// Most sections that a file may have; part of the format. It bounds the work of the readers that trust
-/// nothing yet.
+/// Maximum number of sections of a file; part of the format. It bounds the work of readers before anything is
+/// verified.
 const MAX_SECTIONS: u32 = 4096;
 
-/// Length of an entry of the section table; part of the format.
+/// Length of an entry of the section table in bytes; part of the format.
 pub(super) const ENTRY_LENGTH: usize = 48;
 
 wire_struct! {
-    /// The first 128 bytes of a file. Doubles are kept as their bits.
+    /// The first 128 bytes of a file. Doubles are stored as their bits.
     struct Header: 128 {
         0 magic: [u8; 8],
         8 major: u16,
@@ -63,7 +65,7 @@ wire_struct! {
         68 brick_encoding: u8,
         69 segment_shift: u8,
         70 proof: u8,
-        /// What a tri-dexel model stores; else 0.
+        /// The stored properties of a tri-dexel model; else 0.
         71 form: u8,
         72 elements: u64,
         80 bricks: u64,
@@ -76,7 +78,7 @@ wire_struct! {
     }
 }
 
-/// What the solid of a file can be.
+/// The kinds of solids in a file.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(super) enum Model {
     Octree,
@@ -84,7 +86,7 @@ pub(super) enum Model {
 }
 
 impl Header {
-    /// What the headers of all solids on a frame have in common.
+    /// Returns the fields that the headers of all solids on a frame have in common.
     pub fn of(frame: &Frame) -> Header {
         Header {
             magic: MAGIC,
@@ -97,7 +99,7 @@ impl Header {
         }
     }
 
-    /// What the header says of the arrays of the solid's tree.
+    /// Returns the sizes of the arrays of the solid's tree.
     pub fn counts(&self) -> Counts {
         Counts {
             depth: self.depth,
@@ -110,24 +112,24 @@ impl Header {
         }
     }
 
-    /// What the solid is.
+    /// Returns the kind of the solid.
     pub fn model(&self) -> Model {
         let is_dexels = self.minor >= DEXELS_MINOR && self.flags_required & FLAG_DEXELS != 0;
         if is_dexels { Model::Dexels } else { Model::Octree }
     }
 
-    /// Whether the solid is a tri-dexel model.
+    /// Returns whether the solid is a tri-dexel model.
     pub fn is_dexels(&self) -> bool {
         self.model() == Model::Dexels
     }
 
-    /// Whether a later version wrote the file, which may have given a meaning to what is reserved today.
+    /// Returns whether a later version wrote the file. It may use fields that are reserved today.
     pub fn is_newer(&self) -> bool {
         self.minor > MINOR
     }
 }
 
-/// A header of which everything has been checked that can be checked without other bytes.
+/// A header that passed all checks that need no other bytes.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Head {
     pub header: Header,
@@ -135,15 +137,16 @@ pub(super) struct Head {
     pub root: Tag,
     pub exterior: Tag,
     pub proof: Proof,
-    /// What is stored of a tri-dexel model; of an octree nothing.
+    /// The stored properties of a tri-dexel model; `None` for an octree.
     pub form: Option<Form>,
 }
 
 impl Head {
     /// Reads the first 128 of `bytes`.
     ///
-    /// The order of the checks: what kind of file it is, then its version, because a newer one may have
-    /// changed all that follows, then the checksum, so that damage is called damage, then each field.
+    /// The order of the checks: first the kind of file; then its version, because a newer version may have
+    /// changed everything that follows; then the checksum, so that damage is reported as damage; then each
+    /// field.
     pub(super) fn read(bytes: &[u8]) -> Result<Head, FormatError> {
         let known = bytes.len().min(MAGIC.len());
         if bytes[..known] != MAGIC[..known] {
@@ -168,7 +171,7 @@ impl Head {
         if unknown != 0 {
             return Err(FormatError::Required { name: "flags", value: unknown.into() });
         }
-        // A newer minor version may have given these a meaning that can be ignored.
+        // A newer minor version may use these fields for data that can be ignored.
         if !header.is_newer() {
             demand("optional flags", header.flags_optional, 0u64)?;
             demand("reserved field", if header.is_dexels() { 0 } else { header.form }, 0u64)?;
@@ -176,13 +179,13 @@ impl Head {
                 demand("reserved field", byte, 0u64)?;
             }
         }
-        // Every value of a frame has one spelling only, so that equal trees have equal files.
+        // Every value of a frame has only one representation, so that equal trees have equal files.
         let frame = Frame::new(header.origin.map(f64::from_bits), f64::from_bits(header.edge), header.depth);
         let frame = frame.map_err(|refused| match refused {
             Error::Argument { name: "depth", .. } => illegal("depth", header.depth),
             Error::Argument { name: "edge", .. } => illegal("edge", header.edge),
             _ => {
-                // The first coordinate that is refused by itself.
+                // The first coordinate that is invalid by itself.
                 let alone = |&bits: &u64| Frame::new([f64::from_bits(bits); 3], 1.0, 1).is_err();
                 illegal("origin", header.origin.into_iter().find(alone).unwrap_or_default())
             }
@@ -255,7 +258,7 @@ impl Head {
         })
     }
 
-    /// Refuses a file of which the solid is something else.
+    /// Refuses a file whose solid is of another kind.
     pub(super) fn demand_model(&self, wanted: Model) -> Result<(), FormatError> {
         let name = |model| match model {
             Model::Octree => "an octree",
@@ -265,13 +268,14 @@ impl Head {
         if found == wanted { Ok(()) } else { Err(FormatError::OtherModel { found, wanted }) }
     }
 
-    /// Where the section table lies.
+    /// Returns the range of the section table.
     pub(super) fn table_range(&self) -> Range<usize> {
         // At most 128 + 4096 · 48.
         HEADER_LENGTH..HEADER_LENGTH + self.header.section_count as usize * ENTRY_LENGTH
     }
 
-    /// The section table in `bytes`, which begin where the file does; its checksum is checked.
+    /// Returns the section table in `bytes`, which begin at the start of the file, after checking its
+    /// checksum.
     pub(super) fn table<'a>(&self, bytes: &'a [u8]) -> Result<&'a [u8], FormatError> {
         let range = self.table_range();
         let found = bytes.len() as u64;
@@ -284,8 +288,8 @@ impl Head {
     }
 }
 
-/// Whether the signature is there but for what a transfer in text mode does to line ends: whatever stands
-/// between the letters and the end-of-file mark, and after it, are still line ends.
+/// Returns whether the signature was altered by a text-mode transfer, which rewrites line ends: there are
+/// still line ends between the letters and the end-of-file mark, and one after the mark.
 fn is_text_mode(bytes: &[u8]) -> bool {
     let Some(rest) = bytes.strip_prefix(b"\x89LFL") else { return false };
     let is_end = |byte: &u8| *byte == b'\r' || *byte == b'\n';

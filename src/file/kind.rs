@@ -1,4 +1,4 @@
-//! Kinds of sections: which objects have them, and what their elements are.
+//! Kinds of sections: their owners and their elements.
 
 use super::counts::ENCODING_DICTIONARY;
 use super::form::Form;
@@ -8,68 +8,69 @@ use crate::octree::cuts::{Placement, StoredMoments};
 use crate::octree::view::LevelCounts;
 use crate::octree::word::Planes;
 
-/// Flag of a section that a reader must know to read its object; part of the format.
+/// The flag of a section that a reader must know to read its object; part of the format.
 pub(super) const SECTION_REQUIRED: u32 = 1;
 
 /// The sections that this library knows. The numbers are part of the format. 16 to 31 are for values (17 is
-/// reserved for those of PARTIAL cells by rank), but for 20 to 25, 48 to 55 are reserved for versions, 56 to
-/// 63 for the archive; from 2^31 on they belong to applications.
+/// reserved for values of PARTIAL cells by rank), except for 20 to 25. 48 to 55 are reserved for versions, 56
+/// to 63 for the archive. Numbers from 2^31 on belong to applications.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 #[repr(u32)]
 pub(super) enum Kind {
-    /// What the file holds.
+    /// The records of the file's objects.
     Objects = 1,
     /// Keys and values.
     Metadata = 2,
-    /// What is counted on each octree level.
+    /// The counts of each octree level.
     Levels = 3,
     /// Elements: pairs of words.
     Planes = 4,
-    /// First child of each element, less the base of its 1024.
+    /// The first child of each element, relative to the base of its group of 1024 elements.
     Rel = 5,
-    /// First child of every 1024th element.
+    /// The first child of every 1024th element.
     Base = 6,
     /// Bricks, one after another.
     Bricks = 7,
-    /// Dictionary index of each brick.
+    /// The dictionary index of each brick.
     Indices = 8,
     /// The dictionary: distinct bricks, segment by segment.
     Entries = 9,
-    /// First dictionary entry of each segment.
+    /// The first dictionary entry of each segment.
     Segments = 10,
     /// One byte for each cut.
     CutHeads = 11,
-    /// Surfaces of each cut, one after another.
+    /// The surfaces of each cut, one after another.
     CutIds = 12,
-    /// What is counted before every 32nd cut.
+    /// The counts before every 32nd cut.
     CutBlocks = 13,
-    /// Cuts before each element and brick, and before all splits.
+    /// The number of cuts before each element and brick, and before all splits.
     CutFirst = 14,
     /// Surfaces.
     Surfaces = 15,
     /// The values of a channel.
     Values = 16,
-    /// Values before each element and brick of a channel, less the base of its 1024.
+    /// The number of values before each element and brick of a channel, relative to the base of its group of
+    /// 1024.
     ValueRel = 18,
-    /// Values before every 1024th element or brick of a channel.
+    /// The number of values before every 1024th element or brick of a channel.
     ValueBase = 19,
     /// Doubles of the surfaces.
     SurfaceNumbers = 20,
     /// Maps that place surfaces.
     Placements = 21,
-    /// What slabs were made from.
+    /// The sources from which slabs were made.
     Origins = 22,
-    /// Slabs that were made for one cell each.
+    /// Slabs that belong to one cell each.
     CellSlabs = 23,
-    /// What those were made from, and how many they are.
+    /// The sources of the cell slabs, and the number of slabs of each source.
     CellSlabGroups = 24,
     /// The moments of a solid with cuts.
     Moments = 25,
     /// The rays of each direction of a tri-dexel model.
     Windows = 32,
-    /// First interval of each ray along x, and their number.
+    /// The first interval of each ray along x, and the number of intervals.
     StartsX = 33,
-    /// Where the intervals along x begin and end.
+    /// The beginnings and ends of the intervals along x.
     SpansX = 34,
     /// Normals at both ends of each interval along x.
     NormalsX = 35,
@@ -77,13 +78,13 @@ pub(super) enum Kind {
     SurfacesX = 36,
     /// Material of each interval along x.
     MaterialsX = 37,
-    /// The same along y.
+    /// Starts along y. The next arrays are those along y, in the same order.
     StartsY = 38,
     SpansY = 39,
     NormalsY = 40,
     SurfacesY = 41,
     MaterialsY = 42,
-    /// The same along z.
+    /// Starts along z. The next arrays are those along z, in the same order.
     StartsZ = 43,
     SpansZ = 44,
     NormalsZ = 45,
@@ -91,7 +92,7 @@ pub(super) enum Kind {
     MaterialsZ = 47,
 }
 
-/// An array of a direction of a tri-dexel model.
+/// An array of one direction of a tri-dexel model.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(super) enum Column {
     Starts,
@@ -108,18 +109,18 @@ const COLUMNS: [[Kind; 5]; 3] = [
     [Kind::StartsZ, Kind::SpansZ, Kind::NormalsZ, Kind::SurfacesZ, Kind::MaterialsZ],
 ];
 
-/// Numbers right below the first kind of tri-dexel models that no kind has.
+/// Number of unused kinds right below the first kind of tri-dexel models.
 const UNUSED: usize = 6;
 const _: () = assert!((Kind::Moments as usize) < Kind::Windows as usize - UNUSED);
 
-/// Places for what is kept by kind; see [`Kind::slot`].
+/// Length of arrays that are indexed by kind; see [`Kind::slot`].
 pub(super) const KINDS: usize = 48 - UNUSED;
 
-/// What the elements of a section are made of; the numbers are part of the format.
+/// The number types of section elements; the numbers are part of the format.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 #[repr(u8)]
 pub(super) enum Element {
-    /// Records that the kind lays out, in units of eight bytes.
+    /// Records whose layout depends on the kind, in units of eight bytes.
     Record = 0,
     U8 = 1,
     U16 = 2,
@@ -191,28 +192,28 @@ impl Kind {
         Kind::MaterialsZ,
     ];
 
-    /// Sections that an object may have at most.
+    /// Maximum number of sections of an object.
     pub(super) const MOST: usize = 21;
 
-    /// Its place in an array of [`KINDS`].
+    /// Returns the index of the kind in an array of length [`KINDS`].
     pub(super) const fn slot(self) -> usize {
         let number = self as usize;
         if number < Kind::Windows as usize { number } else { number - UNUSED }
     }
 
-    /// The kind of an array of a direction.
+    /// Returns the kind of an array of a direction.
     pub(super) const fn along(axis: usize, column: Column) -> Kind {
         COLUMNS[axis][column as usize]
     }
 
-    /// The direction and array that have this kind.
+    /// Returns the direction and the array of this kind.
     fn column(self) -> Option<(usize, Column)> {
         use Column::*;
         let place = (self as usize).checked_sub(Kind::StartsX as usize)?;
         Some((place / 5, [Starts, Spans, Normals, Surfaces, Materials][place % 5]))
     }
 
-    /// Those of the cuts of an octree.
+    /// The kinds of an octree's cuts.
     pub(super) const CUTS: [Kind; 11] = [
         Kind::CutHeads,
         Kind::CutIds,
@@ -227,7 +228,7 @@ impl Kind {
         Kind::Moments,
     ];
 
-    /// The kind with this number, if the sections of such objects may be of it in a file of this minor
+    /// Returns the kind with this number, if such an object may have sections of it in a file of this minor
     /// version.
     pub(super) fn of(number: u32, object: &Object, minor: u16) -> Option<Kind> {
         let owned = |&kind: &Kind| match kind {
@@ -293,12 +294,12 @@ impl Kind {
         }
     }
 
-    /// Metadata and cuts can be done without.
+    /// Returns the flags of a section. Metadata and cuts are optional for readers.
     pub(super) fn flags(self) -> u32 {
         if self == Kind::Metadata || self.is_of_cuts() { 0 } else { SECTION_REQUIRED }
     }
 
-    /// Type and components of an element of an object's section.
+    /// Returns the type and the number of components of an element of an object's section.
     pub(super) fn element(self, object: &Object) -> (Element, u8) {
         match self {
             Kind::Objects => (Element::Record, (size_of::<Object>() / 8) as u8),
@@ -324,7 +325,7 @@ impl Kind {
         }
     }
 
-    /// The same for an array of a direction.
+    /// Does the same for an array of a direction.
     fn dexel_element(self, object: &Object) -> (Element, u8) {
         let format = Form::from_bits(object.form).unwrap_or_default().format;
         match self.column() {
@@ -335,10 +336,10 @@ impl Kind {
         }
     }
 
-    /// How many elements an object's section must have; `None` where that is free.
+    /// Returns the number of elements that an object's section must have; `None` if it is free.
     pub(super) fn demanded(self, object: &Object) -> Option<u64> {
         let coded = object.brick_encoding == ENCODING_DICTIONARY;
-        // (Both were found to lie in memory, or the sections of elements and bricks do not.)
+        // (Elements and bricks are known to lie in memory; otherwise the check of their sections fails.)
         let entries = object.elements.saturating_add(object.bricks);
         let if_coded = |count: u64| if coded { count } else { 0 };
         match self {
@@ -358,7 +359,7 @@ impl Kind {
         }
     }
 
-    /// The same for a tri-dexel model. How many starts there are follows from the windows.
+    /// Does the same for a tri-dexel model. The number of starts follows from the windows.
     fn dexels_demanded(self, object: &Object) -> Option<u64> {
         let Form { format, directions } = Form::from_bits(object.form).unwrap_or_default();
         let Some((axis, column)) = self.column() else {

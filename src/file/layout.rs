@@ -1,4 +1,4 @@
-//! What must be known of any file before its solid is looked at.
+//! The layout of a file: the checked header and section table.
 
 use super::header::{Head, Model};
 use super::kind::Kind;
@@ -7,7 +7,7 @@ use super::section::{Sections, entries, read_table, section};
 use crate::error::{Error, FormatError};
 use crate::octree::Metadata;
 
-/// The header of a file and where the sections of its solid lie. Both have been checked.
+/// The header of a file and the ranges of its solid's sections. Both have been checked.
 #[derive(Debug, Clone)]
 pub(super) struct Layout {
     pub head: Head,
@@ -15,8 +15,8 @@ pub(super) struct Layout {
 }
 
 impl Layout {
-    /// Checks header, section table, bounds and the records of objects. O(sections + objects); `bytes` are
-    /// the whole file, of any alignment, with a `wanted` solid.
+    /// Checks header, section table, bounds and the records of objects. O(sections + objects). `bytes` are
+    /// the whole file, of any alignment; its solid must be of the kind `wanted`.
     pub fn read(bytes: &[u8], wanted: Model) -> Result<Layout, Error> {
         let head = Head::read(bytes)?;
         head.demand_model(wanted)?;
@@ -29,13 +29,13 @@ impl Layout {
         Ok(Layout { head, sections })
     }
 
-    /// The facts that the file carries along.
+    /// Returns the metadata of the file.
     pub fn metadata(&self, bytes: &[u8]) -> Result<Metadata, Error> {
         Metadata::from_bytes(self.sections.bytes(bytes, Kind::Metadata)?)
     }
 
     /// Checks everything but the solid itself: checksums, padding, metadata. The bytes are still in the
-    /// file's order.
+    /// file's byte order.
     pub fn verify(&self, bytes: &[u8]) -> Result<Metadata, Error> {
         let main = Object::main(&self.head.header);
         let mut end = self.head.table_range().end as u64;

@@ -1,17 +1,17 @@
-//! Files in memory that belong to the system.
+//! Memory-mapped files.
 
 use crate::error::{Error, FormatError};
 use memmap2::Mmap;
 use std::fs::File;
 use std::path::Path;
 
-/// The file at `path` in memory; `None` if it is empty.
+/// Maps the file at `path`; `None` if it is empty.
 ///
 /// # Safety
-/// As [`file::map`](super::map()).
+/// The conditions of [`file::map`](super::map()).
 #[allow(unsafe_code)]
 pub(super) unsafe fn mapping(path: &Path) -> Result<Option<Mmap>, Error> {
-    // Asked before opening, because opening a pipe that nobody writes to would wait.
+    // Checked before opening, because opening a pipe without a writer would wait.
     if !std::fs::metadata(path)?.is_file() {
         return Err(FormatError::NotRegular.into());
     }

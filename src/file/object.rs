@@ -1,4 +1,4 @@
-//! The records of what a file holds: the solid, its channels and, in later versions, whatever else.
+//! Records of the objects in a file: the solid, its channels and, in later versions, other objects.
 
 use super::counts::Counts;
 use super::field::illegal;
@@ -7,7 +7,7 @@ use super::wire::{Wire, elements, wire_struct};
 use crate::error::FormatError;
 use bytemuck::Zeroable;
 
-/// Most objects that a file may hold; part of the format. It bounds the work of mapping a file.
+/// Maximum number of objects of a file; part of the format. It bounds the work of mapping a file.
 pub(super) const MAX_OBJECTS: u64 = 4096;
 
 /// The type of a solid that is an octree; part of the format. 4 is reserved for versions, 5 for values of
@@ -23,17 +23,17 @@ pub(super) const DEXELS: u32 = 3;
 /// The oldest minor version in which objects of that type are channels.
 pub(super) const CHANNEL_MINOR: u16 = 2;
 
-/// The oldest minor version that knows the cuts of octrees.
+/// The oldest minor version that defines the cuts of octrees.
 pub(super) const CUTS_MINOR: u16 = 4;
 
-/// The parent of an object that has none; part of the format.
+/// The parent of an object without a parent; part of the format.
 const NO_PARENT: u32 = u32::MAX;
 
-/// Flag of an object of which a reader must know the type to read the file; part of the format.
+/// The flag of an object whose type a reader must know to read the file; part of the format.
 const OBJECT_REQUIRED: u32 = 1;
 
 wire_struct! {
-    /// What is said of one object, the owner of sections. Doubles are kept as their bits.
+    /// The record of one object, the owner of sections. Doubles are stored as their bits.
     struct Object: 128 {
         0 kind: u32,
         4 parent: u32,
@@ -47,7 +47,7 @@ wire_struct! {
         18 segment_shift: u8,
         19 value_type: u8,
         20 components: u8,
-        /// What a tri-dexel model stores; else 0.
+        /// The stored properties of a tri-dexel model; else 0.
         21 form: u8,
         22 reserved: [u8; 2],
         24 displacement: u64,
@@ -64,7 +64,7 @@ wire_struct! {
 }
 
 impl Object {
-    /// What the header says of object 0: an octree or a tri-dexel model.
+    /// Returns the record of object 0, an octree or a tri-dexel model, according to the header.
     pub(super) fn main(header: &Header) -> Object {
         Object {
             kind: if header.is_dexels() { DEXELS } else { SOLID },
@@ -90,7 +90,7 @@ impl Object {
 }
 
 impl Object {
-    /// What the record says of the arrays of the object's tree.
+    /// Returns the sizes of the arrays of the object's tree.
     pub(super) fn counts(&self) -> Counts {
         Counts {
             depth: self.depth,
@@ -103,19 +103,19 @@ impl Object {
         }
     }
 
-    /// How many intervals a tri-dexel model has along x, y and z. They stand where an octree's record has the
-    /// numbers of elements, bricks and dictionary entries.
+    /// Returns the numbers of intervals of a tri-dexel model along x, y and z. They are stored in the fields
+    /// where an octree's record has the numbers of elements, bricks and dictionary entries.
     pub(super) fn intervals(&self) -> [u64; 3] {
         [self.elements, self.bricks, self.dictionary_entries]
     }
 }
 
-/// Checks the records of all objects: the first repeats the header, and none that is unknown is required.
-/// What is said of the others is not looked at.
+/// Checks the records of all objects: the first must repeat the header, and no unknown object may be
+/// required. The contents of other records are not checked.
 pub(super) fn check(header: &Header, records: &[u8]) -> Result<(), FormatError> {
     for (index, object) in (0u32..).zip(elements::<Object>(records)) {
         if index == 0 {
-            // A newer minor version may have given a meaning to what is reserved today.
+            // A newer minor version may use fields that are reserved today.
             let mut expected = Object::main(header);
             if header.is_newer() {
                 let Object { form, reserved, reserved_middle, reserved_tail, flags, .. } = object;

@@ -1,4 +1,4 @@
-//! What the first bytes of a file say of it, whatever it holds.
+//! Probing: reads the header and the section table of a file of any kind.
 
 #[cfg(feature = "std")]
 use super::buffer::regular_length;
@@ -21,47 +21,47 @@ use alloc::vec::Vec;
 #[cfg(feature = "std")]
 use std::{fs::File, io::Read, path::Path};
 
-/// What the first bytes of a file say of it.
+/// The contents of a file's header and section table.
 #[non_exhaustive]
 #[derive(Debug, Clone, PartialEq)]
 pub struct Probe {
     /// Major and minor version of the format.
     pub version: (u16, u16),
-    /// Where the solid lies, and its depth.
+    /// The frame of the solid, with its depth.
     pub frame: Frame,
-    /// The tag of the whole universe; BRANCH if it is cut. EMPTY for a tri-dexel model.
+    /// The tag of the whole universe; BRANCH if it is divided. EMPTY for a tri-dexel model.
     pub root: Tag,
-    /// What is known of the space outside of the universe: EMPTY, FULL or PARTIAL. EMPTY for a tri-dexel
-    /// model.
+    /// The tag of the space outside of the universe: EMPTY, FULL or PARTIAL. EMPTY for a tri-dexel model.
     pub exterior: Tag,
-    /// What the cells prove of the solid that the tree was made from. A tri-dexel model proves nothing.
+    /// The proofs of the cells about the solid from which the tree was made. A tri-dexel model proves
+    /// nothing.
     pub proof: Proof,
-    /// Whether nothing is undecided.
+    /// True if no cell is undecided.
     pub binary: bool,
-    /// Elements, without bricks; 0 for a tri-dexel model.
+    /// Number of elements, without bricks; 0 for a tri-dexel model.
     pub elements: u64,
-    /// Bricks; 0 for a tri-dexel model.
+    /// Number of bricks; 0 for a tri-dexel model.
     pub bricks: u64,
-    /// What is stored of a tri-dexel model; `None` if the file holds an octree.
+    /// The stored properties of a tri-dexel model; `None` if the file holds an octree.
     pub dexels: Option<DexelProbe>,
     /// Length of the file in bytes.
     pub file_len: u64,
-    /// What the file consists of, in the order in which it lies there.
+    /// The sections, in the order of the file.
     pub sections: Vec<Section>,
 }
 
-/// What the first bytes of the file of a tri-dexel model say of it.
+/// The stored properties of a tri-dexel model, according to the header and section table.
 #[non_exhaustive]
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct DexelProbe {
-    /// What of each interval is stored.
+    /// The stored properties of each interval.
     pub format: DexelFormat,
-    /// Which directions have rays: x, y, z.
+    /// True for the directions that have rays: x, y, z.
     pub directions: [bool; 3],
-    /// Rays in the window of each direction, empty ones among them. (That the windows are as large is checked
-    /// when the model is read.)
+    /// Number of rays in the window of each direction, including empty ones. (The sizes of the windows are
+    /// checked only when the model is read.)
     pub rays: [u64; 3],
-    /// Intervals of each direction.
+    /// Number of intervals of each direction.
     pub intervals: [u64; 3],
 }
 
@@ -69,28 +69,28 @@ pub struct DexelProbe {
 #[non_exhaustive]
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct Section {
-    /// Number of its kind; see the [table](super#the-format).
+    /// Number of the section's kind; see the [table](super#the-format).
     pub kind: u32,
-    /// The object that it belongs to: 0 is the solid.
+    /// The object that owns the section: 0 is the solid.
     pub owner: u32,
-    /// Name of its kind, if this library knows it.
+    /// Name of the kind, if this library knows it.
     pub name: Option<&'static str>,
-    /// Where it begins in the file, in bytes.
+    /// Offset of the section in the file, in bytes.
     pub offset: u64,
-    /// Its length in bytes.
+    /// Length of the section in bytes.
     pub length: u64,
-    /// Its length in elements.
+    /// Number of elements.
     pub count: u64,
-    /// Whether a reader must know the kind to read the file.
+    /// True if a reader must know the kind to read the file.
     pub required: bool,
 }
 
-/// Reads header and section table from `bytes`, the beginning of a file or all of it. Their checksums and
-/// everything that can be known from them is checked; whether the rest of the file is there and good is not.
-/// O(sections).
+/// Reads header and section table from `bytes`, the beginning of a file or all of it. Their checksums are
+/// checked, and everything that follows from them alone. The presence and the contents of the rest of the
+/// file are not checked. O(sections).
 ///
 /// # Errors
-/// [`Error::Format`]; among them [`FormatError::Length`] if `bytes` end before the section table does.
+/// [`Error::Format`]; this includes [`FormatError::Length`] if `bytes` end before the section table does.
 pub fn probe_bytes(bytes: &[u8]) -> Result<Probe, Error> {
     let head = Head::read(bytes)?;
     let raw = head.table(bytes)?;
@@ -130,10 +130,10 @@ pub fn probe_bytes(bytes: &[u8]) -> Result<Probe, Error> {
     })
 }
 
-/// As [`probe_bytes`], reading from `reader` no more than header and section table.
+/// Probes a file as [`probe_bytes`] does, and reads only header and section table from `reader`.
 ///
 /// # Errors
-/// As [`probe_bytes`], and [`Error::Io`].
+/// The errors of [`probe_bytes`], and [`Error::Io`].
 #[cfg(feature = "std")]
 pub fn probe_from(mut reader: impl Read) -> Result<Probe, Error> {
     let mut bytes = Vec::new();
@@ -143,10 +143,10 @@ pub fn probe_from(mut reader: impl Read) -> Result<Probe, Error> {
     probe_bytes(&bytes)
 }
 
-/// As [`probe_bytes`] for the file at `path`, whose length is checked too.
+/// Probes the file at `path` as [`probe_bytes`] does, and also checks the file's length.
 ///
 /// # Errors
-/// [`Error::File`] with the path and one of these causes: as [`probe_bytes`], and [`Error::Io`].
+/// [`Error::File`] with the path and one of these causes: the errors of [`probe_bytes`], and [`Error::Io`].
 #[cfg(feature = "std")]
 pub fn probe(path: impl AsRef<Path>) -> Result<Probe, Error> {
     let path = path.as_ref();

@@ -1,4 +1,4 @@
-//! The ways into a file, whatever it holds.
+//! Reading files, whatever solid they hold.
 
 #[cfg(feature = "std")]
 use super::buffer;
@@ -17,21 +17,21 @@ use alloc::vec::Vec;
 #[cfg(feature = "std")]
 use std::path::Path;
 
-/// All that must be known of a file to read its solid in place.
+/// The data needed to read the solid of a file in place.
 struct Found<T: Stored> {
     layout: Layout,
     shape: T::Shape,
 }
 
 impl<T: Stored> Found<T> {
-    /// Checks what the layout and the shape consist of, and nothing else.
+    /// Checks the layout and the shape, and nothing else.
     fn read(bytes: &[u8]) -> Result<Found<T>, Error> {
         let layout = Layout::read(bytes, T::MODEL)?;
         let shape = T::shape(&layout, bytes)?;
         Ok(Found { layout, shape })
     }
 
-    /// The same, and the solid in `bytes`, which are not copied.
+    /// Does the same, and returns a view of the solid in `bytes`, which are not copied.
     fn in_place(bytes: &[u8]) -> Result<(Found<T>, T::View<'_>), Error> {
         let found = Found::<T>::read(bytes)?;
         check_in_place(bytes)?;
@@ -43,12 +43,13 @@ impl<T: Stored> Found<T> {
         T::view(&self.layout, &self.shape, bytes)
     }
 
-    /// The channels of a file whose layout has been found right. The bytes are still in the file's order.
+    /// Returns the channels of a file whose layout has been checked. The bytes are still in the file's byte
+    /// order.
     fn channels(&self, bytes: &[u8]) -> Result<Vec<(ChannelLayout, Metadata)>, Error> {
         if T::CHANNELS { channel::read(&self.layout, bytes) } else { Ok(Vec::new()) }
     }
 
-    /// The solid and its channels in the bytes that `owner` has. All of them is checked, or nothing.
+    /// Returns the solid and its channels in the bytes of `owner`. Either all of them are checked, or none.
     fn attach<C: AsRef<[u8]> + Send + Sync + 'static>(
         &self,
         owner: C,
@@ -72,34 +73,34 @@ impl<T: Stored> Found<T> {
     }
 }
 
-/// The solid in `bytes`, which are not copied.
+/// Returns a view of the solid in `bytes`, which are not copied.
 pub(super) fn view<T: Stored>(bytes: &[u8]) -> Result<T::View<'_>, Error> {
     Ok(Found::<T>::in_place(bytes)?.1)
 }
 
-/// Checks all of a file.
+/// Checks the whole file.
 pub(super) fn verify<T: Stored>(bytes: &[u8]) -> Result<(), Error> {
     let (found, view) = Found::<T>::in_place(bytes)?;
     found.layout.verify(bytes)?;
-    // All records before any contents, so that every way in that verifies finds the same thing first.
+    // All records before any contents, so that all verifying functions report the same error first.
     let channels = found.channels(bytes)?;
     T::checked(view)?;
     verify_channels(&channels, bytes)
 }
 
-/// The solid in a copy of `bytes`, of which all is verified.
+/// Returns the solid in a copy of `bytes`, completely verified.
 pub(super) fn from_bytes<T: Stored>(bytes: &[u8]) -> Result<T, Error> {
-    // Refused before anything is allocated.
+    // Check before anything is allocated.
     let found = Found::read(bytes)?;
     adopt(found, Buffer::copy(bytes)?)
 }
 
-/// The solid in `bytes`, which are not copied.
+/// Returns the solid in `bytes`, which are not copied.
 pub(super) fn from_static<T: Stored>(bytes: &'static [u8]) -> Result<T, Error> {
     in_place(bytes, false)
 }
 
-/// The solid in the file at `path`, read into memory and verified.
+/// Reads the solid in the file at `path` into memory, and verifies it.
 #[cfg(feature = "std")]
 pub(super) fn open<T: Stored>(path: &Path) -> Result<T, Error> {
     let read = || {
@@ -109,10 +110,10 @@ pub(super) fn open<T: Stored>(path: &Path) -> Result<T, Error> {
     read().map_err(|error| error.of_file(path))
 }
 
-/// The solid in the file at `path`, mapped into memory. All of it is verified if that is asked for.
+/// Maps the solid in the file at `path` into memory. Verifies all of it if `verify` is true.
 ///
 /// # Safety
-/// As [`file::map`](super::map()).
+/// The conditions of [`file::map`](super::map()).
 #[cfg(feature = "mmap")]
 #[allow(unsafe_code)]
 pub(super) unsafe fn map<T: Stored>(path: &Path, verify: bool) -> Result<T, Error> {
@@ -120,13 +121,13 @@ pub(super) unsafe fn map<T: Stored>(path: &Path, verify: bool) -> Result<T, Erro
     let map = unsafe { mapping(path) };
     let read = |map| match map {
         Some(map) => in_place(map, verify),
-        // Nothing can be mapped; the error is the one of any file that is too short.
+        // An empty file cannot be mapped; the error is that of any file that is too short.
         None => from_bytes(&[]),
     };
     map.and_then(read).map_err(|error| error.of_file(path))
 }
 
-/// A solid over the bytes of a file that `owner` has. All of it is verified if that is asked for.
+/// Returns a solid in the bytes of a file that `owner` owns. Verifies all of it if `verify` is true.
 fn in_place<T: Stored, C: AsRef<[u8]> + Send + Sync + 'static>(owner: C, verify: bool) -> Result<T, Error> {
     let bytes = owner.as_ref();
     let (found, _) = Found::<T>::in_place(bytes)?;
@@ -135,7 +136,7 @@ fn in_place<T: Stored, C: AsRef<[u8]> + Send + Sync + 'static>(owner: C, verify:
     found.attach(owner, metadata, channels, verify)
 }
 
-/// A solid over a file in memory, once all of it is verified.
+/// Returns a solid in a file in memory, after verifying all of it.
 fn adopt<T: Stored>(found: Found<T>, mut buffer: Buffer) -> Result<T, Error> {
     let metadata = found.layout.verify(buffer.bytes())?;
     let channels = found.channels(buffer.bytes())?;
@@ -149,7 +150,7 @@ fn verify_channels(channels: &[(ChannelLayout, Metadata)], bytes: &[u8]) -> Resu
     channels.iter().try_for_each(|(channel, _)| channel.verify(bytes))
 }
 
-/// Refuses bytes that cannot be read where they lie, on this machine or at this address.
+/// Refuses bytes that cannot be read in place, on this machine or at this address.
 fn check_in_place(bytes: &[u8]) -> Result<(), FormatError> {
     if cfg!(target_endian = "big") {
         return Err(FormatError::Endianness);

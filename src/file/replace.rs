@@ -1,4 +1,4 @@
-//! Replacing a file as a whole: at any moment there is the old file or the new one.
+//! Atomic replacement of a file: at any moment either the old file or the new file is there.
 
 use crate::error::Error;
 #[cfg(target_os = "linux")]
@@ -13,11 +13,11 @@ use std::path::{Path, PathBuf};
 use std::sync::{Mutex, MutexGuard, PoisonError};
 use tempfile::{Builder, NamedTempFile};
 
-/// Replaces the file at `path` by what `write` writes, as [`save`](super::save) does for octrees: for files
-/// of other kinds, with the same promises.
+/// Replaces the file at `path` by the output of `write`, with the same guarantees as [`save`](super::save)
+/// for octrees. Meant for files of other kinds.
 ///
-/// The function `write` gets a file to write to from its beginning, or from the end of what was in it if
-/// `path` is no regular file. The old file stays as it was until `write` has returned without an error.
+/// `write` gets a file, positioned at its beginning, or at the end of its contents if `path` is no regular
+/// file. The old file stays as it is until `write` has returned without an error.
 ///
 /// ```
 /// # let folder = tempfile::tempdir().unwrap();
@@ -29,9 +29,9 @@ use tempfile::{Builder, NamedTempFile};
 /// ```
 ///
 /// # Errors
-/// Whatever `write` returns, and [`Error::File`] with the path and the cause [`Error::Io`]. The old file is
-/// then as it was, and no temporary file is left; only if the very last step fails, synchronising the
-/// directory, the new file is already in place.
+/// The errors of `write`, and [`Error::File`] with the path and the cause [`Error::Io`]. On an error the old
+/// file is unchanged, and no temporary file remains. The only exception is a failure of the very last step,
+/// synchronising the directory: the new file is then in place already.
 pub fn replace(
     path: impl AsRef<Path>,
     write: impl FnOnce(&mut File) -> Result<(), Error>,
@@ -44,17 +44,16 @@ pub fn replace(
     })
 }
 
-/// Removes the temporary files of all saves that are under way in this process. To be called right before the
-/// process ends: **from then on, every save in this process blocks for ever** where it would create, rename
-/// or remove a temporary file.
+/// Removes the temporary files of all running saves of this process. Call it right before the process ends:
+/// **from then on, every save in this process blocks for ever** where it would create, rename or remove a
+/// temporary file.
 ///
-/// This is for programs that end when a signal arrives. Such a program waits for the signal in a thread of
-/// its own and calls this function there: it takes a lock, which a signal handler must not. The old files
-/// stay as they are.
+/// This function is for programs that end when a signal arrives. Such a program waits for the signal in a
+/// thread of its own and calls this function there: the function takes a lock, which a signal handler must
+/// not do. The old files stay as they are.
 ///
-/// A save on Linux has no temporary file with a name for most of the time, so that nothing is left behind by
-/// a process that just ends. Other systems, and file systems without unnamed files such as NFS, need this
-/// function.
+/// On Linux a save has no named temporary file for most of the time, so that a process which just ends leaves
+/// nothing behind. Other systems, and file systems without unnamed files such as NFS, need this function.
 pub fn abandon_saves() {
     let names = names();
     remove_all(&names);
@@ -62,17 +61,18 @@ pub fn abandon_saves() {
     std::mem::forget(names);
 }
 
-/// The names of temporary files that exist now. Whoever creates, renames or removes one holds the lock.
+/// The names of temporary files that exist now. The lock is held while a temporary file is created, renamed
+/// or removed.
 static NAMES: Mutex<Vec<PathBuf>> = Mutex::new(Vec::new());
 
 fn names() -> MutexGuard<'static, Vec<PathBuf>> {
-    // The list is in order whenever a panic may happen.
+    // The list is consistent whenever a panic may happen.
     NAMES.lock().unwrap_or_else(PoisonError::into_inner)
 }
 
 fn remove_all(names: &[PathBuf]) {
     for name in names {
-        // The process is about to end: nobody could do anything about a failure.
+        // The process is about to end: nothing can be done about a failure.
         let _ = std::fs::remove_file(name);
     }
 }
@@ -90,10 +90,10 @@ fn replace_path(path: &Path, write: impl FnOnce(&mut File) -> Result<(), Error>)
     let directory = target.parent().filter(|parent| !parent.as_os_str().is_empty());
     let directory = directory.unwrap_or(Path::new("."));
     if existing.is_some() {
-        // Renaming would not ask whether the old file may be written to.
+        // Renaming would not check the write permission of the old file.
         OpenOptions::new().write(true).open(&target)?;
     }
-    // A directory that may be written to but not read cannot be synchronised.
+    // A directory with write but without read permission cannot be synchronised.
     #[cfg(unix)]
     let handle = File::open(directory).ok();
     let permissions = existing.map(|existing| existing.permissions());
@@ -108,26 +108,26 @@ fn replace_path(path: &Path, write: impl FnOnce(&mut File) -> Result<(), Error>)
     Ok(())
 }
 
-/// A file that is not in its place yet. If it is dropped, nothing is left of it.
+/// A file that is not in its place yet. If it is dropped, it is removed.
 enum Temporary {
-    /// One without a name, which vanishes with the process, however that ends.
+    /// A file without a name, which vanishes with the process, however the process ends.
     #[cfg(target_os = "linux")]
     Unnamed(File),
     Named(Named),
 }
 
 impl Temporary {
-    /// One in a directory, without a name if the file system can do that. If the file `is_new` and replaces
-    /// none, it gets the permissions that the process gives to new files.
+    /// Creates a temporary file in a directory, without a name if the file system supports that. If the file
+    /// `is_new` and replaces none, it gets the permissions that the process gives to new files.
     fn new(directory: &Path, is_new: bool) -> io::Result<Temporary> {
         #[cfg(target_os = "linux")]
         {
             use rustix::fs::{Mode, OFlags, open};
             let flags = OFlags::TMPFILE | OFlags::RDWR | OFlags::CLOEXEC;
-            // The umask is taken off by the system.
+            // The system subtracts the umask.
             let mode = Mode::from_raw_mode(if is_new { 0o666 } else { 0o600 });
-            // If this fails for another reason than that the file system cannot do it, so does the other way,
-            // and tells.
+            // If this fails for another reason than missing support, the second attempt fails too and reports
+            // the reason.
             if let Ok(file) = open(directory, flags, mode) {
                 return Ok(Temporary::Unnamed(file.into()));
             }
@@ -143,7 +143,7 @@ impl Temporary {
         }
     }
 
-    /// Gives the file its permissions, if it does not have them, and brings it to the disk.
+    /// Gives the file its permissions, if it does not have them, and writes it to the disk.
     fn finish(&mut self, permissions: Option<&Permissions>) -> io::Result<()> {
         let file = self.file();
         if let Some(permissions) = permissions {
@@ -152,20 +152,21 @@ impl Temporary {
         file.sync_all()
     }
 
-    /// Puts the file, which is finished, in its place.
+    /// Moves the finished file to its place.
     #[cfg_attr(not(target_os = "linux"), expect(unused_variables))]
     fn put(self, target: &Path, directory: &Path, permissions: Option<&Permissions>) -> io::Result<()> {
         match self {
             #[cfg(target_os = "linux")]
             Temporary::Unnamed(mut file) => {
-                // A link replaces nothing: the file gets a name first. That lasts no longer than the lock.
+                // Linking cannot replace a file, so the file gets a temporary name first. The name exists
+                // only while the lock is held.
                 let guard = names();
                 if let Ok(linked) = builder().make_in(directory, |name| link(&file, name)) {
                     linked.persist(target).map_err(|refused| refused.error)?;
                     return Ok(());
                 }
                 drop(guard);
-                // Without `/proc`, or where a rule of the system forbids links, only a copy gets a name.
+                // Without `/proc`, or if a rule of the system forbids links, a copy with a name is made.
                 let mut named = Named::new(directory, permissions.is_none())?;
                 file.rewind()?;
                 io::copy(&mut file, named.file.as_file_mut())?;
@@ -178,7 +179,7 @@ impl Temporary {
     }
 }
 
-/// Gives a name to a file that has none.
+/// Gives a name to an unnamed file.
 #[cfg(target_os = "linux")]
 fn link(file: &File, name: &Path) -> io::Result<()> {
     use rustix::fs::{AtFlags, CWD, linkat};
@@ -187,17 +188,17 @@ fn link(file: &File, name: &Path) -> io::Result<()> {
     Ok(linkat(CWD, &unnamed, CWD, name, AtFlags::SYMLINK_FOLLOW)?)
 }
 
-/// How temporary files are named.
+/// Returns a builder with the naming scheme of temporary files.
 fn builder() -> Builder<'static, 'static> {
     let mut builder = Builder::new();
     builder.prefix(".leafless-").suffix(".tmp");
     builder
 }
 
-/// A temporary file whose name is in the list of names.
+/// A temporary file whose name is in the list.
 struct Named {
     file: NamedTempFile,
-    /// Dropped after the file, which is removed when it is dropped.
+    /// Dropped after `file`, whose drop removes the file.
     listed: Listed,
 }
 
@@ -208,8 +209,8 @@ impl Named {
         let builder = {
             use std::os::unix::fs::PermissionsExt;
             let mut builder = builder;
-            // The umask is taken off by the system. Where a file is replaced nobody else may look at the new
-            // one before it has the old one's permissions.
+            // The system subtracts the umask. If a file is replaced, nobody else may read the new one before
+            // it has the permissions of the old one.
             if is_new {
                 builder.permissions(Permissions::from_mode(0o666));
             }
@@ -243,8 +244,8 @@ impl Drop for Listed {
     }
 }
 
-/// An error of `tempfile` without the temporary file's name, which means nothing to whoever saves. The
-/// system's number is kept in its text only.
+/// Removes the temporary file's name, which means nothing to the caller, from an error of `tempfile`. The
+/// system's error number is only in its text.
 fn without_name(error: io::Error) -> io::Error {
     let text = error.to_string();
     let number = text.split_once("(os error ").and_then(|(_, rest)| rest.split_once(')'));
@@ -252,7 +253,7 @@ fn without_name(error: io::Error) -> io::Error {
     code.map_or(error.kind().into(), io::Error::from_raw_os_error)
 }
 
-/// Synchronises a directory, where its file system can.
+/// Synchronises a directory, if its file system supports that.
 #[cfg(unix)]
 fn synchronise(directory: &File) -> Result<(), Error> {
     match directory.sync_all() {
@@ -263,17 +264,17 @@ fn synchronise(directory: &File) -> Result<(), Error> {
     }
 }
 
-/// The path that `path` names once all symbolic links at its end are followed; the last need not exist.
-/// `None` if one of them stands for an open file of a process.
+/// Follows all symbolic links at the end of `path` and returns the target, which need not exist. `None` if
+/// one of the links stands for an open file of a process.
 fn follow_links(path: &Path) -> Result<Option<PathBuf>, Error> {
     let mut target = path.to_path_buf();
-    // As many as Linux follows.
+    // The same limit as in Linux.
     for _ in 0..40 {
         match std::fs::symlink_metadata(&target) {
             Ok(metadata) if metadata.file_type().is_symlink() => {
                 let directory = target.parent().unwrap_or(Path::new(""));
-                // `/proc/self/fd/1`, which `/dev/stdout` leads to, reads as a link, but is none: what it
-                // names may be a pipe, removed, or open for appending.
+                // `/proc/self/fd/1`, the target of `/dev/stdout`, reads as a link but is none: the file may
+                // be a pipe, removed, or open for appending.
                 if directory.canonicalize().is_ok_and(|directory| directory.starts_with("/proc")) {
                     return Ok(None);
                 }
@@ -284,7 +285,7 @@ fn follow_links(path: &Path) -> Result<Option<PathBuf>, Error> {
             Err(error) => return Err(error.into()),
         }
     }
-    // The system says what is wrong with such a chain.
+    // The system reports the problem of such a chain.
     std::fs::metadata(&target)?;
     Ok(Some(target))
 }
@@ -323,7 +324,7 @@ mod tests {
         assert_eq!((count(folder.path()), here(&names()).len()), (1, 0));
     }
 
-    /// Both kinds of temporary files do the same.
+    /// Both kinds of temporary files behave alike.
     #[test]
     fn what_is_put_in_place_is_complete() {
         let folder = tempfile::tempdir().unwrap();
@@ -342,7 +343,7 @@ mod tests {
                 assert_eq!((std::fs::read(&target).unwrap(), count(folder.path())), (bytes.into_bytes(), 1));
             }
         }
-        // What cannot be put in place leaves nothing.
+        // A file that cannot be put in its place leaves nothing behind.
         for named in [false, true] {
             let temporary = match named {
                 true => Temporary::Named(Named::new(folder.path(), true).unwrap()),

@@ -1,4 +1,4 @@
-//! The section table: which bytes of a file are what, and whose.
+//! The section table: the ranges, kinds and owners of sections.
 
 use super::field::illegal;
 use super::header::{ENTRY_LENGTH, Head};
@@ -14,18 +14,18 @@ use core::ops::Range;
 /// Offsets of sections are multiples of this; part of the format.
 pub(super) const SECTION_ALIGNMENT: u64 = 64;
 
-/// Most bytes that the metadata may take; part of the format. It bounds the work of mapping a file.
+/// Maximum number of bytes of the metadata; part of the format. It bounds the work of mapping a file.
 pub(super) const MAX_METADATA: u64 = 1 << 20;
 const _: () = assert!(MAX_METADATA == MetadataLimit::SOLID.bytes() as u64);
 
-/// Elements one after another as they are; part of the format. 1 is reserved for the archive.
+/// Unencoded elements, one after another; part of the format. 1 is reserved for the archive.
 const RAW: u8 = 0;
 
 wire_struct! {
     /// One entry of the section table.
     struct Entry: 48 {
         0 kind: u32,
-        /// The object that the section belongs to.
+        /// The object that owns the section.
         4 owner: u32,
         8 element_type: u8,
         9 components: u8,
@@ -36,7 +36,7 @@ wire_struct! {
         24 length: u64,
         32 count: u64,
         40 crc: u32,
-        /// 0, or one more than the index of the entry whose bytes these are, too.
+        /// 0, or one more than the index of the entry whose bytes this section shares.
         44 same: u32,
     }
 }
@@ -44,18 +44,18 @@ wire_struct! {
 const _: () = assert!(size_of::<Entry>() == ENTRY_LENGTH);
 
 impl Entry {
-    /// The bytes of the section in the file. Nothing overflows in an entry that [`Table::read`] let pass;
-    /// any other may yield a range that is no range of the file.
+    /// Returns the byte range of the section in the file. For an entry that [`read_table`] accepted, nothing
+    /// overflows. For any other entry the range may lie outside of the file.
     pub(super) fn range(&self) -> Range<u64> {
         self.offset..self.offset.saturating_add(self.length)
     }
 
-    /// The kind, if it is a section of object 0, `main`, that this library knows.
+    /// Returns the kind, if it is a section of object 0, `main`, that this library knows.
     pub(super) fn known(&self, main: &Object, minor: u16) -> Option<Kind> {
         Kind::of(self.kind, main, minor).filter(|_| self.owner == 0)
     }
 
-    /// Its name in error messages.
+    /// Returns the section's name for error messages.
     pub(super) fn name(&self, main: &Object, minor: u16) -> &'static str {
         let unknown = if self.owner == 0 { "an unknown section" } else { "a section of another object" };
         self.known(main, minor).map_or(unknown, Kind::name)
@@ -66,7 +66,7 @@ impl Entry {
         if self.kind == 0 {
             return Err(illegal("section kind", self.kind));
         }
-        // A newer minor version may have given a meaning to what is reserved today.
+        // A newer minor version may use fields that are reserved today.
         if !newer {
             if self.flags & !SECTION_REQUIRED != 0 {
                 return Err(illegal("section flags", self.flags));
@@ -91,14 +91,14 @@ impl Entry {
     }
 }
 
-/// Checks the bytes of a section table against its header: entries ascend by owner and kind; their bytes
-/// ascend without overlap, or are those of an earlier entry; the last of them end where the file does.
-/// Returns where the sections of object 0 lie. O(sections).
+/// Checks the bytes of a section table against its header. Entries ascend by owner and kind. Their bytes
+/// ascend without overlap, or are those of an earlier entry. The last bytes end where the file ends. Returns
+/// the ranges of the sections of object 0. O(sections).
 pub(super) fn read_table(head: &Head, table: &[u8]) -> Result<Sections, FormatError> {
     let newer = head.header.is_newer();
     let main = Object::main(&head.header);
     let mut end = head.table_range().end as u64;
-    // The first section says how many objects there are.
+    // The first section determines the number of objects.
     let mut objects = 0;
     let mut last = (0, 0);
     for (index, entry) in entries(table).enumerate() {
@@ -136,7 +136,7 @@ pub(super) fn read_table(head: &Head, table: &[u8]) -> Result<Sections, FormatEr
             };
         }
     }
-    // What the sections of other objects are is known to whoever knows these objects.
+    // Only readers of the other objects can interpret their sections.
     let of_main = entries(table).take_while(|entry| entry.owner == 0);
     let sections = Sections::of(&main, head.header.minor, MAX_METADATA, of_main)?;
     if end != head.header.file_length {
@@ -145,14 +145,15 @@ pub(super) fn read_table(head: &Head, table: &[u8]) -> Result<Sections, FormatEr
     Ok(sections)
 }
 
-/// Where the sections of an object lie. Every one that its record makes necessary is there with its length.
+/// The ranges of an object's sections. Every section that the object's record requires is present with the
+/// right length.
 #[derive(Debug, Clone)]
 pub(super) struct Sections {
     ranges: [Range<u64>; KINDS],
 }
 
 impl Sections {
-    /// Checks the entries of an object's sections, of which each by itself was found right.
+    /// Checks the entries of an object's sections. Each entry by itself has been checked.
     pub(super) fn of(
         object: &Object,
         minor: u16,
@@ -184,7 +185,7 @@ impl Sections {
             ranges[kind.slot()] = entry.range();
         }
         for kind in Kind::ALL.into_iter().filter(|&kind| Kind::of(kind as u32, object, minor).is_some()) {
-            // None is empty that is there.
+            // A section that is present is not empty.
             let present = ranges[kind.slot()].end != 0;
             if kind.demanded(object).is_some_and(|count| present != (count != 0)) {
                 return Err(FormatError::Section { name: kind.name() });
@@ -195,7 +196,7 @@ impl Sections {
         Ok(sections)
     }
 
-    /// Checks that the sections of cuts are there together, and have as many elements as the others say.
+    /// Checks that the sections of cuts are present together, and that their sizes agree.
     fn check_cuts(&self, object: &Object) -> Result<(), FormatError> {
         let count = |kind: Kind| {
             let (element, components) = kind.element(object);
@@ -226,15 +227,15 @@ impl Sections {
         Ok(())
     }
 
-    /// Where a section lies; nowhere if it is absent.
+    /// Returns the range of a section; empty if it is absent.
     pub(super) fn range(&self, kind: Kind) -> &Range<u64> {
         &self.ranges[kind.slot()]
     }
 
-    /// Where the sections of `object` lie that are there, and what their numbers are.
+    /// Returns the ranges of the sections of `object` that are present, and the types of their numbers.
     pub(super) fn numbers(&self, object: &Object) -> impl Iterator<Item = (Range<u64>, Element)> {
         let element = move |kind: Kind| match kind {
-            // All of its numbers are of eight bytes.
+            // All of its numbers have eight bytes.
             Kind::Placements => Element::U64,
             _ => kind.element(object).0,
         };
@@ -242,23 +243,23 @@ impl Sections {
         Kind::ALL.into_iter().map(numbers).filter(|(range, _)| !range.is_empty())
     }
 
-    /// The bytes of a section; none if it is absent.
+    /// Returns the bytes of a section; none if it is absent.
     pub(super) fn bytes<'a>(&self, bytes: &'a [u8], kind: Kind) -> Result<&'a [u8], FormatError> {
         section(bytes, self.range(kind))
     }
 
-    /// The numbers of a section, where they lie; none if it is absent.
+    /// Returns the numbers of a section in place; none if it is absent.
     pub(super) fn array<'a, T: Pod>(&self, bytes: &'a [u8], kind: Kind) -> Result<&'a [T], FormatError> {
         bytemuck::try_cast_slice(self.bytes(bytes, kind)?).map_err(|_| FormatError::Alignment)
     }
 }
 
-/// The entries of a section table.
+/// Iterates over the entries of a section table.
 pub(super) fn entries(table: &[u8]) -> impl Iterator<Item = Entry> {
     elements(table)
 }
 
-/// The part `range` of a file.
+/// Returns the part `range` of a file.
 pub(super) fn section<'a>(bytes: &'a [u8], range: &Range<u64>) -> Result<&'a [u8], FormatError> {
     let in_memory = usize::try_from(range.start).ok().zip(usize::try_from(range.end).ok());
     in_memory

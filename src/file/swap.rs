@@ -1,4 +1,4 @@
-//! From the file's byte order to that of a big-endian machine.
+//! Conversion from the file's byte order to that of a big-endian machine.
 
 use super::channel::ChannelLayout;
 use super::kind::{Element, Kind};
@@ -11,7 +11,7 @@ use crate::octree::Metadata;
 use alloc::vec::Vec;
 
 /// Reverses the bytes of every number in the sections of a solid and its channels. Several sections, also of
-/// several objects, may have the same bytes: those are reversed once.
+/// several objects, may share their bytes; these are reversed once.
 ///
 /// # Errors
 /// [`Error::OutOfMemory`].
@@ -25,11 +25,11 @@ pub(super) fn swap_bytes(
     for (channel, _) in channels {
         sections.extend(channel.numbers());
     }
-    // Sections with the same bytes have the same elements, as the section table was checked to say.
+    // The check of the section table ensures that sections with the same bytes have the same elements.
     sections.sort_unstable_by_key(|(range, _)| range.start);
     sections.dedup_by_key(|(range, _)| range.start);
     for (range, element) in sections {
-        // All of them lie in the file, as was checked.
+        // All of them lie in the file; this was checked.
         let Some(section) = bytes.get_mut(range.start as usize..range.end as usize) else { continue };
         match element {
             Element::Record => swap_all::<Object>(section),
@@ -54,7 +54,7 @@ mod tests {
     use crate::op::Rule;
     use crate::solid::Csg;
 
-    /// What a big-endian machine does when it reads a file, seen from a little-endian one.
+    /// Simulates on a little-endian machine how a big-endian machine reads a file.
     #[test]
     fn every_number_of_a_file_is_swapped_once() {
         let frame = Frame::new([0.0; 3], 1.0, 7).unwrap();
@@ -84,14 +84,14 @@ mod tests {
         }
         swap_bytes(&layout, &[], &mut swapped).unwrap();
         assert_eq!(swapped, bytes);
-        // Of sections that share their bytes, too: `rel` and the brick indices, `base` and the dictionary.
+        // Sections that share their bytes: `rel` and the brick indices, `base` and the dictionary.
         let shared = include_bytes!("../../format_spec/vectors/valid/shared-sections.lfl");
         let both = Layout::read(shared, Model::Octree).unwrap();
         assert_eq!(both.sections.range(Kind::Base), both.sections.range(Kind::Entries));
         let mut swapped = shared.to_vec();
         swap_bytes(&both, &[], &mut swapped).unwrap();
         assert_eq!(both.sections.bytes(&swapped, Kind::Base).unwrap(), 1u64.to_be_bytes());
-        // And the structures themselves.
+        // The structures themselves.
         let header = layout.head.header;
         assert_eq!(header.swap_bytes().file_length.to_be_bytes(), header.file_length.to_le_bytes());
         assert_eq!((header.swap_bytes().depth, header.swap_bytes().magic), (7, MAGIC));
@@ -100,7 +100,7 @@ mod tests {
         assert_eq!(object.swap_bytes().bricks.to_be_bytes(), header.bricks.to_le_bytes());
         assert_eq!((object.swap_bytes().depth, object.swap_bytes().swap_bytes()), (7, object));
     }
-    /// The sections of channels, of which some are the solid's or another channel's.
+    /// Sections of channels, some of which are shared with the solid or another channel.
     #[test]
     fn what_channels_share_is_swapped_once() {
         let bytes = include_bytes!("../../format_spec/vectors/valid/channels-shared.lfl");

@@ -1,4 +1,4 @@
-//! The arrays of a tree as sections: those of an octree, and those of a channel.
+//! The sections of a tree's arrays, for an octree or a channel.
 
 use super::compose::Section;
 use super::counts::{Counts, ENCODING_DICTIONARY, ENCODING_RAW};
@@ -18,7 +18,7 @@ use alloc::vec::Vec;
 use bytemuck::Pod;
 use core::mem::offset_of;
 
-// The elements of sections are the structures in memory.
+// The elements of sections have the layout of the structures in memory.
 wire_struct!(Planes { lower, upper });
 wire_struct!(LevelCounts { nodes, full, partial });
 
@@ -30,11 +30,11 @@ const _: () = {
     assert!(offset_of!(LevelCounts, full) == 8 && offset_of!(LevelCounts, partial) == 16);
 };
 
-/// Where each element level of a tree begins.
+/// The start of each element level of a tree.
 pub(super) type Starts = [usize; MAX_ELEMENT_LEVELS + 1];
 
-/// The arrays of an object with a tree, whose numbers have this machine's order, as a tree of cells that
-/// prove nothing yet, with nothing outside.
+/// Returns a view of the arrays of an object with a tree, whose numbers have this machine's byte order. Its
+/// exterior is EMPTY and its proof is that of certified cells; octrees replace both.
 pub(super) fn view<'a>(
     object: &Object,
     sections: &Sections,
@@ -77,9 +77,9 @@ pub(super) fn view<'a>(
     })
 }
 
-/// Where each element level begins, from the level table: the elements of level e are the nodes of the
-/// octree level at which their own cells lie. All reading code relies on what is checked here: the starts
-/// ascend, bricks begin where elements end, and all elements and bricks belong to a level.
+/// Returns the start of each element level, from the level table. The elements of level e are the nodes of
+/// the octree level to which their own cells belong. All reading code relies on the checks made here: the
+/// starts ascend, bricks begin where elements end, and all elements and bricks belong to a level.
 pub fn starts(counts: &Counts, levels: &[u8]) -> Result<Starts, Error> {
     let &Counts { elements: elements_total, bricks, depth, root, .. } = counts;
     let count = element_levels(depth);
@@ -91,7 +91,7 @@ pub fn starts(counts: &Counts, levels: &[u8]) -> Result<Starts, Error> {
         if level == 0 && counts.nodes != (root == Tag::Branch as u8) as u64 {
             return Err(wrong(0));
         }
-        // Of an odd depth, the root element's own cell would lie one level above the universe.
+        // In a tree of odd depth, the root element's own cell would be one level above the universe.
         let padded = level + depth as usize % 2;
         let own = level == 0 || padded.is_multiple_of(2);
         if let Some(nodes) = nodes.get_mut(padded / 2).filter(|_| own && padded / 2 < count) {
@@ -112,7 +112,7 @@ pub fn starts(counts: &Counts, levels: &[u8]) -> Result<Starts, Error> {
     Ok(starts)
 }
 
-/// How bricks are coded, as a header or a record says it.
+/// The encoding of bricks, as in a header or a record.
 pub(super) struct Coding {
     pub planes: u8,
     pub encoding: u8,
@@ -120,8 +120,8 @@ pub(super) struct Coding {
     pub entries: u64,
 }
 
-/// Appends the sections of a tree; returns how its bricks are coded. Where a file codes the bricks otherwise
-/// than the tree does, they are given `encoded`.
+/// Appends the sections of a tree; returns the encoding of its bricks. If the file encodes the bricks in
+/// another way than the tree does, `encoded` holds them.
 pub(super) fn append<'a>(
     owner: u32,
     tree: &OctreeRef<'a>,
@@ -147,7 +147,7 @@ pub(super) fn append<'a>(
     coding
 }
 
-/// Raw bricks, indices, entries and segments, of which `elements` makes those that are bricks.
+/// Returns raw bricks, indices, entries and segments. `elements` converts the arrays of bricks.
 fn brick_elements<'a, T>(
     bricks: &BrickArray<'a, T>,
     planes: u8,

@@ -1,4 +1,4 @@
-//! Files of tri-dexel models. What is public of it is in [`dexels`](super::dexels).
+//! Files of tri-dexel models. The public items are in [`dexels`](super::dexels).
 
 use super::compose::Section;
 use super::elements::Elements;
@@ -24,7 +24,7 @@ use core::mem::offset_of;
 #[cfg(feature = "std")]
 use std::{io::Write, path::Path};
 
-// The elements of sections are the structures in memory.
+// The elements of sections have the layout of the structures in memory.
 const _: () = {
     assert!(size_of::<FixedSpan>() == 8 && align_of::<FixedSpan>() == 4);
     assert!(offset_of!(FixedSpan, start) == 0 && offset_of!(FixedSpan, length) == 4);
@@ -36,7 +36,7 @@ impl Stored for TriDexel {
     const MODEL: Model = Model::Dexels;
 
     type View<'a> = TriDexelRef<'a>;
-    /// What is stored, and the window of each direction.
+    /// The stored properties, and the window of each direction.
     type Shape = (Form, [Window; 3]);
     /// The windows of the directions that have rays.
     type Prepared = Vec<[u32; 4]>;
@@ -50,7 +50,7 @@ impl Stored for TriDexel {
             let window = Window { first: [u, v], size: [width, height] };
             let cells = u64::from(layout.head.frame.cells());
             let fits = (0..2).all(|i| u64::from(window.first[i]) + u64::from(window.size[i]) <= cells);
-            // Of nothing there is one window.
+            // An empty window has only one representation.
             if !fits || window.is_empty() && window != Window::default() {
                 return Err(illegal("window", axis as u64).into());
             }
@@ -137,7 +137,7 @@ impl Stored for TriDexel {
     }
 }
 
-/// The rays of a direction in `bytes`.
+/// Returns the rays of a direction in `bytes`.
 fn rows<'a, S: Span>(
     layout: &Layout,
     format: DexelFormat,
@@ -165,7 +165,7 @@ fn rows<'a, S: Span>(
     })
 }
 
-/// The sections of a direction, whose spans are pairs of the numbers that `spans` takes.
+/// Returns the sections of a direction. `spans` converts its spans, which are pairs of numbers.
 fn columns<'a, S: Span, N: bytemuck::Pod>(
     axis: usize,
     rows: &RowsRef<'a, S>,
@@ -192,55 +192,55 @@ where
     .map(|(column, elements)| (0, Kind::along(axis, column), elements))
 }
 
-/// The file of `model`, in memory.
+/// Returns the file of `model` as bytes.
 ///
-/// The bytes depend on the model and its metadata alone: equal models with equal metadata give equal bytes.
-/// The model is [checked](TriDexelRef::check) first, so that every file that is written can be read. O(n).
+/// The bytes depend only on the model and its metadata: equal models with equal metadata give equal bytes.
+/// The model is [checked](TriDexelRef::check) first, so that every written file can be read. O(n).
 ///
 /// # Errors
-/// [`Error::DamagedRays`] if the model is a mapped one that nobody has verified, and is damaged;
-/// [`Error::Argument`] if the metadata take more than 1 MiB; [`Error::OutOfMemory`].
+/// [`Error::DamagedRays`] if the model is mapped, not verified, and damaged; [`Error::Argument`] if the
+/// metadata take more than 1 MiB; [`Error::OutOfMemory`].
 pub fn to_bytes(model: &TriDexel) -> Result<Vec<u8>, Error> {
     write::to_bytes(model)
 }
 
-/// Writes the file of `model` to `out`, the same bytes as [`to_bytes`], in a few large pieces: no buffer is
-/// needed around `out`, and the file is never in memory as a whole. `out` is flushed at the end.
+/// Writes the file of `model` to `out`, the same bytes as [`to_bytes`], in a few large pieces. `out` needs no
+/// buffer around it, and the file is never in memory as a whole. `out` is flushed at the end.
 ///
 /// # Errors
-/// As [`to_bytes`], before anything is written; [`Error::Io`] as `out` returns it.
+/// The errors of [`to_bytes`], before anything is written; [`Error::Io`] as `out` returns it.
 #[cfg(feature = "std")]
 pub fn write_to(model: &TriDexel, out: impl Write) -> Result<(), Error> {
     write::write_to(model, out)
 }
 
-/// Saves `model` in the file at `path`: at any moment, also after a crash or a power failure, there is the
-/// old file or the new one, each complete. What [`file::save`](super::save) says of permissions, links, pipes
-/// and temporary files holds here, too.
+/// Saves `model` in the file at `path`. At any moment, also after a crash or a power failure, either the old
+/// file or the new file is there, and it is complete. Permissions, links, pipes and temporary files are
+/// handled as by [`file::save`](super::save).
 ///
 /// # Errors
-/// As [`to_bytes`], and [`Error::File`] with the path and the cause [`Error::Io`]. The old file is then as it
-/// was, unless it is the very last step that fails, synchronising the directory.
+/// The errors of [`to_bytes`], and [`Error::File`] with the path and the cause [`Error::Io`]. On an error the
+/// old file is unchanged. The only exception is a failure of the very last step, synchronising the directory.
 #[cfg(feature = "std")]
 pub fn save(model: &TriDexel, path: impl AsRef<Path>) -> Result<(), Error> {
     write::save(model, path.as_ref())
 }
 
-/// The model in `bytes`, a whole file, read where it lies: no copy, no allocation.
+/// Returns a view of the model in `bytes`, a whole file, without a copy and without an allocation.
 ///
-/// Header, section table, bounds and windows are checked, and nothing else: O(sections + objects). What holds
-/// of damaged intervals is said [above](super::dexels). The bytes must begin on an address that is a multiple
-/// of 8.
+/// Only header, section table, bounds and windows are checked: O(sections + objects). The
+/// [module](super::dexels) describes the effects of damaged intervals. The bytes must begin at an address
+/// that is a multiple of 8.
 ///
 /// # Errors
-/// [`Error::Format`]; among them [`FormatError::OtherModel`](crate::error::FormatError::OtherModel) for the
-/// file of an octree, and [`FormatError::Endianness`](crate::error::FormatError::Endianness) on big-endian
-/// machines.
+/// [`Error::Format`]; this includes [`FormatError::OtherModel`](crate::error::FormatError::OtherModel) for
+/// the file of an octree, and [`FormatError::Endianness`](crate::error::FormatError::Endianness) on
+/// big-endian machines.
 pub fn view(bytes: &[u8]) -> Result<TriDexelRef<'_>, Error> {
     read::view::<TriDexel>(bytes)
 }
 
-/// The model in `bytes`, a whole file, copied and [verified](super::verify). The bytes may have any
+/// Returns the model in `bytes`, a whole file, copied and [verified](super::verify). The bytes may have any
 /// alignment, and the machine any byte order.
 ///
 /// # Errors
@@ -249,37 +249,38 @@ pub fn from_bytes(bytes: &[u8]) -> Result<TriDexel, Error> {
     read::from_bytes(bytes)
 }
 
-/// The model in `bytes`, a whole file that lives as long as the program (one that was linked into it, say),
-/// read where it lies as by [`view`].
+/// Returns the model in `bytes`, a whole file that lives as long as the program (for example linked into it),
+/// read in place as by [`view`].
 ///
 /// # Errors
-/// As [`view`], and [`FormatError::Metadata`](crate::error::FormatError::Metadata).
+/// The errors of [`view`], and [`FormatError::Metadata`](crate::error::FormatError::Metadata).
 pub fn from_static(bytes: &'static [u8]) -> Result<TriDexel, Error> {
     read::from_static(bytes)
 }
 
-/// The model in the file at `path`, read into memory and [verified](super::verify). Later changes of the file
-/// do not matter. A pipe or device may be read too.
+/// Reads the model in the file at `path` into memory, and [verifies](super::verify) it. Later changes of the
+/// file have no effect. A pipe or device may be read too.
 ///
 /// # Errors
-/// [`Error::File`] with the path and one of these causes: as [`from_bytes`], and [`Error::Io`].
+/// [`Error::File`] with the path and one of these causes: the errors of [`from_bytes`], and [`Error::Io`].
 #[cfg(feature = "std")]
 pub fn open(path: impl AsRef<Path>) -> Result<TriDexel, Error> {
     read::open(path.as_ref())
 }
 
-/// The model in the file at `path`, mapped into memory: nothing is copied, and only what is asked for is ever
-/// read from disk. Header, section table, bounds, windows and metadata are checked, and nothing else:
-/// O(sections + objects), some microseconds for a file of any size. What holds of damaged intervals is said
-/// [above](super::dexels).
+/// Maps the model in the file at `path` into memory: nothing is copied, and only the parts that queries touch
+/// are ever read from disk. Only header, section table, bounds, windows and metadata are checked: O(sections
+/// + objects), some microseconds for a file of any size. The [module](super::dexels) describes the effects of
+/// damaged intervals.
 ///
 /// # Errors
 /// [`Error::File`] with the path and one of these causes: [`Error::Io`];
 /// [`FormatError::NotRegular`](crate::error::FormatError::NotRegular) if there is no regular file at `path`;
-/// else as [`view`], and [`FormatError::Metadata`](crate::error::FormatError::Metadata).
+/// the errors of [`view`]; and [`FormatError::Metadata`](crate::error::FormatError::Metadata).
 ///
 /// # Safety
-/// As [`file::map`](super::map()): while the mapping lives, nobody may write to the file or make it shorter.
+/// The conditions of [`file::map`](super::map()): while the mapping lives, nobody may write to the file or
+/// make it shorter.
 #[cfg(feature = "mmap")]
 #[allow(unsafe_code)]
 pub unsafe fn map(path: impl AsRef<Path>) -> Result<TriDexel, Error> {
@@ -287,14 +288,14 @@ pub unsafe fn map(path: impl AsRef<Path>) -> Result<TriDexel, Error> {
     unsafe { read::map(path.as_ref(), false) }
 }
 
-/// As [`map`], but verifies all of the file first, in one scan: everything that [`verify`](super::verify)
-/// checks.
+/// Maps a file as [`map`] does, and verifies all of it in one scan: everything that
+/// [`verify`](super::verify) checks.
 ///
 /// # Errors
-/// As [`map`], and as [`verify`](super::verify).
+/// The errors of [`map`] and of [`verify`](super::verify).
 ///
 /// # Safety
-/// As [`map`]. What was verified may be changed afterwards by whoever breaks that promise.
+/// The conditions of [`map`]. A program that violates them may change the file after it was verified.
 #[cfg(feature = "mmap")]
 #[allow(unsafe_code)]
 pub unsafe fn map_verified(path: impl AsRef<Path>) -> Result<TriDexel, Error> {

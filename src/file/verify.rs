@@ -1,4 +1,4 @@
-//! Verifying whatever a file holds.
+//! Verification of files of any kind.
 
 #[cfg(feature = "std")]
 use super::buffer;
@@ -10,13 +10,14 @@ use crate::octree::Octree;
 #[cfg(feature = "std")]
 use std::path::Path;
 
-/// Checks everything that the format promises: what [`view`](super::view) checks, all checksums, that padding
-/// is zero, that the metadata can be read, and that the tree and the channels, or the tri-dexel model, are
-/// well-formed and in canonical form ([`OctreeRef::check`](crate::OctreeRef::check),
+/// Checks everything that the format guarantees: the checks of [`view`](super::view), all checksums, that
+/// padding is zero, that the metadata can be read, and that the tree and the channels, or the tri-dexel
+/// model, are well-formed and in canonical form ([`OctreeRef::check`](crate::OctreeRef::check),
 /// [`ChannelRef::check`](crate::attribute::ChannelRef::check),
-/// [`TriDexelRef::check`](crate::dexel::TriDexelRef::check)). Only whether a writer chose the encoding of the
-/// bricks by the rule is not checked: any encoding is readable. O(n) in the lengths of all sections, of which
-/// several may have the same bytes; needs what `view` needs of the bytes, and memory for the metadata.
+/// [`TriDexelRef::check`](crate::dexel::TriDexelRef::check)). Only one rule is not checked: the writer's
+/// choice of the encoding of the bricks, because any encoding is readable. O(n) in the lengths of all
+/// sections, several of which may share their bytes. The bytes must satisfy the conditions of `view`, and
+/// memory for the metadata is needed.
 ///
 /// # Errors
 /// [`Error::Format`], [`Error::Damaged`] or [`Error::DamagedRays`]; [`Error::OutOfMemory`].
@@ -27,10 +28,11 @@ pub fn verify(bytes: &[u8]) -> Result<(), Error> {
     }
 }
 
-/// As [`verify`] for the file at `path`, which is read into memory. A pipe or device may be read too.
+/// Verifies the file at `path` as [`verify`] does, after reading it into memory. A pipe or device may be read
+/// too.
 ///
 /// # Errors
-/// [`Error::File`] with the path and one of these causes: as [`verify`], and [`Error::Io`].
+/// [`Error::File`] with the path and one of these causes: the errors of [`verify`], and [`Error::Io`].
 #[cfg(feature = "std")]
 pub fn verify_path(path: impl AsRef<Path>) -> Result<(), Error> {
     let path = path.as_ref();

@@ -1,13 +1,13 @@
-//! Numbers as they stand in a file.
+//! Numbers in the byte order of a file.
 
 use bytemuck::Pod;
 
-/// Plain data made of numbers, which stand in a file in little-endian order.
+/// Plain data made of numbers, which a file stores in little-endian order.
 pub(super) trait Wire: Pod {
-    /// The same with the bytes of every number reversed.
+    /// Returns the value with the bytes of every number reversed.
     fn swap_bytes(self) -> Self;
 
-    /// From the order of the file to that of this machine, or back.
+    /// Converts from the byte order of the file to that of this machine, or back.
     #[inline(always)]
     fn ordered(self) -> Self {
         if cfg!(target_endian = "big") { self.swap_bytes() } else { self }
@@ -26,8 +26,8 @@ macro_rules! wire_number {
 }
 wire_number!(u8, u16, u32, u64);
 
-/// Implements [`Wire`] for a struct, or also declares it, each field with its offset, which is part of the
-/// format.
+/// Implements [`Wire`] for a struct, or also declares the struct, with the offset of each field, which is
+/// part of the format.
 macro_rules! wire_struct {
     ($name:ident { $($field:ident),* }) => {
         impl Wire for $name {
@@ -67,12 +67,12 @@ where
     }
 }
 
-/// The numbers in `bytes`, in the order of this machine, wherever they lie in memory.
+/// Iterates over the numbers in `bytes`, in the byte order of this machine; any alignment is allowed.
 pub(super) fn elements<T: Wire>(bytes: &[u8]) -> impl Iterator<Item = T> {
     bytes.chunks_exact(size_of::<T>()).map(|raw| bytemuck::pod_read_unaligned::<T>(raw).ordered())
 }
 
-/// Reverses the bytes of every number: from the file's order to that of a big-endian machine, or back.
+/// Reverses the bytes of every number: from the file's byte order to that of a big-endian machine, or back.
 pub(super) fn swap_all<T: Wire>(bytes: &mut [u8]) {
     for raw in bytes.chunks_exact_mut(size_of::<T>()) {
         let value = bytemuck::pod_read_unaligned::<T>(raw).swap_bytes();

@@ -1,4 +1,4 @@
-//! The ways of a solid into a file, whatever it is.
+//! Writing solids of any kind to files.
 
 use super::channel::PreparedChannel;
 use super::compose::{Deliver, Section, bytes_of, compose};
@@ -15,7 +15,7 @@ use alloc::vec::Vec;
 #[cfg(feature = "std")]
 use std::{io::Write, path::Path};
 
-/// The file of `solid`, in memory.
+/// Returns the file of `solid` as bytes.
 pub(super) fn to_bytes(solid: &impl Stored) -> Result<Vec<u8>, Error> {
     let mut file = Vec::new();
     assemble(solid, &mut |length, write| {
@@ -42,7 +42,7 @@ pub(super) fn save(solid: &impl Stored, path: &Path) -> Result<(), Error> {
     replace(path, |file| write_to(solid, file))
 }
 
-/// Lays out the file of `solid` and tells `deliver` its length and how to write it.
+/// Lays out the file of `solid` and calls `deliver` with its length and a function that writes it.
 fn assemble<T: Stored>(solid: &T, deliver: Deliver<'_>) -> Result<(), Error> {
     T::checked(solid.as_view())?;
     let metadata = bytes_of(solid.metadata(), MetadataLimit::SOLID)?;
@@ -53,7 +53,7 @@ fn assemble<T: Stored>(solid: &T, deliver: Deliver<'_>) -> Result<(), Error> {
     }
     let mut objects: Vec<Object> = memory::with_capacity(1 + channels.len())?;
     let mut sections: Vec<Section<'_>> = memory::with_capacity((1 + channels.len()) * Kind::MOST)?;
-    // In ascending order, as they lie in the file: what is asked first lies together.
+    // In ascending order, as in the file, where the sections that are read first are neighbours.
     sections.push((0, Kind::Metadata, Elements::Bytes(&metadata)));
     let header = solid.append_sections(&prepared, &mut sections);
     objects.push(Object::main(&header));

@@ -1,9 +1,9 @@
-//! How far two meshes are apart: a descent of both trees, the nearest boxes first.
+//! The distance of two meshes: a descent of both trees, nearest boxes first.
 //!
-//! The second mesh may lie under an affine map. Neither its vertices nor its tree are made anew: a box
-//! becomes a box around its image when it is looked at, and so do triangles. All coordinates are those about
-//! the middle of the first mesh, scaled by a power of two so that none is greater than 1 in magnitude. Meshes
-//! that are far from the origin lose nothing by that.
+//! The second mesh may be placed by an affine map. Its vertices and its tree are not transformed: a box
+//! becomes a box around its image when the search visits it, and triangles likewise. All coordinates are
+//! relative to the middle of the first mesh, scaled by a power of two so that no magnitude exceeds 1. Meshes
+//! that are far from the origin therefore lose no precision.
 
 use super::discs::Discs;
 use super::intersections::{corners, meet};
@@ -19,79 +19,79 @@ use crate::memory;
 use alloc::vec::Vec;
 use core::array::from_fn as array;
 
-/// How far boxes of a tree may be beside the triangles, in the units of its grid.
+/// Maximum distance by which boxes of a tree may miss their triangles, in the units of its grid.
 const BOX: f64 = 1.0 / (1 << 24) as f64;
 
-/// More than what rounding changes in a box.
+/// An upper bound of the rounding errors of a box.
 const MARGIN: f64 = 1.0 / (1_u64 << 47) as f64;
 
-/// By which part a distance of boxes may be rounded up.
+/// The relative amount by which a distance of boxes may be rounded up.
 const ROOT: f64 = 1e-12;
 
-/// Pairs of nodes between two looks at the clock.
+/// Pairs of nodes between two checks for cancelling.
 const OFTEN: u64 = 256;
 
-/// Triangles that count of a mesh.
+/// The triangles of a mesh that take part.
 #[derive(Clone, Copy)]
 pub(crate) struct Facets<'m> {
     pub tree: TriangleTree<'m>,
-    /// Which triangles count; all if it is empty.
+    /// True for the triangles that take part; empty if all do.
     pub chosen: &'m [bool],
-    /// If any were made.
+    /// The discs, if they were made.
     pub discs: Option<&'m Discs>,
 }
 
-/// When a search has found enough, in model units.
+/// The conditions that end a search, in model units.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct Enough {
-    /// The bounds are no further apart.
+    /// The search ends when the bounds are no further apart.
     pub tolerance: f64,
-    /// The lower bound is at least that.
+    /// The search ends when the lower bound is at least this.
     pub lower: f64,
-    /// The upper bound is less.
+    /// The search ends when the upper bound is less than this.
     pub upper: f64,
-    /// Pairs of nodes that are looked at, at the most.
+    /// Maximum number of node pairs to visit.
     pub steps: u64,
 }
 
-/// What is known of the distance of two meshes, in model units.
+/// Bounds of the distance of two meshes, in model units.
 pub(crate) struct Apart {
-    /// The least distance of two triangles, one of each mesh.
+    /// The least distance of two triangles, one from each mesh.
     pub distance: Interval,
-    /// The nearest triangles that were met.
+    /// The nearest triangles that were found.
     pub nearest: Option<NearTriangles>,
-    /// Whether triangles surely have points in common.
+    /// True if two triangles are proven to have a common point.
     pub is_sure_contact: bool,
-    /// Whether the steps were spent before enough was known.
+    /// True if the steps were spent before an end condition held.
     pub is_spent: bool,
 }
 
-/// Triangles that are near to each other, and points of them.
+/// Two triangles that are near to each other, with a point on each.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct NearTriangles {
     pub triangles: [u32; 2],
-    /// The weights of the corners in the point of each triangle.
+    /// The weights of the corners for the point on each triangle.
     pub weights: [[f64; 3]; 2],
-    /// The way from the first point to the second, in any unit.
+    /// The vector from the first point to the second, in any unit.
     pub way: Point,
 }
 
-/// Two meshes beside each other.
+/// Two meshes and the map between them.
 pub(crate) struct MeshPair<'m> {
     own: Facets<'m>,
     other: Facets<'m>,
     map: Map,
-    /// How far the facets of both may lie beside what they stand for, as vertices are moved.
+    /// Maximum distance of the facets from the true surfaces, summed over both meshes, due to moved vertices.
     off: f64,
 }
 
-/// From the meshes to common coordinates.
+/// The map from both meshes to common coordinates.
 struct Map {
     /// A power of two.
     scale: f64,
-    /// The middles of the meshes' boxes, about which coordinates are small.
+    /// The middles of the meshes' boxes, relative to which coordinates are small.
     middles: [Point; 2],
-    /// From the second mesh's middle. `None`: it lies where it is.
+    /// Linear map from the second mesh's middle; `None` if the mesh is not moved.
     linear: Option<[Point; 3]>,
     offset: Point,
 }
@@ -139,21 +139,21 @@ impl Map {
     }
 }
 
-/// The axes of the second mesh's boxes, if they are moved without a change of their shape.
+/// The axes of the second mesh's boxes, if the map moves the boxes without changing their shape.
 struct Turned {
     axes: [Axis; 3],
-    /// More than the length of an image of a unit vector.
+    /// An upper bound of the length of a unit vector's image.
     size: f64,
 }
 
-/// An axis of the second mesh's boxes: its number, and the unit vector that it becomes.
+/// An axis of the second mesh's boxes: its number, and the unit vector to which it is mapped.
 struct Axis {
     number: usize,
     way: Point,
 }
 
 impl Turned {
-    /// `linear` leads from the grid of the second mesh.
+    /// Returns the axes after the linear map from the grid of the second mesh; `None` if boxes change shape.
     fn new(linear: &[Point; 3]) -> Option<Turned> {
         let columns: [Point; 3] = array(|k| linear.map(|row| row[k]));
         let sizes = columns.map(|column| sqrt(dot(&column, &column)));
@@ -165,12 +165,12 @@ impl Turned {
         let is_square = [[0, 1], [0, 2], [1, 2]]
             .iter()
             .all(|&[i, j]| dot(&columns[i], &columns[j]).abs() < 0.1 * ROOT * sizes[i] * sizes[j]);
-        // (What is left of obliqueness lets a box stick out by less than that part of the whole.)
+        // (The remaining obliqueness lets a box stick out by less than that part of its size.)
         (is_square && sizes.iter().all(is_alike)).then(|| Turned { axes, size: sizes[0] * (1.0 + ROOT) })
     }
 }
 
-/// Four boxes in common coordinates: middles, and half extents with what rounding may change.
+/// Four boxes in common coordinates: middles, and half extents including rounding errors.
 struct Boxes {
     middle: [[f64; WIDTH]; 3],
     half: [[f64; WIDTH]; 3],
@@ -181,7 +181,7 @@ struct Boxes {
 impl Boxes {
     const NONE: Boxes = Boxes { middle: [[0.0; WIDTH]; 3], half: [[0.0; WIDTH]; 3], own: [[0.0; WIDTH]; 3] };
 
-    /// Those of a node of the first mesh. `unit` is that of the tree's grid.
+    /// Returns the boxes of a node of the first mesh. `unit` is the unit of the tree's grid.
     #[inline(always)]
     fn own(node: &Node, unit: f64) -> Boxes {
         let mut boxes = Boxes::NONE;
@@ -197,7 +197,7 @@ impl Boxes {
         boxes
     }
 
-    /// Those around the images of boxes.
+    /// Returns the boxes around the images of these boxes.
     #[inline(always)]
     fn moved(&self, linear: &[Point; 3], offset: &Point) -> Boxes {
         let mut boxes = Boxes { own: self.half, ..Boxes::NONE };
@@ -213,8 +213,8 @@ impl Boxes {
         boxes
     }
 
-    /// The squares of the distances of box k from others, and of their middles. Those of turned boxes are
-    /// known by the axes of both.
+    /// Returns the squared distances of box k from the others, and of the distances of their middles. For
+    /// turned boxes the axes of both are tried as separating directions.
     #[inline(always)]
     fn squares(&self, k: usize, others: &Boxes, turned: Option<&Turned>) -> ([f64; WIDTH], [f64; WIDTH]) {
         let (mut squares, mut between) = ([0.0; WIDTH], [0.0; WIDTH]);
@@ -251,7 +251,7 @@ impl Boxes {
         (squares, between)
     }
 
-    /// Where the boxes end along a direction of length 1.
+    /// Returns the ends of the boxes along a direction of length 1.
     #[inline(always)]
     fn ends(&self, way: &Point) -> [f64; WIDTH] {
         let Boxes { middle, half, .. } = self;
@@ -266,7 +266,7 @@ impl Boxes {
     }
 }
 
-/// Which nodes of a pair are split.
+/// The nodes of a pair that are split.
 #[derive(Clone, Copy, PartialEq)]
 enum Split {
     Both,
@@ -283,8 +283,8 @@ struct Pair {
     split: Split,
 }
 
-/// A triangle in common coordinates, and where it ends along the way between the nearest triangles: towards
-/// the other mesh.
+/// A triangle in common coordinates, with its end, towards the other mesh, along the direction between the
+/// nearest triangles.
 struct Loaded {
     triangle: u32,
     corners: [Point; 3],
@@ -296,12 +296,13 @@ fn larger(a: f64, b: f64) -> f64 {
     if a > b { a } else { b }
 }
 
-/// Parts of two nodes: the square of the distance of their boxes, that of their middles, and which they are.
+/// A pair of children: the square of the distance of their boxes, that of their middles, and their two
+/// numbers.
 type Parts = (f64, f64, u8, u8);
 
 impl<'m> MeshPair<'m> {
-    /// The second mesh lies under `placement`. Vertices of both together may be `off` by so much (model
-    /// units).
+    /// Makes a pair whose second mesh is placed by `placement`. The vertices of both meshes together may be
+    /// displaced by `off` (model units).
     pub(crate) fn new(
         own: Facets<'m>,
         other: Facets<'m>,
@@ -312,8 +313,8 @@ impl<'m> MeshPair<'m> {
         MeshPair { own, other, map, off }
     }
 
-    /// How far the meshes are apart, as far as is asked for. The bounds are those of the triangles as they
-    /// are given, moved exactly.
+    /// Returns the distance of the meshes, as precisely as `enough` demands. The bounds hold for the
+    /// triangles as given, moved exactly.
     ///
     /// About O(log n) for meshes that are near to each other in one place; O(n) if they run alongside each
     /// other.
@@ -333,9 +334,9 @@ impl<'m> MeshPair<'m> {
             linear,
             turned: if self.map.linear.is_some() { Turned::new(&linear) } else { None },
             enough: Enough {
-                // (Less, so that rounding does not make the bounds too far apart.)
+                // (Smaller, so that rounding does not widen the bounds too much.)
                 tolerance: (enough.tolerance * scale * (1.0 - 1e-6)).max(2.0 * SLACK),
-                // (Distances of boxes are rounded down by less than that.)
+                // (Distances of boxes are rounded down by less than this.)
                 lower: enough.lower * scale * (1.0 + 4.0 * ROOT),
                 upper: enough.upper * scale,
                 steps: enough.steps,
@@ -366,27 +367,27 @@ impl<'m> MeshPair<'m> {
     }
 }
 
-/// A search under way, in common coordinates.
+/// A running search, in common coordinates.
 struct Search<'s, 'm> {
     pair: &'s MeshPair<'m>,
     /// The unit of the first tree's grid.
     unit: f64,
-    /// From the second tree's grid.
+    /// Linear map from the second tree's grid.
     linear: [Point; 3],
     turned: Option<Turned>,
     enough: Enough,
     open: Vec<Pair>,
     best: Option<([u32; 2], NearPair)>,
-    /// The way along which loaded triangles were measured, and that between the best ones: of length 1, or
-    /// zero.
+    /// The direction along which loaded triangles were measured, and the direction between the best ones: of
+    /// length 1, or zero.
     towards: Point,
     next_towards: Point,
     upper: f64,
-    /// What is as far apart does not matter.
+    /// Pairs at this distance or more cannot change the result.
     limit: f64,
-    /// The least lower bound of triangles that were looked at.
+    /// The least lower bound of the triangle pairs that were compared.
     settled: f64,
-    /// The least square of boxes that were left out.
+    /// The least squared distance of the box pairs that were left out.
     beyond: f64,
     is_sure_contact: bool,
 }
@@ -404,7 +405,7 @@ impl<'m> Search<'_, 'm> {
         Boxes::own(node, 1.0).moved(&self.linear, &self.pair.map.offset)
     }
 
-    /// Whether the steps were spent.
+    /// Runs the search. Returns whether the steps were spent.
     fn run(&mut self, job: &Job<'_>) -> Result<bool, Error> {
         let [Some(own), Some(other)] = self.trees().map(Tree::root) else { return Ok(false) };
         memory::push(&mut self.open, Pair { square: 0.0, own, other, split: Split::Both })?;
@@ -427,7 +428,7 @@ impl<'m> Search<'_, 'm> {
         Ok(false)
     }
 
-    /// Whether nothing more is asked for.
+    /// Returns whether an end condition holds.
     fn is_known(&self) -> bool {
         self.is_sure_contact || self.upper < self.enough.upper || self.limit <= 0.0
     }
@@ -477,7 +478,7 @@ impl<'m> Search<'_, 'm> {
         for k in 0..counts[0] {
             let (squares, between) = boxes.squares(k, &others, self.turned.as_ref());
             for n in 0..counts[1] {
-                // (Parts are no nearer than the whole.)
+                // (Children are no nearer than their parents.)
                 let gap = larger(-starts[n] - ends[k], 0.0);
                 let square = larger(squares[n], larger(gap * gap, pair.square));
                 if square < limit {
@@ -496,7 +497,7 @@ impl<'m> Search<'_, 'm> {
             return Ok(());
         }
         self.open.try_reserve(count)?;
-        // The nearest last.
+        // Push the nearest pair last, so that it is visited next.
         for &(square, _, k, n) in parts[..count].iter().rev() {
             let (k, n) = (usize::from(k), usize::from(n));
             let (size, of_other) = (boxes.size(k), others.size(n));
@@ -514,8 +515,8 @@ impl<'m> Search<'_, 'm> {
         Ok(())
     }
 
-    /// Lowers the ends of a node's parts along a direction to those of their discs: in the units of the grid,
-    /// and an offset.
+    /// Lowers the ends of a node's children along a direction to the ends of their discs. `way` is the
+    /// direction in the units of the grid, and `offset` is added to the ends of discs.
     #[inline(always)]
     fn sharpen(&self, side: usize, place: Place, ends: &mut [f64; WIDTH], (way, offset): (&Point, f64)) {
         let (facets, tree) = ([&self.pair.own, &self.pair.other][side], self.trees()[side]);
@@ -528,7 +529,7 @@ impl<'m> Search<'_, 'm> {
         }
     }
 
-    /// Compares triangles.
+    /// Compares the triangles of two lowest nodes.
     fn compare(&mut self, [own, other]: &[[Option<Loaded>; WIDTH]; 2], parts: &[Parts]) {
         for &(square, _, k, n) in parts {
             if square >= self.limit * self.limit || self.is_known() {
@@ -541,8 +542,8 @@ impl<'m> Search<'_, 'm> {
         }
     }
 
-    /// The triangles of two lowest nodes. `None` if all are too far apart along the way between the nearest
-    /// ones so far.
+    /// Loads the triangles of two lowest nodes. `None` if all are too far apart along the direction between
+    /// the nearest triangles so far.
     fn load(&mut self, own: Place, other: Place) -> Option<[[Option<Loaded>; WIDTH]; 2]> {
         let [of_own, of_other] = self.trees();
         let MeshPair { own: facets, other: counterparts, map, .. } = self.pair;
@@ -572,9 +573,10 @@ impl<'m> Search<'_, 'm> {
         Some([first, second])
     }
 
-    /// Takes in two triangles.
+    /// Compares two triangles and updates the bounds.
     fn take(&mut self, first: &Loaded, second: &Loaded) {
-        // Most are too far away along the way between the nearest ones so far, or between their middles.
+        // Most are too far apart along the direction between the nearest triangles so far, or between their
+        // middles.
         let gap = second.end - first.end - SLACK;
         if gap >= self.limit {
             self.settled = self.settled.min(gap);
@@ -606,7 +608,7 @@ impl<'m> Search<'_, 'm> {
         }
     }
 
-    /// Whether two triangles surely have a point in common.
+    /// Returns whether two triangles are proven to have a common point.
     fn is_contact(&self, triangles: [u32; 2], a: &[Point; 3], b: &[Point; 3]) -> bool {
         let MeshPair { own, other, map, off } = self.pair;
         if *off == 0.0 && map.linear.is_none() {
@@ -627,7 +629,7 @@ impl Facets<'_> {
         self.chosen.is_empty() || self.chosen[triangle as usize]
     }
 
-    /// Discs around its triangles. O(t).
+    /// Makes the discs around the triangles. O(t).
     ///
     /// # Errors
     /// [`Error::OutOfMemory`].
@@ -635,7 +637,7 @@ impl Facets<'_> {
         Discs::new(self.tree.mesh, self.tree.tree)
     }
 
-    /// A vertex of each connected part of the triangles that count. O(t).
+    /// Returns one vertex of each connected part of the triangles that take part. O(t).
     ///
     /// # Errors
     /// [`Error::OutOfMemory`].
@@ -650,7 +652,7 @@ impl Facets<'_> {
                 is_used[a as usize] = true;
             }
         }
-        // Sets are numbered by their first members: a number that is met first is greater than all before.
+        // Sets are numbered by their first members: a new set number is greater than all earlier ones.
         let mut vertices = Vec::new();
         let numbers = sets.numbers();
         let count = numbers.iter().max().map_or(0, |&last| last as usize + 1);

@@ -1,9 +1,8 @@
-//! Data on the triangles of a mesh: colours, materials, any numbers.
+//! Data on the triangles of a mesh: colours, materials, numbers of any kind.
 //!
-//! An attribute is a table of values, and for each triangle, or for each of its corners, the number of a row
-//! of the table. So a value that many triangles share is stored once, a corner has a value of its own
-//! although its vertex was welded to others, and a triangle that is dropped takes its rows with it and
-//! changes nothing else.
+//! An attribute is a table of values, and a row number for each triangle or for each of its corners. A value
+//! that many triangles share is stored once. A corner can have its own value although its vertex was welded
+//! to others. When a triangle is dropped, its rows are dropped with it, and nothing else changes.
 
 use alloc::string::String;
 use alloc::vec::Vec;
@@ -11,10 +10,10 @@ use alloc::vec::Vec;
 use crate::error::Error;
 use crate::memory;
 
-/// What the values of a [`MeshAttribute`] belong to.
+/// The elements that bear the values of a [`MeshAttribute`].
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
 pub enum AttributeDomain {
-    /// Each triangle has a value, which counts everywhere on it.
+    /// Each triangle has a value, which holds everywhere on it.
     Triangle,
     /// Each corner of each triangle has a value. Between the corners values are interpolated linearly.
     Corner,
@@ -22,9 +21,9 @@ pub enum AttributeDomain {
 
 /// Named values of one to four numbers on the triangles of a mesh, or on their corners.
 ///
-/// A mesh [takes attributes along](crate::TriangleMesh::with_attributes) through welding, sewing, scaling and
-/// placing: when a triangle is dropped, its values are, and when it is turned round, the values stay at their
-/// corners.
+/// A mesh [carries attributes](crate::TriangleMesh::with_attributes) through welding, sewing, scaling and
+/// placing. When a triangle is dropped, its values are dropped too. When a triangle's orientation is
+/// reversed, the values stay at their corners.
 ///
 /// ```
 /// use leafless::{TriangleMesh, mesh::MeshAttribute};
@@ -52,11 +51,11 @@ pub struct MeshAttribute {
 enum Table {
     /// The value of a row is its number.
     Labels,
-    /// The rows, one behind the other.
+    /// The rows, one after another.
     Values(Vec<f64>),
 }
 
-/// A row for each triangle, or for each corner.
+/// A row number for each triangle, or for each corner.
 #[derive(Debug, Clone, PartialEq)]
 enum Rows {
     Triangles(Vec<u32>),
@@ -64,7 +63,7 @@ enum Rows {
 }
 
 impl MeshAttribute {
-    /// Bytes of memory that the attribute keeps.
+    /// Returns the bytes of memory that the attribute keeps.
     pub fn bytes(&self) -> u64 {
         let table = match &self.table {
             Table::Labels => 0,
@@ -78,11 +77,12 @@ impl MeshAttribute {
         (self.name.capacity() + table + rows + names) as u64
     }
 
-    /// In the place of a row's number: no value.
+    /// A row number that stands for "no value".
     pub const NO_ROW: u32 = u32::MAX;
 
-    /// A value of `components` numbers for each triangle: `values` has as many for the first triangle, then
-    /// as many for the second. A value with a number that is not finite counts as none.
+    /// Builds an attribute with a value of `components` numbers for each triangle. `values` has the numbers
+    /// of the first triangle, then of the second, and so on. A value with a number that is not finite counts
+    /// as no value.
     ///
     /// O(t). 8 bytes a number and 4 a triangle.
     ///
@@ -94,8 +94,9 @@ impl MeshAttribute {
         Self::by_triangle(name, components, memory::copied(values)?, rows)
     }
 
-    /// A value of `components` numbers for each corner: `values` has those of the three corners of the first
-    /// triangle, then of the second. A value with a number that is not finite counts as none.
+    /// Builds an attribute with a value of `components` numbers for each corner. `values` has the numbers of
+    /// the three corners of the first triangle, then of the second, and so on. A value with a number that is
+    /// not finite counts as no value.
     ///
     /// O(t). 8 bytes a number and 12 a triangle.
     ///
@@ -111,10 +112,11 @@ impl MeshAttribute {
         Self::by_corner(name, components, memory::copied(values)?, rows)
     }
 
-    /// For each triangle a row of a table of values, or [`NO_ROW`](Self::NO_ROW). With the
-    /// [bodies](crate::TriangleMesh::bodies) of a mesh as rows, the table has a value for each body.
+    /// Builds an attribute with, for each triangle, a row of a table of values, or [`NO_ROW`](Self::NO_ROW).
+    /// With the [bodies](crate::TriangleMesh::bodies) of a mesh as row numbers, the table has a value for
+    /// each body.
     ///
-    /// O(t). A row with a number that is not finite is no value.
+    /// O(t). A row with a number that is not finite counts as no value.
     ///
     /// # Errors
     /// [`Error::Argument`] unless there are 1 to 4 components, `table` is a multiple of that, and every row
@@ -129,9 +131,10 @@ impl MeshAttribute {
         Self::with(name, components, Table::Values(table), Rows::Triangles(rows))
     }
 
-    /// For each corner of each triangle a row of a table of values, or [`NO_ROW`](Self::NO_ROW).
+    /// Builds an attribute with, for each corner of each triangle, a row of a table of values, or
+    /// [`NO_ROW`](Self::NO_ROW).
     ///
-    /// O(t). A row with a number that is not finite is no value.
+    /// O(t). A row with a number that is not finite counts as no value.
     ///
     /// # Errors
     /// As [`by_triangle`](Self::by_triangle).
@@ -145,8 +148,8 @@ impl MeshAttribute {
         Self::with(name, components, Table::Values(table), Rows::Corners(rows))
     }
 
-    /// For each triangle a number, which is its value: of a body, a face, a material. The greatest `u32` is
-    /// no value.
+    /// Builds an attribute whose values are the given numbers, one for each triangle: the number of a body, a
+    /// face or a material. The greatest `u32` means no value.
     ///
     /// O(1). 4 bytes a triangle.
     ///
@@ -160,23 +163,23 @@ impl MeshAttribute {
         Ok(Self { name: memory::text(name)?, components, table, rows, names: Vec::new() })
     }
 
-    /// The same with names for the values 0, 1, 2 …, such as those of materials.
+    /// Returns the same attribute with names for the values 0, 1, 2 …, such as names of materials.
     #[must_use]
     pub fn named(self, names: Vec<String>) -> Self {
         Self { names, ..self }
     }
 
-    /// The name. A mesh has no two attributes of one name.
+    /// Returns the name. All attributes of a mesh have different names.
     pub fn name(&self) -> &str {
         &self.name
     }
 
-    /// How many numbers a value has: 1 to 4.
+    /// Returns the number of components of a value: 1 to 4.
     pub fn components(&self) -> usize {
         self.components
     }
 
-    /// What has values: triangles, or corners.
+    /// Returns the elements that bear values: triangles or corners.
     pub fn domain(&self) -> AttributeDomain {
         match self.rows {
             Rows::Triangles(_) => AttributeDomain::Triangle,
@@ -184,7 +187,7 @@ impl MeshAttribute {
         }
     }
 
-    /// The number of triangles.
+    /// Returns the number of triangles.
     pub fn len(&self) -> usize {
         match &self.rows {
             Rows::Triangles(rows) => rows.len(),
@@ -192,18 +195,18 @@ impl MeshAttribute {
         }
     }
 
-    /// Whether there are no triangles.
+    /// Returns whether there are no triangles.
     pub fn is_empty(&self) -> bool {
         self.len() == 0
     }
 
-    /// The names of the values 0, 1, 2 …, if they have names. There may be more values than names.
+    /// Returns the names of the values 0, 1, 2 …, if they have names. There may be more values than names.
     pub fn names(&self) -> &[String] {
         &self.names
     }
 
-    /// The value at a corner (0, 1 or 2) of a triangle, followed by zeros; `None` if it has none, or if there
-    /// is no such corner. O(1).
+    /// Returns the value at a corner (0, 1 or 2) of a triangle, filled up with zeros; `None` if there is no
+    /// value or no such corner. O(1).
     #[inline]
     pub fn value(&self, triangle: usize, corner: usize) -> Option<[f64; 4]> {
         let row = match &self.rows {
@@ -214,7 +217,7 @@ impl MeshAttribute {
         self.row(row)
     }
 
-    /// The values at the three corners of a triangle; `None` unless all of them have one. O(1).
+    /// Returns the values at the three corners of a triangle; `None` unless all three have a value. O(1).
     #[inline]
     pub(crate) fn corners(&self, triangle: usize) -> Option<[[f64; 4]; 3]> {
         match &self.rows {
@@ -243,15 +246,15 @@ impl MeshAttribute {
         }
     }
 
-    /// Whether the values are the numbers of rows, which [`labels`](Self::labels) gave.
+    /// Returns whether the values are the row numbers themselves, as given to [`labels`](Self::labels).
     pub(crate) fn is_label(&self) -> bool {
         matches!((&self.table, &self.rows), (Table::Labels, Rows::Triangles(_)))
     }
 
-    /// Keeps the triangles of which `is_kept` says so.
+    /// Keeps the triangles for which `is_kept` returns true.
     pub(crate) fn retain(&mut self, mut is_kept: impl FnMut(usize) -> bool) {
         let mut next = 0..;
-        // There is always a next one.
+        // The iterator is endless.
         let mut keeps = || next.next().is_some_and(&mut is_kept);
         match &mut self.rows {
             Rows::Triangles(rows) => rows.retain(|_| keeps()),
@@ -259,7 +262,7 @@ impl MeshAttribute {
         }
     }
 
-    /// The numbers that the triangles have, of [`labels`](Self::labels) those that were given.
+    /// Returns the row numbers of the triangles; for [`labels`](Self::labels) these are the given values.
     #[cfg(feature = "std")]
     pub(super) fn into_labels(self) -> Vec<u32> {
         match self.rows {
@@ -268,14 +271,14 @@ impl MeshAttribute {
         }
     }
 
-    /// Follows triangles that are turned round by a swap of their last two corners.
+    /// Follows triangles whose orientation is reversed by swapping their last two corners.
     pub(super) fn turn_round(&mut self) {
         if let Rows::Corners(rows) = &mut self.rows {
             rows.iter_mut().for_each(|[_, b, c]| core::mem::swap(b, c));
         }
     }
 
-    /// A copy.
+    /// Returns a copy.
     pub(crate) fn try_clone(&self) -> Result<Self, Error> {
         let table = match &self.table {
             Table::Labels => Table::Labels,
@@ -293,7 +296,7 @@ impl MeshAttribute {
     }
 }
 
-/// Copies of attributes.
+/// Returns copies of attributes.
 pub(super) fn copies(attributes: &[MeshAttribute]) -> Result<Vec<MeshAttribute>, Error> {
     let mut copies = memory::with_capacity(attributes.len())?;
     for attribute in attributes {
@@ -302,7 +305,7 @@ pub(super) fn copies(attributes: &[MeshAttribute]) -> Result<Vec<MeshAttribute>,
     Ok(copies)
 }
 
-/// Checks that each attribute has so many triangles and a name of its own.
+/// Checks that each attribute has this number of triangles and a unique name.
 pub(super) fn check(attributes: &[MeshAttribute], triangles: usize) -> Result<(), Error> {
     if attributes.iter().any(|attribute| attribute.len() != triangles) {
         return refused("attributes", "must have as many triangles as the mesh");
@@ -316,7 +319,7 @@ pub(super) fn check(attributes: &[MeshAttribute], triangles: usize) -> Result<()
     Ok(())
 }
 
-/// How many rows a table has.
+/// Returns the number of rows of a table.
 fn row_count(table: &[f64], components: usize) -> Result<u32, Error> {
     if !(1..=4).contains(&components) {
         return refused("components", "must be 1 to 4");

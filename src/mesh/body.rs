@@ -1,8 +1,8 @@
-//! The closed bodies of a mesh, each with its triangles, which can be searched by place.
+//! The closed bodies of a mesh, each with a list of its triangles that can be searched by place.
 //!
-//! A body that is searched again and again has its triangles in the order of a space-filling curve, and boxes
-//! around runs of them. To find the triangles near a small box is then no pass through all of the body's
-//! triangles.
+//! A body that is searched repeatedly gets its triangles sorted along a space-filling curve, with boxes
+//! around runs of triangles. Finding the triangles near a small box then does not pass through all triangles
+//! of the body.
 
 use alloc::vec::Vec;
 use core::ops::Range;
@@ -13,9 +13,9 @@ use super::triangle_mesh::TriangleMesh;
 use crate::error::Error;
 use crate::memory;
 
-/// A body and what is known of it.
+/// A body with its properties.
 pub(super) struct Body {
-    /// The triangles, in any order until there are `boxes`.
+    /// The triangles; in any order until there are `boxes`.
     pub(super) triangles: Vec<u32>,
     pub(super) bounds: Bounds,
     pub(super) sense: i32,
@@ -23,13 +23,13 @@ pub(super) struct Body {
     pub(super) around: i32,
     pub(super) overlaps: bool,
     pub(super) undecided: bool,
-    /// Whether it was searched before.
+    /// True if the body was searched before.
     is_searched: bool,
     boxes: Option<Boxes>,
 }
 
 impl Body {
-    /// The bodies whose `senses` are not zero. O(t + b).
+    /// Returns the bodies whose `senses` are not zero. O(t + b).
     pub(super) fn all(mesh: &TriangleMesh, of_triangles: &[u32], senses: &[i32]) -> Result<Vec<Body>, Error> {
         let mut counts: Vec<usize> = memory::filled(senses.len(), 0)?;
         of_triangles.iter().for_each(|&body| counts[body as usize] += 1);
@@ -57,8 +57,8 @@ impl Body {
         Ok(bodies)
     }
 
-    /// The triangles whose boxes meet `around`, in any order, and the steps that the search took: at most as
-    /// many as there are triangles. `near` is memory that the result may lie in.
+    /// Returns the triangles whose boxes meet `around`, in any order, and the number of search steps, which
+    /// is at most the number of triangles. `near` is memory that the result may use.
     ///
     /// The first search goes through all triangles, the second one sorts them.
     pub(super) fn near<'a>(
@@ -67,7 +67,7 @@ impl Body {
         around: &Bounds,
         near: &'a mut Vec<u32>,
     ) -> Result<(&'a mut [u32], usize), Error> {
-        /// So many triangles are looked through in no time.
+        /// A body of at most this many triangles is always searched linearly.
         const FEW: usize = 256;
         if self.is_searched && self.boxes.is_none() && self.triangles.len() > FEW {
             self.boxes = Some(Boxes::new(mesh, &mut self.triangles, &self.bounds)?);
@@ -84,8 +84,8 @@ impl Body {
         Ok((near, steps))
     }
 
-    /// Calls `visit` with every triangle whose box meets `around`, and with others. Returns the steps that it
-    /// took: at most as many as there are triangles.
+    /// Calls `visit` with every triangle whose box meets `around`, and with some others. Returns the number
+    /// of steps, which is at most the number of triangles.
     pub(super) fn visit(
         &self,
         around: &Bounds,
@@ -108,28 +108,29 @@ impl Body {
     }
 }
 
-/// Boxes around runs of triangles, runs of those boxes, and so on up to one box. Seven bytes a triangle.
+/// Boxes around runs of triangles, around runs of those boxes, and so on up to one box. Seven bytes a
+/// triangle.
 struct Boxes {
     /// The boxes of all levels, the lowest first.
     boxes: Vec<Bounds>,
-    /// Where the levels begin in `boxes`, and the end of the last one.
+    /// The starts of the levels in `boxes`, and the end of the last one.
     starts: Vec<usize>,
-    /// How many triangles there are.
+    /// Number of triangles.
     count: usize,
 }
 
-/// Triangles in a run, and boxes in one.
+/// Number of triangles, or of boxes, in a run.
 const RUN: usize = 8;
 
 impl Boxes {
-    /// Sorts the triangles, whose bounds are given, and finds the boxes. O(t log t).
+    /// Sorts the triangles, whose bounds are given, and builds the boxes. O(t log t).
     fn new(mesh: &TriangleMesh, triangles: &mut [u32], bounds: &Bounds) -> Result<Boxes, Error> {
         let place = |t: u32| bounds.place(&corners(mesh, t)[0]);
         let mut sorted: Vec<u64> =
             memory::collected(triangles.iter().map(|&t| u64::from(place(t)) << 32 | u64::from(t)))?;
         sorted.sort_unstable();
         triangles.iter_mut().zip(&sorted).for_each(|(triangle, &key)| *triangle = key as u32);
-        // No level is larger than an eighth of the one below, but for what is rounded up.
+        // Each level is at most an eighth of the one below, rounded up.
         let mut boxes: Vec<Bounds> = memory::with_capacity(triangles.len() / (RUN - 1) + 32)?;
         let mut starts = memory::with_capacity(32)?;
         starts.push(0);
@@ -165,7 +166,7 @@ impl Boxes {
         self.visit_below(self.starts.len() - 2, 0, around, visit)
     }
 
-    /// The same below one box of a level. The recursion is as deep as there are levels, eleven at most.
+    /// Does the same below one box of a level. The recursion is as deep as there are levels, eleven at most.
     fn visit_below(
         &self,
         level: usize,
@@ -186,7 +187,7 @@ impl Boxes {
     }
 }
 
-/// A box.
+/// An axis-aligned box.
 #[derive(Clone, Copy)]
 pub(super) struct Bounds {
     pub(super) low: Point,
@@ -209,23 +210,24 @@ impl Bounds {
         }
     }
 
-    /// Whether the insides meet.
+    /// Returns whether the interiors meet.
     pub(super) fn overlaps(&self, other: &Bounds) -> bool {
         (0..3).all(|axis| self.low[axis] < other.high[axis] && other.low[axis] < self.high[axis])
     }
 
-    /// Whether the closed boxes meet.
+    /// Returns whether the closed boxes meet.
     pub(super) fn touches(&self, other: &Bounds) -> bool {
-        // Without branches: as a rule nobody can foretell them.
+        // Without branches, because they would usually be mispredicted.
         (0..3).fold(true, |touches, axis| {
             touches & (self.low[axis] <= other.high[axis]) & (other.low[axis] <= self.high[axis])
         })
     }
 
-    /// Where a point of the box lies, roughly: a number on a Morton curve of 2^30 steps through the box.
+    /// Returns the approximate place of a point of the box: a number on a Morton curve of 2^30 steps through
+    /// the box.
     fn place(&self, p: &Point) -> u32 {
         (0..3).fold(0, |place, axis| {
-            // No number, where the box is flat, becomes zero.
+            // If the box is flat, the NaN becomes zero.
             let share = (p[axis] - self.low[axis]) / (self.high[axis] - self.low[axis]);
             let mut bits = ((share * 1024.0) as u32).min(1023);
             bits = (bits | bits << 16) & 0x0300_00ff;
@@ -237,7 +239,7 @@ impl Bounds {
     }
 }
 
-/// Brings the items that pass the test to the front; tells how many there are.
+/// Moves the items that pass the test to the front and returns their number.
 pub(super) fn partition<T>(items: &mut [T], test: impl Fn(&T) -> bool) -> usize {
     let mut kept = 0;
     for k in 0..items.len() {
@@ -253,8 +255,8 @@ pub(super) fn partition<T>(items: &mut [T], test: impl Fn(&T) -> bool) -> usize 
 mod tests {
     use super::*;
 
-    /// Of triangles all over a box and of very different sizes, exactly those whose boxes meet another box
-    /// are found.
+    /// Searches find exactly the triangles whose boxes meet another box, among triangles of very different
+    /// sizes.
     #[test]
     fn searches_find_every_triangle() {
         let mut state = 1u64;
@@ -284,7 +286,7 @@ mod tests {
                 for around in [
                     Bounds { low, high },
                     Bounds { low, high: [low[0], low[1], f64::INFINITY] },
-                    // What only touches counts.
+                    // Touching counts.
                     Bounds { low: body.bounds.high, high: [9.0; 3] },
                 ] {
                     let touches = |&t: &u32| Bounds::of(&corners(&mesh, t)).touches(&around);

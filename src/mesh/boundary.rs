@@ -1,10 +1,10 @@
-//! The boundary of a surface as simple loops.
+//! Decomposition of a surface's boundary into simple loops.
 
 use crate::error::{Error, MeshError};
 use crate::memory;
 use alloc::vec::Vec;
 
-/// Closed walks over different vertices.
+/// Closed walks that visit no vertex twice.
 #[derive(Debug, Default)]
 pub(crate) struct Loops {
     vertices: Vec<u32>,
@@ -13,13 +13,13 @@ pub(crate) struct Loops {
 }
 
 impl Loops {
-    /// Bytes that the lists take.
+    /// Returns the bytes that the lists take.
     pub(crate) fn bytes(&self) -> usize {
         memory::bytes_of(&self.vertices) + memory::bytes_of(&self.ends)
     }
 
-    /// The loops of directed edges of which every vertex begins as many as it ends. Each has three vertices
-    /// or more, and none twice; together they have the edges given.
+    /// Splits directed edges into loops. At every vertex as many edges must begin as end. Each loop has three
+    /// vertices or more and no vertex twice; together the loops have the given edges.
     ///
     /// O(n log n).
     ///
@@ -37,12 +37,12 @@ impl Loops {
         Ok(Loops { vertices, ends: loops.ends })
     }
 
-    /// How many triangles it takes to fill them all.
+    /// Returns the number of triangles that fill all loops.
     pub(crate) fn caps(&self) -> usize {
         self.vertices.len() - 2 * self.ends.len()
     }
 
-    /// How many edges they have together.
+    /// Returns the number of edges of all loops.
     pub(crate) fn edges(&self) -> usize {
         self.vertices.len()
     }
@@ -53,7 +53,7 @@ impl Loops {
     }
 }
 
-/// Loops of edges, each with the edge that closes it first and the others in order.
+/// Loops of edges. In each loop the closing edge comes first; the others follow in order.
 #[derive(Default)]
 pub(super) struct EdgeLoops {
     edges: Vec<u32>,
@@ -62,8 +62,9 @@ pub(super) struct EdgeLoops {
 }
 
 impl EdgeLoops {
-    /// Takes a boundary apart. Directed, every vertex must begin as many edges as it ends; undirected, edges
-    /// must differ and every vertex have an even number. No loop has a vertex twice; each edge is in one.
+    /// Splits a boundary into loops. If it is directed, as many edges must begin at every vertex as end
+    /// there. If it is undirected, the edges must differ and every vertex must have an even number of them.
+    /// No loop has a vertex twice; each edge is in one loop.
     ///
     /// O(n log n).
     ///
@@ -73,7 +74,7 @@ impl EdgeLoops {
         if u32::try_from(open.len()).is_err() {
             return Err(MeshError::TooMany.into());
         }
-        // The edges that lead on from a vertex are consecutive, and vertices are numbered by them.
+        // The edges that leave a vertex are consecutive, and vertices are numbered by them.
         let mut uses: Vec<(u32, u32)> = memory::with_capacity(open.len() * 2)?;
         let ends = if is_directed { 1 } else { 2 };
         uses.extend(open.iter().zip(0..).flat_map(|(edge, e)| edge[..ends].iter().map(move |&v| (v, e))));
@@ -86,16 +87,16 @@ impl EdgeLoops {
 
         let mut next = memory::copied(&firsts[..count])?;
         let mut walked: Vec<bool> = memory::filled(open.len(), false)?;
-        // Where on the path a vertex stands.
+        // The position of each vertex on the path.
         let mut places = memory::filled(count, usize::MAX)?;
-        // Each vertex of the path, and the edge that led there.
+        // Each vertex of the path, and the edge that led to it.
         let mut path: Vec<(usize, u32)> = memory::with_capacity(count)?;
         let mut loops = EdgeLoops::default();
         loops.edges.try_reserve_exact(open.len())?;
         for start in 0..count {
             path.push((start, 0));
             places[start] = 0;
-            // The walk can only end where it began: everywhere else an edge leads on.
+            // The walk can only end where it began: at every other vertex an edge leads on.
             while let Some(&(last, _)) = path.last()
                 && next[last] < firsts[last + 1]
             {
@@ -127,7 +128,7 @@ impl EdgeLoops {
         self.ends.len()
     }
 
-    /// The edges of each loop.
+    /// Iterates over the edges of each loop.
     pub fn iter(&self) -> impl Iterator<Item = &[u32]> {
         let starts = core::iter::once(0).chain(self.ends.iter().copied());
         starts.zip(&self.ends).map(|(start, &end)| &self.edges[start..end])
@@ -138,7 +139,7 @@ impl EdgeLoops {
 mod tests {
     use super::*;
 
-    /// Loops are simple, and their edges are those given.
+    /// Loops are simple, and together have the given edges.
     fn check(boundary: &[[u32; 2]]) -> usize {
         let loops = Loops::of(boundary).unwrap();
         let mut edges = Vec::new();

@@ -1,7 +1,7 @@
-//! Where a mesh is not as it should be.
+//! Defects of a mesh.
 //!
-//! A scan may have a hundred thousand holes, and a list of them is of no use. What belongs together is one
-//! defect, and the worst come first.
+//! A scan may have a hundred thousand holes, and a list of them is of no use. Connected edges or triangles
+//! are one defect, and the worst defects come first.
 
 use alloc::vec::Vec;
 use core::cmp::Ordering;
@@ -14,37 +14,39 @@ use super::triangle_mesh::TriangleMesh;
 use crate::error::Error;
 use crate::memory;
 
-/// What is wrong with a part of a mesh, the most harmful first.
+/// The kind of a defect, the most harmful first.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash)]
 pub enum DefectKind {
-    /// A loop of edges that an odd number of triangles use: around a hole, or around a sheet.
+    /// A loop of edges, each used by an odd number of triangles: around a hole, or around a sheet.
     Hole,
-    /// Edges that an even number of triangles use, but not half of them in each direction: the facing flips.
+    /// Edges used by an even number of triangles, but not by equally many in each direction: the orientation
+    /// flips.
     Misoriented,
     /// Triangles with the same corners as an earlier one, in the same or the opposite direction.
     Duplicate,
-    /// Edges that more than two triangles use. They do no harm.
+    /// Edges used by more than two triangles. They do no harm.
     NonManifold,
     /// Triangles without area. They do no harm.
     Flat,
 }
 
-/// A part of a mesh that is not as it should be: one loop of a [`Hole`](DefectKind::Hole), or, of the other
-/// kinds, edges or triangles that hang together over common vertices.
+/// A defective part of a mesh: one loop of a [`Hole`](DefectKind::Hole) or, for the other kinds, edges or
+/// triangles that are connected by common vertices.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct MeshDefect {
-    /// What is wrong.
+    /// The kind of the defect.
     pub kind: DefectKind,
     /// The least and the greatest coordinates of all its vertices, in model units.
     pub bounds: ([f64; 3], [f64; 3]),
-    /// Edges, or triangles of a [`Duplicate`](DefectKind::Duplicate) or [`Flat`](DefectKind::Flat) defect.
+    /// Number of edges, or of triangles for a [`Duplicate`](DefectKind::Duplicate) or
+    /// [`Flat`](DefectKind::Flat) defect.
     pub count: u64,
-    /// The edges' lengths, added up, in model units; 0 where triangles are counted.
+    /// The sum of the edges' lengths, in model units; 0 if triangles are counted.
     pub length: f64,
 }
 
 impl MeshDefect {
-    /// The longest side of the bounds.
+    /// Returns the longest side of the bounds.
     pub fn extent(&self) -> f64 {
         let (low, high) = (DVec3::from(self.bounds.0), DVec3::from(self.bounds.1));
         (high - low).max_element()
@@ -52,8 +54,8 @@ impl MeshDefect {
 }
 
 impl TriangleMesh {
-    /// Where the mesh is not as it should be: the `limit` worst places, in the order of [`DefectKind`], and
-    /// those of one kind by descending [extent](MeshDefect::extent), then by descending count, then position.
+    /// Returns the `limit` worst defects, in the order of [`DefectKind`]; within one kind by descending
+    /// [extent](MeshDefect::extent), then by descending count, then by position.
     ///
     /// O(t + v) time and 24 bytes per triangle and 8 per vertex of scratch memory; O(n log n) time and about
     /// 100 bytes for each of n edges and triangles that are part of a defect.
@@ -107,7 +109,7 @@ impl TriangleMesh {
         Ok(defects)
     }
 
-    /// Adds a defect for each set of items that hang together over vertices.
+    /// Adds a defect for each set of items that are connected by common vertices.
     fn clusters<const N: usize>(
         &self,
         kind: DefectKind,
@@ -151,7 +153,7 @@ impl MeshDefect {
     }
 }
 
-/// The order of two places, by their first coordinates that differ.
+/// Orders two positions by the first coordinate in which they differ.
 fn compare(a: &[f64; 3], b: &[f64; 3]) -> Ordering {
     a.iter().zip(b).map(|(x, y)| x.total_cmp(y)).find(|order| order.is_ne()).unwrap_or(Ordering::Equal)
 }

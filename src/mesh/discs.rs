@@ -1,7 +1,7 @@
 //! Thick discs around the triangles of the lowest nodes of a tree.
 //!
-//! A box around some triangles of a curved surface that lies askew is about as thick as it is wide. A disc
-//! that lies as the triangles do is much thinner, and tells a distance across the surface to second order.
+//! A box around some triangles of a curved, oblique surface is about as thick as it is wide. A disc parallel
+//! to the triangles is much thinner, and bounds the distance across the surface to second order.
 
 use super::signs::Point;
 use super::tree::{Place, Tree};
@@ -16,14 +16,14 @@ use core::array::from_fn as array;
 /// Levels of nodes that have discs.
 const LEVELS: u8 = 3;
 
-/// More than what rounding changes, where coordinates are at most 1.
+/// An upper bound of rounding errors for coordinates of magnitude at most 1.
 const MARGIN: f64 = 1.0 / (1_u64 << 47) as f64;
 
 /// A disc, in the units of the tree's grid.
 #[derive(Clone, Copy)]
 struct Disc {
     centre: Point,
-    /// Of length 1.
+    /// A unit vector.
     normal: Point,
     /// Half of the thickness.
     half: f64,
@@ -34,7 +34,7 @@ struct Disc {
 pub(crate) struct Discs(Vec<Disc>);
 
 impl Discs {
-    /// Those of the tree of a mesh. O(t).
+    /// Builds the discs for the tree of a mesh. O(t).
     ///
     /// # Errors
     /// [`Error::OutOfMemory`].
@@ -60,7 +60,7 @@ impl Discs {
         Ok(Discs(discs))
     }
 
-    /// Where the triangles of a node end along a vector. `None` if the node has no disc.
+    /// Returns the end of a node's triangles along a vector. `None` if the node has no disc.
     #[inline(always)]
     pub(super) fn end(&self, tree: &Tree, place: Place, way: &Point) -> Option<f64> {
         if place.level >= LEVELS {

@@ -1,4 +1,4 @@
-//! The faces, shells and solids of a polyhedron, and values that they bear.
+//! The faces, shells and solids of a polyhedron, and values on them.
 
 use alloc::vec::Vec;
 
@@ -7,7 +7,7 @@ use super::polyhedron::Polyhedron;
 use crate::error::Error;
 use crate::memory;
 
-/// What a polyhedron is made of.
+/// The kinds of parts of a polyhedron.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
 pub enum PolyhedronPart {
     /// Its faces.
@@ -19,7 +19,7 @@ pub enum PolyhedronPart {
 }
 
 impl Polyhedron {
-    /// How many faces, shells or solids there are.
+    /// Returns the number of faces, shells or solids.
     pub fn part_count(&self, part: PolyhedronPart) -> usize {
         // Offsets begin with 0, and end with the number of parts below.
         let below = |offsets: &[u32]| offsets.last().map_or(0, |&count| count as usize);
@@ -30,9 +30,9 @@ impl Polyhedron {
         }
     }
 
-    /// The face, shell or solid that each triangle of the [mesh](Self::mesh) belongs to, numbered as in the
-    /// [arrays](crate::mesh::PolyhedronArrays) that the polyhedron was made of. Triangles are in the order of
-    /// faces.
+    /// Returns the face, shell or solid to which each triangle of the [mesh](Self::mesh) belongs, numbered as
+    /// in the [arrays](crate::mesh::PolyhedronArrays) from which the polyhedron was made. Triangles are in
+    /// the order of faces.
     ///
     /// O(t).
     ///
@@ -49,9 +49,9 @@ impl Polyhedron {
         Ok(parts)
     }
 
-    /// Values of `components` numbers that faces, shells or solids bear, as an attribute of the
-    /// [mesh](Self::mesh): `values` has those of the first one, then of the second. A value with a number
-    /// that is not finite counts as none.
+    /// Builds an attribute of the [mesh](Self::mesh) from values of faces, shells or solids. `values` has
+    /// `components` numbers for the first part, then for the second, and so on. A value with a number that is
+    /// not finite counts as no value.
     ///
     /// O(t + n).
     ///
@@ -89,7 +89,7 @@ impl Polyhedron {
         MeshAttribute::by_triangle(name, components, memory::copied(values)?, self.parts(part)?)
     }
 
-    /// Adds an attribute to the [mesh](Self::mesh), with which it stays.
+    /// Adds an attribute to the [mesh](Self::mesh) of the polyhedron.
     ///
     /// # Errors
     /// As [`TriangleMesh::add_attribute`](crate::TriangleMesh::add_attribute).
@@ -98,7 +98,7 @@ impl Polyhedron {
     }
 }
 
-/// Replaces ascending parts by what they are parts of.
+/// Replaces ascending numbers of parts by the numbers of the wholes that contain them.
 fn raise(parts: &mut [u32], offsets: &[u32]) {
     let mut whole = 0;
     for part in parts {

@@ -1,34 +1,34 @@
-//! What a mesh remembers of how it was made, for those who store meshes in a way of their own.
+//! The history of a mesh, for programs that store meshes in their own format.
 
 use super::triangle_mesh::{Faces, TriangleMesh};
 use crate::error::Error;
 use crate::lattice::LARGEST;
 
-/// What a [`TriangleMesh`] remembers of how it was made, which its vertices, triangles and attributes do not
-/// tell. Without it, a mesh that is stored and made again proves more than it did.
+/// The part of a [`TriangleMesh`]'s origin that its vertices, triangles and attributes do not show. A mesh
+/// that is stored and rebuilt without it claims more certainty than the original had.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
 pub struct MeshHistory {
-    /// Vertices that became one with an equal one.
+    /// Number of vertices that were welded to an equal one.
     pub welded: u64,
-    /// Triangles that were dropped, because two of their corners were one vertex.
+    /// Number of triangles that were dropped because two of their corners were one vertex.
     pub degenerate: u64,
-    /// Vertices that [`sewn`](TriangleMesh::sewn) moved onto another one.
+    /// Number of vertices that [`sewn`](TriangleMesh::sewn) moved onto another one.
     pub sewn: u64,
-    /// How far along an axis vertices may be off, in model units: moved to close cracks, or rounded by a
-    /// placement.
+    /// Maximum error of a vertex along an axis, in model units: vertices were moved to close cracks, or
+    /// rounded by a placement.
     pub displacement: f64,
     /// The [`deviation`](TriangleMesh::deviation) that was stated, in model units.
     pub deviation: f64,
-    /// Faces of more than three corners that the triangles were made from.
+    /// Number of faces of more than three corners from which the triangles were made.
     pub polygons: u64,
-    /// Those that are not flat.
+    /// Number of such faces that are not flat.
     pub bent_polygons: u64,
-    /// How far corners lie beside the planes of such faces at the most, in model units.
+    /// Maximum distance of corners from the planes of such faces, in model units.
     pub polygon_deviation: f64,
 }
 
 impl TriangleMesh {
-    /// What the mesh remembers of how it was made.
+    /// Returns the history of the mesh.
     pub fn history(&self) -> MeshHistory {
         let Faces { polygons, bent, deviation } = self.faces;
         MeshHistory {
@@ -43,7 +43,7 @@ impl TriangleMesh {
         }
     }
 
-    /// The same mesh with the history of the one that it is a copy of, in the place of its own.
+    /// Returns the mesh with the given history in place of its own. Meant for a mesh that is a copy.
     ///
     /// # Errors
     /// [`Error::Argument`] unless displacement and deviation are finite, not negative, and at most 2^256.

@@ -1,8 +1,8 @@
-//! Which triangles may meet a box.
+//! Search for the triangles that may meet a box.
 //!
 //! A triangle misses a box if a plane separates them: across an axis, along the triangle, or along an edge of
-//! each (the theorem of the separating axis; for boxes Akenine-Möller 2001). Only a separation that rounding
-//! cannot feign counts.
+//! each (separating axis theorem; for boxes Akenine-Möller 2001). Only a separation that exceeds the rounding
+//! errors counts.
 
 use core::array::from_fn as array;
 
@@ -11,20 +11,20 @@ use super::nearest::TriangleTree;
 use super::signs::Point;
 use crate::lattice::Bounds;
 
-/// What rounding may change in a product of two coordinates, as a part of the magnitudes concerned.
+/// Upper bound of the rounding error of a product of two coordinates, relative to their magnitudes.
 const ROUNDING: f64 = 32.0 * f64::EPSILON;
 
-/// How far boxes of the tree are off, in the scale of the grid: 2^-22.
+/// Maximum error of the tree's boxes, in the scale of the grid: 2^-22.
 const SINGLE: f64 = 1.0 / (1 << 22) as f64;
 
 impl TriangleTree<'_> {
     /// Calls `visit` with every triangle that meets a closed box (model units), and perhaps with some that
-    /// come very near.
+    /// come very near it.
     pub(crate) fn in_box(&self, bounds: &Bounds, visit: &mut impl FnMut(u32)) {
         self.in_box_of(bounds, |_| true, visit);
     }
 
-    /// The same of triangles that are wanted.
+    /// Does the same for the triangles that `wanted` accepts.
     pub(crate) fn in_box_of(
         &self,
         bounds: &Bounds,
@@ -56,16 +56,16 @@ impl TriangleTree<'_> {
     }
 }
 
-/// Whether a plane surely separates a triangle from the box around the origin with these half edges.
+/// Returns whether a plane surely separates a triangle from the box around the origin with these half edges.
 fn is_separated(corners: &[Point; 3], half: &Point) -> bool {
     let [a, b, c] = corners;
     let edge = |p: &Point, q: &Point| -> Point { array(|axis| q[axis] - p[axis]) };
     let edges = [edge(a, b), edge(b, c), edge(c, a)];
     let units: [Point; 3] = array(|axis| array(|k| if k == axis { 1.0 } else { 0.0 }));
-    // Edges are as long at the most, and corners and the box as far away.
+    // Upper bounds of the edges' lengths, and of the distances of corners and box.
     let length = edges.iter().flatten().fold(0.0, |most: f64, c| most.max(c.abs()));
     let far = corners.iter().flatten().chain(half).fold(0.0, |most: f64, c| most.max(c.abs()));
-    // Each direction with what its own parts are made of.
+    // Each direction with the magnitude of its terms.
     let across = edges.iter().flat_map(|edge| units.iter().map(|unit| (cross(unit, edge), length)));
     let along = [(cross(&edges[0], &edges[1]), length * length)];
     units.iter().map(|&unit| (unit, 0.0)).chain(along).chain(across).any(|(way, size)| {

@@ -1,10 +1,10 @@
 //! Pairs of triangles that intersect.
 //!
-//! Two triangles of a surface may have a vertex or an edge in common. They *intersect* if they have any other
-//! point in common. All decisions are exact signs. Triangles without area are left out.
+//! Two triangles of a surface may share a vertex or an edge. They *intersect* if they have any other common
+//! point. All decisions are exact signs. Triangles without area are left out.
 //!
-//! Neighbours in one plane, or nearly so, are told apart by a line or plane between them as a rule: exact
-//! signs would have to find out that they are zero.
+//! Neighbouring triangles in one plane, or nearly so, are usually separated by a line or plane between them.
+//! Exact signs would have to establish that determinants are zero, which is slow.
 
 use super::self_pairs::self_pairs;
 use super::signs::{Point, cross_sign, sure_volume_sign, volume_sign};
@@ -17,34 +17,35 @@ use crate::memory;
 use alloc::vec::Vec;
 use core::array::from_fn as array;
 
-/// Two triangles that have a point in common which is not on a common vertex or edge.
+/// Two triangles with a common point that does not lie on a common vertex or edge.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct IntersectingPair {
     /// Indices of the triangles, ascending.
     pub triangles: [u32; 2],
-    /// The least and the greatest coordinates of a box in which they meet, in model units: where the boxes
-    /// around the two overlap.
+    /// The least and the greatest coordinates of a box in which they meet, in model units: the overlap of the
+    /// boxes around both triangles.
     pub bounds: ([f64; 3], [f64; 3]),
 }
 
-/// The pairs of triangles of a mesh that intersect.
+/// The pairs of intersecting triangles of a mesh.
 #[derive(Debug, Clone, PartialEq)]
 pub struct IntersectingPairs {
-    /// How many were found.
+    /// Number of pairs found.
     pub count: u64,
-    /// Whether these are all. If not, the search was ended: too many triangles lie close to each other.
+    /// True if these are all pairs. If false, the search was ended because too many triangles lie close to
+    /// each other.
     pub is_complete: bool,
-    /// The first of them in ascending order of triangles: as many as were asked for.
+    /// The first pairs, in ascending order of triangles: at most as many as the caller requested.
     pub pairs: Vec<IntersectingPair>,
 }
 
 impl TriangleMesh {
-    /// The pairs of triangles that have a point in common which is not on a common vertex or edge: they
-    /// cross, touch, or fold onto each other. Decided exactly. Triangles without area are left out.
+    /// Returns the pairs of triangles with a common point that does not lie on a common vertex or edge: they
+    /// cross, touch, or fold onto each other. The decision is exact. Triangles without area are left out.
     ///
-    /// O(t log t) time for triangles that lie apart, also for slivers of which many have a vertex in common,
-    /// and the mesh keeps a tree of 36 bytes a triangle. A search ends after 2^26 steps and 512 a triangle;
-    /// [`is_complete`](IntersectingPairs::is_complete) tells. It is deterministic.
+    /// O(t log t) time for triangles that lie apart, also for many slivers with a common vertex. The mesh
+    /// keeps a tree of 36 bytes a triangle. A search ends after 2^26 steps plus 512 a triangle;
+    /// [`is_complete`](IntersectingPairs::is_complete) is then false. The result is deterministic.
     ///
     /// # Errors
     /// [`Error::OutOfMemory`] or [`Error::Cancelled`].
@@ -85,7 +86,7 @@ impl TriangleMesh {
     }
 }
 
-/// Calls `visit` with each pair of triangles that intersect, until it returns `false`.
+/// Calls `visit` with each pair of intersecting triangles, until it returns `false`.
 pub(super) fn intersections(
     mesh: &TriangleMesh,
     control: &Control<'_>,
@@ -112,11 +113,11 @@ pub(super) fn corners(mesh: &TriangleMesh, triangle: u32) -> [Point; 3] {
     mesh.triangles()[triangle as usize].map(|v| mesh.vertices()[v as usize])
 }
 
-/// Whether two triangles with area intersect.
+/// Returns whether two triangles with area intersect.
 fn intersect(mesh: &TriangleMesh, a: u32, b: u32) -> bool {
     let both = [a, b];
     let [of_a, of_b] = both.map(|t| mesh.triangles()[t as usize]);
-    // For each corner of `b` that of `a` which it is.
+    // For each corner of `b`, the corner of `a` that is the same vertex.
     let same: [Option<usize>; 3] = array(|k| of_a.iter().position(|&vertex| vertex == of_b[k]));
     let (a, b) = (corners(mesh, a), corners(mesh, b));
     let is_line_between = || is_line_between(mesh, both);
@@ -132,13 +133,14 @@ fn intersect(mesh: &TriangleMesh, a: u32, b: u32) -> bool {
     }
 }
 
-/// What rounding may change in a sum of two or three products of differences, as a part of the magnitudes.
+/// Upper bound of the rounding error of a sum of two or three products of differences, relative to the
+/// magnitudes.
 const ROUNDING: f64 = 4.0 * f64::EPSILON;
 
-/// Whether two triangles surely have nothing in common but vertices, or an edge, of both: seen along an axis
-/// there is a line between them. It runs along an edge, and of the other triangle at most common vertices lie
-/// on it. Not told where rounding may decide it. (Most pairs never come here: what it needs is fetched again,
-/// so that they do not carry it along.)
+/// Returns whether two triangles surely share nothing but common vertices or a common edge, because a line
+/// lies between them in an axis-parallel projection. The line runs along an edge, and at most common vertices
+/// of the other triangle lie on it. Returns false if rounding may decide. (Most pairs never get here. This
+/// function fetches its data again, so that those pairs do not carry it along.)
 #[cold]
 #[inline(never)]
 fn is_line_between(mesh: &TriangleMesh, both: [u32; 2]) -> bool {
@@ -150,7 +152,7 @@ fn is_line_between(mesh: &TriangleMesh, both: [u32; 2]) -> bool {
         let (i, j) = ((k + 1) % 3, (k + 2) % 3);
         (u[i] * v[j] - u[j] * v[i]).abs()
     });
-    // Along the axis along which the first is seen best.
+    // Project along the axis that shows the first triangle best.
     let axes = if normal[0] > normal[1] && normal[0] > normal[2] {
         [1, 2]
     } else if normal[1] > normal[2] {
@@ -163,7 +165,7 @@ fn is_line_between(mesh: &TriangleMesh, both: [u32; 2]) -> bool {
     is_edge_between(a, b) || is_edge_between(b, a)
 }
 
-/// The same of the lines along the first one's edges.
+/// Does the same with the lines along the first triangle's edges.
 fn is_edge_between((of_a, a): ([u32; 3], &[[f64; 2]; 3]), (of_b, b): ([u32; 3], &[[f64; 2]; 3])) -> bool {
     (0..3).any(|k| {
         let [from, to, lone] = [k, (k + 1) % 3, (k + 2) % 3];
@@ -173,7 +175,7 @@ fn is_edge_between((of_a, a): ([u32; 3], &[[f64; 2]; 3]), (of_b, b): ([u32; 3], 
     })
 }
 
-/// On which side of a line through two points a third one lies; 0 if rounding may decide it.
+/// Returns the side of the line through two points on which a third point lies; 0 if rounding may decide.
 #[inline(always)]
 fn turn(s: &[f64; 2], t: &[f64; 2], x: &[f64; 2]) -> i32 {
     let (left, right) = ((t[0] - s[0]) * (x[1] - s[1]), (t[1] - s[1]) * (x[0] - s[0]));
@@ -181,8 +183,8 @@ fn turn(s: &[f64; 2], t: &[f64; 2], x: &[f64; 2]) -> i32 {
     if value.abs() > ROUNDING * (left.abs() + right.abs()) { sign(value) } else { 0 }
 }
 
-/// Whether two cones at `v` surely have no direction in common: the plane across the way from the middle of
-/// one to that of the other lies between them. Not told where rounding may decide it.
+/// Returns whether two cones at `v` surely have no common direction: the plane perpendicular to the vector
+/// between their middles separates them. Returns false if rounding may decide.
 #[cold]
 fn is_plane_between(v: &Point, a: [&Point; 2], b: [&Point; 2]) -> bool {
     let [a, b]: [[Point; 2]; 2] = [a, b].map(|ends| ends.map(|p| array(|axis| p[axis] - v[axis])));
@@ -195,20 +197,20 @@ fn is_plane_between(v: &Point, a: [&Point; 2], b: [&Point; 2]) -> bool {
     a.iter().all(|p| is_ahead(p, 1.0)) && b.iter().all(|p| is_ahead(p, -1.0))
 }
 
-/// Whether two triangles with a common edge meet beyond it. `lone` is the corner of the first that is not on
-/// the edge, `p` that of the second one.
+/// Returns whether two triangles with a common edge meet beyond it. `lone` is the corner of the first
+/// triangle that is not on the edge, `p` the corresponding corner of the second.
 fn fold(a: &[Point; 3], lone: usize, p: &Point, is_line_between: impl FnOnce() -> bool) -> bool {
     let [c, d, e] = array(|k| &a[(lone + k) % 3]);
     if sides([c, d, e], [p], is_line_between) != Some([0]) {
         return false;
     }
-    // In one plane: both on the same side of the edge.
+    // In one plane, they meet if both lie on the same side of the edge.
     let axis = axis_of(a);
     cross_sign([d, e], [d, c], axis) == cross_sign([d, e], [d, p], axis)
 }
 
-/// On which sides of the plane through three points others lie. Nothing where rounding may decide it, and the
-/// triangles `are_apart`.
+/// Returns the sides of the plane through three points on which other points lie. `None` if rounding may
+/// decide and `are_apart` returns true for the triangles.
 #[inline(always)]
 fn sides<const N: usize>(
     [a, b, c]: [&Point; 3],
@@ -222,16 +224,16 @@ fn sides<const N: usize>(
     Some(array(|k| sure[k].unwrap_or_else(|| volume_sign(a, b, c, points[k]))))
 }
 
-/// An axis along which the triangle is seen with an area.
+/// Returns an axis along which the projection of the triangle has an area.
 pub(super) fn axis_of([a, b, c]: &[Point; 3]) -> usize {
     (0..2).find(|&axis| cross_sign([a, b], [a, c], axis) != 0).unwrap_or(2)
 }
 
-/// Whether two triangles with a common vertex, number `i` of the first and `k` of the second one, meet beyond
-/// it.
+/// Returns whether two triangles with a common vertex meet beyond it. The vertex is number `i` of the first
+/// triangle and number `k` of the second.
 ///
-/// Each triangle begins, at the vertex, as a cone between two edges. They meet beyond the vertex if and only
-/// if the cones have a direction in common.
+/// At the vertex, each triangle begins as a cone between two edges. The triangles meet beyond the vertex if
+/// and only if the cones have a common direction.
 fn meet_beyond_vertex(
     a: &[Point; 3],
     i: usize,
@@ -241,7 +243,7 @@ fn meet_beyond_vertex(
 ) -> bool {
     let [v, p, q] = array(|n| &a[(i + n) % 3]);
     let [r, s] = array(|n| &b[(k + 1 + n) % 3]);
-    // On which side of the first plane the second cone's edges lie, and the other way round.
+    // The sides of the first plane on which the second cone's edges lie, and the other way round.
     let are_apart = || is_plane_between(v, [p, q], [r, s]) || is_line_between();
     let Some(of_first) = sides([v, p, q], [r, s], are_apart) else { return false };
     if of_first[0] * of_first[1] > 0 {
@@ -263,7 +265,7 @@ fn meet_beyond_vertex(
     way([pqs, -pqr]) == way([prs, -qrs])
 }
 
-/// Whether two cones at `v` in one plane, each less than a half plane, have a direction in common.
+/// Returns whether two cones at `v` in one plane, each less than a half plane, have a common direction.
 fn cones_overlap(v: &Point, a: [&Point; 2], b: [&Point; 2], axis: usize) -> bool {
     let turn = |s: &Point, t: &Point| cross_sign([v, s], [v, t], axis);
     let within = |[s, t]: [&Point; 2], p: &Point| {
@@ -273,8 +275,8 @@ fn cones_overlap(v: &Point, a: [&Point; 2], b: [&Point; 2], axis: usize) -> bool
     b.iter().any(|p| within(a, p)) || a.iter().any(|p| within(b, p))
 }
 
-/// Whether two triangles meet. `is_line_between` tells, where rounding may decide it, whether they are surely
-/// apart.
+/// Returns whether two triangles meet. If rounding may decide, `is_line_between` is called; it returns true
+/// if they are surely apart.
 pub(super) fn meet(a: &[Point; 3], b: &[Point; 3], is_line_between: impl FnOnce() -> bool) -> bool {
     let is_apart = |sides: [i32; 3]| sides[0] != 0 && sides == [sides[0]; 3];
     let Some(of_b) = sides(a.each_ref(), b.each_ref(), is_line_between) else { return false };
@@ -289,8 +291,8 @@ pub(super) fn meet(a: &[Point; 3], b: &[Point; 3], is_line_between: impl FnOnce(
     edge_meets(a, b, of_b) || edge_meets(b, a, of_a)
 }
 
-/// Whether an edge of the second triangle meets the first one. `sides` are those of the first one's plane on
-/// which the second one's corners lie.
+/// Returns whether an edge of the second triangle meets the first triangle. `sides` are the sides of the
+/// first triangle's plane on which the second triangle's corners lie.
 fn edge_meets(triangle: &[Point; 3], edges: &[Point; 3], sides: [i32; 3]) -> bool {
     let [a, b, c] = triangle;
     (0..3).any(|k| {
@@ -308,7 +310,7 @@ fn edge_meets(triangle: &[Point; 3], edges: &[Point; 3], sides: [i32; 3]) -> boo
     })
 }
 
-/// Whether a segment in the plane of a triangle meets it.
+/// Returns whether a segment in the plane of a triangle meets the triangle.
 fn meet_in_plane(triangle: &[Point; 3], p: &Point, q: &Point) -> bool {
     let axis = axis_of(triangle);
     let [a, b, c] = triangle;
@@ -330,7 +332,7 @@ mod tests {
     use super::*;
     use alloc::vec;
 
-    /// All pairs, one by one.
+    /// All pairs, found one by one.
     fn slowly(mesh: &TriangleMesh) -> Vec<[u32; 2]> {
         let has_area = |t: &u32| !mesh.is_flat(&mesh.triangles()[*t as usize]);
         let all: Vec<u32> = (0..mesh.triangles().len() as u32).filter(has_area).collect();
@@ -418,7 +420,7 @@ mod tests {
         };
         let mut met = 0;
         for round in 0..40 {
-            // On few steps of a lattice, so that much lies in one line or plane.
+            // Coordinates with few steps, so that many points are collinear or coplanar.
             let steps = [2, 4, 1000][round % 3];
             let mut vertices: Vec<Point> =
                 (0..3).map(|_| array(|_| random(steps) as f64 - (steps / 2) as f64)).collect();
@@ -440,7 +442,7 @@ mod tests {
         assert!(met > 1000);
     }
 
-    /// As many slivers as would take hours in pairs.
+    /// So many slivers that testing all pairs would take hours.
     #[test]
     fn many_slivers() {
         for kind in 0..4 {

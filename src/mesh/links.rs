@@ -1,5 +1,4 @@
-//! Triangles whose edges are collapsed and flipped: the surface stays what it is as a set of edges and
-//! triangles that hang together.
+//! Edge collapses and flips that preserve the topology of the surface.
 //!
 //! (Dey, Edelsbrunner, Guha and Nekhayev, *Topology preserving edge contraction*, 1999: the condition under
 //! which an edge of a surface may be collapsed.)
@@ -8,10 +7,10 @@ use crate::error::Error;
 use crate::memory;
 use alloc::vec::Vec;
 
-/// No vertex, of triangles that are gone.
+/// In place of a vertex: the triangle was removed.
 const NONE: u32 = u32::MAX;
 
-/// Triangles, and which of them meet at each vertex.
+/// Triangles, and the triangles at each vertex.
 pub(super) struct Links {
     triangles: Vec<[u32; 3]>,
     around: Vec<Vec<u32>>,
@@ -29,7 +28,7 @@ impl Links {
         Ok(Links { triangles: memory::copied(triangles)?, around })
     }
 
-    /// The triangles with their numbers, without those that are gone.
+    /// Iterates over the triangles with their numbers, without removed ones.
     pub(super) fn all(&self) -> impl Iterator<Item = (u32, [u32; 3])> {
         (0..)
             .zip(&self.triangles)
@@ -37,17 +36,17 @@ impl Links {
             .map(|(k, &triangle)| (k, triangle))
     }
 
-    /// A triangle, unless it is gone.
+    /// Returns a triangle, unless it was removed.
     pub(super) fn triangle(&self, number: u32) -> Option<[u32; 3]> {
         Some(self.triangles[number as usize]).filter(|triangle| triangle[0] != NONE)
     }
 
-    /// The triangles at a vertex.
+    /// Returns the triangles at a vertex.
     pub(super) fn around(&self, vertex: u32) -> &[u32] {
         &self.around[vertex as usize]
     }
 
-    /// The only triangle that runs along an edge in this direction.
+    /// Returns the only triangle that uses the edge in this direction.
     fn along(&self, from: u32, to: u32) -> Option<u32> {
         let runs = |&&number: &&u32| {
             let triangle = self.triangles[number as usize];
@@ -57,18 +56,18 @@ impl Links {
         all.next().copied().filter(|_| all.next().is_none())
     }
 
-    /// The only triangles on the two sides of an edge, each of which runs along it in another direction.
+    /// Returns the only triangles on the two sides of an edge, which use it in opposite directions.
     fn beside(&self, from: u32, to: u32) -> Option<[u32; 2]> {
         Some([self.along(from, to)?, self.along(to, from)?])
     }
 
-    /// The vertex of a triangle that is neither of two.
+    /// Returns the vertex of a triangle that is neither `from` nor `to`.
     fn apex(&self, number: u32, from: u32, to: u32) -> u32 {
         let triangle = self.triangles[number as usize];
         triangle.into_iter().find(|&vertex| vertex != from && vertex != to).unwrap_or(NONE)
     }
 
-    /// The vertices at the other ends of the edges of a vertex, ascending.
+    /// Returns the neighbours of a vertex, ascending.
     fn neighbours(&self, vertex: u32) -> Result<Vec<u32>, Error> {
         let mut all = memory::with_capacity(2 * self.around(vertex).len())?;
         let corners = self.around(vertex).iter().flat_map(|&number| self.triangles[number as usize]);
@@ -78,9 +77,9 @@ impl Links {
         Ok(all)
     }
 
-    /// Puts a vertex where the other end of an edge is, with which the triangles on both sides of the edge
-    /// vanish. Tells whether that was done: not if edges would then have more than two triangles, or two
-    /// triangles the same corners.
+    /// Moves a vertex to the other end of an edge; the triangles on both sides of the edge vanish. Returns
+    /// whether this was done. It is not done if an edge would then have more than two triangles, or if two
+    /// triangles would have the same corners.
     pub(super) fn collapse(&mut self, from: u32, to: u32) -> Result<bool, Error> {
         let Some(sides) = self.beside(from, to) else { return Ok(false) };
         let apexes = sides.map(|number| self.apex(number, from, to));
@@ -112,7 +111,7 @@ impl Links {
         Ok(true)
     }
 
-    /// The triangle behind the side of one that begins at a corner, and the corner of it that lies opposite.
+    /// Returns the triangle beyond the side that begins at a corner, and its vertex opposite that side.
     pub(super) fn across(&self, number: u32, side: usize) -> Option<(u32, u32)> {
         let triangle = self.triangle(number)?;
         let (from, to) = (triangle[side], triangle[(side + 1) % 3]);
@@ -120,8 +119,8 @@ impl Links {
         (own == number).then(|| (other, self.apex(other, from, to)))
     }
 
-    /// Puts the other diagonal into the two triangles at a side. Tells whether that was done: not if it is an
-    /// edge already.
+    /// Replaces the common side of two triangles by the other diagonal. Returns whether this was done. It is
+    /// not done if the other diagonal is an edge already.
     pub(super) fn flip(&mut self, number: u32, side: usize) -> Result<bool, Error> {
         let Some((other, far)) = self.across(number, side) else { return Ok(false) };
         let triangle = self.triangles[number as usize];

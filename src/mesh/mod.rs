@@ -1,17 +1,17 @@
-//! Triangle meshes as data: welding, how triangles hang together, what is wrong with them and how much of
-//! that can be mended; solids of plane faces, which become meshes.
+//! Triangle meshes as data: welding, connectivity, defects and their repair. Also solids of plane faces,
+//! which become meshes.
 //!
-//! Nothing here knows of cells. What the surface encloses, and how a cell of it is split, is `solid/mesh/`.
+//! This module does not use cells. `solid/mesh/` classifies points against a mesh and splits cells.
 //!
 //! From the bottom up, each file uses only files named before it: `positions` (equal vertices), `attributes`
 //! (data on triangles), `topology` (edges and bodies), `boundary` (loops of edges), `signs` (exact
 //! determinants), `surface` (the mesh); on the mesh `normals`, `weld`, `sew`, `placement`, `defects`,
-//! `overlap` and `report`; `tree` (boxes around triangles), `nearest`, `self_pairs` (whose boxes meet),
-//! `intersections`, `triangle_pair`, `discs` and `apart` (how far two meshes are apart), `planes` (in which
-//! triangles lie), `sheets` (winding numbers on both sides), `sides` (the same, triangle by triangle),
-//! `pieces` (of triangles that intersect others), `moments` (volume and inertia), `links` (edges collapsed
-//! and flipped) and `single` (single precision); `polygon` (triangulation), `shells` (which lie within
-//! others), `polyhedron` and its `faces`.
+//! `overlap` and `report`; `tree` (boxes around triangles), `nearest`, `self_pairs` (pairs whose boxes meet),
+//! `intersections`, `triangle_pair`, `discs` and `apart` (the distance of two meshes), `planes` (planes of
+//! triangles), `sheets` (winding numbers on both sides), `sides` (the same, triangle by triangle), `pieces`
+//! (of triangles that intersect others), `moments` (volume and inertia), `links` (edge collapses and flips)
+//! and `single` (single precision); `polygon` (triangulation), `shells` (nesting), `polyhedron` and its
+//! `faces`.
 
 mod apart;
 mod attributes;

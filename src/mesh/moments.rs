@@ -1,25 +1,25 @@
-//! The moments of what a mesh encloses, by the divergence theorem.
+//! The moments of the region that a mesh encloses, by the divergence theorem.
 //!
-//! A point belongs to the solid if the winding number w there has a property that the fill rule says. Where
-//! no two triangles intersect, this property changes at a triangle in one way: from inside to outside, the
-//! other way round, or not at all (`sheets`). The integral of a polynomial over the solid is then the sum of
-//! the integrals over signed tetrahedra, each with a triangle as its base and a common tip, of those
-//! triangles at which it changes.
+//! A point belongs to the solid if the winding number w at that point has the property that the fill rule
+//! demands. If no two triangles intersect, this property changes in one way across each triangle: from inside
+//! to outside, the other way round, or not at all (`sheets`). The integral of a polynomial over the solid is
+//! then a sum of integrals over signed tetrahedra. Each triangle at which the property changes is the base of
+//! one tetrahedron, and all have a common tip.
 //!
-//! **Rounding.** A triangle is a corner, relative to the centre of the mesh, and two edges. All are scaled by
-//! a power of two, so that coordinates are at most 2 in magnitude and nothing overflows. A term is a
-//! polynomial of them. Beside its sum runs that of its *size*, the same polynomial of magnitudes. No more
-//! than 32 roundings lie one behind another in a term, so that it is off by 40 half units of its size at the
-//! most. The sums are kept in two doubles. Of parts with few and round dimensions nothing is rounded at all,
-//! which the sizes tell.
+//! **Rounding.** A triangle is stored as a corner, relative to the centre of the mesh, and two edges. All are
+//! scaled by a power of two, so that coordinates are at most 2 in magnitude and nothing overflows. A term is
+//! a polynomial of them. Beside the sum of terms runs the sum of their *sizes*: the same polynomials of
+//! magnitudes. A term has a chain of at most 32 roundings, so its error is at most 40 half units of its size.
+//! The sums are kept in two doubles. For parts with few and round dimensions, nothing is rounded at all; the
+//! sizes show this.
 //!
-//! **Displacement.** The surface may have been moved by some distance r. The solid changes by no more than
-//! the volume within r of the surface, which is at most the sum over all triangles of 2 A r + π/2 P r² + 4/3
-//! π r³, for an area A and a perimeter P (Steiner's formula). The volume grows by no more than what of it
-//! lies outside, and shrinks by no more than what lies inside. Each is at most the sum of A r + π/4 P r² +
-//! 4/3 π r³: a point whose nearest one lies within a triangle lies on one side of it; one whose nearest one
-//! lies on an edge lies in the half cylinders of all triangles there, of which there are two at least; and
-//! around a corner there are three at least.
+//! **Displacement.** The surface may have been moved by some distance r. The solid changes by at most the
+//! volume within r of the surface. This volume is at most the sum over all triangles of 2 A r + π/2 P r² +
+//! 4/3 π r³, for an area A and a perimeter P (Steiner's formula). The solid grows by at most the part of this
+//! volume that lies outside, and shrinks by at most the part that lies inside. Each part is at most the sum
+//! of A r + π/4 P r² + 4/3 π r³: a point whose nearest surface point lies within a triangle lies on one side
+//! of it; a point whose nearest surface point lies on an edge lies in the half cylinders of all triangles at
+//! that edge, at least two; and at a corner there are at least three.
 
 use super::intersections::{corners, intersections};
 use super::sheets::{Sense, sheets};
@@ -34,25 +34,26 @@ use crate::lattice::{Interval, VolumeMoments};
 use core::array::from_fn as array;
 use core::f64::consts::FRAC_PI_2;
 
-/// The moments of what a mesh encloses, or why they are not known without splitting cells.
+/// The moments of the region that a mesh encloses, or the reason why they cannot be computed without
+/// splitting cells.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum MeshMoments {
-    /// They are known, up to rounding and to the mesh's displacement.
+    /// The moments are known, up to rounding and to the mesh's displacement.
     Known(VolumeMoments),
-    /// The mesh is empty, not closed, or not consistently oriented as the fill rule demands.
-    /// [`TriangleMesh::check_closed`] tells which.
+    /// The mesh is empty, not closed, or not oriented consistently as the fill rule demands.
+    /// [`TriangleMesh::check_closed`] reports which.
     Open,
-    /// Two triangles intersect, these for instance. [`TriangleMesh::intersecting_pairs`] tells how many do.
+    /// Two triangles intersect, for instance these. [`TriangleMesh::intersecting_pairs`] counts all.
     Intersecting([u32; 2]),
-    /// Too many triangles lie close to each other to find out whether some intersect, or all triangles of a
+    /// Too many triangles lie close to each other to determine whether any intersect, or all triangles of a
     /// body are slivers.
     Undecided,
 }
 
 impl TriangleMesh {
-    /// The volume and the moments of what the mesh encloses by a fill rule, exact up to rounding: usually to
-    /// 14 digits. They are known if the mesh is closed and no two triangles intersect. Nested bodies,
-    /// cavities, and bodies that are inside out count as the rule says.
+    /// Returns the volume and the moments of the region that the mesh encloses by a fill rule, exact up to
+    /// rounding: usually to 14 digits. They are known if the mesh is closed and no two triangles intersect.
+    /// Nested bodies, cavities, and inverted bodies count as the rule says.
     ///
     /// If vertices were moved, or a [`deviation`](Self::with_deviation) was stated, the intervals contain the
     /// moments of each solid whose surface lies within that distance ([`displacement`](Self::displacement)).
@@ -104,15 +105,15 @@ impl TriangleMesh {
         Ok(MeshMoments::Known(sums.finish(&grid, grid.bits(self.vertices()), self.tube(&grid))))
     }
 
-    /// How far the true surface may lie from the mesh, and what that may change.
+    /// Returns the size of the region in which the true surface may lie.
     fn tube(&self, grid: &Grid) -> Tube {
         let mut tube = Tube::default();
         if self.radius() == 0.0 {
             return tube;
         }
-        // What is rounded here.
+        // Covers the rounding of this function.
         const SLACK: f64 = 1.0 + 1e-6;
-        // More than what lengths and areas are off by, of coordinates up to 2.
+        // Upper bound of the errors of lengths and areas for coordinates up to 2.
         const ERROR: f64 = 1e-14;
         let r = SLACK * self.radius() * grid.scale();
         for triangle in 0..self.triangles().len() as u32 {
@@ -129,24 +130,24 @@ impl TriangleMesh {
     }
 }
 
-/// Where the true surface may lie, in units of the grid: upper bounds.
+/// The region in which the true surface may lie, in units of the grid: upper bounds.
 #[derive(Default)]
 struct Tube {
-    /// How far from the mesh.
+    /// Maximum distance from the mesh.
     reach: f64,
-    /// The volume within that distance, and that of what lies outside, or inside.
+    /// The volume within that distance, and the volume of its part outside, or inside, of the surface.
     volume: f64,
     on_a_side: f64,
 }
 
-/// Volume, first and second moments.
+/// Number of moments: volume, first and second moments.
 const COUNT: usize = 10;
 
 /// Sums of terms in the units of the grid: 6 times the volume, 24 times the first and 120 times the second
 /// moments.
 #[derive(Default)]
 struct Sums {
-    /// The sums, and what was lost by rounding them.
+    /// The sums, and the parts lost by rounding them.
     values: [f64; COUNT],
     lost: [f64; COUNT],
     sizes: [f64; COUNT],
@@ -167,16 +168,16 @@ impl Sums {
         self.terms += 1.0;
     }
 
-    /// `bits` are those of the coordinates behind the point, if they are exact. What lies in `tube` may
-    /// belong to the solid or not.
+    /// Returns the moments. `bits` is the number of bits of the coordinates behind the point, if they are
+    /// exact. Points in `tube` may belong to the solid or not.
     fn finish(&self, grid: &Grid, bits: Option<i32>, tube: Tube) -> VolumeMoments {
         const HALF_UNIT: f64 = f64::EPSILON / 2.0;
         let unit = Interval::exactly(1.0 / grid.scale());
         let of = |k: usize, factor: f64, degree: usize| {
-            // What the terms are off by, what the lost parts are when they are added up, and what underflows.
+            // The error of the terms, the error of adding up the lost parts, and underflow.
             let of_sums = HALF_UNIT * self.terms;
             let share = 40.0 * HALF_UNIT + of_sums * of_sums;
-            // Multiples of a power of two, none of which comes near 2^53 of them, are not rounded.
+            // Multiples of a power of two are not rounded if none comes near 2^53 times that power.
             let is_exact = bits.is_some_and(|bits| {
                 let grain = f64::from_bits(((1023 - bits * degree as i32) as u64) << 52);
                 self.sizes[k] < grain * (1u64 << 51) as f64
@@ -207,9 +208,10 @@ fn around_zero(radius: f64) -> Interval {
     Interval::between(-radius, radius)
 }
 
-/// 6 times the volume, 24 times the first and 120 times the second moments of the tetrahedron with the tip 0,
-/// in the order of [`VolumeMoments`]; or their sizes, if `minus` adds. The base has the corner `a` and from
-/// there the edges `u` and `v`, which are short: so the sizes are little more than the magnitudes.
+/// Returns 6 times the volume, 24 times the first and 120 times the second moments of the tetrahedron with
+/// the tip 0, in the order of [`VolumeMoments`]; or their sizes, if `minus` adds. The base has the corner `a`
+/// and from there the edges `u` and `v`. The edges are short, so the sizes are little more than the
+/// magnitudes.
 #[inline(always)]
 fn moments_of([a, u, v]: &[Point; 3], minus: impl Fn(f64, f64) -> f64) -> [f64; COUNT] {
     let [b, c]: [Point; 2] = [u, v].map(|edge| array(|k| a[k] + edge[k]));

@@ -1,21 +1,22 @@
-//! The triangle that is nearest to a point, and the triangles that may be nearest to a point of a box.
+//! The triangle nearest to a point, and the triangles that may be nearest to a point of a box.
 //!
-//! **The nearest triangle** is the one whose *computed* distance is least; of equal ones the first. The tree
-//! leaves out only triangles whose computed distance cannot be as small, so the answer is that of a look at
-//! all triangles. Distances to vertices and edges are computed from these alone, in the order of their
-//! numbers: triangles that share them, and triangles with the same corners, are at equal distances, bit by
-//! bit.
+//! **The nearest triangle** is the one with the least *computed* distance; if several have it, the first. The
+//! tree leaves out only triangles whose computed distance cannot be as small, so the answer is the same as
+//! that of a linear search. Distances to vertices and edges are computed from these alone, in the order of
+//! their vertex numbers. Therefore triangles that share a vertex or edge, and triangles with the same
+//! corners, have equal distances, bit by bit.
 //!
-//! **What may be nearest in a box.** Let t be the triangle nearest to the box's centre. The distance to t is
-//! a convex function of position, so over the box it is greatest at a corner; say U there. No triangle that
-//! is further than U from the whole box is nearest to a point of the box. Computed distances differ from true
-//! ones, and U is enlarged by bounds of that:
+//! **Candidates in a box.** Let t be the triangle nearest to the box's centre. The distance to t is a convex
+//! function of position, so its maximum over the box is at a corner; call it U. A triangle that is further
+//! than U from the whole box is not nearest to any point of the box. Computed distances differ from true
+//! distances, so U is enlarged by bounds of the difference:
 //!
-//! * The computed distance is at least the true one less 8u (D + L), with u = 2^-53, D the distance to a
-//!   corner of the triangle and L its longest edge, because it is that to a computed point of the triangle.
-//! * It is at most the true one plus 128u (D + L) L / h, with h the height on the longest edge: so far the
-//!   computed foot of the perpendicular may lie from the true one. For slivers, of which h is less than 2^-10
-//!   L, the distances to the edges are looked at as well, which exceed the true one by at most h.
+//! * The computed distance is at least the true distance less 8u (D + L), with u = 2^-53, D the distance to a
+//!   corner of the triangle and L its longest edge, because it is the distance to a computed point of the
+//!   triangle.
+//! * It is at most the true distance plus 128u (D + L) L / h, with h the height on the longest edge: the
+//!   computed foot of the perpendicular may lie that far from the true one. For slivers, where h is less than
+//!   2^-10 L, the distances to the edges are used as well; they exceed the true distance by at most h.
 //!
 //! Lengths are in the scale of the tree's grid, in which the mesh has a half extent of 1/2 to 1.
 
@@ -33,14 +34,14 @@ use crate::lattice::exact::sqrt;
 use crate::lattice::{Bounds, Interval};
 use crate::memory;
 
-/// How far a coordinate of a box in the tree may be off, and twice that: coordinates have 24 bits.
+/// Twice the maximum error of a coordinate of a box in the tree: coordinates have 24 bits.
 const BOX: f64 = 1.0 / (1 << 24) as f64;
-/// Points further away, along an axis, are moved in to there: 2^100.
+/// Points further away than this, along an axis, are moved to this distance: 2^100.
 const FAR: f64 = (1_u128 << 100) as f64;
-/// What rounding may change, as a part of the lengths concerned: 2^-42, eight times what is needed and more.
+/// Upper bound of rounding errors, relative to the lengths concerned: 2^-42, more than eight times the need.
 const ROUNDING: f64 = 1.0 / (1_u64 << 42) as f64;
 
-/// Squares of areas that may have lost digits by underflow: of edges below 2^-240.
+/// Squares of areas below this may have lost digits by underflow: their edges are below 2^-240.
 const LOST: f64 = 1e-290;
 
 /// A mesh with the tree of its triangles.
@@ -50,33 +51,33 @@ pub(crate) struct TriangleTree<'m> {
     pub(super) tree: &'m Tree,
 }
 
-/// The point of a surface that is nearest to another one.
+/// The point of a surface that is nearest to a given point.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct NearestPoint {
     pub triangle: u32,
-    /// Of the triangle's corners; none is negative.
+    /// Weights of the triangle's corners; none is negative.
     pub weights: [f64; 3],
     /// The square of the computed distance, in the scale of the tree.
     pub square: f64,
-    /// No triangle is nearer than that, in the scale of the tree.
+    /// A lower bound of the distance to all triangles, in the scale of the tree.
     lower: f64,
 }
 
-/// Whoever looks at the triangles that may be nearest.
+/// A visitor of the triangles that may be nearest.
 pub(crate) trait NearVisitor {
-    /// Whether the triangles of a node shall be visited one by one. If `all`, each of them may be nearest, or
-    /// is hardly further away.
+    /// Returns whether the triangles of a node shall be visited one by one. If `all`, each of them may be
+    /// nearest, or is hardly further away.
     fn enter(&mut self, node: usize, all: bool) -> bool;
 
-    /// Whether a triangle shall be visited, if it may be nearest.
+    /// Returns whether a triangle shall be visited, if it may be nearest.
     fn wants(&self, triangle: u32) -> bool;
 
-    /// A triangle that may be nearest.
+    /// Visits a triangle that may be nearest.
     fn visit(&mut self, triangle: u32);
 }
 
 impl TriangleMesh {
-    /// The mesh with the tree of its triangles, which is made if it is not there yet: O(t log t).
+    /// Returns the mesh with the tree of its triangles. The first call builds the tree: O(t log t).
     ///
     /// # Errors
     /// [`Error::OutOfMemory`], and [`Error::Cancelled`] by `control`.
@@ -84,15 +85,15 @@ impl TriangleMesh {
         Ok(TriangleTree { mesh: self, tree: self.tree(control)? })
     }
 
-    /// The same, if the tree is there.
+    /// Returns the mesh with the tree, if the tree exists already.
     pub(crate) fn known_triangle_tree(&self) -> Option<TriangleTree<'_>> {
         Some(TriangleTree { mesh: self, tree: self.known_tree()? })
     }
 }
 
 impl TriangleTree<'_> {
-    /// For each node what is known of all its triangles: `none` of no triangle, `of` one, `join` of both
-    /// parts.
+    /// Returns a summary of all triangles of each node. `none` is the summary of no triangle, `of` returns
+    /// that of one, and `join` combines two.
     pub(crate) fn summaries<T: Copy>(
         &self,
         none: T,
@@ -107,7 +108,7 @@ impl TriangleTree<'_> {
         Ok(summaries)
     }
 
-    /// Sums up a node. The recursion is as deep as the tree.
+    /// Summarises a node. The recursion is as deep as the tree.
     fn summarise<T: Copy>(
         &self,
         place: Place,
@@ -129,15 +130,15 @@ impl TriangleTree<'_> {
         }
     }
 
-    /// The nearest point of the mesh that the tree was made of; `None` if the mesh has no triangle, or the
-    /// point is not finite. `hint` is a triangle that may be near, which saves time. O(log t) as a rule.
+    /// Returns the nearest point of the mesh; `None` if the mesh has no triangle, or the point is not finite.
+    /// `hint` is a triangle that may be near; it saves time. Usually O(log t).
     pub(crate) fn nearest(&self, point: &Point, hint: Option<u32>) -> Option<NearestPoint> {
         self.search(point, hint, |_| true, false)
     }
 
-    /// The nearest point of triangles that are `wanted`, and certified bounds of its distance in model units.
-    /// `None` as [`nearest`](Self::nearest), of points further away than 2^99 times the mesh's extent, and if
-    /// no triangle is wanted.
+    /// Returns the nearest point of the triangles that are `wanted`, and certified bounds of its distance in
+    /// model units. `None` in the cases of [`nearest`](Self::nearest), for points further away than 2^99
+    /// times the mesh's extent, and if no triangle is wanted.
     pub(crate) fn nearest_of(
         &self,
         point: &Point,
@@ -146,7 +147,7 @@ impl TriangleTree<'_> {
         self.nearest_beside(point, None, wanted)
     }
 
-    /// The same with a triangle that may be near, which saves time.
+    /// Does the same with a hint: a triangle that may be near, which saves time.
     pub(crate) fn nearest_beside(
         &self,
         point: &Point,
@@ -161,14 +162,14 @@ impl TriangleTree<'_> {
         let found = self.search(point, hint, wanted, true)?;
         let corners = Corners::of(self.mesh, found.triangle, grid.scale());
         let distance = sqrt(found.square);
-        // The computed point of the triangle is that near.
+        // The computed point of the triangle is at most this far away.
         let upper = distance + corners.excess(distance);
         let exactly = Interval::exactly;
         let bounds = Interval::new(found.lower.max(0.0).min(distance), upper.max(distance))?;
         Some((found, bounds.over(exactly(grid.scale()))))
     }
 
-    /// More than the distance of a point from a triangle, in model units; hardly more.
+    /// Returns a close upper bound of the distance between a point and a triangle, in model units.
     pub(crate) fn most_from(&self, triangle: u32, point: &Point) -> f64 {
         let scale = self.tree.grid.scale();
         let shape = Corners::of(self.mesh, triangle, scale);
@@ -177,14 +178,14 @@ impl TriangleTree<'_> {
         (distance + shape.excess(distance)) / scale
     }
 
-    /// The point of a triangle that is nearest to another one, but for rounding.
+    /// Returns the point of a triangle that is nearest to a given point, up to rounding.
     pub(crate) fn nearest_to(&self, triangle: u32, point: &Point) -> Point {
         let shape = Corners::of(self.mesh, triangle, self.tree.grid.scale());
         let (square, weights) = shape.nearest_to(&shape.from(point));
         self.point_of(&NearestPoint { triangle, weights, square, lower: 0.0 })
     }
 
-    /// The point of a triangle with such weights, but for rounding.
+    /// Returns the point with these weights, up to rounding.
     pub(crate) fn point_of(&self, near: &NearestPoint) -> Point {
         let corners = self.mesh.triangles()[near.triangle as usize].map(|v| self.mesh.vertices()[v as usize]);
         array(|axis| (0..3).map(|k| near.weights[k] * corners[k][axis]).sum())
@@ -214,7 +215,7 @@ impl TriangleTree<'_> {
             point,
             scaled,
             single: Single::new(&scaled),
-            // The mesh lies within 2 of the centre. (Sums of three ways are at most three times as long as
+            // The mesh lies within 2 of the centre. (Sums of three vectors are at most three times as long as
             // the longest.)
             rounding: ROUNDING * 20.0 * (4.0 + dot(&scaled, &scaled)),
             wanted,
@@ -231,8 +232,8 @@ impl TriangleTree<'_> {
         search.best.map(|best| NearestPoint { lower: lower.min(sqrt(best.square)), ..best })
     }
 
-    /// Visits every triangle that [`nearest`](Self::nearest) can answer for a point of a closed box, and some
-    /// others; `false` if the box is so large, or so far away, that nothing is known.
+    /// Visits every triangle that [`nearest`](Self::nearest) can return for a point of a closed box, and some
+    /// others. Returns `false` if the box is so large or so far away that rounding hides the answer.
     pub(crate) fn visit_near(&self, bounds: &Bounds, visitor: &mut impl NearVisitor) -> bool {
         let &TriangleTree { mesh, tree } = self;
         let Some(root) = tree.root() else { return true };
@@ -261,7 +262,7 @@ impl TriangleTree<'_> {
     }
 }
 
-/// The larger of two, in one instruction.
+/// Returns the larger of two numbers, in one instruction.
 #[inline(always)]
 fn larger(a: f32, b: f32) -> f32 {
     if a > b { a } else { b }
@@ -270,16 +271,16 @@ fn larger(a: f32, b: f32) -> f32 {
 /// A point in single precision, in the scale of the tree.
 struct Single {
     at: [f32; 3],
-    /// By how much gaps to boxes may be less than they seem.
+    /// Maximum amount by which gaps to boxes are overestimated.
     slack: f32,
 }
 
 impl Single {
-    /// Nothing of a point so far away that single precision tells little.
+    /// Returns `None` for a point so far away that single precision is useless.
     fn new(scaled: &Point) -> Option<Single> {
         const FAR: f64 = 1024.0;
         let furthest = scaled.iter().fold(1.0, |most: f64, x| most.max(x.abs()));
-        // Boxes and the point are off by 2^-25 each, the gap by as much of itself.
+        // Boxes and the point have errors of 2^-25 each, the gap a relative error of the same size.
         let slack = (furthest / f64::from(1 << 22)) as f32;
         (furthest < FAR).then(|| Single { at: scaled.map(|x| x as f32), slack })
     }
@@ -306,25 +307,27 @@ struct Search<'a, W> {
     tree: &'a Tree,
     mesh: &'a TriangleMesh,
     point: Point,
-    /// The point in the scale of the tree, about the grid's centre.
+    /// The point in the scale of the tree, relative to the grid's centre.
     scaled: Point,
-    /// The same, unless it is far away.
+    /// The point in single precision, unless it is far away.
     single: Option<Single>,
-    /// More than rounding can change in a product of sums of ways to a triangle's corners, and in a square of
-    /// a distance.
+    /// Upper bound of the rounding error in a product of sums of vectors to a triangle's corners, and in a
+    /// squared distance.
     rounding: f64,
     wanted: W,
-    /// Whether bounds of true distances are asked for.
+    /// Whether bounds of true distances are needed.
     is_certified: bool,
     best: Option<NearestPoint>,
-    /// The [`key`] of parts that are no nearer than the best one, or of the furthest ones.
+    /// The least [`key`] of children to leave out: those no nearer than the best triangle, or the furthest
+    /// ones.
     until: u32,
-    /// No triangle that was looked at is nearer; those that were left out are not nearer than the best.
+    /// A lower bound of the distances to the triangles that were visited; those left out are not nearer than
+    /// the best.
     lower: f64,
 }
 
 impl<W: Fn(u32) -> bool> Search<'_, W> {
-    /// Less than the squares of computed distances to anything in the boxes of a node.
+    /// Returns lower bounds of the squared computed distances to everything in the boxes of a node.
     #[inline(always)]
     fn bounds(&self, node: &Node) -> [f32; WIDTH] {
         match &self.single {
@@ -333,7 +336,7 @@ impl<W: Fn(u32) -> bool> Search<'_, W> {
         }
     }
 
-    /// The same of a point far away.
+    /// Does the same for a point far away.
     #[cold]
     fn bounds_from_afar(&self, node: &Node) -> [f32; WIDTH] {
         array(|k| {
@@ -344,22 +347,22 @@ impl<W: Fn(u32) -> bool> Search<'_, W> {
                 let gap = gap.max(0.0);
                 sum + gap * gap
             });
-            // The point's own rounding is a part of the distance. (There is nothing in a box at an infinite
-            // distance.)
+            // The point's own rounding is relative to the distance. (A box at an infinite distance contains
+            // nothing.)
             let square = square * (1.0 - 1.0 / (1 << 20) as f64);
             if square < f64::INFINITY { (square.min(LARGEST) as f32).next_down() } else { f32::INFINITY }
         })
     }
 
-    /// Looks at nearer parts first.
+    /// Runs the search, nearer children first.
     fn run(&mut self) {
-        // (What is too far away is written, too, and then written over.)
+        // (Entries that are too far away are written as well, and then overwritten.)
         let mut later = [(0, Place { level: 0, number: 0 }); LATER + 1];
         let mut count = 0;
         let mut next = self.tree.root();
         while let Some(place) = next {
             let bounds = self.bounds(self.tree.node(place));
-            // Without branches, which nobody can foretell: the nearest last.
+            // Without branches, which would be mispredicted; the nearest child last.
             let keys = descending(array(|k| key(bounds[k], k as u32)));
             if place.level == 0 {
                 for key in keys.into_iter().rev() {
@@ -413,23 +416,23 @@ impl<W: Fn(u32) -> bool> Search<'_, W> {
     }
 }
 
-/// The number of a node's last part.
+/// The number of a node's last child.
 const LAST: u32 = WIDTH as u32 - 1;
 
-/// A part of a node with a bound that is not negative, as a number: first by the bound, rounded down, then by
-/// the part.
+/// Packs a child of a node and a non-negative bound into one number, which sorts first by the bound, rounded
+/// down, then by the child.
 #[inline(always)]
 fn key(bound: f32, part: u32) -> u32 {
     bound.to_bits() & !LAST | part
 }
 
-/// The part that a key is of.
+/// Returns the child of a key.
 #[inline(always)]
 fn part(key: u32) -> usize {
     (key & LAST) as usize
 }
 
-/// Four numbers in descending order.
+/// Sorts four numbers in descending order.
 #[inline(always)]
 fn descending(mut numbers: [u32; WIDTH]) -> [u32; WIDTH] {
     for [i, j] in [[0, 1], [2, 3], [0, 2], [1, 3], [1, 2]] {
@@ -439,9 +442,9 @@ fn descending(mut numbers: [u32; WIDTH]) -> [u32; WIDTH] {
     numbers
 }
 
-/// Whether a plane across the way to a triangle's centroid tells that its computed distance is greater than
-/// the root of `square`; `from` leads from the corners to the point. `rounding` is more than rounding changes
-/// in squares of lengths.
+/// Returns whether a plane perpendicular to the vector to a triangle's centroid proves that the computed
+/// distance is greater than the root of `square`. `from` holds the vectors from the corners to the point.
+/// `rounding` is an upper bound of the rounding error of squared lengths.
 #[inline(always)]
 fn is_beyond(from: &[Point; 3], square: f64, rounding: f64) -> bool {
     let [a, b, c] = from;
@@ -452,16 +455,16 @@ fn is_beyond(from: &[Point; 3], square: f64, rounding: f64) -> bool {
     nearest > 0.0 && nearest * nearest * (1.0 - 1e-9) > square * length
 }
 
-/// A triangle with its corners in the order of their vertices.
+/// A triangle with its corners in ascending order of their vertices.
 struct Corners {
     at: [Point; 3],
-    /// Which corners of the triangle they are.
+    /// The triangle's corner numbers in this order.
     corners: [usize; 3],
     scale: f64,
-    /// From the first corner to the second and third one, and from the second to the third one.
+    /// The edges from the first corner to the second and to the third, and from the second to the third.
     edges: [Edge; 3],
     base: Base,
-    /// The square of the base times the height.
+    /// The square of the product of base and height.
     area: f64,
 }
 
@@ -485,14 +488,15 @@ impl Corners {
         Corners { at, corners, scale, edges, base, area }
     }
 
-    /// The ways from the corners to a point.
+    /// Returns the vectors from the corners to a point.
     #[inline(always)]
     fn from(&self, point: &Point) -> [Point; 3] {
         self.at.map(|corner| array(|axis| (point[axis] - corner[axis]) * self.scale))
     }
 
-    /// How much more than the true distance the computed one may be, for points whose computed distance is at
-    /// most this; and what a computed one may be less besides.
+    /// Returns the maximum by which the computed distance may exceed the true distance, for points with at
+    /// most this computed distance, plus the maximum by which another computed distance may fall below its
+    /// true one.
     #[inline(always)]
     fn error(&self, distance: f64) -> f64 {
         let (area, square) = (self.area, self.base.square);
@@ -500,17 +504,17 @@ impl Corners {
         let height = sqrt(area) / length;
         let rounding = ROUNDING * (distance + 3.0 * length);
         let foot = rounding * length / height;
-        // Neither NaN nor infinity, of heights that are lost, counts in a minimum.
+        // A minimum ignores NaN and infinity, which occur for heights that are lost.
         rounding + if is_plump(area, square) { foot } else { foot.min((2.0 * height).max(0.0)) }
     }
 
-    /// How much less than the true distance to the triangle the computed one may be.
+    /// Returns the maximum by which the computed distance may fall below the true distance to the triangle.
     fn excess(&self, distance: f64) -> f64 {
         ROUNDING * (distance + 3.0 * sqrt(self.base.square))
     }
 
-    /// The square of the distance of the point to which these ways lead from the corners, and the weights of
-    /// the triangle's corners in the nearest point.
+    /// Returns the squared distance of a point, given the vectors from the corners to it, and the weights of
+    /// the triangle's corners at the nearest point.
     #[inline(always)]
     fn nearest_to(&self, from: &[Point; 3]) -> (f64, [f64; 3]) {
         let Corners { edges, area, .. } = *self;
@@ -539,7 +543,7 @@ impl Corners {
                 let way: Point = array(|axis| from[a][axis] - along * edge[axis]);
                 (dot(&way, &way), along)
             } else {
-                // Also where it is NaN, because the length of the edge is lost.
+                // Also if it is NaN, because the length of the edge is lost.
                 (dot(&from[a], &from[a]), 0.0)
             };
             if square < best.0 {
@@ -551,7 +555,7 @@ impl Corners {
         (best.0, self.in_order(best.1))
     }
 
-    /// Weights of these corners as those of the triangle's.
+    /// Reorders weights of these corners to the triangle's own corner order.
     #[inline(always)]
     fn in_order(&self, weights: [f64; 3]) -> [f64; 3] {
         let mut ordered = [0.0; 3];
@@ -565,23 +569,23 @@ impl Corners {
 /// The corners of the edges of a triangle.
 const EDGES: [[usize; 2]; 3] = [[0, 1], [0, 2], [1, 2]];
 
-/// The way from one corner to another one, and the square of its length.
+/// The vector from one corner to another, and the square of its length.
 #[derive(Clone, Copy)]
 struct Edge {
     way: Point,
     square: f64,
 }
 
-/// The longest edge of a triangle; of equal ones the first.
+/// The longest edge of a triangle; if several are equal, the first.
 #[derive(Clone, Copy)]
 struct Base {
-    /// Its start, its end, and the corner that is not on it.
+    /// Its start, its end, and the opposite corner.
     corners: [usize; 3],
     way: Point,
     square: f64,
-    /// From the start to the third corner.
+    /// The vector from the start to the third corner.
     side: Point,
-    /// The way times the side.
+    /// The cross product of the vectors along the edge and the side.
     normal: Point,
 }
 
@@ -599,11 +603,11 @@ impl Base {
     }
 }
 
-/// A box, and how far from it triangles may be nearest to a point of it.
+/// A box, and the distance from it within which triangles may be nearest to a point of it.
 struct Near<'a> {
     tree: &'a Tree,
     mesh: &'a TriangleMesh,
-    /// Corners of the box in the scale of the tree, about the grid's centre.
+    /// Corners of the box in the scale of the tree, relative to the grid's centre.
     low: Point,
     high: Point,
     /// The middle of the box, in model units.
@@ -611,12 +615,12 @@ struct Near<'a> {
     /// Half the edges, in the scale of the tree.
     half: Point,
     reach: f64,
-    /// Nodes with edges of at most this are taken as a whole.
+    /// Nodes with edges of at most this length are accepted as a whole.
     small: f64,
 }
 
 impl Near<'_> {
-    /// Visits what may be nearest in a node that was entered. The recursion is as deep as the tree.
+    /// Visits the candidates in a node that was entered. The recursion is as deep as the tree.
     fn descend(&self, place: Place, visitor: &mut impl NearVisitor) {
         let node = self.tree.node(place);
         for k in 0..self.tree.parts(place) {
@@ -641,7 +645,7 @@ impl Near<'_> {
         }
     }
 
-    /// Bounds of the distances of points of a box from this one.
+    /// Returns bounds of the distances between points of a box and this box.
     fn distances(&self, around: &Box3) -> (f64, f64) {
         let (mut nearest, mut furthest) = (0.0, 0.0);
         for axis in 0..3 {
@@ -654,9 +658,9 @@ impl Near<'_> {
         (sqrt(nearest) * (1.0 - 1e-6), sqrt(furthest) * (1.0 + 1e-6))
     }
 
-    /// Whether a triangle may be within reach: unless a plane between it and the box tells that it is not.
-    /// Two planes are tried, across the ways from the box's centre to the triangle's centroid and nearest
-    /// point.
+    /// Returns whether a triangle may be within reach. It is not if a plane separates it from the box. Two
+    /// planes are tried, perpendicular to the vectors from the box's centre to the triangle's centroid and to
+    /// its nearest point.
     fn may_reach(&self, triangle: u32) -> bool {
         let corners = Corners::of(self.mesh, triangle, self.tree.grid.scale());
         let from = corners.from(&self.centre);
@@ -666,7 +670,7 @@ impl Near<'_> {
         let is_beyond = |way: Point| {
             let nearest = dot(&way, a).min(dot(&way, b)).min(dot(&way, c));
             let corner: f64 = (0..3).map(|axis| way[axis].abs() * self.half[axis]).sum();
-            // False if the way has no length.
+            // False if the vector has no length.
             (nearest - corner) / sqrt(dot(&way, &way)) - rounding > self.reach
         };
         if is_beyond(array(|axis| a[axis] + b[axis] + c[axis])) {
@@ -678,8 +682,8 @@ impl Near<'_> {
     }
 }
 
-/// Whether the edges of a triangle need not be looked at: its height is at least 2^-10 of the base. `area` is
-/// the square of the height times the base, `square` that of the base.
+/// Returns whether the edges of a triangle may be skipped: its height is at least 2^-10 of the base. `area`
+/// is the square of the product of height and base, `square` that of the base.
 #[inline(always)]
 fn is_plump(area: f64, square: f64) -> bool {
     area > LOST && area * (1 << 20) as f64 >= square * square

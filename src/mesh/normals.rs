@@ -7,10 +7,10 @@ use alloc::vec::Vec;
 use glam::DVec3;
 
 impl TriangleMesh {
-    /// The unit normal at each vertex, outward where triangles turn counter-clockwise as seen from outside:
-    /// the mean of the normals of the triangles there, each weighted by its angle (Thürmer and Wüthrich
-    /// 1998). So it does not depend on how plane parts are cut into triangles. Where the mean is zero, as at
-    /// a vertex without triangles, so is the normal.
+    /// Returns the unit normal at each vertex, outward if triangles turn counter-clockwise as seen from
+    /// outside: the mean of the normals of the adjacent triangles, each weighted by its angle (Thürmer and
+    /// Wüthrich 1998). The normal does not depend on how plane parts are triangulated. If the mean is zero,
+    /// as at a vertex without triangles, the normal is zero.
     ///
     /// O(t + v) time; 24 bytes a vertex.
     ///
@@ -28,7 +28,7 @@ impl TriangleMesh {
         let mut sums = memory::filled(self.vertices().len(), DVec3::ZERO)?;
         for triangle in self.triangles() {
             let [a, b, c] = triangle.map(|v| DVec3::from(self.vertices()[v as usize]));
-            // Directions only, so that lengths neither overflow nor vanish.
+            // Unit vectors only, so that lengths neither overflow nor vanish.
             let [u, v, w] = [b - a, c - b, a - c].map(unit);
             let Some(normal) = unit(u.cross(v)).try_normalize() else { continue };
             let angles = [-w.dot(u), -u.dot(v), -v.dot(w)].map(|cosine| libm::acos(cosine.clamp(-1.0, 1.0)));
@@ -40,7 +40,7 @@ impl TriangleMesh {
     }
 }
 
-/// A vector of length 1, or zero.
+/// Returns a vector of length 1 with this direction, or zero.
 fn unit(v: DVec3) -> DVec3 {
     let size = v.abs().max_element();
     if size > 0.0 { (v / size).normalize_or_zero() } else { DVec3::ZERO }

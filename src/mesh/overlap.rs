@@ -1,20 +1,21 @@
-//! Which bodies of a mesh overlap, or lie within others with the same sense.
+//! Detection of bodies that overlap, or lie within others with the same sense.
 //!
-//! There the surface winds around points more than once, and the volume that a fill rule encloses is not the
-//! sum of the bodies' signed volumes.
+//! At such places the surface winds around points more than once, and the volume that a fill rule encloses is
+//! not the sum of the bodies' signed volumes.
 //!
-//! **Pairs.** Only bodies whose boxes meet are looked at. All decisions are exact signs. If an edge of one
-//! body goes through a triangle of the other, from one side to the other and between its edges, then the two
-//! cross. Otherwise the surfaces are apart or only touch. Touching is decided by moving one body by an
-//! infinitesimal distance, in one of eight general directions, in which no sign is zero: if the surfaces do
-//! not cross after one of these moves, then the winding number of each body around the other one is well
-//! defined, and tells whether it lies inside. (Volumes are continuous in the move.) What crosses after every
-//! move is not decided by this: a peg that fits its hole exactly, but also two blocks with sides in common
-//! planes. Points close to where they touch then prove that two overlap; without such points the pair stays
-//! undecided.
+//! **Pairs.** Only bodies whose boxes meet are compared. All decisions are exact signs. If an edge of one
+//! body passes through a triangle of the other, from one side to the other and between its edges, then the
+//! two bodies cross. Otherwise the surfaces are apart or only touch. Touching is resolved by moving one body
+//! by an infinitesimal distance, in one of eight general directions, in which no sign is zero. If the
+//! surfaces do not cross after one of these moves, then the winding number of each body around the other is
+//! well defined, and shows whether one lies inside the other. (Volumes are continuous in the move.) Bodies
+//! that cross after every move are not decided by this: a peg that fits its hole exactly, but also two blocks
+//! with sides in common planes. Points close to their contact may then prove an overlap; without such points
+//! the pair stays undecided.
 //!
-//! **Nesting.** The winding numbers of all bodies around a body add up. It is nested with the same sense if
-//! the sum has the sign of its own volume: a cavity in a body is not, and a body in a cavity is not either.
+//! **Nesting.** The winding numbers of all bodies around a body add up. The body is nested with the same
+//! sense if the sum has the sign of its own volume. A cavity in a body is not nested in this sense, nor is a
+//! body in a cavity.
 
 use crate::lattice::axes;
 use alloc::vec::Vec;
@@ -29,13 +30,13 @@ use crate::lattice::exact::sign;
 use crate::memory;
 use core::array::from_fn as array;
 
-/// Looks at the bodies whose `senses` are not zero: the signs of their volumes. They must be closed. If there
-/// are `walls` of two triangles that cancel each other, to go through one is no crossing.
+/// Compares the bodies whose `senses`, the signs of their volumes, are not zero. These bodies must be closed.
+/// With `walls`, pairs of triangles that cancel each other exist, and passing through one is no crossing.
 ///
-/// O(t + b log b) for t triangles and b bodies with few boxes that meet. A body whose box meets those of two
-/// other bodies is sorted, once, in O(t log t) for its t triangles. From then on, another body within its box
-/// costs only a search for the triangles near that body. Work is limited to 2^24 steps and 128 a triangle;
-/// pairs that are left then are undecided.
+/// O(t + b log b) for t triangles and b bodies with few boxes that meet. A body whose box meets the boxes of
+/// two other bodies is sorted once, in O(t log t) for its t triangles. From then on, another body within its
+/// box costs only a search for the triangles near that body. Work is limited to 2^24 steps plus 128 a
+/// triangle; pairs that remain then are undecided.
 pub(super) fn overlaps(
     mesh: &TriangleMesh,
     of_triangles: &[u32],
@@ -48,11 +49,11 @@ pub(super) fn overlaps(
     let mut all = Search { mesh, walls, steps: (1 << 24) + 128 * mesh.triangles().len() as u64 };
     let mut near = [Vec::new(), Vec::new()];
     let mut bodies = Body::all(mesh, of_triangles, senses)?;
-    // By where their boxes begin along x.
+    // Sort by the lower ends of the boxes along x.
     bodies.sort_unstable_by(|a, b| a.bounds.low[0].total_cmp(&b.bounds.low[0]));
-    // Bodies with those around them that wind in their sense; and pairs of bodies that touch.
+    // Bodies with the surrounding bodies that wind in their sense; and pairs of bodies that touch.
     let (mut nested, mut touching) = (Vec::new(), Vec::new());
-    // Those that begin before the current one and may reach it.
+    // The bodies that begin before the current one and may reach it.
     let mut open: Vec<usize> = Vec::new();
     for current in 0..bodies.len() {
         let start = bodies[current].bounds.low[0];
@@ -119,30 +120,30 @@ impl Shift {
         Shift(self.0.map(|s| -s))
     }
 
-    /// The sign of `value` and, if it is zero, that of the first coefficient that is not.
+    /// Returns the sign of `value` or, if it is zero, the sign of the first non-zero coefficient.
     fn sign(self, value: i32, coefficient: impl Fn(usize) -> i32) -> i32 {
         let moved = || (0..3).map(|axis| self.0[axis] * coefficient(axis)).find(|&s| s != 0);
         if value != 0 { value } else { moved().unwrap_or(0) }
     }
 }
 
-/// What a pair of bodies has to do with each other.
+/// The relation of two bodies.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 enum Relation {
     /// The surfaces cross.
     Crossing,
-    /// They do not. The winding numbers of each around the other one.
+    /// The surfaces do not cross. The winding numbers of each body around the other.
     Around([i32; 2]),
-    /// Neither was found.
+    /// Neither was established.
     Undecided,
 }
 
-/// Where triangles of two bodies touch, so that they would cross after a move of the second.
+/// Places at which triangles of two bodies touch, so that they would cross after a move of the second body.
 #[derive(Debug, Clone, Copy)]
 struct Touches {
-    /// A bit for each move.
+    /// A bit for each move, set if they cross after it.
     crossing: u8,
-    /// Some of the places, each with the size of what is there.
+    /// Some of the places, each with the size of the triangles there.
     places: [(Point, f64); Touches::PLACES],
     count: usize,
 }
@@ -151,7 +152,7 @@ impl Touches {
     const PLACES: usize = 8;
     const NONE: Touches = Touches { crossing: 0, places: [([0.0; 3], 0.0); Touches::PLACES], count: 0 };
 
-    /// Notes that two triangles cross after a move, in the boxes around both.
+    /// Records the overlap of the boxes around two triangles that cross after a move.
     fn note(&mut self, a: &Bounds, b: &Bounds) {
         let Some(place) = self.places.get_mut(self.count) else { return };
         let low: Point = array(|axis| a.low[axis].max(b.low[axis]));
@@ -168,14 +169,14 @@ impl Touches {
 
 struct Search<'a> {
     mesh: &'a TriangleMesh,
-    /// Whether triangles may cancel each other.
+    /// Whether some triangles may cancel each other.
     walls: bool,
-    /// That may still be made.
+    /// Number of steps left.
     steps: u64,
 }
 
 impl Search<'_> {
-    /// Compares two bodies whose boxes meet, and notes where they touch. `near` is scratch memory.
+    /// Compares two bodies whose boxes meet, and records where they touch. `near` is scratch memory.
     fn compare(
         &mut self,
         [a, b]: [&mut Body; 2],
@@ -204,7 +205,7 @@ impl Search<'_> {
         })
     }
 
-    /// Takes steps, if there are so many left.
+    /// Takes steps; returns whether enough were left.
     fn take(&mut self, steps: usize) -> bool {
         let left = self.steps.checked_sub(steps as u64);
         self.steps = left.unwrap_or(0);
@@ -217,8 +218,8 @@ impl Search<'_> {
         bounds
     }
 
-    /// Whether triangles of the two lists cross; `None` if there are no steps left. Notes where they touch.
-    /// The lists come back in another order.
+    /// Returns whether triangles of the two lists cross; `None` if no steps are left. Records where they
+    /// touch. Reorders the lists.
     fn crossings(&mut self, a: &mut [u32], b: &mut [u32], touches: &mut Touches) -> Option<bool> {
         if !self.take(a.len() + b.len()) {
             return None;
@@ -229,15 +230,15 @@ impl Search<'_> {
         self.divide(&mut a[..kept_a], &mut b[..kept_b], touches)
     }
 
-    /// The same of lists without triangles that lie outside of the box around the other list.
+    /// Does the same for lists without triangles that lie outside of the box around the other list.
     fn divide(&mut self, a: &mut [u32], b: &mut [u32], touches: &mut Touches) -> Option<bool> {
-        /// Pairs that are not worth dividing.
+        /// Pairs up to this number are not worth dividing.
         const FEW: usize = 64;
         if a.is_empty() || b.is_empty() {
             return Some(false);
         }
         if a.len() * b.len() > FEW {
-            // Which of the two is moved matters for the moves, so the order is kept by a flag of its own.
+            // The moves depend on which body is moved, so a flag keeps the order.
             let swapped = b.len() > a.len();
             let (longer, other) = if swapped { (b, a) } else { (a, b) };
             let bounds = self.bounds(longer);
@@ -245,7 +246,7 @@ impl Search<'_> {
                 let extent = |axis: usize| bounds.high[axis] - bounds.low[axis];
                 if extent(axis) > extent(most) { axis } else { most }
             });
-            // In the middle of the box, if that divides the list, and of the list otherwise.
+            // Divide at the middle of the box if that divides the list, otherwise at the middle of the list.
             let middle = bounds.low[axis].midpoint(bounds.high[axis]);
             let below = partition(longer, |&t| corners(self.mesh, t)[0][axis] < middle);
             let is_divided = below.min(longer.len() - below) > longer.len() / 8;
@@ -280,7 +281,7 @@ impl Search<'_> {
         Some(false)
     }
 
-    /// The winding number of a closed body around a moved point; `None` if there are no steps left.
+    /// Returns the winding number of a closed body around a moved point; `None` if no steps are left.
     fn winding(&mut self, body: &Body, p: &Point, shift: Shift) -> Option<i32> {
         if (0..3).any(|axis| p[axis] < body.bounds.low[axis] || p[axis] > body.bounds.high[axis]) {
             return Some(0);
@@ -289,7 +290,7 @@ impl Search<'_> {
             return None;
         }
         let mut winding = 0;
-        // What lies below the point adds nothing, nor does what lies beside it.
+        // Triangles below or beside the point add nothing.
         let line = Bounds { low: *p, high: [p[0], p[1], f64::INFINITY] };
         let steps = body.visit(&line, &mut |t| {
             winding += above(&corners(self.mesh, t), p, shift);
@@ -300,16 +301,16 @@ impl Search<'_> {
         is_counted.then_some(winding)
     }
 
-    /// Whether points are found that prove an overlap: one around which both bodies wind in the same sense,
-    /// and all together more than once; or one in both bodies and one in each of them alone. Tried are points
-    /// in eight directions from where they touch.
+    /// Returns whether points are found that prove an overlap: either a point around which both bodies wind
+    /// in the same sense, and all bodies together more than once; or a point in both bodies and one in each
+    /// of them alone. Tries points in eight directions from the places of contact.
     fn overlap_near(&mut self, bodies: &[Body], pair: [usize; 2], touches: &Touches) -> bool {
         let shift = Shift::new(0);
         let mut parts = [false; 4];
         for &(place, size) in &touches.places[..touches.count] {
             for (reach, k) in [0.25, 1.0 / 64.0].into_iter().flat_map(|reach| (0..8).map(move |k| (reach, k)))
             {
-                // Lengths that are no round part of anything.
+                // Offsets that are no round fraction of any length.
                 let [x, y, z] = Shift::new(k).0.map(f64::from);
                 let way = [x * 0.97, y * 0.71, z * 0.53].map(|way| way * reach * size);
                 let Ok(near) = normalised(array(|axis| place[axis] + way[axis]), 0) else { continue };
@@ -333,8 +334,8 @@ impl Search<'_> {
     }
 }
 
-/// Whether two triangles cross: an edge of one goes through the inside of the other. Where they only touch,
-/// notes the moves of the second after which it would be so.
+/// Returns whether two triangles cross: an edge of one passes through the interior of the other. If they only
+/// touch, records the moves of the second triangle after which they cross.
 fn crosses(a: &[Point; 3], b: &[Point; 3], touches: &mut Touches) -> bool {
     let on_one_side = |of: &[Point; 3], points: &[Point; 3]| {
         let first = volume_sign(&of[0], &of[1], &of[2], &points[0]);
@@ -344,7 +345,7 @@ fn crosses(a: &[Point; 3], b: &[Point; 3], touches: &mut Touches) -> bool {
         return false;
     }
     let mut crossing = 0;
-    // The edges of `b` are moved along with it; to move `a` back is the same.
+    // The edges of `b` move with it; moving `a` backwards is the same.
     for (edges, triangle, backwards) in [(b, a, false), (a, b, true)] {
         for k in 0..3 {
             match pierces(&edges[k], &edges[(k + 1) % 3], triangle, None) {
@@ -368,8 +369,8 @@ fn crosses(a: &[Point; 3], b: &[Point; 3], touches: &mut Touches) -> bool {
     false
 }
 
-/// Whether the edge from `p` to `q`, moved by `shift`, goes through the inside of a triangle. Without a move,
-/// `None` if a move may change it.
+/// Returns whether the edge from `p` to `q`, moved by `shift`, passes through the interior of a triangle.
+/// Without a move, `None` if a move may change the answer.
 fn pierces(p: &Point, q: &Point, [a, b, c]: &[Point; 3], shift: Option<Shift>) -> Option<bool> {
     let signed = |value: i32, coefficient: &dyn Fn(usize) -> i32| match shift {
         Some(shift) => shift.sign(value, coefficient),
@@ -390,8 +391,8 @@ fn pierces(p: &Point, q: &Point, [a, b, c]: &[Point; 3], shift: Option<Shift>) -
     if is_through || shift.is_some() { Some(is_through) } else { None }
 }
 
-/// What a triangle adds to the winding number around a moved point: 1 or -1 if it lies above, by the side
-/// from which it is seen.
+/// Returns the contribution of a triangle to the winding number around a moved point: 1 or -1 if it lies
+/// above, by the side that faces the point; else 0.
 fn above([a, b, c]: &[Point; 3], p: &Point, shift: Shift) -> i32 {
     for axis in 0..2 {
         let [x, y, z] = [a, b, c].map(|corner| corner[axis]);
@@ -399,7 +400,7 @@ fn above([a, b, c]: &[Point; 3], p: &Point, shift: Shift) -> i32 {
             return 0;
         }
     }
-    // On which side of an edge the point is, seen from above.
+    // The side of an edge on which the point lies, seen from above.
     let side = |s: &Point, t: &Point| {
         shift.sign(cross_sign([s, t], [s, p], 2), |axis| match axis {
             0 => -sign(t[1] - s[1]),

@@ -1,12 +1,12 @@
-//! Triangles that intersect others, cut into pieces that do not.
+//! Division of intersecting triangles into pieces that do not intersect.
 //!
-//! A piece whose inside no other triangle meets has one winding number right in front of it, and one more
-//! behind: it belongs to the boundary, or nothing of it does. Where triangles do meet, pieces are cut in four
-//! until they are small.
+//! If no other triangle meets the interior of a piece, the winding number is constant right in front of the
+//! piece and constant behind it: the whole piece belongs to the boundary, or no part of it does. Pieces that
+//! do meet triangles are divided into four until they are small.
 //!
-//! Corners of pieces are midpoints of midpoints, and lie beside their triangle by what rounding moves them.
-//! Whether a piece meets a triangle is therefore asked with a margin that is many times as wide; triangles
-//! that are too thin for that are not cut.
+//! Corners of pieces are midpoints of midpoints, and rounding moves them off their triangle. The test whether
+//! a piece meets a triangle therefore uses a margin that is many times as wide. Triangles that are too thin
+//! for the margin are not divided.
 
 use super::intersections::corners;
 use super::sheets::in_front_at;
@@ -21,30 +21,30 @@ use alloc::collections::VecDeque;
 use alloc::vec::Vec;
 use core::array::from_fn as array;
 
-/// The distance within which nobody tells whether a piece meets a triangle, as a part of the largest
+/// The distance within which the test of a piece against a triangle is undecided, relative to the largest
 /// coordinate. (Sums of three products are right to 2^-50 of that, and corners of pieces to 2^-46.)
 const MARGIN: f64 = 1.0 / (1u64 << 40) as f64;
 
-/// Triangles are cut if twice their area is at least this part of the square of their longest side, and
-/// pieces whose longest side is at least that part of the largest coordinate: their inscribed circle has a
-/// radius of 2^-41 of the coordinate and more.
+/// Triangles are divided if twice their area is at least `THIN` times the square of their longest side, and
+/// pieces if their longest side is at least `SHORT` times the largest coordinate: their inscribed circle then
+/// has a radius of at least 2^-41 of the coordinate.
 const THIN: f64 = 1.0 / (1u64 << 17) as f64;
 const SHORT: f64 = 1.0 / (1u64 << 22) as f64;
 
-/// Pieces that are looked at.
+/// Maximum number of pieces to process.
 const MOST: usize = 1 << 19;
 
-/// The triangles of a closed mesh that are not known to bound the solid, or not to, as pieces.
+/// The triangles of a closed mesh for which it is unknown whether they bound the solid, as pieces.
 pub(crate) struct Pieces {
-    /// They belong to the boundary.
+    /// The pieces that belong to the boundary.
     pub(crate) sure: Vec<[Point; 3]>,
-    /// They may, and no other ones do.
+    /// The pieces that may belong to the boundary; no other pieces do.
     pub(crate) doubtful: Vec<[Point; 3]>,
-    /// How far corners may lie beside the mesh.
+    /// Maximum distance of corners from the mesh.
     pub(crate) rounding: f64,
 }
 
-/// A piece that is to be looked at, and the triangles that may meet it.
+/// A piece to process, and the triangles that may meet it.
 struct Piece {
     corners: [Point; 3],
     owner: u32,
@@ -52,12 +52,12 @@ struct Piece {
 }
 
 impl TriangleMesh {
-    /// What becomes of the triangles of a mesh, closed under `rule`, of which `sides` tells nothing. Pieces
-    /// that meet other triangles have sides no longer than `size` (model units). `None` if there would be too
-    /// many, or triangles lie on each other, which would meet everywhere.
+    /// Divides the triangles of a mesh, closed under `rule`, for which `sides` has no answer. Pieces that
+    /// meet other triangles have sides no longer than `size` (model units). `None` if there would be too many
+    /// pieces, or if triangles lie on each other and would meet everywhere.
     ///
-    /// O(l / size) for lines of intersection of the length l, each time as long as there are triangles that
-    /// meet a piece.
+    /// O(l / size) pieces for lines of intersection of the length l; a piece costs time in proportion to the
+    /// number of triangles that meet it.
     ///
     /// # Errors
     /// [`Error::OutOfMemory`], and [`Error::Cancelled`] by `control`.
@@ -73,7 +73,7 @@ impl TriangleMesh {
         }
         let tree = self.tree(control)?;
         let most = self.vertices().iter().flatten().fold(0.0, |most: f64, c| most.max(c.abs()));
-        // (Vertices that were moved may lie elsewhere, each by this.)
+        // (Moved vertices may lie elsewhere, each by this distance.)
         let margin = MARGIN * most + 4.0 * self.radius();
         let mut found = Pieces { sure: Vec::new(), doubtful: Vec::new(), rounding: MARGIN * most };
         let mut open = VecDeque::new();
@@ -137,7 +137,7 @@ fn dot(a: &Point, b: &Point) -> f64 {
     a[0] * b[0] + a[1] * b[1] + a[2] * b[2]
 }
 
-/// The longest side, and twice the area.
+/// Returns the longest side, and twice the area.
 fn shape([a, b, c]: &[Point; 3]) -> (f64, f64) {
     let [u, v, w] = [minus(b, a), minus(c, a), minus(c, b)];
     let normal = cross(&u, &v);
@@ -145,8 +145,8 @@ fn shape([a, b, c]: &[Point; 3]) -> (f64, f64) {
     (sqrt(square), sqrt(dot(&normal, &normal)))
 }
 
-/// Whether two triangles are surely further from each other than `margin`, along a direction in which one of
-/// them ends. (That of the rounding of its coordinates is as good as any.)
+/// Returns whether two triangles are surely more than `margin` apart, along a direction in which one of them
+/// ends. (The rounding of the direction's coordinates does no harm: any direction is valid.)
 fn are_apart(a: &[Point; 3], b: &[Point; 3], margin: f64) -> bool {
     let is_between = |way: &Point| {
         let ends = |corners: &[Point; 3]| {
@@ -154,7 +154,7 @@ fn are_apart(a: &[Point; 3], b: &[Point; 3], margin: f64) -> bool {
             [x.min(y).min(z), x.max(y).max(z)]
         };
         let ([low, high], [from, to]) = (ends(a), ends(b));
-        // (What is no number is not greater.)
+        // (False for NaN.)
         (from - high).max(low - to) > margin * sqrt(dot(way, way))
     };
     let sides = |[p, q, r]: &[Point; 3]| [minus(q, p), minus(r, q), minus(p, r)];

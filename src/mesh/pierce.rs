@@ -1,23 +1,22 @@
-//! Which triangles a half-line passes through, and where: exactly which, and where to the rounding of
-//! doubles.
+//! The triangles through which a half-line passes: the set is exact, the positions are exact to rounding.
 //!
-//! The half-line is shifted by (ε, ε², ε³) in thought, ε → 0, or with other signs into another octant, so
-//! that it meets no edge of a triangle and begins on none. So the triangles that it passes through tell
-//! winding numbers along it, whatever it meets (simulation of simplicity: Edelsbrunner and Mücke 1990, with
-//! one perturbation for all points). A triangle that the half-line itself meets and the shifted one does not
-//! is *touched*.
+//! The half-line is shifted symbolically by (ε, ε², ε³), ε → 0, or with other signs into another octant, so
+//! that it meets no edge of a triangle and begins on none. The triangles that it passes through therefore
+//! determine the winding numbers along it, whatever it meets (simulation of simplicity: Edelsbrunner and
+//! Mücke 1990, with one perturbation for all points). A triangle that the half-line itself meets, but the
+//! shifted one does not, is *touched*.
 //!
-//! With the line's direction d, and corners p, q as seen from its beginning, the line passes an edge on the
-//! side that the sign of d · (p × q) tells, and a triangle between edges whose signs agree. Doubles with a
-//! bound of their error decide nearly all of them, exact arithmetic on the original coordinates the rest.
-//! (The watertight test of Woop, Benthin and Wald 2013 takes the same signs of rounded coordinates.) Where
-//! the surface may lie beside the mesh, no arithmetic decides what is too near.
+//! Let d be the line's direction, and p, q corners relative to the line's beginning. The sign of d · (p × q)
+//! is the side on which the line passes an edge. The line passes through a triangle if the signs of its edges
+//! agree. Doubles with an error bound decide nearly all signs, exact arithmetic on the original coordinates
+//! the rest. (The watertight test of Woop, Benthin and Wald 2013 takes the same signs of rounded
+//! coordinates.) If the surface may deviate from the mesh, no arithmetic decides cases that are too near.
 //!
-//! **The search.** The tree's boxes are looked at in single precision. In the grid's coordinates the
-//! half-line is cut to what lies in the cube around the mesh, and begins there. Along each axis a point of it
-//! is then off by no more than `slack`: by rounding its beginning and its direction to 24 bits, the way being
-//! no longer than the cube is wide, and by what was rounded before, which a beginning far away makes larger.
-//! Boxes are taken that much larger, and by what the surface may lie beside the mesh.
+//! **The search.** The tree's boxes are tested in single precision. In the grid's coordinates the half-line
+//! is clipped to the cube around the mesh, and begins there. Along each axis, the error of a point on it is
+//! at most `slack`. The error has two causes: the beginning and the direction are rounded to 24 bits, where
+//! the length is at most the width of the cube; and earlier rounding, which a beginning far away makes
+//! larger. Boxes are enlarged by `slack` and by the maximum deviation of the surface from the mesh.
 
 use core::array::from_fn as array;
 
@@ -33,49 +32,51 @@ use crate::lattice::exact::{Expansion, two_product};
 use crate::lattice::{Interval, Ray};
 use crate::memory;
 
-/// What rounding may change in a sum of products of three factors, each rounded, as a part of the sum of
-/// their magnitudes.
+/// Upper bound of the rounding error of a sum of products of three factors, each rounded, relative to the sum
+/// of their magnitudes.
 const ROUNDING: f64 = 12.0 * f64::EPSILON;
 
-/// What a time may be off by, as a part of it, before exact arithmetic is asked: that of a line nearly in the
-/// plane of a triangle.
+/// Maximum relative error of a time before exact arithmetic is used: the line lies nearly in the plane of a
+/// triangle.
 const FINE: f64 = 1.0 / (1u64 << 36) as f64;
 
-/// How far beyond the mesh the half-line is looked at, in the scale of the grid.
+/// Half width of the cube to which the half-line is clipped, in the scale of the grid.
 const CUBE: f64 = 1.0 + 1.0 / 1024.0;
 
-/// What single precision makes of positions in the cube: twice what the head of this file says.
+/// Error of positions in the cube in single precision: twice the bound derived at the top of this file.
 const SINGLE: f64 = 1.0 / (1 << 20) as f64;
 
-/// The same of the time that a line takes to a plane, as a part of it.
+/// The same for the time at which a line reaches a plane, as a factor.
 const TIMES: f32 = 1.0 + 1.0 / (1 << 20) as f32;
 
 /// A triangle that a half-line meets.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct Hit {
-    /// When: of a triangle in whose plane the line runs, during which time at the most.
+    /// The time of the crossing. If the line runs in the triangle's plane, an interval that contains the
+    /// stay.
     pub t: Interval,
-    /// What the winding number changes by along the shifted half-line: −1 if it leaves by the triangle, 0 if
-    /// it only touches it.
+    /// The change of the winding number along the shifted half-line: −1 if it leaves through the triangle, 0
+    /// if it only touches the triangle.
     pub step: i32,
     pub triangle: u32,
 }
 
-/// Which triangles are asked for.
+/// The triangles to find.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(crate) enum Wanted {
     /// All.
     All,
-    /// The first that is passed through, and all that are met no later. Others may be found, too.
+    /// The first triangle that the half-line passes through, and all that it meets no later. Others may be
+    /// found, too.
     First,
 }
 
-/// Which way the half-line is shifted: by (±ε, ±ε², ±ε³) with these signs.
+/// The direction of the shift: (±ε, ±ε², ±ε³) with these signs.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(crate) struct Shift([i32; 3]);
 
 impl Shift {
-    /// Into each octant, the first one first.
+    /// Shifts into all octants, the default first.
     pub(crate) const ALL: [Shift; 8] = [
         Shift([1, 1, 1]),
         Shift([-1, -1, -1]),
@@ -87,17 +88,17 @@ impl Shift {
         Shift([-1, -1, 1]),
     ];
 
-    /// On which side of a plane it leads: the sign of its product with the plane's normal, of whose parts the
-    /// signs are told.
+    /// Returns the side of a plane into which the shift leads: the sign of its product with the plane's
+    /// normal. `normal` returns the signs of the normal's components.
     fn side(self, normal: impl Fn(usize) -> i32) -> i32 {
         (0..3).map(|axis| self.0[axis] * normal(axis)).find(|&sign| sign != 0).unwrap_or(0)
     }
 }
 
 impl TriangleTree<'_> {
-    /// The triangles that a ray, continued to infinity, meets, in no particular order. `false` if that is not
-    /// sure, because the surface may lie beside the mesh, and the ray comes near to an edge. O(log t) as a
-    /// rule.
+    /// Finds the triangles that a ray, extended to infinity, meets, in no particular order. Returns `false`
+    /// if the answer is uncertain, because the surface may deviate from the mesh and the ray comes near to an
+    /// edge. Usually O(log t).
     ///
     /// # Errors
     /// [`Error::OutOfMemory`].
@@ -142,7 +143,7 @@ impl TriangleTree<'_> {
 }
 
 impl TriangleTree<'_> {
-    /// The normal of a triangle, twice as long as its area is large.
+    /// Returns the normal of a triangle; its length is twice the area.
     pub(crate) fn normal(&self, triangle: u32) -> Point {
         let [a, b, c] = corners(self.mesh, triangle);
         let [u, v]: [Point; 2] = [b, c].map(|p| array(|axis| p[axis] - a[axis]));
@@ -156,29 +157,29 @@ impl TriangleTree<'_> {
         corners(self.mesh, triangle)
     }
 
-    /// Whether two triangles with area lie in one plane.
+    /// Returns whether two triangles with area lie in one plane.
     pub(crate) fn are_coplanar(&self, one: u32, other: u32) -> bool {
         let [a, b, c] = corners(self.mesh, one);
         corners(self.mesh, other).iter().all(|p| volume_sign(&a, &b, &c, p) == 0)
     }
 
-    /// About half the mesh's extent, or as much again.
+    /// Returns about half the mesh's extent, or up to twice as much.
     pub(crate) fn extent(&self) -> f64 {
         1.0 / self.tree.grid.scale()
     }
 
-    /// How far the surface may lie from the mesh along an axis.
+    /// Returns the maximum deviation of the surface from the mesh along an axis.
     pub(crate) fn displacement(&self) -> f64 {
         self.mesh.displacement()
     }
 
-    /// How far it may lie from the mesh.
+    /// Returns the maximum distance of the surface from the mesh.
     pub(crate) fn radius(&self) -> f64 {
         self.mesh.radius()
     }
 
-    /// The axis along which, up (1) or down (−1), a point leaves the box around the mesh soonest. `None` if
-    /// it surely lies beyond.
+    /// Returns the axis and the direction, up (1) or down (−1), along which a point leaves the box around the
+    /// mesh soonest. `None` if the point surely lies outside.
     pub(crate) fn way_out(&self, point: &Point) -> Option<(usize, f64)> {
         let around = self.tree.around()?;
         let at = self.tree.grid.scaled(point);
@@ -187,7 +188,7 @@ impl TriangleTree<'_> {
         for axis in 0..3 {
             for (sign, plane) in [(1.0, around.high[axis]), (-1.0, around.low[axis])] {
                 let way = sign * (f64::from(plane) - at[axis]);
-                // (False for what is no number.)
+                // (False for NaN.)
                 let is_within = way >= -beyond;
                 if !is_within {
                     return None;
@@ -203,21 +204,21 @@ impl TriangleTree<'_> {
 
 /// A half-line in the cube around the mesh, in single precision.
 struct Cast {
-    /// Where it begins, moved by the slack against its direction, and along it.
+    /// The beginning, moved by the slack against the direction, and along it.
     near: [f32; 3],
     far: [f32; 3],
-    /// One over the direction, and whether that is negative.
+    /// The reciprocals of the direction's components, and whether they are negative.
     inverse: [f32; 3],
     is_down: [usize; 3],
-    /// How long it is, in units of the direction.
+    /// Its length, in units of the direction.
     length: f32,
-    /// When it begins there, and how many units it goes in one of the ray's.
+    /// The ray's time at which it enters the cube, and the units here per unit of the ray.
     begins: f64,
     speed: f64,
 }
 
 impl Cast {
-    /// Nothing if the half-line misses the cube.
+    /// Returns `None` if the half-line misses the cube.
     fn new(mesh: &TriangleTree<'_>, ray: &Ray) -> Option<Cast> {
         let grid = &mesh.tree.grid;
         mesh.tree.root()?;
@@ -227,7 +228,7 @@ impl Cast {
         let speed = way.iter().fold(0.0, |most: f64, c| most.max(c.abs()));
         let direction = way.map(|c| c / speed);
         let furthest = from.iter().fold(1.0, |most: f64, c| most.max(c.abs()));
-        // The surface may lie that far beside the boxes.
+        // The surface may deviate from the boxes by this much.
         let displacement = mesh.displacement() * scale * (1.0 + SINGLE);
         let slack = SINGLE + furthest * (1.0 / (1u64 << 48) as f64) + displacement;
         let (mut begins, mut ends) = (0.0, f64::INFINITY);
@@ -243,17 +244,17 @@ impl Cast {
             let [one, other] = [(-reach - at) / along, (reach - at) / along];
             (begins, ends) = (one.min(other).max(begins), one.max(other).min(ends));
         }
-        // (What is rounded here moves points of the cube by less than the slack.)
+        // (Rounding here moves points of the cube by less than the slack.)
         if begins > ends {
             return None;
         }
-        /// A direction that leads across the cube in more than 2^60 units leads nowhere.
+        /// A component of the direction that needs more than 2^60 units to cross the cube counts as zero.
         const LEAST: f32 = 1.0 / (1u64 << 60) as f32;
         let single = direction.map(|c| {
             let c = c as f32;
             if c.abs() < LEAST { LEAST.copysign(c) } else { c }
         });
-        // (So far away nothing is known of where it is in the cube: all boxes are met.)
+        // (So far away the position in the cube is unknown: all boxes are met.)
         let is_lost = slack > 1e30;
         let slack = if is_lost { 1e36 } else { slack as f32 };
         let start: [f32; 3] =
@@ -270,7 +271,7 @@ impl Cast {
         })
     }
 
-    /// When it enters and leaves the boxes of a node, at the most.
+    /// Returns bounds of the times at which it enters and leaves the boxes of a node.
     #[inline(always)]
     fn stays(&self, node: &Node, until: f32) -> [[f32; WIDTH]; 2] {
         let mut enters = [0.0f32; WIDTH];
@@ -294,13 +295,13 @@ impl Cast {
         (0..WIDTH).fold(0, |bits, k| bits | u32::from(enters[k] <= leaves[k]) << k)
     }
 
-    /// A time of the ray's as one of the line's here, and no less.
+    /// Converts a time of the ray to an upper bound of the time here.
     fn at_most(&self, t: f64) -> f32 {
         let units = (t * self.speed - self.begins) * (1.0 + SINGLE) + SINGLE + self.begins * 1e-12;
         (units as f32).min(self.length)
     }
 
-    /// Calls `meet` with the triangles whose boxes are met, roughly nearest first, up to the time that it
+    /// Calls `meet` with the triangles whose boxes are met, roughly nearest first, up to the time that `meet`
     /// returns.
     #[inline(always)]
     fn nearest_first(&self, mesh: &TriangleTree<'_>, meet: &mut impl FnMut(u32) -> f64) {
@@ -347,31 +348,31 @@ impl Cast {
     }
 }
 
-/// What a line makes of a triangle.
+/// The result of a line against a triangle.
 enum Met {
     No,
     At(Hit),
     Unsure,
 }
 
-/// A half-line as it is given.
+/// A half-line as given.
 struct Line<'m> {
     mesh: &'m TriangleMesh,
     from: Point,
     direction: [[f64; 2]; 3],
     /// The direction, rounded.
     way: Point,
-    /// The sum of its magnitudes.
+    /// The sum of the magnitudes of its components.
     size: f64,
-    /// How far the surface may lie from the mesh along an axis.
+    /// Maximum deviation of the surface from the mesh along an axis.
     displacement: f64,
     shift: Shift,
 }
 
-/// A triangle's corners as seen from where the line begins.
+/// A triangle's corners relative to the line's beginning.
 struct Seen {
     ends: [Point; 3],
-    /// Their greatest magnitude, if it matters.
+    /// Their greatest magnitude, if it is needed.
     reach: f64,
 }
 
@@ -402,7 +403,7 @@ impl<'m> Line<'m> {
         self.passed(triangle, &corners, &seen, -one)
     }
 
-    /// On which side the line passes an edge, if that is sure.
+    /// Returns the side on which the line passes an edge, if it is certain.
     #[inline(always)]
     fn side(&self, seen: &Seen, p: &Point, q: &Point) -> Option<i32> {
         let (value, magnitude) = determinant(&self.way, p, q);
@@ -419,7 +420,7 @@ impl<'m> Line<'m> {
         }
     }
 
-    /// The same where doubles do not tell.
+    /// Does the same where doubles cannot decide.
     #[cold]
     fn closer(&self, triangle: u32, corners: &[Point; 3], seen: &Seen, sides: [Option<i32>; 3]) -> Met {
         if self.displacement > 0.0 {
@@ -441,14 +442,15 @@ impl<'m> Line<'m> {
         self.direction.map(Expansion::sum)
     }
 
-    /// Exactly: on which side the line passes edge k; 0 if it meets the edge's line.
+    /// Returns exactly the side on which the line passes edge k; 0 if it meets the edge's line.
     fn exact_side(&self, corners: &[Point; 3], k: usize) -> i32 {
         let seen =
             |p: &Point| -> [Expansion; 3] { array(|axis| Expansion::sum([p[axis], -self.from[axis]])) };
         exact_determinant(&self.exact_way(), &seen(&corners[k]), &seen(&corners[(k + 1) % 3])).sign()
     }
 
-    /// The same of the shifted line: on which side of the plane through the edge and the line it is shifted.
+    /// Does the same for the shifted line: the side of the plane through edge and line to which the line is
+    /// shifted.
     fn shifted_side(&self, corners: &[Point; 3], k: usize) -> i32 {
         let (p, q) = (&corners[k], &corners[(k + 1) % 3]);
         let back: [Expansion; 3] = array(|axis| Expansion::sum([p[axis], -q[axis]]));
@@ -460,7 +462,7 @@ impl<'m> Line<'m> {
         self.shift.side(part)
     }
 
-    /// A triangle that the line meets in one point; by what the winding number changes if it is passed.
+    /// Handles a triangle that the line meets in one point. `step` is the change of the winding number.
     fn passed(&self, triangle: u32, corners: &[Point; 3], seen: &Seen, step: i32) -> Met {
         let [a, b, c] = corners;
         let edge = |p: &Point| -> Point { array(|axis| p[axis] - a[axis]) };
@@ -470,7 +472,7 @@ impl<'m> Line<'m> {
         let (slope, of_slope) = determinant(&self.way, &u, &v);
         let mut wrong = ROUNDING * of_height;
         if self.displacement > 0.0 {
-            // The line meets the surface that near to a point of the triangle.
+            // The line meets the surface within this distance of a point of the triangle.
             let (area, of_area) = size_of_normal(&u, &v);
             wrong += (area + ROUNDING * of_area) * self.displacement * (1.0 + 1e-9);
         }
@@ -492,16 +494,16 @@ impl<'m> Line<'m> {
         }
     }
 
-    /// Whether height and slope of a triangle were computed without rounding, because all numbers have few
-    /// digits.
+    /// Returns whether height and slope of a triangle were computed without rounding, because all numbers
+    /// have few digits.
     #[inline(always)]
     fn is_short(&self, corners: &[Point; 3], height: f64, slope: f64) -> bool {
-        // (As a rule one of two numbers tells that they have many.)
+        // (Usually one of the two numbers shows that they have many.)
         const DIGITS: u64 = (1 << 16) - 1;
         if (height.to_bits() | slope.to_bits()) & DIGITS != 0 || slope == 0.0 {
             return false;
         }
-        // Differences have a bit more, products of three have the sum of their bits, and sums of six three
+        // Differences have one more bit, products of three have the sum of their bits, and sums of six three
         // more: 51.
         const BITS: i32 = 15;
         let along = self.direction.map(|[high, _]| high);
@@ -510,7 +512,7 @@ impl<'m> Line<'m> {
         is_whole && width_of(points) <= BITS && width_of(along) <= BITS
     }
 
-    /// The same of a triangle nearly along the line, or near to where the line begins.
+    /// Handles a triangle that is nearly parallel to the line, or near to the line's beginning.
     #[cold]
     fn passed_exactly(&self, triangle: u32, corners: &[Point; 3], step: i32) -> Met {
         if self.displacement > 0.0 {
@@ -524,7 +526,7 @@ impl<'m> Line<'m> {
         let slope = exact_determinant(&self.exact_way(), &u, &v);
         let mut ahead = height.sign() * slope.sign();
         let t = if ahead == 0 { 0.0 } else { height.estimate() / slope.estimate() };
-        // Estimates are off by two roundings each, and their quotient by one more.
+        // Estimates have two roundings each, and their quotient one more.
         let error = 8.0 * f64::EPSILON * t.abs();
         let Some(mut t) = Interval::new(t - error, t + error) else { return Met::Unsure };
         if ahead < 0 {
@@ -546,7 +548,7 @@ impl<'m> Line<'m> {
         Met::At(Hit { t, step, triangle })
     }
 
-    /// A triangle in whose plane the line runs, or whose corners lie on one line with a point of it.
+    /// Handles a triangle whose plane contains the line, or whose corners are collinear with a point of it.
     fn along(&self, triangle: u32, corners: &[Point; 3]) -> Met {
         let mut stay = Interval::between(0.0, f64::INFINITY);
         for axis in 0..3 {
@@ -578,8 +580,8 @@ impl<'m> Line<'m> {
         }
     }
 
-    /// Which part of a stay in a triangle's plane the line spends between its edges, at the most: seen along
-    /// the axis along which the triangle is largest.
+    /// Returns bounds of the part of a stay in a triangle's plane that the line spends between the triangle's
+    /// edges, in the projection in which the triangle is largest.
     fn between_edges(&self, corners: &[Point; 3], mut stay: Interval) -> Option<Interval> {
         let exactly = Interval::exactly;
         let minus = |p: f64, q: f64| exactly(p).minus(exactly(q));
@@ -589,7 +591,7 @@ impl<'m> Line<'m> {
             |axis: usize| cross_sign([&corners[0], &corners[1]], [&corners[0], &corners[2]], axis);
         let turns = turns_along(w);
         if turns == 0 {
-            // Without any area it bounds nothing: its edges are those of others.
+            // A triangle without area bounds nothing: its edges are edges of others.
             let is_flat = turns_along(u) == 0 && turns_along(v) == 0;
             return (!is_flat).then_some(stay);
         }
@@ -597,7 +599,7 @@ impl<'m> Line<'m> {
         for k in 0..3 {
             let (p, q) = (&corners[k], &corners[(k + 1) % 3]);
             let edge = [minus(q[u], p[u]), minus(q[v], p[v])];
-            // How far on the inner side of the edge it begins, and how fast it goes inward.
+            // The line's distance to the inner side of the edge at its beginning, and its speed inward.
             let side = |[x, y]: [Interval; 2]| {
                 let side = edge[0].times(y).minus(edge[1].times(x));
                 if turns > 0 { side } else { side.negated() }
@@ -619,12 +621,12 @@ impl<'m> Line<'m> {
     }
 }
 
-/// Whether the line may pass between edges of which not all sides are sure.
+/// Returns whether the line may pass between edges of which not all sides are certain.
 fn may_pass(sides: [Option<i32>; 3]) -> bool {
     !(sides.contains(&Some(1)) && sides.contains(&Some(-1)))
 }
 
-/// How many bits numbers take, as integers of the largest power of two that divides them all.
+/// Returns the number of bits of numbers as integers of the largest power of two that divides them all.
 fn width_of(numbers: impl IntoIterator<Item = f64>) -> i32 {
     let (mut least, mut most) = (i32::MAX, i32::MIN);
     for number in numbers {
@@ -639,14 +641,14 @@ fn width_of(numbers: impl IntoIterator<Item = f64>) -> i32 {
     if most < least { 0 } else { most - least + 1 }
 }
 
-/// The quotient of two numbers, rounded outward.
+/// Returns the quotient of two numbers, rounded outward.
 fn quotient(a: f64, b: f64) -> Option<Interval> {
     let t = a / b;
     let is_exact = two_product(t, b) == (a, 0.0);
     if is_exact { Some(Interval::exactly(t)) } else { Interval::new(t.next_down(), t.next_up()) }
 }
 
-/// The sum of the magnitudes of u × v, and that of its products.
+/// Returns the sum of the magnitudes of u × v, and that of its products.
 fn size_of_normal(u: &Point, v: &Point) -> (f64, f64) {
     (0..3).fold((0.0, 0.0), |(size, magnitude), k| {
         let (i, j) = ((k + 1) % 3, (k + 2) % 3);
@@ -655,7 +657,7 @@ fn size_of_normal(u: &Point, v: &Point) -> (f64, f64) {
     })
 }
 
-/// d · (p × q), and the sum of the magnitudes of its products.
+/// Returns d · (p × q), and the sum of the magnitudes of its products.
 #[inline(always)]
 fn determinant(d: &Point, p: &Point, q: &Point) -> (f64, f64) {
     let (mut value, mut magnitude) = (0.0, 0.0);

@@ -1,4 +1,4 @@
-//! A mesh under an affine map.
+//! Affine maps of meshes.
 
 use super::triangle_mesh::TriangleMesh;
 use crate::error::Error;
@@ -7,10 +7,11 @@ use crate::lattice::exact::two_product;
 use crate::lattice::{Affine, SMALLEST};
 
 impl TriangleMesh {
-    /// The mesh under an affine map. Vertices are rounded to doubles, and by how much one may be off counts
-    /// as [`displacement`](Self::displacement): what is proven of the solid is proven of the exact image. A
-    /// stated [`deviation`](Self::deviation) grows as lengths do at the most. A reflection turns the
-    /// triangles round as well, so that outside stays outside. The report starts anew.
+    /// Returns the mesh mapped by an affine map. Vertices are rounded to doubles; the maximum rounding error
+    /// is added to the [`displacement`](Self::displacement), so that proofs about the solid hold for the
+    /// exact image. A stated [`deviation`](Self::deviation) grows by the maximum factor by which the map
+    /// stretches lengths. A reflection also reverses the triangles, so that outside stays outside. The report
+    /// starts anew.
     ///
     /// O(v + t). Fails as [`new`](Self::new) does.
     pub fn placed(&self, placement: &Affine) -> Result<TriangleMesh, Error> {
@@ -32,7 +33,7 @@ impl TriangleMesh {
             placed.turn_round();
         }
         let moved = placement.stretched(self.vertex_displacement());
-        // `apply` is off by 2^-50 of the summands at the most; twice that for the sums here.
+        // The error of `apply` is at most 2^-50 of the summands; twice that for the sums here.
         let rounding = rounded * (8.0 * f64::EPSILON);
         let displacement = moved + rounding + dropped;
         let displacement = if displacement > 0.0 { displacement.next_up() } else { 0.0 };
@@ -40,12 +41,12 @@ impl TriangleMesh {
     }
 }
 
-/// The sum of the magnitudes of what a coordinate is made of.
+/// Returns the sum of the magnitudes of a coordinate's terms.
 fn size([x, y, z, t]: &[f64; 4], [a, b, c]: [f64; 3]) -> f64 {
     (x * a).abs() + (y * b).abs() + (z * c).abs() + t.abs()
 }
 
-/// Whether a coordinate is what the row of the map makes of a point.
+/// Returns whether a coordinate is exactly the map's row applied to a point.
 fn is_exact([x, y, z, t]: &[f64; 4], [a, b, c]: [f64; 3], coordinate: f64) -> bool {
     let products = [two_product(*x, a), two_product(*y, b), two_product(*z, c)];
     let parts = products.iter().flat_map(|&(high, low)| [low, high]);
@@ -76,7 +77,7 @@ mod tests {
     fn what_is_rounded_is_displaced_by_that() {
         let turn = [[0.6, -0.8, 0.0, 1e10], [0.8, 0.6, 0.0, 0.1], [0.0, 0.0, 1.0, 0.3]];
         let placed = tetrahedron().placed(&Affine::new(turn).unwrap()).unwrap();
-        // Twice the spacing of doubles there covers it, and sixteen times that is too much.
+        // Twice the spacing of doubles there covers the error; sixteen times the spacing is too much.
         let spacing = 1e10 * f64::EPSILON;
         assert!((spacing..32.0 * spacing).contains(&placed.displacement()), "{}", placed.displacement());
         let again = placed.placed(&Affine::translation([0.0, 0.0, 1.0]).unwrap()).unwrap();

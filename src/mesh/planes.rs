@@ -1,7 +1,7 @@
-//! The planes in which the triangles of a mesh lie.
+//! The planes of a mesh's triangles.
 //!
-//! A CAD program writes a plane face as many triangles, whose corners are rounded. Such triangles share a
-//! plane here, with as much width as the rounding takes.
+//! A CAD program writes a plane face as many triangles, whose corners are rounded. Here such triangles share
+//! one plane, with enough width for the rounding.
 
 use super::intersections::corners;
 use super::triangle_mesh::TriangleMesh;
@@ -15,7 +15,7 @@ use hashbrown::HashMap;
 /// A plane through triangles that face the same side.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(crate) struct FacetPlane {
-    /// A direction of about unit length to which the triangles face.
+    /// The direction that the triangles face, of about unit length.
     pub(crate) normal: [f64; 3],
     /// The least and the greatest [`along`](Self::along) of the triangles' corners.
     pub(crate) low: f64,
@@ -25,15 +25,15 @@ pub(crate) struct FacetPlane {
 }
 
 impl FacetPlane {
-    /// How far a point lies along the normal.
+    /// Returns the coordinate of a point along the normal.
     #[inline]
     pub(crate) fn along(&self, [x, y, z]: [f64; 3]) -> f64 {
         let [a, b, c] = self.normal;
         (a * x + b * y) + c * z
     }
 
-    /// Whether the triangles lie in a plane of points with one coordinate in common, exactly. Triangles that
-    /// face either side share such a plane, whose normal is that axis.
+    /// Returns whether the triangles lie exactly in a plane of constant x, y or z. Triangles that face either
+    /// side share such a plane; its normal is that axis.
     pub(crate) fn is_exact(&self) -> bool {
         self.low == self.high && self.normal.iter().filter(|c| **c == 0.0).count() == 2
     }
@@ -54,35 +54,35 @@ impl FacetPlane {
 /// The planes of a mesh.
 #[derive(Debug, Default)]
 pub(crate) struct FacetPlanes {
-    /// For each triangle the number of its plane.
+    /// The number of each triangle's plane.
     of: Vec<u32>,
     pub(crate) planes: Vec<FacetPlane>,
 }
 
-/// Of the greatest coordinate, how wide a plane may be: four times what single precision takes from
-/// positions.
+/// Maximum width of a plane, relative to the greatest coordinate: four times the error of positions in single
+/// precision.
 const WIDTH: f64 = 1.0 / (1u64 << 22) as f64;
 
-/// Planes with normals and offsets in one cell of this grid may be one.
+/// Planes are compared if their normals and offsets lie in one cell of this grid.
 const GRAIN: f64 = 1.0 / (1u64 << 16) as f64;
 
 const NONE: u32 = u32::MAX;
 
 impl FacetPlanes {
-    /// Bytes that the lists take.
+    /// Returns the bytes that the lists take.
     pub(crate) fn bytes(&self) -> usize {
         memory::bytes_of(&self.of) + memory::bytes_of(&self.planes)
     }
 
-    /// The number of a triangle's plane.
+    /// Returns the number of a triangle's plane.
     #[inline]
     pub(crate) fn of(&self, triangle: u32) -> u32 {
         self.of[triangle as usize]
     }
 
-    /// The planes, the largest triangles first: each grows over triangles that have an edge in common as long
-    /// as it stays narrow, and is then joined to one that it lies in. Without `may_be_exact` no plane is that
-    /// of a coordinate.
+    /// Finds the planes, starting from the largest triangles. Each plane grows over triangles with a common
+    /// edge as long as it stays narrow, and is then joined to a plane in which it lies. Without
+    /// `may_be_exact`, no plane is a plane of constant x, y or z.
     ///
     /// O(t log t).
     ///
@@ -149,17 +149,17 @@ impl FacetPlanes {
     }
 }
 
-/// What planes grow over.
+/// The data for growing planes.
 struct Growth<'m> {
     mesh: &'m TriangleMesh,
-    /// Of each triangle the normal, as long as twice the area.
+    /// The normal of each triangle; its length is twice the area.
     areas: Vec<[f64; 3]>,
     around: Around,
     most: f64,
 }
 
 impl Growth<'_> {
-    /// The plane of a coordinate that the corners of a triangle have in common.
+    /// Returns the plane of constant x, y or z in which all corners of a triangle lie.
     fn exact(&self, triangle: u32) -> Option<FacetPlane> {
         let [a, b, c] = corners(self.mesh, triangle);
         let axis = (0..3).find(|&k| a[k] == b[k] && b[k] == c[k])?;
@@ -169,7 +169,8 @@ impl Growth<'_> {
         Some(FacetPlane { normal, low: a[axis], high: a[axis], area })
     }
 
-    /// The plane of a triangle and of all that hang together with it in its plane; `members` are those.
+    /// Returns the plane of a triangle and of all triangles connected with it in that plane; `members`
+    /// receives them.
     fn grown(
         &self,
         seed: u32,
@@ -203,19 +204,19 @@ impl Growth<'_> {
                 }
             }
         }
-        // The mean normal mostly is the better one.
+        // The mean normal is usually the better one.
         let mean = members.iter().fold(empty(unit(sum)), |all, &t| all.with(corners(self.mesh, t)));
         Ok(if mean.width() < plane.width() { mean } else { plane })
     }
 
-    /// Whether a triangle faces the side of a normal, or none.
+    /// Returns whether a triangle faces the side of a normal, or has no area.
     fn faces(&self, triangle: u32, normal: &[f64; 3]) -> bool {
         let area = self.areas[triangle as usize];
         (area[0] * normal[0] + area[1] * normal[1]) + area[2] * normal[2] >= 0.0
     }
 }
 
-/// The triangles around each vertex.
+/// The triangles at each vertex.
 struct Around {
     first: Vec<u32>,
     triangles: Vec<u32>,
@@ -241,7 +242,7 @@ impl Around {
         Ok(Around { first, triangles })
     }
 
-    /// The triangles with both ends of an edge, from the list of the end that has fewer.
+    /// Returns the triangles that have both ends of an edge, from the list of the end that has fewer.
     fn edge<'a>(&'a self, mesh: &'a TriangleMesh, ends: [u32; 2]) -> impl Iterator<Item = u32> + use<'a> {
         let list = |vertex: u32| {
             let [first, end] = [vertex as usize, vertex as usize + 1].map(|v| self.first[v] as usize);
@@ -257,13 +258,13 @@ fn square([x, y, z]: [f64; 3]) -> f64 {
     (x * x + y * y) + z * z
 }
 
-/// The normal of a triangle, as long as twice its area.
+/// Returns the normal of a triangle; its length is twice the area.
 fn twice_area([a, b, c]: [[f64; 3]; 3]) -> [f64; 3] {
     let [u, v] = [b, c].map(|p| [p[0] - a[0], p[1] - a[1], p[2] - a[2]]);
     [u[1] * v[2] - u[2] * v[1], u[2] * v[0] - u[0] * v[2], u[0] * v[1] - u[1] * v[0]]
 }
 
-/// A direction with a length of about one; of what has none, an axis.
+/// Returns a direction of about unit length; an axis if the vector has no direction.
 fn unit(area: [f64; 3]) -> [f64; 3] {
     let most = area.iter().fold(0.0, |most: f64, c| most.max(c.abs()));
     if !(most > 0.0 && most.is_finite()) {

@@ -1,18 +1,18 @@
-//! Polygons as triangles.
+//! Triangulation of polygons.
 //!
-//! A polygon is a closed walk of edges, its outer loop, and further ones around its holes. Its triangles have
-//! exactly these edges as their boundary, so that polygons that share edges fit together after
-//! triangulation as they did before, and every corner of the polygon stays a corner, also one that lies
-//! straight between its neighbours. Nothing is added.
+//! A polygon is a closed walk of edges, its outer loop, and further loops around its holes. The boundary of
+//! its triangles consists of exactly these edges. Polygons that share edges therefore still fit together
+//! after triangulation, and every corner of the polygon stays a corner, even one that lies straight between
+//! its neighbours. No vertex is added.
 //!
-//! The polygon is seen along the axis that its normal is nearest to. To leave out a coordinate rounds
-//! nothing, and all decisions in the plane are exact signs, so that a triangulation is either right or
-//! refused. Most polygons are convex, and fans. All others are triangulated by a constrained Delaunay
-//! triangulation (the crate `spade`), whose triangles are told apart by the number of times that the loops
-//! wind around them: 1 inside, 0 outside. Every other number, and any contradiction between the triangles and
-//! the loops, is a refusal.
+//! The polygon is projected along the axis nearest to its normal. Leaving out a coordinate rounds nothing,
+//! and all decisions in the plane are exact signs, so a triangulation is either right or refused. Most
+//! polygons are convex, and become fans. All others get a constrained Delaunay triangulation (the crate
+//! `spade`), whose triangles are classified by the winding number of the loops around them: 1 inside, 0
+//! outside. Any other number, and any contradiction between the triangles and the loops, is a refusal.
 //!
-//! `spade` links the standard library through one of its dependencies, so all this needs the feature `std`.
+//! `spade` links the standard library through one of its dependencies, so this module needs the feature
+//! `std`.
 
 use alloc::vec::Vec;
 
@@ -23,37 +23,36 @@ use spade::{ConstrainedDelaunayTriangulation, HierarchyHintGenerator, Point2, Tr
 use crate::error::Error;
 use crate::lattice::exact::two_product;
 
-/// Bytes that a triangulation takes for each corner, at most, all its parts counted. They are asked for and
-/// given back before it begins, because the crate that does it cannot be refused memory.
+/// Maximum bytes of a triangulation for each corner, in total. The library reserves and releases this amount
+/// first, because the triangulating crate cannot report a shortage of memory.
 const BYTES_PER_CORNER: usize = 320;
 
-/// Why a polygon has no triangulation.
+/// The reason why a polygon has no triangulation.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(crate) enum PolygonDefect {
-    /// Not even the memory to find out.
+    /// There is not enough memory.
     OutOfMemory,
     /// A corner is no vertex, a coordinate is not finite, or there is no loop.
     Input,
     /// The loops enclose no area.
     Flat,
-    /// Two corners at different places lie in one line with the direction of sight. Positions in the list of
-    /// corners.
+    /// Two corners at different places coincide in the projection. Positions in the list of corners.
     Folded([usize; 2]),
     /// The edge that begins at this corner crosses another one.
     Crossing(usize),
     /// A corner lies within the edge that begins at this corner.
     Touching(usize),
-    /// A part of the plane is enclosed more than once, or the wrong way around: a hole outside of the outer
-    /// loop, around another hole, or in the same direction as the outer loop.
+    /// A part of the plane is enclosed more than once, or in the wrong direction: by a hole outside of the
+    /// outer loop, around another hole, or in the same direction as the outer loop.
     Nesting,
 }
 
-/// Triangulates a polygon whose corners are `corners`; loop k is `corners[ends[k - 1]..ends[k]]`, the first
-/// one the outer loop. Corners at one place count as one vertex. The triangles, added to `triangles`, face as
-/// the outer loop does, that is, they turn counter-clockwise where it does.
+/// Triangulates a polygon whose corners are `corners`; loop k is `corners[ends[k - 1]..ends[k]]`, and the
+/// first loop is the outer one. Corners at one place count as one vertex. The triangles are added to
+/// `triangles`. They turn counter-clockwise where the outer loop does.
 ///
-/// The boundary of the triangles is the chain of the loops' edges; edges that the loops use in both
-/// directions, such as the bridge to a hole that is written as one loop, lie inside. If it fails, nothing is
+/// The boundary of the triangles is the chain of the loops' edges. Edges that the loops use in both
+/// directions, such as the bridge to a hole that is written as one loop, lie inside. On failure, nothing is
 /// added.
 ///
 /// O(n) for fans, O(n log n) expected otherwise; 5 µs a corner.
@@ -74,9 +73,9 @@ pub(crate) fn triangulate(
     Arrangement::new(plane, vertices, corners, ends)?.triangles(triangles)
 }
 
-/// Triangulates a polygon of a mesh file, without holes: as [`triangulate`], and where that is refused, as a
-/// fan around the first corner, whose boundary is the same but whose triangles may overlap or leave the
-/// polygon. Tells whether it was a triangulation.
+/// Triangulates a polygon of a mesh file, without holes, as [`triangulate`] does. If that is refused, makes a
+/// fan around the first corner; its boundary is the same, but its triangles may overlap or leave the polygon.
+/// Returns whether the result is a triangulation.
 ///
 /// A loop of fewer than three corners adds nothing. Corners must be vertices.
 ///
@@ -101,7 +100,7 @@ pub(crate) fn triangulate_facet(
     Ok(corners.len() <= 3)
 }
 
-/// The fan around the first corner, if it is a triangulation for certain.
+/// Makes the fan around the first corner, if it is surely a triangulation.
 fn fan(
     plane: &Plane,
     vertices: &[[f64; 3]],
@@ -113,8 +112,8 @@ fn fan(
     let mut previous = second;
     for k in 2..corners.len() {
         let next = at(k)?;
-        // All triangles face up, and they lie one behind the other within half a turn. Two triangles on a
-        // common edge lie on its two sides by facing up alone.
+        // All triangles face up, and they follow each other within half a turn. Two triangles on a common
+        // edge lie on its two sides because they face up.
         let within = k == 2 || corners.len() == 4 || turn(first, second, next) > 0.0;
         if !(within && turn(first, previous, next) > 0.0) {
             return Ok(false);
@@ -126,12 +125,14 @@ fn fan(
     Ok(true)
 }
 
-/// Positive where three points turn counter-clockwise, negative where clockwise, zero on a line: exactly.
+/// Returns a number that is positive if three points turn counter-clockwise, negative if clockwise, zero on a
+/// line: exactly.
 fn turn([a, b]: [f64; 2], [c, d]: [f64; 2], [e, f]: [f64; 2]) -> f64 {
     orient2d(Coord { x: a, y: b }, Coord { x: c, y: d }, Coord { x: e, y: f })
 }
 
-/// The coordinate plane that a polygon is seen in, so that its outer loop turns counter-clockwise.
+/// The coordinate plane to which a polygon is projected, oriented so that its outer loop turns
+/// counter-clockwise.
 #[derive(Debug, Clone, Copy, PartialEq)]
 struct Plane([usize; 2]);
 
@@ -156,8 +157,8 @@ impl Plane {
     }
 }
 
-/// Twice the area of a loop, as a vector along its normal (Newell): rounded, from differences to the first
-/// corner. `None` if a corner is no vertex or the result is not finite.
+/// Returns twice the area of a loop, as a vector along its normal (Newell): rounded, from differences to the
+/// first corner. `None` if a corner is no vertex or the result is not finite.
 fn normal(vertices: &[[f64; 3]], corners: &[u32]) -> Option<[f64; 3]> {
     let origin = *vertices.get(*corners.first()? as usize)?;
     let from_origin = |corner: u32| {
@@ -170,7 +171,8 @@ fn normal(vertices: &[[f64; 3]], corners: &[u32]) -> Option<[f64; 3]> {
         let q = from_origin(corner)?;
         for axis in 0..3 {
             let [u, v] = [(axis + 1) % 3, (axis + 2) % 3];
-            // The normal of a sliver must not drown in the errors of products that cancel.
+            // Compensated products, so that the normal of a sliver is not lost in the errors of products that
+            // cancel.
             let (left, left_error) = two_product(p[u], q[v]);
             let (right, right_error) = two_product(p[v], q[u]);
             sum[axis] += (left - right) + (left_error - right_error);
@@ -180,12 +182,12 @@ fn normal(vertices: &[[f64; 3]], corners: &[u32]) -> Option<[f64; 3]> {
     sum.iter().all(|x| x.is_finite()).then_some(sum)
 }
 
-/// How far the corners of a face lie beside its plane: half the distance between the two planes parallel to
-/// the face that have its corners between them. And how far they reach from the first one along an axis. The
-/// first loop gives the normal. `None` for a face without area.
+/// Returns the deviation of a face's corners from its plane, which is half the distance between the two
+/// planes parallel to the face that enclose its corners, and the greatest distance of a corner from the first
+/// one along an axis. The first loop gives the normal. `None` for a face without area.
 pub(crate) fn flatness(vertices: &[[f64; 3]], outer: &[u32], corners: &[u32]) -> Option<(f64, f64)> {
     let normal = normal(vertices, outer)?;
-    // First to a size whose square does not overflow.
+    // Scale first, so that the square does not overflow.
     let most = normal.iter().fold(0.0, |most: f64, x| most.max(x.abs()));
     if most == 0.0 {
         return None;
@@ -203,11 +205,11 @@ pub(crate) fn flatness(vertices: &[[f64; 3]], outer: &[u32], corners: &[u32]) ->
     Some(((high - low) / 2.0, extent))
 }
 
-/// A triangulation of points in the plane. A hierarchy of coarser ones tells near which point a new one lies.
+/// A triangulation of points in the plane. A hierarchy of coarser triangulations locates new points.
 type Net = ConstrainedDelaunayTriangulation<Point2<f64>, (), (), (), HierarchyHintGenerator<f64>>;
 
-/// Brings numbers into an order that has nothing to do with their own. Points that come along a loop would
-/// cost quadratic time, one by one all triangles made so far.
+/// Shuffles numbers. Inserting points in the order of a loop would cost quadratic time, because each one
+/// would visit all triangles made so far.
 fn shuffle(items: &mut [usize]) {
     let mut state = 1u64;
     for i in (1..items.len()).rev() {
@@ -219,11 +221,11 @@ fn shuffle(items: &mut [usize]) {
 /// The loops as edges between points of the plane.
 struct Arrangement<'a> {
     corners: &'a [u32],
-    /// Places of the points, all different, in an order like a random one.
+    /// Places of the points, all different, in a shuffled order.
     places: Vec<[f64; 2]>,
     /// The position in `corners` of the first corner at each point.
     firsts: Vec<usize>,
-    /// The edges that have a length: their points, and the position of their first corner.
+    /// The edges of non-zero length: their points, and the position of their first corner.
     edges: Vec<([usize; 2], usize)>,
 }
 
@@ -236,7 +238,7 @@ impl<'a> Arrangement<'a> {
     ) -> Result<Arrangement<'a>, PolygonDefect> {
         let out_of_memory = |_| PolygonDefect::OutOfMemory;
         let count = corners.len();
-        // Corners by place, those at one place in their order.
+        // Corners sorted by place; corners at one place stay in order.
         let mut sorted: Vec<([f64; 2], usize)> = Vec::new();
         sorted.try_reserve_exact(count).map_err(out_of_memory)?;
         for (k, &corner) in corners.iter().enumerate() {
@@ -289,7 +291,7 @@ impl<'a> Arrangement<'a> {
         Ok(arrangement)
     }
 
-    /// Adds the triangles that the loops wind around once.
+    /// Adds the triangles with winding number 1.
     fn triangles(&self, triangles: &mut Vec<[u32; 3]>) -> Result<(), PolygonDefect> {
         let out_of_memory = |_| PolygonDefect::OutOfMemory;
         let points = self.places.len();
@@ -306,7 +308,7 @@ impl<'a> Arrangement<'a> {
         for point in scaled {
             net.insert(point).map_err(|_| PolygonDefect::Input)?;
         }
-        // Of coordinates that the scale has made equal, nothing can be said.
+        // If the scale has made coordinates equal, no triangulation is certain.
         if net.num_vertices() != points || net.num_inner_faces() == 0 {
             return Err(PolygonDefect::Flat);
         }
@@ -318,7 +320,7 @@ impl<'a> Arrangement<'a> {
                 _ => return Err(PolygonDefect::Touching(corner)),
             }
         }
-        // How much more often the loops run along an edge than against it.
+        // Number of loop edges along each edge minus the number against it.
         let mut excess: Vec<i32> = Vec::new();
         excess.try_reserve_exact(net.num_undirected_edges()).map_err(out_of_memory)?;
         excess.resize(net.num_undirected_edges(), 0);
@@ -328,7 +330,7 @@ impl<'a> Arrangement<'a> {
             let forward = edge == edge.as_undirected().as_directed();
             excess[edge.as_undirected().index()] += if forward { 1 } else { -1 };
         }
-        // Winding numbers spread from the outside, across edges that change them by their excess.
+        // Winding numbers spread from the outside; crossing an edge changes the number by the edge's excess.
         let mut windings: Vec<Option<i32>> = Vec::new();
         windings.try_reserve_exact(net.num_all_faces()).map_err(out_of_memory)?;
         windings.resize(net.num_all_faces(), None);
@@ -343,7 +345,8 @@ impl<'a> Arrangement<'a> {
             let mut visit = |edge: spade::handles::DirectedEdgeHandle<'_, _, _, _, _>| {
                 let undirected = edge.fix().as_undirected();
                 let excess = excess[undirected.index()];
-                // To the left of an edge the number is higher by its excess, and the face lies to the left.
+                // The face lies to the left of its edge; to the left the winding number is higher by the
+                // edge's excess.
                 let across = winding - if edge.fix() == undirected.as_directed() { excess } else { -excess };
                 let other = edge.rev().face().fix();
                 match windings[other.index()] {
@@ -383,7 +386,8 @@ impl<'a> Arrangement<'a> {
         if triangles.len() > before { Ok(()) } else { Err(PolygonDefect::Flat) }
     }
 
-    /// A power of two that brings all coordinates into the range that can be triangulated, if one does.
+    /// Returns a power of two that brings all coordinates into the range that can be triangulated, if there
+    /// is one.
     fn scale(&self) -> f64 {
         let all = || self.places.iter().flatten().map(|x| x.abs()).filter(|&x| x > 0.0);
         let largest = all().fold(0.0, f64::max);
@@ -411,7 +415,7 @@ mod tests {
         }
     }
 
-    /// How often each pair of different places is used as an edge, less how often the other way around.
+    /// The number of uses of each pair of different places as an edge, minus the uses in the other direction.
     fn chain(vertices: &[[f64; 3]], edges: impl Iterator<Item = [u32; 2]>) -> BTreeMap<[[i64; 3]; 2], i32> {
         let place = |v: u32| vertices[v as usize].map(|x| (x * 1024.0) as i64);
         let mut chain = BTreeMap::new();
@@ -441,11 +445,12 @@ mod tests {
         (b[0] - a[0]) * (c[1] - a[1]) - (b[1] - a[1]) * (c[0] - a[0])
     }
 
-    /// Triangulates and checks all that a triangulation promises, for coordinates that are small integers.
+    /// Triangulates, and checks everything that a triangulation guarantees, for coordinates that are small
+    /// integers.
     fn checked(vertices: &[[f64; 3]], loops: &[&[u32]]) -> Result<Vec<[u32; 3]>, PolygonDefect> {
         let corners = loops.concat();
         let ends: Vec<usize> = (1..=loops.len()).map(|k| loops[..k].iter().map(|l| l.len()).sum()).collect();
-        // What was there stays.
+        // Existing triangles stay.
         let mut triangles = vec![[7, 8, 9]];
         let result = triangulate(vertices, &corners, &ends, &mut triangles);
         assert_eq!(triangles.remove(0), [7, 8, 9]);
@@ -456,7 +461,7 @@ mod tests {
         let edges = triangles.iter().flat_map(|&[a, b, c]| [[a, b], [b, c], [c, a]]);
         let boundary = chain(vertices, edges);
         assert_eq!(boundary, chain(vertices, loop_edges(&corners, &ends).into_iter()), "{triangles:?}");
-        // Seen along the axis of the normal, all turn the same way.
+        // In the projection along the normal's axis, all turn the same way.
         let plane = Plane::of(vertices, loops[0]).unwrap();
         let flat = |v: u32| plane.place(vertices, v).unwrap();
         let areas = triangles.iter().map(|t| t.map(flat)).map(|[a, b, c]| cross(a, b, c));
@@ -579,7 +584,7 @@ mod tests {
         assert_eq!(triangulate(&points, &[], &[], &mut vec![]), Err(Input));
         assert_eq!(triangulate(&points, &[0, 1, 2, 3], &[3], &mut vec![]), Err(Input));
         assert_eq!(triangulate(&points, &[0, 1, 2], &[4], &mut vec![]), Err(Input));
-        // An edge that stands upright to the rest.
+        // An edge that is perpendicular to the others.
         let mut folded = points.clone();
         folded[9] = [8.0, 8.0, 6.0];
         assert_eq!(checked(&folded, &[&[0, 1, 2, 9, 3]]).unwrap_err(), Folded([2, 3]));
@@ -632,8 +637,8 @@ mod tests {
         assert!(triangles.iter().all(|t| t.contains(&3)));
     }
 
-    /// Whether the loops bound what they wind around once: no edges cross, no corner lies within an edge, and
-    /// no winding number but 0 and 1 occurs. Of small integers, by trying everything.
+    /// Returns whether the loops bound the region with winding number 1: no edges cross, no corner lies
+    /// within an edge, and only the winding numbers 0 and 1 occur. Brute force, for small integers.
     fn is_polygon(points: &[[i32; 2]], loops: &[&[u32]]) -> bool {
         let cross = |a: [i32; 2], b: [i32; 2], c: [i32; 2]| {
             (b[0] - a[0]) * (c[1] - a[1]) - (b[1] - a[1]) * (c[0] - a[0])
@@ -726,7 +731,7 @@ mod tests {
             let mut ring = vec![];
             for radius in [30_000.0, 20_000.0] {
                 for i in 0..n {
-                    // Without the functions that a library without a standard library lacks: half angles.
+                    // Half angles, because trigonometric functions need the standard library.
                     let t = (f64::from(i) + 0.5) / f64::from(n) * 4.0;
                     let (quarter, s) = (t as usize, t - f64::from(t as i32));
                     let (x, y) = ((1.0 - s * s) / (1.0 + s * s), 2.0 * s / (1.0 + s * s));

@@ -1,8 +1,8 @@
-//! Solids of plane faces, as boundary representations have them.
+//! Solids of plane faces, as in boundary representations.
 //!
-//! Nothing about the arrays is taken on trust. What is demanded of them is local, face by face and edge by
-//! edge, and that voids lie within their solids; faces that cut through each other, shells that overlap and
-//! solids that do are let through, because a mesh has a meaning for them.
+//! The arrays are checked completely. The conditions are local, face by face and edge by edge, plus one:
+//! voids must lie within their solids. Faces that cut through each other, and overlapping shells or solids,
+//! are accepted, because a mesh has a meaning for them.
 
 use alloc::vec::Vec;
 
@@ -15,14 +15,17 @@ use crate::error::{Error, MeshError, PolyhedronError};
 use crate::lattice::valid;
 use crate::memory;
 
-/// How far corners may lie beside the plane of their face by default, as a fraction of the longest extent.
+/// Default tolerance: maximum distance of corners from the plane of their face, relative to the longest
+/// extent.
 pub(crate) const PLANE: f64 = 1e-9;
 
-/// Solids of shells of faces of loops of corners, as plain arrays.
+/// Solids of plane faces as plain arrays: a solid consists of shells, a shell of faces, a face of loops, and
+/// a loop of corners.
 ///
-/// Every level is one array of offsets into the level below: part k is `offsets[k]..offsets[k + 1]` of it, so
-/// that each array begins with 0, rises, has one entry more than there are parts, and ends at the length of
-/// the next. Loops turn counter-clockwise around the material's outer side, holes the other way.
+/// Every level is one array of offsets into the level below: part k is `offsets[k]..offsets[k + 1]` of that
+/// level. Each array begins with 0, rises, has one entry more than there are parts, and ends at the number of
+/// parts of the level below. Outer loops turn counter-clockwise as seen from outside the material, holes
+/// clockwise.
 ///
 /// A block of eight vertices with a square hole from top to bottom, for instance, has ten faces, two of them
 /// with two loops each; see [`Polyhedron`] for a smaller example.
@@ -30,33 +33,34 @@ pub(crate) const PLANE: f64 = 1e-9;
 pub struct PolyhedronArrays<'a> {
     /// Coordinates in model units, finite and at most 2^256 in magnitude.
     pub vertices: &'a [[f64; 3]],
-    /// The corners of all loops, one loop behind the other, as indices into `vertices`.
+    /// The corners of all loops, one loop after another, as indices into `vertices`.
     pub corners: &'a [u32],
     /// Offsets of the loops in `corners`. A loop has at least three corners; its last edge leads back to the
     /// first corner.
     pub loops: &'a [u32],
-    /// Offsets of the faces in the loops. The first loop of a face bounds it from outside, others are holes.
+    /// Offsets of the faces in the loops. The first loop of a face is its outer boundary, the others are
+    /// holes.
     pub faces: &'a [u32],
     /// Offsets of the shells in the faces.
     pub shells: &'a [u32],
-    /// Offsets of the solids in the shells. The first shell of a solid bounds it from outside, the others are
+    /// Offsets of the solids in the shells. The first shell of a solid is its outer boundary, the others are
     /// voids.
     pub solids: &'a [u32],
 }
 
-/// Solids of plane faces that were found to be sound.
+/// Solids of plane faces that passed all checks.
 ///
-/// * Every edge of a loop is run through once more in its shell, in the opposite direction. Topology is by
-///   index: two vertices at one place are two vertices, so that shells, and parts of one shell, may touch.
+/// * Every edge of a loop occurs once more in its shell, in the opposite direction. Topology is by index: two
+///   vertices at one place are two vertices, so shells, and parts of one shell, may touch.
 /// * The corners of each face lie in a plane up to a tolerance, its loops do not cross, and its holes lie
 ///   within its outer loop.
-/// * The first shell of each solid encloses a positive volume, its voids negative ones, and each void has its
-///   bounds within those of the first shell, and a vertex within it.
+/// * The first shell of each solid encloses a positive volume, its voids enclose negative volumes. The bounds
+///   of each void lie within those of the first shell, and one of its vertices lies within the first shell.
 ///
-/// The solids are a [`TriangleMesh`] of the same vertices, closed and consistently oriented, and that mesh is
-/// from then on the truth: where a face is not plane to the last digit, its triangles say where the
-/// surface is. Which face, shell and solid a triangle belongs to [is kept](Self::parts), and faces can
-/// [bear values](Self::attribute). Needs the feature `std`.
+/// The solids become a [`TriangleMesh`] of the same vertices, closed and consistently oriented. From then on
+/// the mesh defines the surface: if a face is not exactly plane, its triangles are the surface. The
+/// polyhedron [keeps](Self::parts) the face, shell and solid of each triangle, and faces can [bear
+/// values](Self::attribute). Needs the feature `std`.
 ///
 /// ```
 /// use leafless::mesh::{Polyhedron, PolyhedronArrays};
@@ -86,21 +90,22 @@ pub struct Polyhedron {
 }
 
 impl Polyhedron {
-    /// Checks the arrays and triangulates the faces. Corners may lie beside the plane of their face by 10^-9
-    /// of the longest extent of all vertices that loops use.
+    /// Checks the arrays and triangulates the faces. Corners may lie off the plane of their face by 10^-9 of
+    /// the longest extent of all vertices that loops use.
     ///
     /// O(n log n) expected, with about 100 bytes a corner of scratch memory and 320 of the largest face.
     ///
     /// # Errors
-    /// [`Error::Polyhedron`] tells what is wrong and where, the arrays first, then edges, faces, shells, each
-    /// in ascending order; [`MeshError::NotFinite`], [`MeshError::TooLarge`], [`MeshError::TooMany`];
-    /// [`MeshError::Empty`] if there is no solid; [`Error::OutOfMemory`].
+    /// [`Error::Polyhedron`] with the first defect and its place, the arrays first, then edges, faces and
+    /// shells, each in ascending order; [`MeshError::NotFinite`], [`MeshError::TooLarge`],
+    /// [`MeshError::TooMany`]; [`MeshError::Empty`] if there is no solid; [`Error::OutOfMemory`].
     pub fn new(arrays: &PolyhedronArrays) -> Result<Polyhedron, Error> {
         Self::checked(arrays, None)
     }
 
-    /// As [`new`](Self::new), with the distance, in model units, that a corner may lie beside the plane of
-    /// its face: half the distance between two planes parallel to the face around all its corners.
+    /// Does the same as [`new`](Self::new) with a given tolerance in model units: the maximum distance of a
+    /// corner from the plane of its face, measured as half the distance between the two planes parallel to
+    /// the face that enclose its corners.
     ///
     /// # Errors
     /// As `new`; [`Error::Argument`] if `tolerance` is negative or not a number.
@@ -109,17 +114,18 @@ impl Polyhedron {
         Self::checked(arrays, Some(tolerance))
     }
 
-    /// The surface of all solids.
+    /// Returns the surface of all solids.
     pub fn mesh(&self) -> &TriangleMesh {
         &self.mesh
     }
 
-    /// The surface of all solids.
+    /// Returns the surface of all solids.
     pub fn into_mesh(self) -> TriangleMesh {
         self.mesh
     }
 
-    /// How far a corner lies beside the plane of its face at most, in model units and up to rounding.
+    /// Returns the maximum distance of a corner from the plane of its face, in model units and up to
+    /// rounding.
     pub fn deviation(&self) -> f64 {
         self.deviation
     }
@@ -145,7 +151,7 @@ impl Polyhedron {
         let mut faces: Vec<u32> = memory::with_capacity(parts.corners.len())?;
         let mut ends = Vec::new();
         let mut found = Faces::default();
-        // Where each shell's triangles end.
+        // The end of each shell's triangles.
         let mut shells: Vec<usize> = memory::with_capacity(parts.shells.count())?;
         for shell in 0..parts.shells.count() {
             for face in parts.shells.range(shell) {
@@ -164,7 +170,7 @@ impl Polyhedron {
             shells.push(triangles.len());
         }
         parts.check_shells(&vertices, &triangles, &shells)?;
-        // Of a triangle that is dropped, its face is.
+        // A dropped triangle takes its face number with it.
         let mut attributes = memory::with_capacity(1)?;
         attributes.push(MeshAttribute::labels("", faces)?);
         let mut mesh = TriangleMesh::with_attributes(vertices, triangles, attributes)?.made_from(found);
@@ -174,7 +180,7 @@ impl Polyhedron {
     }
 }
 
-/// Offsets that were found to rise from 0 to what they divide.
+/// Offsets that were checked to rise from 0 to the size of the level below.
 #[derive(Clone, Copy)]
 struct Offsets<'a>(&'a [u32]);
 
@@ -205,7 +211,7 @@ impl<'a> Offsets<'a> {
         self.0[part] as usize..self.0[part + 1] as usize
     }
 
-    /// The part that `item` belongs to.
+    /// Returns the part that contains `item`.
     fn part_of(self, item: usize) -> usize {
         self.0.partition_point(|&offset| offset as usize <= item) - 1
     }
@@ -233,13 +239,13 @@ impl<'a> Parts<'a> {
         Ok(Parts { corners: arrays.corners, loops, faces, shells, solids })
     }
 
-    /// The position behind a corner in its loop.
+    /// Returns the position of the next corner in a loop.
     fn next(&self, loop_: usize, corner: usize) -> usize {
         let range = self.loops.range(loop_);
         if corner + 1 < range.end { corner + 1 } else { range.start }
     }
 
-    /// Loops have corners that exist, at least three of them, and edges that have a length.
+    /// Checks that loops have at least three corners, that the corners exist, and that edges have a length.
     fn check_loops(&self, vertices: &[[f64; 3]]) -> Result<(), PolyhedronError> {
         let out_of_range = |&vertex: &u32| vertex as usize >= vertices.len();
         if let Some(corner) = self.corners.iter().position(out_of_range) {
@@ -266,9 +272,9 @@ impl<'a> Parts<'a> {
         Ok(())
     }
 
-    /// Every edge is run through once in each direction in its shell.
+    /// Checks that every edge occurs once in each direction in its shell.
     fn check_edges(&self) -> Result<(), Error> {
-        /// A corner's edge, so that those of one edge and shell sort together.
+        /// A corner's edge, ordered so that the uses of one edge in a shell sort together.
         #[derive(Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
         struct Edge {
             low: u32,
@@ -313,14 +319,14 @@ impl<'a> Parts<'a> {
         Ok(())
     }
 
-    /// The corners of a face.
+    /// Returns the corners of a face.
     fn face(&self, face: usize) -> &'a [u32] {
         let loops = self.faces.range(face);
         &self.corners[self.loops.range(loops.start).start..self.loops.range(loops.end - 1).end]
     }
 
-    /// Half the distance between the two planes parallel to a face that have its corners between them, and
-    /// the extent of the face.
+    /// Returns half the distance between the two planes parallel to a face that enclose its corners, and the
+    /// extent of the face.
     fn flatness(&self, face: usize, vertices: &[[f64; 3]]) -> Result<(f64, f64), PolyhedronError> {
         let corners = self.face(face);
         let flat = PolyhedronError::Flat { face: face as u64 };
@@ -359,7 +365,8 @@ impl<'a> Parts<'a> {
         })
     }
 
-    /// The first shells of solids enclose a positive volume, the others a negative one, within it.
+    /// Checks that the first shells of solids enclose a positive volume, and that the others enclose a
+    /// negative volume within the first.
     fn check_shells(
         &self,
         vertices: &[[f64; 3]],

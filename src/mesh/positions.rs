@@ -1,4 +1,4 @@
-//! A table of positions: which vertices lie at the same place, exactly.
+//! A hash table of positions, which finds vertices at exactly the same place.
 
 use alloc::vec::Vec;
 use core::hash::{BuildHasher, Hasher};
@@ -9,32 +9,33 @@ use crate::error::{Error, MeshError};
 use crate::lattice::{LARGEST, SMALLEST};
 use crate::memory;
 
-/// Positions that are looked up together, so that their ways to memory overlap: the corners of eight facets.
+/// Number of positions that are looked up together, so that their memory accesses overlap: the corners of
+/// eight facets.
 const BATCH: usize = 24;
 
-/// No vertex has this index.
+/// An index that no vertex has.
 pub(super) const NOWHERE: u32 = u32::MAX;
 
 /// A hash table of vertex indices by position, with open addressing. The positions stay in the caller's
-/// vector; a slot is 8 bytes: an index and, lest every probe go to a position, 32 bits of the hash. The hash
-/// is seeded, and no result depends on it.
+/// vector. A slot is 8 bytes: an index, and 32 bits of the hash, so that not every probe has to load a
+/// position. The hash is seeded, and no result depends on it.
 pub(super) struct Places {
-    /// The upper halves hold bits of hashes, of which the lowest is always 1: a slot of 0 is empty. At most
-    /// three quarters are not. The number of slots is a power of two.
+    /// The upper halves hold bits of hashes, of which the lowest is always 1; a slot of 0 is empty. At most
+    /// three quarters of the slots are used. The number of slots is a power of two.
     slots: Vec<u64>,
     len: usize,
     hasher: DefaultHashBuilder,
 }
 
-/// What is known of a batch of positions at a first glance.
+/// The result of a first look-up of a batch of positions.
 pub(super) struct Lookup {
     pub hashes: [u64; BATCH],
-    /// Indices of those that were found; `NOWHERE` for those to be looked up with more patience.
+    /// Indices of the positions that were found; `NOWHERE` for positions that need a full look-up.
     pub found: [u32; BATCH],
 }
 
 impl Places {
-    /// How many positions may be looked up together.
+    /// Maximum number of positions that may be looked up together.
     pub const BATCH: usize = BATCH;
 
     pub fn with_capacity(len: usize) -> Result<Self, Error> {
@@ -43,8 +44,8 @@ impl Places {
         Ok(Self { slots, len: 0, hasher: DefaultHashBuilder::default() })
     }
 
-    /// Looks at the first slot of each position, and at the positions to which these lead: one after the
-    /// other, so that no access waits for another one. There may be up to `BATCH` positions.
+    /// Loads the first slot of each position, and then the positions to which the slots lead, so that no
+    /// access waits for another. There may be up to `BATCH` positions.
     #[inline(always)]
     pub fn look_up(&self, positions: &[[f64; 3]], vertices: &[[f64; 3]]) -> Lookup {
         let (mut hashes, mut glances, mut found) = ([0; BATCH], [0; BATCH], [NOWHERE; BATCH]);
@@ -64,8 +65,8 @@ impl Places {
         Lookup { hashes, found }
     }
 
-    /// The index of a position. One that is not in the table yet gets the index `next`; the positions of all
-    /// others must be in `vertices`.
+    /// Returns the index of a position. A position that is not in the table gets the index `next`; all others
+    /// must be in `vertices`.
     #[inline]
     pub fn find_or_insert(
         &mut self,
@@ -92,7 +93,7 @@ impl Places {
         Ok(next)
     }
 
-    /// The first free slot for a hash.
+    /// Returns the first free slot for a hash.
     fn free(&self, hash: u64) -> usize {
         let mask = self.slots.len() - 1;
         let mut at = hash as usize & mask;
@@ -138,7 +139,7 @@ fn hash_of(builder: &DefaultHashBuilder, position: &[f64; 3]) -> u64 {
     hasher.finish()
 }
 
-/// The vertex with -0.0 turned into 0.0, or why it is refused.
+/// Returns the vertex with -0.0 turned into 0.0, or the reason why the vertex is refused.
 #[inline]
 pub(super) fn normalised(vertex: [f64; 3], index: u64) -> Result<[f64; 3], MeshError> {
     // False for NaN as well.
@@ -177,7 +178,7 @@ mod tests {
             let found = places.look_up(core::slice::from_ref(vertex), &vertices).found[0];
             assert!(found == index || found == NOWHERE);
         }
-        // Nothing that is absent is found.
+        // A position that is absent is not found.
         let hash = hash_of(&places.hasher, &[0.5; 3]);
         assert_eq!(places.find_or_insert(hash, &[0.5; 3], 7777, &vertices).unwrap(), 7777);
     }

@@ -1,4 +1,4 @@
-//! What is told about a mesh.
+//! Reports about meshes.
 
 use alloc::boxed::Box;
 use alloc::vec::Vec;
@@ -13,95 +13,100 @@ use crate::error::Error;
 use crate::lattice::exact::sign_of_products;
 use crate::memory;
 
-/// What was found while a mesh was taken in, and how its triangles hang together.
+/// The findings of building a mesh, and the connectivity of its triangles.
 ///
-/// Where the defects lie is told by [`TriangleMesh::defects`].
+/// [`TriangleMesh::defects`] lists the places of the defects.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct MeshReport {
-    /// Triangles that were handed in, `triangles` + `degenerate`.
+    /// Number of triangles passed in: `triangles` + `degenerate`.
     pub facets_read: u64,
-    /// Triangles of the mesh.
+    /// Number of triangles of the mesh.
     pub triangles: u64,
-    /// Vertices of the mesh, all at different places. Some may be used by no triangle.
+    /// Number of vertices of the mesh, all at different places. Some may be used by no triangle.
     pub vertices: u64,
-    /// Vertices that were handed in and lay on an earlier one: of a triangle soup that was not
-    /// sewn, 3 `facets_read` - `vertices`.
+    /// Number of vertices passed in that lay on an earlier one; for a triangle soup that was not sewn, 3
+    /// `facets_read` - `vertices`.
     pub welded: u64,
-    /// Triangles that were dropped because two of their corners lie at one place.
+    /// Number of triangles that were dropped because two of their corners lie at one place.
     pub degenerate: u64,
-    /// Edges, each counted once.
+    /// Number of edges, each counted once.
     pub edges: u64,
-    /// V − E + F of the vertices that triangles use, the edges and the triangles: of a 2-manifold, 2 for each
-    /// component less 2 for each of its handles.
+    /// V − E + F, for the vertices that triangles use, the edges and the triangles. For a 2-manifold: 2 for
+    /// each component minus 2 for each handle.
     pub euler_characteristic: i64,
-    /// Edges that an odd number of triangles use. A mesh is closed if there is none.
+    /// Number of edges used by an odd number of triangles. A mesh is closed if there is none.
     pub boundary_edges: u64,
-    /// Loops of these edges, without vertices that occur twice: holes of the surface and rims of sheets.
+    /// Number of loops of these edges, without vertices that occur twice: holes of the surface and rims of
+    /// sheets.
     pub boundary_loops: u64,
-    /// Edges that an even number of triangles use, but not half of them in each direction. A closed mesh is
-    /// consistently oriented if there is none.
+    /// Number of edges used by an even number of triangles, but not by equally many in each direction. A
+    /// closed mesh is consistently oriented if there is none.
     pub misoriented_edges: u64,
-    /// Edges that more than two triangles use, for instance where two bodies touch. They do no harm.
+    /// Number of edges used by more than two triangles, for instance where two bodies touch. They do no harm.
     pub non_manifold_edges: u64,
-    /// Triangles that repeat an earlier one, in the same direction. They count as often as they occur.
+    /// Number of triangles that repeat an earlier one, in the same direction. They count as often as they
+    /// occur.
     pub duplicate: u64,
-    /// Pairs of triangles with the same corners in opposite directions: walls without thickness. The two
-    /// cancel each other.
+    /// Number of pairs of triangles with the same corners in opposite directions: walls without thickness.
+    /// The two cancel each other.
     pub opposite: u64,
-    /// Triangles without area whose corners are three different vertices. They do no harm.
+    /// Number of triangles without area whose corners are three different vertices. They do no harm.
     pub flat: u64,
-    /// Sets of triangles that hang together over edges. Bodies that touch only in single vertices count
-    /// separately, and so does the outer from the inner surface of a hollow body.
+    /// Number of bodies: sets of triangles that are connected by edges. Bodies that touch only in single
+    /// vertices count separately, and so do the outer and the inner surface of a hollow body.
     pub bodies: u64,
-    /// Bodies with an edge whose triangles do not cancel each other: open or not consistently oriented.
+    /// Number of bodies with an edge whose triangles do not cancel each other: open or not consistently
+    /// oriented.
     pub open_bodies: u64,
-    /// Other bodies that enclose a negative volume: cavities, and bodies that are inside out.
+    /// Number of other bodies that enclose a negative volume: cavities, and inverted bodies.
     pub inside_out_bodies: u64,
-    /// Vertices that [`sewn`](TriangleMesh::sewn) moved onto another one.
+    /// Number of vertices that [`sewn`](TriangleMesh::sewn) moved onto another one.
     pub sewn: u64,
-    /// The farthest that any of them was moved along an axis, in model units. (A stated deviation is not in
-    /// it: [`TriangleMesh::displacement`] has both.)
+    /// Maximum distance that a vertex was moved along an axis, in model units. (A stated deviation is not
+    /// included: [`TriangleMesh::displacement`] includes both.)
     pub displacement: f64,
-    /// Closed bodies that are proven to overlap another one: their surfaces cross, or one lies within the
-    /// other with the same sense and no cavity between them. There the surface winds around points more than
-    /// once, and the sum of signed volumes, [`TriangleMesh::volume`], is not what a fill rule encloses.
-    /// Without such bodies, undecided ones, and bodies that are inside out or cross themselves, it is.
+    /// Number of closed bodies that are proven to overlap another one: their surfaces cross, or one lies
+    /// within the other with the same sense and no cavity between them. There the surface winds around points
+    /// more than once, and the sum of signed volumes, [`TriangleMesh::volume`], differs from the volume that
+    /// a fill rule encloses. Without such bodies, undecided bodies, inverted bodies and bodies that cross
+    /// themselves, the two are equal.
     pub overlapping_bodies: u64,
-    /// Other closed bodies that may overlap another one: they touch in a way that is not decided, such as a
-    /// peg that fits its hole exactly, or there was too much to look at.
+    /// Number of other closed bodies that may overlap another one: they touch in a way that is not decided,
+    /// such as a peg that fits its hole exactly, or the limit of work was reached.
     pub undecided_bodies: u64,
-    /// Faces of more than three corners that the triangles were made from: of OBJ, PLY and OFF files and of
-    /// a [`Polyhedron`](crate::mesh::Polyhedron). 0 for other meshes.
+    /// Number of faces of more than three corners from which the triangles were made: faces of OBJ, PLY and
+    /// OFF files and of a [`Polyhedron`](crate::mesh::Polyhedron). 0 for other meshes.
     pub polygons: u64,
-    /// Those that are not flat: corners lie beside the face's plane, by more than 2^-40 of its extent. Such a
-    /// face has no shape of its own. The mesh is one of its triangulations, and whatever is proven of the
-    /// mesh is proven of that one.
+    /// Number of such faces that are not flat: corners lie off the face's plane by more than 2^-40 of its
+    /// extent. Such a face has no definite shape. The mesh is one of its triangulations, and every proof
+    /// about the mesh is about that triangulation.
     pub bent_polygons: u64,
     /// Half the distance, in model units and up to rounding, between the two planes parallel to a face that
-    /// have all its corners between them, for the face where it is greatest. Each triangulation of the face
-    /// lies between the planes. (The plane's normal is the mean one, after Newell.)
+    /// enclose all its corners, for the face where it is greatest. Each triangulation of the face lies
+    /// between the planes. (The plane's normal is the mean one, after Newell.)
     pub polygon_deviation: f64,
 }
 
 impl MeshReport {
-    /// Whether the mesh is closed and consistently oriented: every edge is run along as often in one
-    /// direction as in the other. (An empty mesh is.)
+    /// Returns whether the mesh is closed and consistently oriented: every edge is used equally often in both
+    /// directions. (True for an empty mesh.)
     pub fn is_closed(&self) -> bool {
         self.boundary_edges == 0 && self.misoriented_edges == 0
     }
 
-    /// Whether exactly two triangles meet on every edge, which run along it in opposite directions.
+    /// Returns whether exactly two triangles meet on every edge and use it in opposite directions.
     pub fn is_manifold(&self) -> bool {
         self.is_closed() && self.non_manifold_edges == 0
     }
 }
 
 impl TriangleMesh {
-    /// What was found when the mesh was made, and how its triangles hang together.
+    /// Returns the findings of building the mesh, and the connectivity of its triangles.
     ///
-    /// The first call analyses the edges, in O(t + v) time, O(n log n) for the n edges of the boundary, and
-    /// with 28 bytes per triangle and 9 per vertex of scratch memory, and looks for bodies that overlap where
-    /// their boxes meet, with at most 2^24 steps and 128 a triangle; later calls are free.
+    /// The first call analyses the edges. This takes O(t + v) time, O(n log n) for the n edges of the
+    /// boundary, and 28 bytes per triangle and 9 per vertex of scratch memory. The call also searches for
+    /// overlapping bodies where their boxes meet, with at most 2^24 steps plus 128 a triangle. Later calls
+    /// are free.
     ///
     /// # Errors
     /// [`Error::OutOfMemory`].
@@ -137,10 +142,10 @@ impl TriangleMesh {
         })
     }
 
-    /// The body that each triangle belongs to: a set of triangles that hang together over edges. Bodies are
-    /// numbered by their first triangles: the first triangle is one of body 0, the first one of another body
-    /// is one of body 1. There are [`MeshReport::bodies`] of them, and shells that touch only in single
-    /// vertices, or lie within each other, are different bodies.
+    /// Returns the body of each triangle. A body is a set of triangles that are connected by edges. Bodies
+    /// are numbered by their first triangles: body 0 has the first triangle, and body 1 has the first
+    /// triangle that is not in body 0. There are [`MeshReport::bodies`] of them. Shells that touch only in
+    /// single vertices, or lie within each other, are different bodies.
     ///
     /// O(t + v), with 28 bytes per triangle and 9 per vertex of scratch memory.
     ///
@@ -155,19 +160,19 @@ impl TriangleMesh {
         let open = open_edges(&topology.boundary)?;
         let details =
             self.look_at_triangles(&topology, &bodies, EdgeLoops::of(&open, false)?.count() as u64)?;
-        // If it is there already, it is the same.
+        // If another thread has set it already, the value is the same.
         let _ = self.topology.set(Box::new(topology));
         Ok(Box::new(details))
     }
 
-    /// Finds what the places of vertices tell.
+    /// Finds the properties that depend on the vertices' positions.
     fn look_at_triangles(
         &self,
         topology: &Topology,
         bodies: &Bodies,
         boundary_loops: u64,
     ) -> Result<Details, Error> {
-        /// Six times the volume, from tetrahedra with a vertex of the body; no number for an open one.
+        /// Six times the volume, from tetrahedra with a vertex of the body; NaN for an open body.
         struct Body {
             origin: u32,
             triangles: u32,
@@ -176,7 +181,8 @@ impl TriangleMesh {
             magnitude: f64,
         }
         impl Body {
-            /// The sign of the volume whatever the rounding: 0 for walls without thickness, and if open.
+            /// Returns the sign of the volume, if rounding cannot change it: 0 for walls without thickness,
+            /// and if open.
             fn sense(&self) -> i32 {
                 let error = f64::EPSILON * (f64::from(self.triangles) + 16.0) * self.magnitude;
                 i32::from(self.volume > error) - i32::from(self.volume < -error)
@@ -184,7 +190,7 @@ impl TriangleMesh {
         }
         let mut flat = 0;
         let mut found: Vec<Body> = Vec::new();
-        // Not more than there are triangles, which are in memory.
+        // There are at most as many bodies as triangles, which are in memory.
         found.try_reserve_exact(topology.bodies as usize)?;
         for (triangle, &body) in self.triangles().iter().zip(&bodies.of_triangles) {
             flat += u64::from(self.is_flat(triangle));
@@ -211,28 +217,29 @@ impl TriangleMesh {
         Ok(Details { boundary_loops, flat, open_bodies, inside_out_bodies, overlaps })
     }
 
-    /// Whether the corners of a triangle lie on a line: exactly.
+    /// Returns whether the corners of a triangle lie exactly on a line.
     pub(super) fn is_flat(&self, triangle: &[u32; 3]) -> bool {
         are_on_a_line(triangle.map(|v| self.vertices()[v as usize]))
     }
 }
 
-/// Whether three points lie on a line: exactly.
+/// Returns whether three points lie exactly on a line.
 pub(super) fn are_on_a_line(points: [[f64; 3]; 3]) -> bool {
     (0..3).all(|axis| is_straight(points.map(|p| [p[axis], p[(axis + 1) % 3]])))
 }
 
-/// The edges of a boundary that an odd number of triangles use: those that occur an odd number of times.
+/// Returns the edges of a boundary that an odd number of triangles use: those that occur an odd number of
+/// times.
 pub(super) fn open_edges(boundary: &[[u32; 2]]) -> Result<Vec<[u32; 2]>, Error> {
     let mut open = memory::with_capacity(boundary.len())?;
     open.extend(boundary.chunk_by(|a, b| a == b).filter(|same| same.len() % 2 == 1).map(|same| same[0]));
     Ok(open)
 }
 
-/// Whether three points of a plane lie on a line.
+/// Returns whether three points of a plane lie on a line.
 fn is_straight([a, b, c]: [[f64; 2]; 3]) -> bool {
     let (left, right) = ((a[0] - c[0]) * (b[1] - c[1]), (a[1] - c[1]) * (b[0] - c[0]));
-    // Six roundings, each of them of 2^-53 at most.
+    // Six roundings, each of at most 2^-53.
     if (left - right).abs() > 4e-16 * (left.abs() + right.abs()) {
         return false;
     }

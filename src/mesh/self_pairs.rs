@@ -1,13 +1,13 @@
-//! Pairs of triangles of one mesh whose boxes meet, without those that many triangles around one vertex make.
+//! Pairs of triangles of one mesh whose boxes meet, without the many pairs around busy vertices.
 //!
-//! Boxes around triangles that have a vertex in common all meet: of n slivers around one vertex, n² pairs.
-//! Two such triangles meet beyond the vertex if and only if they have a direction from there in common, as
-//! both are convex. So for a *busy* vertex, which many triangles have, the directions are compared: arcs on a
-//! sphere, along a tree of boxes of their own. Elsewhere these pairs are left out, whole nodes of them where
-//! all triangles have the vertex.
+//! Boxes around triangles with a common vertex all meet: n slivers around one vertex make n² pairs. Two such
+//! triangles meet beyond the vertex if and only if they have a common direction from there, because both are
+//! convex. For a *busy* vertex, which belongs to many triangles, the directions are therefore compared: arcs
+//! on a sphere, by a tree of boxes of their own. The main search leaves these pairs out, whole nodes at once
+//! if all their triangles have the vertex.
 //!
-//! Long slivers that lie askew have large boxes, too. After many steps each node gets a box that is turned as
-//! its triangles are.
+//! Long oblique slivers have large boxes, too. After many steps each node gets an oriented box that is
+//! aligned with its triangles.
 
 use super::signs::Point;
 use super::tree::{Grid, Place, Search, Steps, Tree, WIDTH};
@@ -19,39 +19,39 @@ use crate::memory;
 use alloc::vec::Vec;
 use core::array::from_fn as array;
 
-/// A vertex of more triangles is busy.
+/// A vertex of more triangles than this is busy.
 const BUSY: u32 = 64;
 
-/// Steps a triangle after which boxes are turned, and some more.
+/// Steps per triangle, and additional steps, after which oriented boxes are made.
 const STEPS: u64 = 96;
 const FIRST: u64 = 1 << 18;
 
-/// Steps between two looks at the clock.
+/// Steps between two checks for cancelling.
 const OFTEN: u64 = 1 << 16;
 
-/// No vertex, and a place for any.
+/// Markers: no vertex; any vertex.
 const NONE: u32 = u32::MAX;
 const ANY: u32 = u32::MAX - 1;
 
-/// The busy vertices that all triangles of a node have.
+/// The busy vertices that all triangles of a node have in common.
 type Common = [u32; 3];
 
-/// Pairs of one mesh.
+/// The data of a search for pairs in one mesh.
 struct Pairs<'m> {
     mesh: &'m TriangleMesh,
     tree: &'m Tree,
     control: &'m Control<'m>,
     /// Whether each vertex is busy; empty if none is.
     busy: Vec<bool>,
-    /// For each node the busy vertices that all of its triangles have; empty if none is busy.
+    /// The common busy vertices of each node; empty if no vertex is busy.
     common: Vec<Common>,
     turned: Option<Vec<Turned>>,
-    /// Steps that may be left before boxes are turned.
+    /// Oriented boxes are made once fewer steps than this remain.
     before: u64,
 }
 
-/// Calls `visit` with each pair of triangles that may meet, once, until it returns `false`. Triangles that
-/// are `left_out` may be missing. What it does depends on the mesh alone.
+/// Calls `visit` once with each pair of triangles that may meet, until it returns `false`. Triangles that are
+/// `left_out` may be missing. The pairs and their order depend on the mesh alone.
 pub(super) fn self_pairs(
     mesh: &TriangleMesh,
     left_out: &impl Fn(u32) -> bool,
@@ -89,7 +89,7 @@ impl Pairs<'_> {
         !self.busy.is_empty() && self.busy[vertex as usize]
     }
 
-    /// The busy vertices that all triangles of each node have.
+    /// Returns the busy vertices that all triangles of each node have in common.
     fn common(&self) -> Result<Vec<Common>, Error> {
         let mut common = memory::filled(self.tree.count(), [ANY; 3])?;
         if let Some(root) = self.tree.root() {
@@ -116,7 +116,7 @@ impl Pairs<'_> {
         }
     }
 
-    /// Whether all triangles of two nodes have a busy vertex in common.
+    /// Returns whether all triangles of two nodes have a common busy vertex.
     fn is_around_vertex(&self, a: Place, b: Place) -> bool {
         if self.common.is_empty() {
             return false;
@@ -126,7 +126,7 @@ impl Pairs<'_> {
         own.iter().any(|vertex| *vertex != NONE && other.contains(vertex))
     }
 
-    /// The least busy vertex that two triangles have in common.
+    /// Returns the least busy vertex that two triangles share.
     fn busy_of(&self, a: u32, b: u32) -> Option<u32> {
         if self.busy.is_empty() {
             return None;
@@ -135,7 +135,7 @@ impl Pairs<'_> {
         own.into_iter().filter(|&vertex| self.is_busy(vertex) && other.contains(&vertex)).min()
     }
 
-    /// Pairs with a busy vertex in common.
+    /// Visits the pairs with a common busy vertex.
     fn around_vertices(
         &self,
         counts: &[u32],
@@ -143,7 +143,7 @@ impl Pairs<'_> {
         steps: &mut Steps,
         visit: &mut impl FnMut(u32, u32) -> Result<bool, Error>,
     ) -> Result<Search, Error> {
-        // The triangles of each busy vertex, one list behind the other.
+        // The triangles of each busy vertex, one list after another.
         let mut starts = memory::with_capacity(counts.len() + 1)?;
         let mut total = 0usize;
         for (vertex, &count) in counts.iter().enumerate() {
@@ -175,7 +175,7 @@ impl Pairs<'_> {
         Ok(Search::Finished)
     }
 
-    /// Pairs of some triangles that have a vertex in common.
+    /// Visits the pairs of some triangles that share a vertex.
     fn around_vertex(
         &self,
         vertex: u32,
@@ -183,7 +183,7 @@ impl Pairs<'_> {
         steps: &mut Steps,
         visit: &mut impl FnMut(u32, u32) -> Result<bool, Error>,
     ) -> Result<Search, Error> {
-        // A box around an arc as a triangle without area, between two of its corners.
+        // The box around an arc, represented as a triangle without area between two of the box's corners.
         let (mut corners, mut boxes) =
             (memory::with_capacity(2 * list.len())?, memory::with_capacity(list.len())?);
         for &triangle in list {
@@ -201,9 +201,9 @@ impl Pairs<'_> {
         })
     }
 
-    /// A box around the directions in which a triangle lies, seen from its vertex.
+    /// Returns a box around the directions from the vertex to the points of a triangle.
     fn arc(&self, vertex: u32, triangle: u32) -> [Point; 2] {
-        /// More than what rounding changes in a direction.
+        /// Upper bound of the rounding error of a direction.
         const MARGIN: f64 = 1e-9;
         let corners = self.mesh.triangles()[triangle as usize];
         let at = |vertex: u32| self.mesh.vertices()[vertex as usize];
@@ -211,8 +211,8 @@ impl Pairs<'_> {
         let mut others = corners.into_iter().filter(|&other| other != vertex);
         let mut next = || unit(&minus(&at(others.next()?), &from));
         let (Some(p), Some(q)) = (next(), next()) else { return [[-2.0; 3], [2.0; 3]] };
-        // An arc bulges by less than half of the square of its chord, beyond the chord's own box; and never
-        // beyond the sphere.
+        // An arc extends beyond its chord's box by less than half the square of the chord, and never beyond
+        // the sphere.
         let chord = minus(&p, &q);
         let bulge = 0.5 * dot(&chord, &chord) + MARGIN;
         [
@@ -221,7 +221,7 @@ impl Pairs<'_> {
         ]
     }
 
-    /// Pairs of triangles of one node.
+    /// Visits the pairs of triangles in one node.
     fn within(
         &mut self,
         place: Place,
@@ -253,7 +253,7 @@ impl Pairs<'_> {
         Ok(Search::Finished)
     }
 
-    /// Of part k of one node and some parts of another one of the same level.
+    /// Visits the pairs of child k of one node and some children of another node of the same level.
     fn of_part(
         &mut self,
         (place, k): (Place, usize),
@@ -290,7 +290,7 @@ impl Pairs<'_> {
         Ok(Search::Finished)
     }
 
-    /// Of two nodes of one level.
+    /// Visits the pairs of two nodes of one level.
     fn between(
         &mut self,
         a: Place,
@@ -309,8 +309,8 @@ impl Pairs<'_> {
         Ok(Search::Finished)
     }
 
-    /// Whether the turned boxes of two nodes tell that they are apart. Nothing is told as long as few steps
-    /// were taken.
+    /// Returns whether the oriented boxes of two nodes prove that they are apart. Returns false as long as
+    /// few steps were taken.
     fn are_apart(&mut self, a: Place, b: Place, steps: &Steps) -> Result<bool, Error> {
         let tree = self.tree;
         if self.turned.is_none() {
@@ -323,7 +323,7 @@ impl Pairs<'_> {
         Ok(turned[tree.index(a)].is_apart(&turned[tree.index(b)]))
     }
 
-    /// The turned boxes of all nodes. O(t log t).
+    /// Returns the oriented boxes of all nodes. O(t log t).
     fn turned_boxes(&self) -> Result<Vec<Turned>, Error> {
         let tree = self.tree;
         let mut boxes = memory::filled(tree.count(), Turned::NONE)?;
@@ -358,7 +358,7 @@ impl Pairs<'_> {
     }
 }
 
-/// A box whose axes lie as its triangles do, in the units of the tree's grid.
+/// A box whose axes are aligned with its triangles, in the units of the tree's grid.
 #[derive(Clone, Copy)]
 struct Turned {
     middle: Point,
@@ -367,13 +367,13 @@ struct Turned {
 }
 
 impl Turned {
-    /// More than what rounding changes, where coordinates are at most 1.
+    /// Upper bound of rounding errors for coordinates of magnitude at most 1.
     const MARGIN: f64 = 1e-12;
 
     const NONE: Turned = Turned { middle: [0.0; 3], axes: [[0.0; 3]; 3], half: [0.0; 3] };
 
-    /// A box around some points: along the way between two that are far from each other, and across it
-    /// towards the one that is farthest away.
+    /// Returns a box around points. Its first axis joins two points that are far from each other; the second
+    /// points, at a right angle, to the point that is farthest from the first axis.
     fn around(points: &[Point]) -> Turned {
         let farthest = |measure: &dyn Fn(&Point) -> f64| {
             points.iter().fold((-1.0, [0.0; 3]), |best: (f64, Point), p| {
@@ -391,7 +391,7 @@ impl Turned {
             array(|axis| way[axis] - along * first[axis])
         };
         let (_, side) = farthest(&|p| dot(&aside(p), &aside(p)));
-        // (Next to the line, rounding may have turned the way: it is made square once more.)
+        // (If the point is close to the line, rounding may have changed the angle: orthogonalise once more.)
         let across = |way: Point| -> Option<Point> {
             let way = unit(&way)?;
             let along = dot(&way, &first);
@@ -413,7 +413,8 @@ impl Turned {
         Turned { middle, axes, half }
     }
 
-    /// Whether a plane across an axis of one, or across an edge of each, lies between two boxes.
+    /// Returns whether a plane perpendicular to an axis of one box, or parallel to an edge of each, separates
+    /// two boxes.
     fn is_apart(&self, other: &Turned) -> bool {
         let along_axes = |own: &Turned, other: &Turned| {
             let centre = other.centre();
@@ -438,7 +439,7 @@ impl Turned {
         array(|axis| (0..3).map(|k| self.middle[k] * self.axes[k][axis]).sum())
     }
 
-    /// How far the box reaches from its middle along a direction.
+    /// Returns how far the box extends from its middle along a direction.
     fn reach(&self, way: &Point) -> f64 {
         (0..3).map(|k| dot(&self.axes[k], way).abs() * self.half[k]).sum::<f64>()
     }
@@ -456,7 +457,7 @@ fn cross(a: &Point, b: &Point) -> Point {
     [a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]]
 }
 
-/// The vector of length 1 in the same direction.
+/// Returns the vector of length 1 with the same direction.
 fn unit(way: &Point) -> Option<Point> {
     let most = way.iter().fold(0.0, |most: f64, c| most.max(c.abs()));
     let way = way.map(|c| c / most);

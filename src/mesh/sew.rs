@@ -1,18 +1,18 @@
-//! Closing the hair cracks of exported meshes.
+//! Sewing: closes the hair cracks of exported meshes.
 //!
-//! CAD systems export parts whose faces were tessellated one by one, and a vertex that two faces share may
-//! come out as 0 on one side and as 2·10⁻¹⁶ on the other. Bit for bit such a mesh is open. Sewing welds
-//! vertices of open edges that lie closer together than single precision can tell, remembers how far any of
-//! them was moved, and the certified classification then counts that distance as an error of every position:
-//! what is proven about the sewn surface is proven about any way of closing the cracks within that distance.
+//! CAD systems export parts whose faces were tessellated one by one. A vertex that two faces share may come
+//! out as 0 on one side and as 2·10⁻¹⁶ on the other. Compared bit by bit, such a mesh is open. Sewing welds
+//! vertices of open edges that lie closer together than single precision can distinguish, and records how far
+//! any of them was moved. The certified classification then counts that distance as an error of every
+//! position: every proof about the sewn surface holds for any way of closing the cracks within that distance.
 
 //!
-//! How far sewing may reach depends on the *piece* that a vertex belongs to: all triangles that hang together
-//! by common vertices. A crack comes of rounding, in single precision at worst, and a rounding is as large as
-//! the numbers that an exporter computes with, which are those of the part. The magnitude of the coordinates
-//! themselves would be too far a reach for a small part far from the origin, whose details doubles can hold;
-//! the edges at the vertex would be too short a one, because exporters make short edges in large parts; and
-//! the extent of all pieces together says nothing about one of them.
+//! The reach of sewing depends on the *piece* to which a vertex belongs: all triangles that are connected by
+//! common vertices. Cracks come from rounding, in single precision at worst, and a rounding error is
+//! proportional to the numbers with which an exporter computes, which are of the size of the part. Other
+//! scales would be wrong. The magnitude of the coordinates is too large for a small part far from the origin,
+//! whose details doubles can represent. The edges at the vertex are too short, because exporters make short
+//! edges in large parts. The extent of all pieces together is unrelated to a single piece.
 
 use super::topology::DisjointSets;
 use super::triangle_mesh::TriangleMesh;
@@ -21,12 +21,12 @@ use crate::memory;
 use alloc::vec::Vec;
 use hashbrown::HashMap;
 
-/// How far a piece reaches, as a fraction of its longest extent: the spacing of single-precision numbers just
-/// below that extent.
+/// The reach of a piece, relative to its longest extent: the spacing of single-precision numbers just below
+/// that extent.
 const REACH: f64 = f32::EPSILON as f64 / 2.0;
 
-/// Vertices that stay, in boxes as large as their reach at least: those within reach of a position lie in
-/// neighbouring boxes.
+/// Vertices that stay in place, in boxes at least as large as their reach: all vertices within reach of a
+/// position lie in neighbouring boxes.
 struct Grid {
     /// Edge of a box, a power of two.
     spacing: f64,
@@ -34,11 +34,11 @@ struct Grid {
 }
 
 impl Grid {
-    /// The box at some steps from that of a position. Dividing by the spacing is exact. Where it exceeds 2^53
-    /// steps are lost, and so are no neighbours: positions that differ are then further apart than the
-    /// spacing.
+    /// Returns the box at some steps from the box of a position. Dividing by the spacing is exact. If the
+    /// quotient exceeds 2^53, steps are lost, but no neighbours: different positions are then further apart
+    /// than the spacing.
     fn place(&self, position: [f64; 3], step: [f64; 3]) -> [u64; 3] {
-        // Zero has one sign.
+        // Makes -0.0 equal to 0.0.
         [0, 1, 2].map(|axis| (libm::floor(position[axis] / self.spacing) + step[axis] + 0.0).to_bits())
     }
 
@@ -48,7 +48,7 @@ impl Grid {
         memory::push(self.boxes.entry(place).or_default(), vertex)
     }
 
-    /// The vertices in the 27 boxes around a position.
+    /// Returns the vertices in the 27 boxes around a position.
     fn around(&self, position: [f64; 3]) -> impl Iterator<Item = u32> {
         let step = |n: i32| f64::from(n % 3 - 1);
         (0..27)
@@ -60,11 +60,11 @@ impl Grid {
 }
 
 impl TriangleMesh {
-    /// The mesh with hair cracks closed: a vertex at an open edge is moved onto another one, if the two lie
-    /// no further apart than 2^-24 of the longest extent of the larger one of their pieces. (A piece is all
-    /// triangles that hang together by common vertices.) The vertex of the smaller piece moves, or the one
-    /// that comes later. A mesh without open edges is returned as it is, and wider gaps stay open.
-    /// [`report`](Self::report) tells how many vertices were moved and how far.
+    /// Returns the mesh with hair cracks closed. A vertex at an open edge is moved onto another one if their
+    /// distance is at most 2^-24 of the longest extent of the larger of their pieces. (A piece is all
+    /// triangles that are connected by common vertices.) The vertex of the smaller piece moves, or the later
+    /// vertex. A mesh without open edges is returned unchanged, and wider gaps stay open.
+    /// [`report`](Self::report) returns how many vertices were moved and how far.
     ///
     /// O(t + v) for each power of two between the extents of the pieces.
     ///
@@ -77,7 +77,7 @@ impl TriangleMesh {
         let reaches = self.reaches()?;
         let reach = |vertex: u32| reaches[vertex as usize];
         let mut open = memory::copied(self.open_vertices()?)?;
-        // Whoever stays reaches at least as far as whoever comes later.
+        // Sort by reach, longest first.
         open.sort_unstable_by(|&a, &b| reach(b).total_cmp(&reach(a)).then(a.cmp(&b)));
         let mut grids: Vec<Grid> = Vec::new();
         let mut moves: Vec<(u32, u32)> = Vec::new();
@@ -88,7 +88,7 @@ impl TriangleMesh {
                 let other = self.vertices()[other as usize];
                 (0..3).fold(0.0, |most: f64, axis| most.max((other[axis] - position[axis]).abs()))
             };
-            // Nothing lies that near in a piece beyond the smallest doubles.
+            // Below the smallest normal numbers, no other vertex is within reach.
             let own = reach(vertex);
             if own < f64::MIN_POSITIVE {
                 continue;
@@ -114,7 +114,7 @@ impl TriangleMesh {
         self.moved(&moves, displacement)
     }
 
-    /// How far each vertex reaches.
+    /// Returns the reach of each vertex.
     fn reaches(&self) -> Result<Vec<f64>, Error> {
         let mut sets = DisjointSets::new(self.vertices().len())?;
         for &[a, b, c] in self.triangles() {
@@ -138,7 +138,7 @@ impl TriangleMesh {
     }
 }
 
-/// The least power of two that is not less than a normal number.
+/// Returns the least power of two that is not less than a normal number.
 fn power_of_two(x: f64) -> f64 {
     const FRACTION: u64 = (1 << 52) - 1;
     f64::from_bits((x.to_bits() + FRACTION) & !FRACTION)
@@ -149,7 +149,7 @@ mod tests {
     use crate::mesh::triangle_mesh::{FillRule, TriangleMesh};
     use alloc::vec::Vec;
 
-    /// A tetrahedron whose four faces do not share vertices; `noise` is added to z in one of them.
+    /// A tetrahedron whose four faces share no vertices; `noise` is added to z in one of them.
     fn cracked(noise: f64) -> TriangleMesh {
         let corners = [[0.0, 0.0, 0.0], [1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]];
         let faces = [[0usize, 2, 1], [0, 1, 3], [1, 2, 3], [2, 0, 3]];
@@ -198,7 +198,7 @@ mod tests {
         }
     }
 
-    /// Facets that hang together with nothing, and bodies of very different sizes, each with its own cracks.
+    /// Unconnected facets, and bodies of very different sizes, each with its own cracks.
     #[test]
     fn every_piece_has_its_own_reach() {
         let corners = [[0.0, 0.0, 0.0], [1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]];

@@ -1,10 +1,10 @@
-//! Sheets of a closed surface, and on which side of each the solid lies.
+//! Sheets of a closed surface, and the side of each sheet on which the solid lies.
 //!
-//! A *sheet* is a set of triangles that hang together over edges of just two triangles that face alike.
-//! Triangles that intersect others belong to none. So no other triangle meets such an edge, or the inside of
-//! a triangle of a sheet, and the winding number right in front of the triangles is the same for all of a
-//! sheet, and right behind them it is one more. It is found on a line through one of them: the triangles
-//! above the line's point, counted by the sides from which they are seen.
+//! A *sheet* is a set of triangles that are connected by edges of exactly two triangles with the same
+//! orientation. Triangles that intersect others belong to no sheet. Therefore no other triangle meets such an
+//! edge, or the interior of a triangle of a sheet. The winding number right in front of the triangles is the
+//! same for the whole sheet, and right behind them it is one more. It is computed on a line through one of
+//! the triangles, by counting the triangles above a point of the line, with signs for their orientations.
 
 use super::intersections::{axis_of, corners};
 use super::signs::{Point, cross_sign};
@@ -19,24 +19,25 @@ use core::array::from_fn as array;
 
 /// The sheets of a mesh.
 pub(super) struct Sheets {
-    /// The sheet that each triangle belongs to. One that intersects others is a sheet of its own.
+    /// The sheet of each triangle. A triangle that intersects others is a sheet of its own.
     pub(super) of_triangles: Vec<u32>,
     pub(super) senses: Vec<Sense>,
 }
 
-/// On which side of a sheet the solid lies.
+/// The side of a sheet on which the solid lies.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(super) enum Sense {
-    /// 1 if behind it and not in front, −1 if the other way round, 0 if on both sides or on neither.
+    /// 1 if the solid lies behind and not in front, −1 if the other way round, 0 if on both sides or on
+    /// neither.
     Known(i8),
-    /// It has no area, and so no sides.
+    /// The sheet has no area, and so no sides.
     Flat,
-    /// A triangle that intersects others; or no point can be found inside of any triangle, all being slivers.
+    /// The triangle intersects others; or all triangles are slivers, so that no interior point can be found.
     Unknown,
 }
 
-/// Finds the sheets of a mesh that is closed under `rule`; `tree` is that of its triangles. `meets` tells of
-/// each triangle whether it intersects others.
+/// Finds the sheets of a mesh that is closed under `rule`; `tree` is the tree of its triangles. `meets` says
+/// for each triangle whether it intersects others.
 ///
 /// O(t), and O(log t) a sheet if few triangles lie above each other.
 pub(super) fn sheets(
@@ -76,7 +77,7 @@ pub(super) fn sheets(
     Ok(Sheets { of_triangles, senses })
 }
 
-/// About twice a triangle's area, seen along the axis along which it is largest.
+/// Returns about twice a triangle's area, in the axis-parallel projection in which it is largest.
 fn size([a, b, c]: &[Point; 3]) -> f64 {
     let [u, v]: [Point; 2] = [b, c].map(|p| array(|axis| p[axis] - a[axis]));
     (0..3).fold(0.0, |size: f64, k| {
@@ -85,16 +86,17 @@ fn size([a, b, c]: &[Point; 3]) -> f64 {
     })
 }
 
-/// The winding number right in front of a triangle; for [`FillRule::EvenOdd`] the parity of triangles between
-/// there and infinity, 0 or 1. `None` if the triangle is too small for a point inside.
+/// Returns the winding number right in front of a triangle; for [`FillRule::EvenOdd`] the parity, 0 or 1, of
+/// the number of triangles between that point and infinity. `None` if the triangle is too small for an
+/// interior point.
 fn in_front(mesh: &TriangleMesh, tree: &Tree, triangle: u32, rule: FillRule) -> Option<i32> {
     let [a, b, c] = corners(mesh, triangle);
     let p: Point = array(|k| a[k] + ((b[k] - a[k]) + (c[k] - a[k])) / 3.0);
     in_front_at(mesh, tree, triangle, &p, rule)
 }
 
-/// The same in front of the point of a triangle that lies above or below another point, along the axis along
-/// which the triangle is seen best. `None` if there is no such point within its edges.
+/// Does the same in front of the point of a triangle that lies above or below another point, along the axis
+/// that shows the triangle best. `None` if there is no such point within its edges.
 pub(super) fn in_front_at(
     mesh: &TriangleMesh,
     tree: &Tree,
@@ -109,10 +111,10 @@ pub(super) fn in_front_at(
         (b[i] - a[i]) * (c[j] - a[j]) - (b[j] - a[j]) * (c[i] - a[i])
     });
     let best = (1..3).fold(0, |best, axis| if normal[axis].abs() > normal[best].abs() { axis } else { best });
-    // Its coordinate along the axis does not matter.
+    // The coordinate of `p` along the axis does not matter.
     let axis = if cross_sign([a, b], [a, c], best) != 0 { best } else { axis_of(&own) };
     let turn = turn(&own, p, axis);
-    // On an edge it would belong to two triangles.
+    // A point on an edge would belong to two triangles.
     let is_inside =
         [[a, b], [b, c], [c, a]].into_iter().all(|[s, t]| cross_sign([s, t], [s, p], axis) == turn);
     if turn == 0 || !is_inside {
@@ -130,16 +132,16 @@ pub(super) fn in_front_at(
         }
     });
     Some(match rule {
-        // Behind and in front are above and below.
+        // Converts above and below into front and behind.
         FillRule::EvenOdd => (above + (turn < 0) as i32) % 2,
         FillRule::NonZero | FillRule::Positive if turn > 0 => above,
         FillRule::NonZero | FillRule::Positive => above - 1,
     })
 }
 
-/// Which way a triangle turns, seen from above along `axis`, if the line through `p` goes through it: 1 for
-/// counter-clockwise, −1, or 0 if the line misses it. The line is moved aside by (ε, ε²), so that it meets no
-/// edge.
+/// Returns the orientation of a triangle as seen from above along `axis`, if the line through `p` passes
+/// through the triangle: 1 for counter-clockwise, −1 for clockwise; 0 if the line misses it. The line is
+/// shifted symbolically by (ε, ε²), so that it meets no edge.
 fn turn([a, b, c]: &[Point; 3], p: &Point, axis: usize) -> i32 {
     let (u, v) = ((axis + 1) % 3, (axis + 2) % 3);
     let side = |s: &Point, t: &Point| match cross_sign([s, t], [s, p], axis) {
@@ -153,8 +155,8 @@ fn turn([a, b, c]: &[Point; 3], p: &Point, axis: usize) -> i32 {
     if side(b, c) == turn && side(c, a) == turn { turn } else { 0 }
 }
 
-/// Whether the line through `p` along `axis` meets the plane of `upper` above that of `lower`. Both are seen
-/// along the axis with an area.
+/// Returns whether the line through `p` along `axis` meets the plane of `upper` above the plane of `lower`.
+/// The projections of both along the axis must have an area.
 fn is_above(upper: &[Point; 3], lower: &[Point; 3], p: &Point, axis: usize) -> bool {
     let ends = |corners: &[Point; 3]| {
         let [x, y, z] = corners.map(|corner| corner[axis]);
@@ -164,8 +166,8 @@ fn is_above(upper: &[Point; 3], lower: &[Point; 3], p: &Point, axis: usize) -> b
     if low > to || high < from {
         return low > to;
     }
-    // The height of the plane through a with the normal n is n · (a − p) over n along the axis, if p has
-    // height 0.
+    // The height of the plane through a with the normal n is n · (a − p) divided by the component of n along
+    // the axis, if p has height 0.
     let height = |[a, b, c]: &[Point; 3]| {
         let exact = |x: &Point| x.map(Dyadic::new);
         let (a, b, c, p) = (exact(a), exact(b), exact(c), exact(p));

@@ -1,4 +1,4 @@
-//! Closed shells: what they enclose, and which of them lie within others.
+//! Closed shells: the regions that they enclose, and their nesting.
 
 use alloc::vec::Vec;
 
@@ -8,14 +8,14 @@ use crate::error::Error;
 use crate::lattice::axes;
 use crate::memory;
 
-/// How many vertices of a shell are tried to find one that does not lie on the surface.
+/// Maximum number of vertices of a shell that are tried to find one that does not lie on the surface.
 const SAMPLES: usize = 16;
 
-/// The numbers of those `shells` of which a vertex lies outside of the closed `surface`, ascending. Only one
-/// vertex of each is looked at, the first one that does not lie on the surface.
+/// Returns the numbers, ascending, of the `shells` with a vertex outside of the closed `surface`. Only one
+/// vertex of each shell is tested, the first one that does not lie on the surface.
 ///
-/// The winding numbers of all vertices looked at are counted at once: each triangle finds those beside it in
-/// a sorted list, so that many voids cost little more than one.
+/// The winding numbers of all tested vertices are computed together: each triangle finds the vertices beside
+/// it in a sorted list, so that many voids cost little more than one.
 pub(crate) fn outside<'a>(
     vertices: &[[f64; 3]],
     surface: &[[u32; 3]],
@@ -68,11 +68,12 @@ pub(crate) fn outside<'a>(
     Ok(outside)
 }
 
-/// What a triangle adds to the winding number at `p`, by the ray from there along the first axis: 1 where the
-/// ray leaves through it, -1 where it enters, 0 where it passes by. `None` if `p` lies on the triangle.
+/// Returns the contribution of a triangle to the winding number at `p`, by the ray from `p` along the first
+/// axis: 1 if the ray leaves through the triangle, -1 if it enters, 0 if it misses. `None` if `p` lies on the
+/// triangle.
 ///
-/// Rays through edges and corners count as slightly shifted along the other two axes, for all triangles
-/// alike.
+/// Rays through edges and corners count as slightly shifted along the other two axes, in the same way for all
+/// triangles.
 fn crossing(corners: [[f64; 3]; 3], p: [f64; 3]) -> Option<i32> {
     let flat = |p: [f64; 3]| Coord { x: p[1], y: p[2] };
     let mut around = 0;
@@ -81,7 +82,8 @@ fn crossing(corners: [[f64; 3]; 3], p: [f64; 3]) -> Option<i32> {
         let (a, b) = (corners[k], corners[(k + 1) % 3]);
         let side = orient2d(flat(a), flat(b), flat(p));
         if side == 0.0 {
-            // On the line through the edge; whether between its ends does not matter off the plane.
+            // On the line through the edge. Off the plane, it does not matter whether it is between the
+            // edge's ends.
             touched = true;
         }
         if a[2] <= p[2] && b[2] > p[2] && side > 0.0 {
@@ -94,7 +96,7 @@ fn crossing(corners: [[f64; 3]; 3], p: [f64; 3]) -> Option<i32> {
         return Some(0);
     }
     let solid = |[x, y, z]: [f64; 3]| Coord3D { x, y, z };
-    // Positive where p lies below the triangle, seen with its corners counter-clockwise.
+    // Positive if p lies below the triangle, seen with its corners counter-clockwise.
     let below = orient3d(solid(corners[0]), solid(corners[1]), solid(corners[2]), solid(p));
     if below == 0.0 && holds(corners, p) {
         return None;
@@ -103,12 +105,13 @@ fn crossing(corners: [[f64; 3]; 3], p: [f64; 3]) -> Option<i32> {
     Some(if ahead { around } else { 0 })
 }
 
-/// Whether a point of a triangle's plane lies within its bounds; beside it, perhaps.
+/// Returns whether a point of a triangle's plane lies within the triangle's bounds. It may still lie beside
+/// the triangle.
 fn holds(corners: [[f64; 3]; 3], p: [f64; 3]) -> bool {
     Extent::of(corners.into_iter()).hold(&Extent { low: p, high: p })
 }
 
-/// The volume that triangles enclose, as differences to the centre of their bounds.
+/// Returns the volume that triangles enclose, computed from differences to the centre of their bounds.
 pub(crate) fn volume(vertices: &[[f64; 3]], triangles: &[[u32; 3]], bounds: &Extent) -> f64 {
     let centre = axes(|axis| bounds.low[axis].midpoint(bounds.high[axis]));
     let six_fold: f64 = (triangles.iter())
@@ -128,7 +131,7 @@ pub(crate) fn volume(vertices: &[[f64; 3]], triangles: &[[u32; 3]], bounds: &Ext
     six_fold / 6.0
 }
 
-/// The least and the greatest coordinates of points.
+/// The bounding box of points: the least and the greatest coordinates.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct Extent {
     low: [f64; 3],
@@ -147,7 +150,7 @@ impl Extent {
         bounds
     }
 
-    /// The longest of the three.
+    /// Returns the longest of the three extents.
     pub(crate) fn longest(&self) -> f64 {
         (0..3).fold(0.0, |most: f64, axis| most.max(self.high[axis] - self.low[axis]))
     }

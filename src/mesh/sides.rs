@@ -1,4 +1,4 @@
-//! On which side of each triangle the solid lies, for those that are to integrate over parts of it.
+//! The side of each triangle on which the solid lies, for integrals over parts of the triangle.
 
 use super::intersections::{corners, intersections};
 use super::sheets::{Sense, sheets};
@@ -11,27 +11,27 @@ use crate::lattice::Interval;
 use crate::memory;
 use alloc::vec::Vec;
 
-/// What is known of the two sides of triangles.
+/// The known sides of triangles.
 pub(crate) struct Sides {
-    /// Of each triangle: 1 if the solid lies behind all of it and not in front, −1 if the other way round, 0
-    /// if on both sides or on neither; [`Sides::UNKNOWN`] or [`Sides::FLAT`].
+    /// For each triangle: 1 if the solid lies behind all of it and not in front, −1 if the other way round, 0
+    /// if on both sides or on neither; or [`Sides::UNKNOWN`] or [`Sides::FLAT`].
     senses: Vec<i8>,
     /// The pairs of triangles that intersect, each in both orders, ascending.
     pairs: Vec<[u32; 2]>,
 }
 
 impl Sides {
-    /// Bytes that the lists take.
+    /// Returns the bytes that the lists take.
     pub(crate) fn bytes(&self) -> usize {
         memory::bytes_of(&self.senses) + memory::bytes_of(&self.pairs)
     }
 
     /// A triangle that intersects others, or that belongs to an open surface.
     const UNKNOWN: i8 = 2;
-    /// A triangle without area of which nothing else is known.
+    /// A triangle without area for which nothing else is known.
     const FLAT: i8 = 4;
 
-    /// On which side of a triangle the solid lies, if it is the same side everywhere.
+    /// Returns the side of a triangle on which the solid lies, if it is the same everywhere on the triangle.
     #[inline(always)]
     pub(crate) fn of(&self, triangle: u32) -> Option<i8> {
         let sense = self.senses[triangle as usize];
@@ -42,8 +42,8 @@ impl Sides {
         self.senses[triangle as usize] == Sides::FLAT
     }
 
-    /// Whether each triangle belongs to the boundary of the solid; an empty list if all do. `None` if that is
-    /// not known of all.
+    /// Returns for each triangle whether it belongs to the boundary of the solid; an empty list if all do.
+    /// `None` if this is not known for all.
     ///
     /// # Errors
     /// [`Error::OutOfMemory`].
@@ -60,12 +60,12 @@ impl Sides {
         Ok(Some(memory::collected(self.senses.iter().map(bounds))?))
     }
 
-    /// Which triangles of a closed mesh lie in the closed solid and may bound it, where all triangles with an
-    /// area do lie in it. `None` if that is not known.
+    /// Returns for each triangle of a closed mesh whether it lies in the closed solid and may bound it,
+    /// provided that all triangles with an area lie in the closed solid. `None` if that is not known.
     ///
-    /// It holds for a rule by which a step of the winding number by one leads to the inside from one side at
-    /// least, if no two triangles lie on each other: then almost everywhere on a triangle the number changes
-    /// by one. (On a fin of two triangles it does not change.)
+    /// This holds if the rule has an inside on at least one side of each step of the winding number by one,
+    /// and if no two triangles lie on each other: then the number changes by one almost everywhere on a
+    /// triangle. (On a fin of two triangles it does not change.)
     ///
     /// # Errors
     /// [`Error::OutOfMemory`], and [`Error::Cancelled`] by `control`.
@@ -75,7 +75,7 @@ impl Sides {
         rule: FillRule,
         control: &Control<'_>,
     ) -> Result<Option<Vec<bool>>, Error> {
-        // (Of vertices that were moved it is not known whether triangles lie on each other.)
+        // (If vertices were moved, it is unknown whether triangles lie on each other.)
         if rule == FillRule::Positive || mesh.displacement() > 0.0 {
             return Ok(None);
         }
@@ -89,7 +89,7 @@ impl Sides {
         Ok(Some(memory::collected(senses.zip(triangles).map(is_wall))?))
     }
 
-    /// Whether two triangles that intersect lie in one plane.
+    /// Returns whether two intersecting triangles lie in one plane.
     ///
     /// # Errors
     /// [`Error::Cancelled`] by `control`.
@@ -110,13 +110,13 @@ impl Sides {
         Ok(false)
     }
 
-    /// The triangles that intersect one beyond common vertices and edges.
+    /// Returns the triangles that intersect a triangle beyond common vertices and edges.
     pub(super) fn meeting(&self, triangle: u32) -> impl Iterator<Item = u32> {
         let first = self.pairs.partition_point(|pair| pair[0] < triangle);
         self.pairs[first..].iter().take_while(move |pair| pair[0] == triangle).map(|pair| pair[1])
     }
 
-    /// Whether each triangle is known to belong to the boundary of the solid.
+    /// Returns for each triangle whether it is known to belong to the boundary of the solid.
     ///
     /// # Errors
     /// [`Error::OutOfMemory`].
@@ -124,15 +124,15 @@ impl Sides {
         memory::collected(self.senses.iter().map(|sense| matches!(sense, 1 | -1)))
     }
 
-    /// Whether two triangles intersect beyond common vertices and edges.
+    /// Returns whether two triangles intersect beyond common vertices and edges.
     pub(crate) fn is_pair(&self, a: u32, b: u32) -> bool {
         self.pairs.binary_search(&[a, b]).is_ok()
     }
 }
 
 impl TriangleMesh {
-    /// The sides of all triangles. `None` if too many triangles lie close to each other to find all that
-    /// intersect.
+    /// Returns the sides of all triangles. `None` if too many triangles lie close to each other to find all
+    /// intersections.
     ///
     /// O(t log t) for triangles that lie apart. Memory as [`moments`](Self::moments), and 1 byte a triangle.
     pub(crate) fn sides(&self, rule: FillRule, control: &Control<'_>) -> Result<Option<Sides>, Error> {
@@ -170,8 +170,8 @@ impl TriangleMesh {
         Ok(Some(Sides { senses, pairs }))
     }
 
-    /// The area of the triangles at which the solid ends. `None` if that is not known of all, or vertices
-    /// were moved.
+    /// Returns the area of the triangles at which the solid ends. `None` if this is not known for all
+    /// triangles, or if vertices were moved.
     pub(crate) fn boundary_area(&self, sides: &Sides) -> Option<Interval> {
         if self.displacement() > 0.0 || sides.senses.contains(&Sides::UNKNOWN) {
             return None;

@@ -1,4 +1,4 @@
-//! On which side points lie: the signs of determinants, exactly.
+//! Exact signs of determinants: the sides on which points lie.
 
 use crate::lattice::axes;
 use crate::lattice::exact::{Expansion, sign, sign_of_products, two_diff};
@@ -6,13 +6,13 @@ use core::array::from_fn as array;
 
 pub(super) type Point = [f64; 3];
 
-/// The sign of (b − a) × (c − a) · (d − a): positive if d lies on the side from which a, b, c turn
+/// Returns the sign of (b − a) × (c − a) · (d − a): positive if d lies on the side from which a, b, c turn
 /// counter-clockwise.
 pub(super) fn volume_sign(a: &Point, b: &Point, c: &Point, d: &Point) -> i32 {
     sure_volume_sign(a, b, c, d).unwrap_or_else(|| exact_volume_sign(a, [b, c, d]))
 }
 
-/// The same, unless rounding may decide it.
+/// Does the same in doubles; `None` if rounding may decide.
 #[inline]
 pub(super) fn sure_volume_sign(a: &Point, b: &Point, c: &Point, d: &Point) -> Option<i32> {
     let [u, v, w]: [Point; 3] = [b, c, d].map(|p| array(|axis| p[axis] - a[axis]));
@@ -23,12 +23,12 @@ pub(super) fn sure_volume_sign(a: &Point, b: &Point, c: &Point, d: &Point) -> Op
         value += (left - right) * w[k];
         magnitude += (left.abs() + right.abs()) * w[k].abs();
     }
-    // At most ten roundings lie behind each product. (No product underflows: coordinates that are not zero,
-    // and differences of them, are at least 2^-308.)
+    // Each product involves at most ten roundings. (No product underflows: coordinates that are not zero, and
+    // differences of them, are at least 2^-308.)
     (value.abs() > 16.0 * (f64::EPSILON / 2.0) * magnitude || magnitude == 0.0).then(|| sign(value))
 }
 
-/// The same by exact arithmetic.
+/// Does the same by exact arithmetic.
 #[cold]
 fn exact_volume_sign(a: &Point, points: [&Point; 3]) -> i32 {
     let is_exact = |p: &Point| (0..3).all(|axis| two_diff(p[axis], a[axis]).1 == 0.0);
@@ -48,8 +48,8 @@ fn exact_volume_sign(a: &Point, points: [&Point; 3]) -> i32 {
     sum.sign()
 }
 
-/// Three vectors in whole multiples of one step: of at most 41 bits, so that their determinant has no more
-/// than 126.
+/// Returns three vectors as integer multiples of one step, with at most 41 bits, so that their determinant
+/// has at most 126 bits.
 fn in_whole_steps(vectors: &[Point; 3]) -> Option<[[i128; 3]; 3]> {
     const BITS: i32 = 41;
     let most = vectors.iter().flatten().fold(0.0, |most: f64, x| most.max(x.abs()));
@@ -65,7 +65,8 @@ fn in_whole_steps(vectors: &[Point; 3]) -> Option<[[i128; 3]; 3]> {
     are_whole.then(|| whole.map(|vector| vector.map(i128::from)))
 }
 
-/// The sign of a component of the cross product of two differences, each from its first point to its second.
+/// Returns the sign of a component of the cross product of two differences, each from its first point to its
+/// second.
 pub(super) fn cross_sign(u: [&Point; 2], v: [&Point; 2], axis: usize) -> i32 {
     let (i, j) = ((axis + 1) % 3, (axis + 2) % 3);
     let difference = |[from, to]: [&Point; 2], k: usize| to[k] - from[k];

@@ -1,9 +1,9 @@
-//! Meshes in single precision, as STL files have them: what rounding breaks is mended.
+//! Meshes in single precision, as in STL files, with the damage of rounding repaired.
 //!
-//! Two kinds of steps take turns. Some leave the surface what it is as a set of points: an edge whose ends
-//! lie at one place is collapsed, and where a corner of a triangle without area lies on the opposite side,
-//! the triangle behind that side gets the corner. The others move vertices to places next to theirs, of which
-//! the best is taken.
+//! Steps of two kinds alternate. Steps of the first kind do not change the surface as a set of points: an
+//! edge whose ends coincide is collapsed; and if a corner of a triangle without area lies on the opposite
+//! side, the triangle behind that side gets the corner. Steps of the second kind move vertices to adjacent
+//! places and keep the best one.
 
 use super::links::Links;
 use super::nearest::TriangleTree;
@@ -17,62 +17,64 @@ use crate::memory;
 use alloc::vec::Vec;
 use hashbrown::{HashMap, HashSet};
 
-/// A mesh whose coordinates are 32-bit numbers.
+/// A mesh whose coordinates are 32-bit numbers, with the changes that rounding required.
 #[derive(Debug)]
 #[non_exhaustive]
 pub struct SinglePrecision {
-    /// The mesh. It bears no attributes.
+    /// The mesh. It has no attributes.
     pub mesh: TriangleMesh,
-    /// The farthest that rounding moves a vertex along an axis, in model units.
+    /// Maximum distance along an axis by which rounding moves a vertex, in model units.
     pub rounding: f64,
-    /// No point of the given mesh is further from this one, and none of this one further from the given mesh,
-    /// in model units: proven.
+    /// Proven maximum distance, in model units, of points of the given mesh from this mesh and of points of
+    /// this mesh from the given one.
     pub deviation: f64,
-    /// Triangles of which rounding made an edge or a point, and which are gone.
+    /// Number of triangles that rounding turned into an edge or a point, and that were removed.
     pub collapsed: u64,
-    /// Triangles of which rounding made a line, and which were joined to their neighbours.
+    /// Number of triangles that rounding turned into a line, and that were joined to their neighbours.
     pub flipped: u64,
-    /// Vertices that were moved, to places next to their nearest ones.
+    /// Number of vertices that were moved to places next to their nearest ones.
     pub moved: u64,
-    /// Triangles without area that are left, and vertices that lie where others do.
+    /// Number of remaining triangles without area, and of vertices that coincide with others.
     pub degenerate: u64,
-    /// Pairs of triangles that intersect each other, as [`TriangleMesh::intersecting_pairs`] counts them.
+    /// Number of remaining pairs of intersecting triangles, as [`TriangleMesh::intersecting_pairs`] counts
+    /// them.
     pub intersecting_pairs: u64,
 }
 
-/// How often steps of the two kinds take turns.
+/// Number of rounds of both kinds of steps.
 const ROUNDS: usize = 12;
 
-/// Intersecting pairs that one round mends.
+/// Maximum number of intersecting pairs that are mended in one round.
 const PAIRS: usize = 4096;
 
-/// Intersecting pairs of the given mesh beyond which no pair is mended.
+/// Maximum number of intersecting pairs of the given mesh; with more, no pair is mended.
 const GIVEN_PAIRS: usize = 1 << 16;
 
-/// Places that are tried in all.
+/// Maximum number of places that are tried in total.
 const TRIALS: usize = 1 << 14;
 
-/// Triangles next to a vertex beyond which no place is tried for it.
+/// Maximum number of triangles near a vertex; with more, no place is tried for the vertex.
 const CROWD: usize = 2048;
 
-/// How far from a vertex the triangles are looked at that its own may meet, in steps.
+/// Distance from a vertex within which triangles are tested against the vertex's own triangles, in steps.
 const REACH: f64 = 8.0;
 
 impl TriangleMesh {
-    /// The mesh with coordinates that are 32-bit numbers, as an STL file has them, without triangles that
-    /// rounding makes degenerate and without pairs that it makes intersect, as far as that can be had.
+    /// Returns the mesh with 32-bit coordinates, as in an STL file, as far as possible without triangles that
+    /// rounding makes degenerate and without pairs that rounding makes intersect.
     ///
-    /// Vertices are rounded to nearest. Edges whose ends meet are collapsed, and triangles that become lines
-    /// are joined to their neighbours, which changes no point of the surface. What is degenerate or
-    /// intersects after that is moved apart: vertices go to places next to theirs, in a fixed order, if these
-    /// are no further than `tolerance` (model units) from where they were given. A mesh of which rounding
-    /// breaks nothing is only rounded, and one whose coordinates are 32-bit numbers already is given back as
-    /// it is; of that nothing is counted. What [`deviation`](Self::deviation) was stated grows by what is
-    /// added.
+    /// Vertices are rounded to nearest. Edges whose ends coincide are collapsed, and triangles that become
+    /// lines are joined to their neighbours; neither changes a point of the surface. Vertices at the
+    /// remaining degenerate or intersecting triangles are then moved to adjacent places, in a fixed order, if
+    /// these places are within `tolerance` (model units) of the given ones. If rounding breaks nothing, the
+    /// mesh is only rounded. A mesh whose coordinates are 32-bit numbers already is returned unchanged, and
+    /// nothing is counted. A stated [`deviation`](Self::deviation) grows by the deviation that is added.
     ///
-    /// The mesh stays closed and a manifold if it is so. Time is that of
-    /// [`intersecting_pairs`](Self::intersecting_pairs), a few times; the work on scans, which may have
-    /// thousands of pairs, is bounded, and what is left is told.
+    /// Pairs of triangles that intersect in the given mesh are not mended: they stay, and are counted.
+    ///
+    /// A closed mesh stays closed, and a manifold stays a manifold. The time is a few times that of
+    /// [`intersecting_pairs`](Self::intersecting_pairs). The work on scans, which may have thousands of
+    /// intersecting pairs, is bounded, and the defects that remain are counted.
     ///
     /// ```
     /// use leafless::{Control, TriangleMesh};
@@ -127,7 +129,8 @@ impl TriangleMesh {
             }
             let made = match &given {
                 Some(Some(given)) => {
-                    let made = pairs.pairs.iter().map(|pair| sorted(pair.triangles.map(|t| numbers[t as usize])));
+                    let made =
+                        pairs.pairs.iter().map(|pair| sorted(pair.triangles.map(|t| numbers[t as usize])));
                     memory_of(made.filter(|pair| !given.contains(pair)).take(PAIRS))?
                 }
                 _ => Vec::new(),
@@ -172,7 +175,7 @@ fn sorted([a, b]: [u32; 2]) -> [u32; 2] {
     [a.min(b), a.max(b)]
 }
 
-/// The items of an iterator of unknown length.
+/// Collects the items of an iterator of unknown length.
 fn memory_of<T>(items: impl Iterator<Item = T>) -> Result<Vec<T>, Error> {
     let mut all = Vec::new();
     for item in items {
@@ -183,7 +186,7 @@ fn memory_of<T>(items: impl Iterator<Item = T>) -> Result<Vec<T>, Error> {
 
 struct Mender<'m> {
     given: &'m [[f64; 3]],
-    /// How far a vertex may be from its given place, but for rounding to nearest.
+    /// Maximum distance of a vertex from its given place, not counting the rounding to nearest.
     tolerance: f64,
     at: Vec<[f32; 3]>,
     links: Links,
@@ -191,12 +194,12 @@ struct Mender<'m> {
     flat: Vec<u32>,
     is_moved: Vec<bool>,
     rounding: f64,
-    /// How far the surface is from the given one, but for the rounding of this number.
+    /// Maximum distance of the surface from the given one, up to the rounding of this number.
     deviation: f64,
     trials: usize,
 }
 
-/// The steps to the places around one: along an axis first, then along two, then along three.
+/// Returns the steps to the adjacent places: along one axis first, then along two, then along three.
 fn places() -> impl Iterator<Item = [f32; 3]> {
     let all = |count: usize| {
         (0..27)
@@ -219,7 +222,7 @@ impl<'m> Mender<'m> {
         let (mut rounding, mut deviation): (f64, f64) = (0.0, 0.0);
         let mut at = memory::with_capacity(mesh.vertices().len())?;
         for &vertex in mesh.vertices() {
-            // (Zeros have no sign.)
+            // (Makes -0.0 equal to 0.0.)
             let single = vertex.map(|c| c as f32 + 0.0);
             if !single.iter().all(|c| c.is_finite()) {
                 let problem = "has a coordinate beyond the range of 32-bit floating point numbers";
@@ -249,12 +252,12 @@ impl<'m> Mender<'m> {
         are_on_a_line(self.corners(triangle))
     }
 
-    /// Collapses and flips until there is nothing more to do. No point of the surface changes.
+    /// Collapses and flips until nothing changes. No point of the surface changes.
     fn settle(&mut self, found: &mut SinglePrecision) -> Result<(), Error> {
         loop {
             let before = self.flat.len();
             for number in core::mem::take(&mut self.flat) {
-                // (One that was mended with another has an area, or is gone.)
+                // (A triangle that was repaired together with another one has an area, or was removed.)
                 let Some(triangle) = self.links.triangle(number) else { continue };
                 if self.is_flat(&triangle) && !self.mend(number, &triangle, found)? {
                     memory::push(&mut self.flat, number)?;
@@ -266,7 +269,7 @@ impl<'m> Mender<'m> {
         }
     }
 
-    /// Mends a triangle without area. Tells whether it is mended.
+    /// Repairs a triangle without area. Returns whether it was repaired.
     fn mend(&mut self, number: u32, triangle: &[u32; 3], found: &mut SinglePrecision) -> Result<bool, Error> {
         let ends = |side: usize| [triangle[side], triangle[(side + 1) % 3]];
         for [from, to] in (0..3).map(ends) {
@@ -277,7 +280,7 @@ impl<'m> Mender<'m> {
                 return Ok(true);
             }
         }
-        // The longest side is the one on which the third corner lies.
+        // The third corner lies on the longest side.
         let corners = self.corners(triangle);
         let long = |side: usize| distance(corners[side], corners[(side + 1) % 3]);
         let side = (1..3).fold(0, |best, side| if long(side) > long(best) { side } else { best });
@@ -294,7 +297,8 @@ impl<'m> Mender<'m> {
         Ok(true)
     }
 
-    /// The mesh, the number of each of its triangles, and how many vertices lie where others do.
+    /// Returns the mesh, the number of each of its triangles, and the number of vertices that coincide with
+    /// others.
     fn mesh(&self) -> Result<(TriangleMesh, Vec<u32>, u64), Error> {
         let mut places = memory::filled(self.at.len(), u32::MAX)?;
         let (mut vertices, mut triangles, mut numbers) = (Vec::new(), Vec::new(), Vec::new());
@@ -308,7 +312,7 @@ impl<'m> Mender<'m> {
                 }
                 *corner = *place;
             }
-            // (Others are dropped.)
+            // (Other triangles are dropped.)
             let [a, b, c] = triangle.map(|vertex| self.at[vertex as usize]);
             if a != b && b != c && c != a {
                 memory::push(&mut numbers, number)?;
@@ -321,8 +325,8 @@ impl<'m> Mender<'m> {
         Ok((mesh, numbers, welded))
     }
 
-    /// Moves vertices of triangles without area, of those that lie where others do, and of triangles that
-    /// intersect. Tells whether some were moved.
+    /// Moves vertices of triangles without area, vertices that coincide with others, and vertices of
+    /// intersecting triangles. Returns whether any were moved.
     fn part(
         &mut self,
         tree: &TriangleTree<'_>,
@@ -344,7 +348,7 @@ impl<'m> Mender<'m> {
         for vertex in wanted {
             let start = self.at[vertex as usize];
             let step = self.step(start);
-            // The triangles near those of the vertex, which may have moved a little since the tree was made.
+            // The triangles near those of the vertex. They may have moved a little since the tree was made.
             let own = self.links.around(vertex);
             let reach = REACH * f64::from(step);
             let (mut min, mut max) = ([f64::INFINITY; 3], [f64::NEG_INFINITY; 3]);
@@ -373,7 +377,7 @@ impl<'m> Mender<'m> {
             let mut best = start;
             for way in places() {
                 let to: [f32; 3] = axes(|k| start[k] + step * way[k]);
-                // (What is no number is not less.)
+                // (False for NaN.)
                 let is_near = distance(wide(to), self.given[vertex as usize]) <= self.tolerance;
                 if !is_near {
                     continue;
@@ -395,7 +399,7 @@ impl<'m> Mender<'m> {
                 let first = *starts.entry(vertex).or_insert(start);
                 farthest = farthest.max(distance(wide(first), wide(best)));
                 self.is_moved[vertex as usize] = true;
-                // (Others may be flat now.)
+                // (Other triangles may be flat now.)
                 for &number in self.links.around(vertex) {
                     memory::push(&mut self.flat, number)?;
                 }
@@ -407,13 +411,13 @@ impl<'m> Mender<'m> {
         Ok(!starts.is_empty())
     }
 
-    /// How far it is to the next place: a unit in the last place of the greatest coordinate.
+    /// Returns the distance to the adjacent place: a unit in the last place of the greatest coordinate.
     fn step(&self, at: [f32; 3]) -> f32 {
         let most = at.iter().fold(f32::MIN_POSITIVE, |most, c| most.max(c.abs()));
         most.next_up() - most
     }
 
-    /// Adds the vertices that lie where others do.
+    /// Adds the vertices that coincide with others.
     fn add_coincident(&self, wanted: &mut Vec<u32>) -> Result<(), Error> {
         let mut all = memory::with_capacity(self.at.len())?;
         for (vertex, at) in (0u32..).zip(&self.at) {
@@ -430,8 +434,8 @@ impl<'m> Mender<'m> {
         Ok(())
     }
 
-    /// How many triangles at a vertex have no area, how many other vertices of near triangles lie at its
-    /// place, and how many pairs of near triangles intersect.
+    /// Returns the number of triangles at a vertex without area, plus the number of other vertices of near
+    /// triangles at the same place, plus the number of intersecting pairs of near triangles.
     fn conflicts(&self, vertex: u32, near: &[u32], control: &Control<'_>) -> Result<u64, Error> {
         let own = self.links.around(vertex).iter().filter_map(|&number| self.links.triangle(number));
         let flat = own.filter(|triangle| self.is_flat(triangle)).count() as u64;

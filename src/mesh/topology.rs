@@ -1,51 +1,51 @@
-//! How the triangles of a mesh hang together: open and misoriented edges, bodies.
+//! The connectivity of a mesh: open and misoriented edges, bodies.
 //!
-//! Every triangle uses three edges, each in one direction. The uses are distributed to the lower one of
-//! their two vertices by counting (linear time, and triangles that are near in memory stay so) and sorted
-//! only within these short lists, which is several times faster than one sort of all edges.
+//! Every triangle uses three edges, each in one direction. A counting sort assigns the uses to the lower of
+//! their two vertices, in linear time, so that triangles that are near in memory stay near. Only these short
+//! lists are then sorted, which is several times faster than one sort of all edges.
 
 use alloc::vec::Vec;
 
 use crate::error::Error;
 use crate::memory;
 
-/// What the edges of a mesh say.
+/// The counts and lists that follow from the edges of a mesh.
 #[derive(Debug, Clone, Default)]
 pub(super) struct Topology {
-    /// Edges.
+    /// Number of edges.
     pub edges: u64,
-    /// Vertices that triangles use.
+    /// Number of vertices that triangles use.
     pub used_vertices: u64,
-    /// Edges that an odd number of triangles use.
+    /// Number of edges used by an odd number of triangles.
     pub boundary_edges: u64,
-    /// Edges that an even number of triangles use, but not half of them in each direction.
+    /// Number of edges used by an even number of triangles, but not by equally many in each direction.
     pub misoriented_edges: u64,
-    /// Edges that more than two triangles use.
+    /// Number of edges used by more than two triangles.
     pub non_manifold_edges: u64,
-    /// Triangles whose corners an earlier one has in the same direction.
+    /// Number of triangles whose corners an earlier one has in the same direction.
     pub duplicate: u64,
-    /// Pairs of triangles that have the same corners in opposite directions.
+    /// Number of pairs of triangles with the same corners in opposite directions.
     pub opposite: u64,
-    /// Sets of triangles that hang together over edges.
+    /// Number of sets of triangles that are connected by edges.
     pub bodies: u64,
     /// The vertices of the boundary edges, ascending.
     pub open_vertices: Vec<u32>,
-    /// The surface's boundary as a chain: each edge that more triangles run along in one direction than in
-    /// the other, in that direction, as often as there are more, one behind the other. Of a surface whose
-    /// triangles cancel each other's edges it is empty; otherwise every vertex begins as many as it ends.
+    /// The surface's boundary as a chain: each edge that more triangles use in one direction than in the
+    /// other, in that direction, repeated as often as the difference. The chain is empty if the triangles
+    /// cancel each other's edges. Otherwise as many of its edges begin at each vertex as end there.
     pub boundary: Vec<[u32; 2]>,
 }
 
-/// Which triangles hang together.
+/// The bodies of a mesh: sets of connected triangles.
 pub(super) struct Bodies {
-    /// The number of the body that each triangle belongs to. Bodies are numbered by their first triangles.
+    /// The body of each triangle. Bodies are numbered by their first triangles.
     pub of_triangles: Vec<u32>,
-    /// For each edge whose triangles do not cancel each other there, one of these triangles.
+    /// For each edge whose triangles do not cancel each other, one of these triangles.
     pub torn: Vec<u32>,
 }
 
 impl Topology {
-    /// Bytes of memory that it keeps.
+    /// Returns the bytes of memory in use.
     pub fn bytes(&self) -> usize {
         size_of::<Topology>() + memory::bytes_of(&self.open_vertices) + memory::bytes_of(&self.boundary)
     }
@@ -61,7 +61,7 @@ impl Topology {
         Ok(Self::with_bodies(triangles, vertices)?.0)
     }
 
-    /// As [`of`](Self::of), and tells which triangles hang together.
+    /// Does the same as [`of`](Self::of), and returns the bodies as well.
     pub fn with_bodies(triangles: &[[u32; 3]], vertices: usize) -> Result<(Self, Bodies), Error> {
         let mut result = Self::default();
         let mut torn = Vec::new();
@@ -102,47 +102,47 @@ impl Topology {
     }
 }
 
-/// An edge with all triangles that use it.
+/// An edge and all triangles that use it.
 pub(crate) struct Edge<'a> {
-    /// The lower one of its vertices.
+    /// The lower of its vertices.
     pub low: u32,
-    /// The higher one.
+    /// The higher of its vertices.
     pub high: u32,
-    /// How many triangles run from `low` to `high`.
+    /// Number of triangles that use it from `low` to `high`.
     forward: usize,
-    /// High vertices and triangles, ascending.
+    /// High vertices and triangles, packed, ascending.
     uses: &'a [u64],
 }
 
 impl Edge<'_> {
-    /// How many triangles use it.
+    /// Returns the number of triangles that use the edge.
     pub fn count(&self) -> usize {
         self.uses.len()
     }
 
-    /// The triangles, ascending.
+    /// Returns the triangles, ascending.
     pub fn triangles(&self) -> impl Iterator<Item = u32> {
         self.uses.iter().map(|&item| item as u32)
     }
 
-    /// The first of them.
+    /// Returns the first triangle.
     pub fn first(&self) -> u32 {
         self.uses[0] as u32
     }
 
-    /// Whether they are an odd number.
+    /// Returns whether the number of triangles is odd.
     pub fn is_open(&self) -> bool {
         self.uses.len() % 2 == 1
     }
 
-    /// How many more triangles run from `low` to `high` than back.
+    /// Returns the number of uses from `low` to `high` minus the number of uses from `high` to `low`.
     pub fn excess(&self) -> isize {
         2 * self.forward as isize - self.uses.len() as isize
     }
 }
 
-/// Calls `visit` with each edge, in the order of the lower vertices, then the higher ones. Costs as
-/// [`Topology::of`], but for 4 bytes per triangle.
+/// Calls `visit` with each edge, in the order of the lower vertices, then of the higher ones. Costs the same
+/// as [`Topology::of`], except for 4 bytes per triangle less.
 #[inline(always)]
 pub(crate) fn for_each_edge(
     triangles: &[[u32; 3]],
@@ -150,8 +150,8 @@ pub(crate) fn for_each_edge(
     mut visit: impl FnMut(&Edge) -> Result<(), Error>,
 ) -> Result<(), Error> {
     let uses = triangles.len().checked_mul(3).ok_or(Error::OutOfMemory)?;
-    // Slot v + 1 counts first, then holds the place where the next use of vertex v goes, and at last the
-    // end of v's list, which is the start of the list of v + 1.
+    // Slot v + 1 is first a counter, then the place for the next use of vertex v, and at last the end of v's
+    // list, which is the start of the list of v + 1.
     let mut ends: Vec<usize> = memory::filled(vertices.checked_add(2).ok_or(Error::OutOfMemory)?, 0)?;
     for &[a, b, c] in triangles {
         ends[a.min(b) as usize + 2] += 1;
@@ -163,7 +163,7 @@ pub(crate) fn for_each_edge(
         sum += *end;
         *end = sum;
     }
-    // One use is (higher vertex, triangle). Its direction is looked up in the triangle, since 65 bits do
+    // One use is (higher vertex, triangle). Its direction is looked up in the triangle, because 65 bits do
     // not fit.
     let mut lists: Vec<u64> = memory::filled(uses, 0)?;
     for (t, &[a, b, c]) in triangles.iter().enumerate() {
@@ -186,27 +186,28 @@ pub(crate) fn for_each_edge(
     Ok(())
 }
 
-/// Finds triangles with the same three corners. Each is found on the edge of its lowest and highest vertex.
+/// A search for triangles with the same three corners. Each is found on the edge of its lowest and highest
+/// vertex.
 #[derive(Default)]
 pub(super) struct Coincident {
-    /// Triangles, found on all edges so far, whose corners an earlier one has in the same direction.
+    /// Number of triangles, on all edges so far, whose corners an earlier one has in the same direction.
     pub duplicate: u64,
-    /// Pairs in opposite directions.
+    /// Number of pairs in opposite directions, on all edges so far.
     pub opposite: u64,
-    /// Of the last edge: triangles whose corners an earlier one has, in whatever direction.
+    /// Triangles of the last edge whose corners an earlier one has, in either direction.
     pub repeated: Vec<u32>,
     /// Triangles by their third corner and direction.
     sorted: Vec<(u32, bool, u32)>,
 }
 
 impl Coincident {
-    /// Looks at an edge.
+    /// Processes an edge.
     #[inline]
     pub fn on(&mut self, edge: &Edge, triangles: &[[u32; 3]]) -> Result<(), Error> {
         self.repeated.clear();
         match *edge.uses {
             [_] => Ok(()),
-            // By far the most frequent: two triangles, which have different third corners.
+            // By far the most frequent case: two triangles with different third corners.
             [a, b]
                 if third(edge, triangles[a as u32 as usize]) != third(edge, triangles[b as u32 as usize]) =>
             {
@@ -240,12 +241,12 @@ impl Coincident {
     }
 }
 
-/// The corner of a triangle that is not on the edge.
+/// Returns the corner of a triangle that is not on the edge.
 fn third(edge: &Edge, [a, b, c]: [u32; 3]) -> u32 {
     a ^ b ^ c ^ edge.low ^ edge.high
 }
 
-/// Whether the triangle runs from `from` to `to`; both must be corners of it.
+/// Returns whether the triangle runs from `from` to `to`; both must be corners of it.
 fn is_forward([a, b, c]: [u32; 3], from: u32, to: u32) -> bool {
     (a == from) & (b == to) | (b == from) & (c == to) | (c == from) & (a == to)
 }
@@ -254,7 +255,7 @@ fn is_forward([a, b, c]: [u32; 3], from: u32, to: u32) -> bool {
 pub(crate) struct DisjointSets(Vec<u32>);
 
 impl DisjointSets {
-    /// `len` sets of one member each; `len` is at most 2^32 - 1.
+    /// Makes `len` sets of one member each; `len` is at most 2^32 - 1.
     pub fn new(len: usize) -> Result<Self, Error> {
         let mut parents = memory::with_capacity(len)?;
         parents.extend((0..len).map(|i| i as u32));
@@ -267,7 +268,7 @@ impl DisjointSets {
             if parent == i {
                 return i;
             }
-            // Path halving: keeps the paths short without a second walk.
+            // Path halving keeps the paths short without a second pass.
             let grandparent = self.0[parent as usize];
             self.0[i as usize] = grandparent;
             i = grandparent;
@@ -281,12 +282,12 @@ impl DisjointSets {
         }
     }
 
-    /// The number of each member's set. Sets are numbered by their least members.
+    /// Returns the number of each member's set. Sets are numbered by their least members.
     pub fn numbers(mut self) -> Vec<u32> {
         let mut count = 0;
         for i in 0..self.0.len() {
             let parent = self.0[i] as usize;
-            // Lower ones hold their numbers already.
+            // Lower members hold their numbers already.
             if parent == i {
                 self.0[i] = count;
                 count += 1;
@@ -311,7 +312,7 @@ mod tests {
         [t.boundary_edges, t.misoriented_edges, t.non_manifold_edges, t.bodies]
     }
 
-    /// The same by the definition.
+    /// Computes the same by the definition.
     fn slow(triangles: &[[u32; 3]]) -> [u64; 4] {
         let mut edges: BTreeMap<(u32, u32), Vec<(usize, bool)>> = BTreeMap::new();
         for (t, &[a, b, c]) in triangles.iter().enumerate() {
@@ -348,7 +349,7 @@ mod tests {
         assert_eq!(of(&[[0, 1, 2]]), [3, 0, 0, 1]);
         assert_eq!(of(&TETRAHEDRON), [0, 0, 0, 1]);
         assert_eq!(of(&TETRAHEDRON[..3]), [3, 0, 0, 1]);
-        // One face turned over: its three edges are used twice in the same direction.
+        // One face with reversed orientation: its three edges are used twice in the same direction.
         assert_eq!(of(&[[0, 1, 2], [0, 1, 3], [1, 2, 3], [2, 0, 3]]), [0, 3, 0, 1]);
         // Both sides of one triangle, and the same triangle twice.
         assert_eq!(of(&[[0, 1, 2], [2, 1, 0]]), [0, 0, 0, 1]);
@@ -392,7 +393,8 @@ mod tests {
 
     #[test]
     fn one_vertex_of_many_triangles() {
-        // An umbrella of 100 000 triangles around vertex 0, closed from below by the same, turned over.
+        // An umbrella of 100 000 triangles around vertex 0, closed from below by the same triangles,
+        // reversed.
         let n = 100_000;
         let umbrella = (0..n).map(|i| [0, 1 + i, 1 + (i + 1) % n]);
         let below = (0..n).map(|i| [n + 1, 1 + (i + 1) % n, 1 + i]);

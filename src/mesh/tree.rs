@@ -1,11 +1,11 @@
-//! A tree of boxes around triangles: which ones a line may meet, which may be near a point, and which pairs
-//! of them may meet.
+//! A bounding box tree of triangles: finds the triangles that a line may meet, the triangles near a point,
+//! and the pairs of triangles that may meet.
 //!
-//! Each node has up to four parts, whose boxes lie coordinate by coordinate, so that a processor looks at
-//! four of them at once. All nodes but the last of a level are full, and lie in the order of their parents: a
-//! node is found by its level and its number, and nothing points to it.
+//! Each node has up to four children, whose boxes are stored coordinate by coordinate, so that a processor
+//! tests four at once. All nodes but the last of a level are full, and lie in the order of their parents. A
+//! node is addressed by its level and its number, without pointers.
 //!
-//! Corners are rounded to 24 bits about the centre of the mesh. Rounding keeps the order of numbers, so that
+//! Corners are rounded to 24 bits relative to the centre of the mesh. Rounding keeps the order of numbers, so
 //! boxes that meet still meet, and no pair is missed.
 
 use super::signs::Point;
@@ -18,27 +18,28 @@ use alloc::sync::Arc;
 use alloc::vec::Vec;
 use core::array::from_fn as array;
 
-/// Parts of a node.
+/// Maximum number of children of a node.
 pub(super) const WIDTH: usize = 4;
 
 /// Levels of a tree of 2^32 triangles.
 pub(super) const LEVELS: usize = 16;
 
-/// Places that a search keeps for later: three a level, and four of the first.
+/// Number of places that a search keeps for later: three a level, and four of the first.
 pub(super) const LATER: usize = (WIDTH - 1) * LEVELS + 1;
 
-/// Fewer triangles are not shared out to threads.
+/// Trees of fewer triangles are built on one thread.
 const MANY: usize = 1 << 13;
 
-/// Four boxes.
+/// The boxes of a node's four children.
 #[derive(Clone, Copy)]
 #[repr(align(32))]
 pub(super) struct Node {
-    /// For each axis the lower coordinates of all boxes, and the upper ones.
+    /// For each axis the lower coordinates of all boxes, then the upper ones.
     pub(super) planes: [[[f32; WIDTH]; 2]; 3],
 }
 
-/// A node: its level, counted from those whose parts are triangles, and its number there.
+/// The address of a node: its level, where the children of level 0 are triangles, and its number on that
+/// level.
 #[derive(Clone, Copy)]
 pub(super) struct Place {
     pub(super) level: u8,
@@ -46,13 +47,13 @@ pub(super) struct Place {
 }
 
 impl Place {
-    /// The number, among the parts of the whole level, of a part.
+    /// Returns the number of a child among the children of the whole level.
     #[inline(always)]
     pub(super) fn part(self, k: usize) -> usize {
         self.number as usize * WIDTH + k
     }
 
-    /// The node that part k is. (Above the lowest level.)
+    /// Returns the node that is child k. (Above the lowest level.)
     #[inline(always)]
     pub(super) fn child(self, k: usize) -> Place {
         Place { level: self.level - 1, number: self.part(k) as u32 }
@@ -66,7 +67,7 @@ pub(crate) struct Tree {
     /// The triangles in the order of the tree. Placed copies of the mesh share it.
     order: Arc<Vec<u32>>,
     nodes: Vec<Node>,
-    /// Where the nodes of each level begin; behind the last one, the end.
+    /// The start of each level's nodes, and the end of the last level.
     starts: [u32; LEVELS + 1],
     levels: u8,
 }
@@ -94,7 +95,7 @@ impl Box3 {
         }
     }
 
-    /// Twice the middle.
+    /// Returns twice the middle.
     #[inline(always)]
     fn middle(&self, axis: usize) -> f32 {
         self.low[axis] + self.high[axis]
@@ -104,13 +105,13 @@ impl Box3 {
 impl Node {
     const NONE: Node = Node { planes: [[[f32::INFINITY; WIDTH], [f32::NEG_INFINITY; WIDTH]]; 3] };
 
-    /// The box of a part.
+    /// Returns the box of a child.
     #[inline(always)]
     pub(super) fn part(&self, k: usize) -> Box3 {
         Box3 { low: array(|axis| self.planes[axis][0][k]), high: array(|axis| self.planes[axis][1][k]) }
     }
 
-    /// A node with one part.
+    /// Returns a node with one child.
     pub(super) fn of(part: &Box3) -> Node {
         let mut node = Node::NONE;
         node.set(0, part);
@@ -131,14 +132,14 @@ impl Node {
         })
     }
 
-    /// Which parts a closed box meets: bit k for part k.
+    /// Returns the children that a closed box meets: bit k for child k.
     #[inline(always)]
     pub(super) fn touches(&self, other: &Box3) -> u32 {
         let mut touches = [true; WIDTH];
         for axis in 0..3 {
             let [low, high] = &self.planes[axis];
             for k in 0..WIDTH {
-                // Without branches: as a rule nobody can foretell them.
+                // Without branches, because they would usually be mispredicted.
                 touches[k] &= (low[k] <= other.high[axis]) & (other.low[axis] <= high[k]);
             }
         }
@@ -146,7 +147,7 @@ impl Node {
     }
 }
 
-/// How coordinates are rounded.
+/// The grid to which coordinates are rounded.
 #[derive(Clone, Copy)]
 pub(super) struct Grid {
     /// The centre of the mesh's bounds, up to rounding.
@@ -156,7 +157,7 @@ pub(super) struct Grid {
 }
 
 impl Grid {
-    /// That of a mesh with these bounds.
+    /// Returns the grid of a mesh with these bounds.
     pub(super) fn around((low, high): (Point, Point)) -> Grid {
         let centre: Point = array(|axis| low[axis].midpoint(high[axis]));
         let reach = (0..3)
@@ -166,20 +167,21 @@ impl Grid {
         Grid { centre, exponent }
     }
 
-    /// 2^-exponent, at which no coordinate is greater than 1.
+    /// Returns 2^-exponent, with which no scaled coordinate exceeds 1.
     pub(super) fn scale(&self) -> f64 {
         f64::from_bits(((1023 - self.exponent) as u64) << 52)
     }
 
-    /// A point relative to the centre, scaled to [-1, 1]: each coordinate is off by a 2^-53 of itself and by
-    /// a 2^-1074.
+    /// Returns a point relative to the centre, scaled to [-1, 1]. The error of each coordinate is at most
+    /// 2^-53 of itself plus 2^-1074.
     #[inline(always)]
     pub(super) fn scaled(&self, p: &Point) -> Point {
         let scale = self.scale();
         array(|axis| (p[axis] - self.centre[axis]) * scale)
     }
 
-    /// A triangle's first corner relative to the centre, and its edges from there, scaled. Off by as much.
+    /// Returns a triangle's first corner relative to the centre, and its edges from there, scaled. The errors
+    /// are those of [`scaled`](Self::scaled).
     #[inline(always)]
     pub(super) fn triangle(&self, [a, b, c]: &[Point; 3]) -> [Point; 3] {
         let scale = self.scale();
@@ -187,8 +189,8 @@ impl Grid {
         [self.scaled(a), edge(b), edge(c)]
     }
 
-    /// The bits behind the point that the scaled coordinates of all vertices have, if they are exact and not
-    /// more than 15.
+    /// Returns the number of fractional bits of the scaled coordinates of all vertices, if the coordinates
+    /// are exact and have at most 15 such bits.
     pub(super) fn bits(&self, vertices: &[Point]) -> Option<i32> {
         const MOST: i32 = 15;
         let scale = self.scale();
@@ -219,7 +221,7 @@ impl Grid {
         self.scaled(p).map(|x| x as f32)
     }
 
-    /// The box around a triangle.
+    /// Returns the box around a triangle.
     #[inline(always)]
     fn box_of(&self, vertices: &[Point], corners: [u32; 3]) -> Box3 {
         corners.into_iter().fold(Box3::NONE, |mut around, vertex| {
@@ -230,7 +232,7 @@ impl Grid {
     }
 }
 
-/// Steps that a search may take. One step looks at a box beside another one.
+/// Number of steps that a search may still take. One step tests a box against another one.
 pub(super) struct Steps(pub(super) u64);
 
 impl Steps {
@@ -242,20 +244,20 @@ impl Steps {
     }
 }
 
-/// Whether a search went through to its end.
+/// The end of a search.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(super) enum Search {
-    /// It did.
+    /// The search is complete.
     Finished,
-    /// The visitor has seen enough.
+    /// The visitor ended the search.
     Ended,
     /// No steps are left.
     Exhausted,
 }
 
 impl Tree {
-    /// The tree of a mesh, which depends on the mesh alone: by halves along the longest extent, down to four
-    /// triangles. O(t log t), on the threads of `control`; 28 bytes a triangle of scratch memory.
+    /// Builds the tree of a mesh, which depends on the mesh alone, by halving along the longest extent, down
+    /// to four triangles. O(t log t), on the threads of `control`; 28 bytes a triangle of scratch memory.
     ///
     /// # Errors
     /// [`Error::OutOfMemory`], and [`Error::Cancelled`] by `control`.
@@ -281,7 +283,8 @@ impl Tree {
         Tree::of_boxes(grid, Arc::new(order), items.iter().map(|item| item.around))
     }
 
-    /// The tree of a mesh whose triangles are those of another one, moved: in the other one's order. O(t).
+    /// Builds the tree of a mesh that is a moved copy of another one, in the triangle order of the original.
+    /// O(t).
     ///
     /// # Errors
     /// [`Error::OutOfMemory`].
@@ -323,33 +326,33 @@ impl Tree {
         Ok(Tree { grid, order, nodes, starts, levels: levels as u8 })
     }
 
-    /// Bytes that the lists take.
+    /// Returns the bytes that the lists take.
     pub(super) fn bytes(&self) -> usize {
         memory::bytes_of(&self.order) + memory::bytes_of(&self.nodes)
     }
 
-    /// The order of the triangles, for copies of the mesh.
+    /// Returns the order of the triangles, for copies of the mesh.
     pub(super) fn order(&self) -> &Arc<Vec<u32>> {
         &self.order
     }
 
-    /// How many nodes there are.
+    /// Returns the number of nodes.
     pub(super) fn count(&self) -> usize {
         self.nodes.len()
     }
 
-    /// The node above all others; none of a mesh without triangles.
+    /// Returns the root; `None` for a mesh without triangles.
     #[inline(always)]
     pub(super) fn root(&self) -> Option<Place> {
         (!self.nodes.is_empty()).then_some(Place { level: self.levels - 1, number: 0 })
     }
 
-    /// The box around all triangles.
+    /// Returns the box around all triangles.
     pub(super) fn around(&self) -> Option<Box3> {
         Some(self.node(self.root()?).around())
     }
 
-    /// The number of a node among all.
+    /// Returns the number of a node among all nodes.
     #[inline(always)]
     pub(super) fn index(&self, place: Place) -> usize {
         (self.starts[place.level as usize] + place.number) as usize
@@ -360,13 +363,13 @@ impl Tree {
         &self.nodes[self.index(place)]
     }
 
-    /// The triangle that part k of a lowest node is; none if the node is not full.
+    /// Returns the triangle that is child k of a lowest node; `None` if the node has fewer children.
     #[inline(always)]
     pub(super) fn triangle(&self, place: Place, k: usize) -> Option<u32> {
         self.order.get(place.part(k)).copied()
     }
 
-    /// How many parts a node has.
+    /// Returns the number of a node's children.
     pub(super) fn parts(&self, place: Place) -> usize {
         let all = match place.level.checked_sub(1) {
             None => self.order.len(),
@@ -375,8 +378,8 @@ impl Tree {
         (all - place.part(0)).min(WIDTH)
     }
 
-    /// Calls `visit` with each pair of triangles whose boxes meet, until it returns `false`. What it returns
-    /// depends on the mesh alone, and so does the order of the pairs.
+    /// Calls `visit` with each pair of triangles whose boxes meet, until it returns `false`. The result and
+    /// the order of the pairs depend on the mesh alone.
     pub(super) fn pairs(
         &self,
         steps: &mut Steps,
@@ -412,7 +415,7 @@ impl Tree {
         Ok(Search::Finished)
     }
 
-    /// Of part k of one node and some parts of another one of the same level.
+    /// Visits the pairs of child k of one node and some children of another node of the same level.
     fn pairs_of(
         &self,
         (place, k): (Place, usize),
@@ -440,7 +443,7 @@ impl Tree {
         Ok(Search::Finished)
     }
 
-    /// Of two nodes of one level.
+    /// Visits the pairs of two nodes of one level.
     fn pairs_between(
         &self,
         a: Place,
@@ -458,7 +461,7 @@ impl Tree {
         Ok(Search::Finished)
     }
 
-    /// Calls `visit` with each triangle whose box the line through `p` along `axis` meets.
+    /// Calls `visit` with each triangle whose box meets the line through `p` along `axis`.
     pub(super) fn on_line(&self, p: &Point, axis: usize, visit: &mut impl FnMut(u32)) {
         let at = self.grid.rounded(p);
         let (mut low, mut high) = (at, at);
@@ -467,13 +470,14 @@ impl Tree {
         self.search(|node| node.touches(&line), visit);
     }
 
-    /// Calls `visit` with each triangle whose box meets another one.
+    /// Calls `visit` with each triangle whose box meets the given box.
     pub(super) fn within(&self, low: [f32; 3], high: [f32; 3], visit: &mut impl FnMut(u32)) {
         let around = Box3 { low, high };
         self.search(|node| node.touches(&around), visit);
     }
 
-    /// Calls `visit` with the triangles that are parts of nodes which `chosen` chooses, all the way down.
+    /// Calls `visit` with the triangles that are reached through children selected by `chosen`, all the way
+    /// down.
     #[inline(always)]
     pub(super) fn search(&self, chosen: impl Fn(&Node) -> u32, visit: &mut impl FnMut(u32)) {
         let mut later = [Place { level: 0, number: 0 }; LATER];
@@ -499,7 +503,8 @@ impl Tree {
     }
 }
 
-/// Sorts triangles so that each `unit` of them, and each quarter of a unit, and so on, lie together.
+/// Sorts triangles so that each group of `unit` triangles, each quarter of a group, and so on, are
+/// neighbours.
 fn arrange(items: &mut [Item], mut unit: usize, parallel: bool, control: &Control<'_>) -> Result<(), Error> {
     if items.len() <= WIDTH {
         return Ok(());
@@ -510,7 +515,7 @@ fn arrange(items: &mut [Item], mut unit: usize, parallel: bool, control: &Contro
     divide(items, unit, parallel, control)
 }
 
-/// The same of some units, by halves.
+/// Does the same for some groups, by halving.
 fn divide(items: &mut [Item], unit: usize, parallel: bool, control: &Control<'_>) -> Result<(), Error> {
     let units = items.len().div_ceil(unit);
     if units <= 1 {
@@ -529,7 +534,7 @@ fn divide(items: &mut [Item], unit: usize, parallel: bool, control: &Control<'_>
     let axis = (1..3).fold(0, |most, axis| if extent(axis) > extent(most) { axis } else { most });
     let half = units / 2 * unit;
     items.select_nth_unstable_by(half, |a, b| {
-        // Equal ones are told apart by their numbers: the halves are the same on every machine.
+        // Ties are broken by the triangles' numbers, so that the halves are the same on every machine.
         a.around.middle(axis).total_cmp(&b.around.middle(axis)).then(a.triangle.cmp(&b.triangle))
     });
     let (low, high) = items.split_at_mut(half);

@@ -1,13 +1,13 @@
-//! Indexed triangle meshes: exact welding, and the check that a mesh bounds a solid.
+//! Indexed triangle meshes: exact welding, and the test whether a mesh bounds a solid.
 //!
-//! Topology is by position. Vertices at the same place become one vertex, whatever way the mesh comes in, so
-//! that every number that [`TriangleMesh::report`] gives is a statement about the surface and not about how a
-//! file happens to store it. "The same place" means equal coordinates, where -0.0 equals 0.0: there is no
-//! tolerance, hence no choice of one and no chain of merges.
+//! Topology is by position. Vertices at the same place become one vertex, however the mesh is passed in, so
+//! that every number of [`TriangleMesh::report`] is a statement about the surface and not about the layout of
+//! a file. "The same place" means equal coordinates, where -0.0 equals 0.0. There is no tolerance, so nobody
+//! has to choose one, and no chains of merges occur.
 //!
-//! A triangle whose corners are not three different vertices is dropped. A triangle of no area but with three
-//! different corners is kept, because its edges pair with those of its neighbours: without it the mesh would
-//! be open.
+//! A triangle whose corners are not three different vertices is dropped. A triangle without area but with
+//! three different corners is kept, because its edges pair with those of its neighbours: without it the mesh
+//! would be open.
 
 use alloc::boxed::Box;
 use alloc::sync::Arc;
@@ -30,28 +30,29 @@ use crate::lattice::LARGEST;
 use crate::lattice::exact::sqrt;
 use crate::memory;
 
-/// Which points a surface encloses.
+/// The rule that defines the points that a surface encloses.
 ///
-/// The *winding number* of a surface at a point is the solid angle at which it is seen from there, over 4π,
-/// counted positive where the inner side is seen. Of a closed surface it is an integer. Where a surface has
-/// holes, fins, or triangles turned over, it is a fraction, and the rules are a convention: they take the
-/// nearest integer, so that a hole is closed by the surface from which half of all directions lead out.
+/// The *winding number* of a surface at a point is the solid angle that the surface covers as seen from the
+/// point, divided by 4π, and counted positive where its inner side is seen. For a closed surface it is an
+/// integer. For a surface with holes, fins or inverted triangles it is a fraction, and the rules are a
+/// convention: they round to the nearest integer, which closes a hole by the surface from which half of all
+/// directions lead out.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Default)]
 pub enum FillRule {
-    /// Points whose winding number is at least ½ in magnitude: those that the surface winds around, in either
-    /// sense and any number of times. Overlapping bodies are united, and a body that is inside out is a body.
+    /// Points whose winding number is at least ½ in magnitude: the surface winds around them, in either sense
+    /// and any number of times. Overlapping bodies are united, and an inverted body is a body.
     #[default]
     NonZero,
     /// Points from which a ray crosses the surface an odd number of times. The overlap of two bodies is
     /// outside; orientation does not matter. An even number of triangles must meet on every edge.
     EvenOdd,
-    /// Points whose winding number is at least ½. A body that is inside out is a cavity: it takes away from
+    /// Points whose winding number is at least ½. An inverted body is a cavity: it is subtracted from the
     /// bodies that it overlaps.
     Positive,
 }
 
 impl FillRule {
-    /// Whether points of a winding number are enclosed.
+    /// Returns whether points of this winding number are enclosed.
     #[inline(always)]
     pub(crate) fn encloses(self, winding: i32) -> bool {
         match self {
@@ -61,7 +62,7 @@ impl FillRule {
         }
     }
 
-    /// By how much a winding number that is no integer exceeds what the rule asks for.
+    /// Returns the amount by which a fractional winding number exceeds the threshold of the rule.
     #[inline(always)]
     pub(crate) fn excess(self, winding: f64) -> f64 {
         match self {
@@ -70,11 +71,11 @@ impl FillRule {
         }
     }
 
-    /// Whether points are enclosed whose winding number lies between two numbers; nothing if it may be one
-    /// that parts those that are enclosed from those that are not.
+    /// Returns whether points with a winding number between two numbers are enclosed; `None` if the interval
+    /// contains a threshold of the rule.
     pub(crate) fn encloses_all(self, low: f64, high: f64) -> Option<bool> {
         let (one, other) = (self.excess(low), self.excess(high));
-        // Around zero the ends are the farthest from it.
+        // If the interval contains zero, its ends are the farthest numbers from zero.
         let is_through = self != FillRule::Positive && low < 0.0 && high > 0.0;
         if one > 0.0 && other > 0.0 && !is_through {
             Some(true)
@@ -88,37 +89,39 @@ impl FillRule {
 
 /// A surface of triangles with shared vertices.
 ///
-/// Coordinates are finite and at most 2^256 in magnitude, those below 2^-256 count as zero, no two vertices
-/// are equal, and the corners of a triangle are three different vertices. Seen from outside of the solid the
-/// corners turn counter-clockwise. Whether the mesh is closed is not implied:
-/// [`check_closed`](Self::check_closed) tells.
+/// Coordinates are finite and at most 2^256 in magnitude; coordinates below 2^-256 count as zero. No two
+/// vertices are equal, and the corners of a triangle are three different vertices. Corners turn
+/// counter-clockwise as seen from outside of the solid. The mesh need not be closed;
+/// [`check_closed`](Self::check_closed) tests that.
 ///
-/// A mesh takes 24 bytes per vertex and 12 bytes per triangle, and what its [attributes](Self::attributes)
-/// take, if it has any. What asks for single triangles (rays, points and distances of a
+/// A mesh takes 24 bytes per vertex, 12 bytes per triangle, and the memory of its
+/// [attributes](Self::attributes). Operations that search single triangles (rays, points and distances of a
 /// [`MeshSolid`](crate::MeshSolid), intersections, [`SurfaceAttribute`](crate::attribute::SurfaceAttribute))
-/// shares a tree of their boxes, which is made when it is first needed and takes 36 bytes a triangle.
+/// share a tree of the triangles' boxes. The tree is built when it is first needed, and takes 36 bytes a
+/// triangle.
 #[derive(Clone)]
 pub struct TriangleMesh {
     vertices: Vec<[f64; 3]>,
     triangles: Vec<[u32; 3]>,
-    /// Each has as many triangles as the mesh.
+    /// Each attribute has as many triangles as the mesh.
     attributes: Vec<MeshAttribute>,
     pub(super) welded: u64,
     pub(super) degenerate: u64,
     pub(super) sewn: u64,
-    /// How far vertices may be off along an axis: they were moved to close cracks, or rounded.
+    /// Maximum error of a vertex along an axis, in model units: vertices were moved to close cracks, or
+    /// rounded.
     displacement: f64,
-    /// How far the true boundary may lie from the surface, straight on.
+    /// Maximum distance of the true boundary from the surface, in model units.
     deviation: f64,
     pub(super) faces: Faces,
     pub(super) topology: OnceBox<Topology>,
     pub(super) details: OnceBox<Details>,
     tree: OnceBox<Tree>,
-    /// The order of triangles in the tree of the mesh that this one is a moved copy of.
+    /// The order of triangles in the tree of the mesh from which this mesh was copied and moved.
     order: Option<Arc<Vec<u32>>>,
 }
 
-/// What only a report needs to know.
+/// Details that only a report needs.
 #[derive(Debug, Clone)]
 pub(super) struct Details {
     pub boundary_loops: u64,
@@ -128,32 +131,32 @@ pub(super) struct Details {
     pub overlaps: Overlaps,
 }
 
-/// What was found about closed bodies whose boxes meet.
+/// The overlaps of closed bodies whose boxes meet.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
 pub(super) struct Overlaps {
-    /// Bodies that are proven to overlap another one.
+    /// Number of bodies that are proven to overlap another one.
     pub overlapping: u64,
-    /// Other bodies that may overlap one.
+    /// Number of other bodies that may overlap another one.
     pub undecided: u64,
 }
 
-/// What is known of the faces of more than three corners that triangles were made from.
+/// Statistics of the faces of more than three corners from which triangles were made.
 #[derive(Debug, Clone, Copy, Default)]
 pub(crate) struct Faces {
     pub polygons: u64,
-    /// Those whose corners lie in no plane.
+    /// Number of faces whose corners do not lie in a plane.
     pub bent: u64,
-    /// How far at most.
+    /// Maximum distance of a corner from its face's plane.
     pub deviation: f64,
 }
 
 #[cfg(feature = "std")]
 impl Faces {
-    /// Corners beside the plane by more than this part of the face's extent are not in the plane. What is
-    /// less may be the rounding of their distances.
+    /// Corners off the plane by more than this fraction of the face's extent are not in the plane. Smaller
+    /// distances may be rounding errors.
     const PLANE: f64 = 1.0 / (1_u64 << 40) as f64;
 
-    /// Adds a face with more than three corners, which lie so far beside its plane.
+    /// Adds a face with more than three corners that deviates from its plane by `deviation`.
     pub fn add(&mut self, deviation: f64, extent: f64) {
         self.polygons += 1;
         self.bent += u64::from(deviation > Self::PLANE * extent);
@@ -162,7 +165,7 @@ impl Faces {
 }
 
 impl TriangleMesh {
-    /// A mesh of indexed triangles.
+    /// Builds a mesh of indexed triangles.
     ///
     /// Equal vertices are welded and keep the order of first appearance, so that the indices of the result
     /// are those given unless there were equal vertices. Vertices that no triangle uses are kept.
@@ -176,8 +179,8 @@ impl TriangleMesh {
         Self::with_attributes(vertices, triangles, Vec::new())
     }
 
-    /// A mesh of indexed triangles with attributes, which have values for the triangles as they are given.
-    /// Those of triangles that are dropped are dropped.
+    /// Builds a mesh of indexed triangles with attributes, which have values for the given triangles. Values
+    /// of dropped triangles are dropped.
     ///
     /// O(v + t). Fails as [`new`](Self::new) does, and with [`Error::Argument`] unless each attribute has as
     /// many triangles and a name of its own.
@@ -229,7 +232,7 @@ impl TriangleMesh {
         Ok(Self { attributes, ..Self::from_welded(vertices, triangles, welded, degenerate) })
     }
 
-    /// The mesh of vertices that are all different and triangles of three different ones each.
+    /// Returns the mesh of vertices that are all different and triangles of three different vertices each.
     pub(crate) fn from_welded(
         vertices: Vec<[f64; 3]>,
         triangles: Vec<[u32; 3]>,
@@ -253,23 +256,24 @@ impl TriangleMesh {
         }
     }
 
-    /// The memory of the mesh: its vertices and triangles.
+    /// Returns the vertices and triangles of the mesh.
     pub(crate) fn into_arrays(self) -> (Vec<[f64; 3]>, Vec<[u32; 3]>) {
         (self.vertices, self.triangles)
     }
 
-    /// The vertices, all different.
+    /// Returns the vertices, all different.
     pub fn vertices(&self) -> &[[f64; 3]] {
         &self.vertices
     }
 
-    /// The triangles as indices into [`vertices`](Self::vertices).
+    /// Returns the triangles as indices into [`vertices`](Self::vertices).
     pub fn triangles(&self) -> &[[u32; 3]] {
         &self.triangles
     }
 
-    /// Bytes of memory that the mesh keeps: vertices, triangles, attributes, and what was found out about its
-    /// edges, and the tree of its triangles, if somebody asked. Room that its arrays have to spare is in.
+    /// Returns the bytes of memory that the mesh keeps: vertices, triangles, attributes, and, if they were
+    /// computed, the data about its edges and the tree of its triangles. The spare capacity of the arrays is
+    /// included.
     pub fn bytes(&self) -> u64 {
         let TriangleMesh { vertices, triangles, attributes, topology, details, tree, .. } = self;
         let arrays = memory::bytes_of(vertices) + memory::bytes_of(triangles) + memory::bytes_of(attributes);
@@ -279,21 +283,21 @@ impl TriangleMesh {
         (arrays + known) as u64 + attributes.iter().map(MeshAttribute::bytes).sum::<u64>()
     }
 
-    /// What is known of the triangles: in the order in which attributes were added.
+    /// Returns the attributes of the triangles, in the order in which they were added.
     pub fn attributes(&self) -> &[MeshAttribute] {
         &self.attributes
     }
 
-    /// The attribute of this name.
+    /// Returns the attribute with this name.
     pub fn attribute(&self, name: &str) -> Option<&MeshAttribute> {
         self.attributes.iter().find(|attribute| attribute.name() == name)
     }
 
-    /// Adds an attribute, whose triangles are those of the mesh.
+    /// Adds an attribute for the triangles of the mesh.
     ///
     /// # Errors
-    /// [`Error::Argument`] unless it has as many triangles as the mesh, and a name that no other attribute of
-    /// the mesh has; [`Error::OutOfMemory`]. The mesh is then as before.
+    /// [`Error::Argument`] unless the attribute has as many triangles as the mesh, and a name that no other
+    /// attribute of the mesh has; [`Error::OutOfMemory`]. On an error the mesh is unchanged.
     pub fn add_attribute(&mut self, attribute: MeshAttribute) -> Result<(), Error> {
         memory::push(&mut self.attributes, attribute)?;
         attributes::check(&self.attributes, self.triangles.len()).inspect_err(|_| {
@@ -301,12 +305,13 @@ impl TriangleMesh {
         })
     }
 
-    /// Takes all attributes away from the mesh.
+    /// Removes all attributes from the mesh and returns them.
     pub fn take_attributes(&mut self) -> Vec<MeshAttribute> {
         core::mem::take(&mut self.attributes)
     }
 
-    /// The least and the greatest coordinates of the vertices that triangles use; zeros if there are none.
+    /// Returns the least and the greatest coordinates of the vertices that triangles use; zeros if there are
+    /// none.
     ///
     /// O(t), computed anew on each call.
     pub fn bounds(&self) -> ([f64; 3], [f64; 3]) {
@@ -322,8 +327,9 @@ impl TriangleMesh {
         (low.to_array(), high.to_array())
     }
 
-    /// The enclosed volume, by the divergence theorem: what the surface winds around n times counts n times,
-    /// so overlaps count twice and bodies that are inside out count negative. Open meshes have none.
+    /// Returns the enclosed volume, by the divergence theorem. A region around which the surface winds n
+    /// times counts n times, so overlaps count twice and inverted bodies count negative. For open meshes the
+    /// number has no meaning.
     ///
     /// O(t). The sum is taken relative to the centre of the bounds, so that a far-off origin costs no digits.
     pub fn volume(&self) -> f64 {
@@ -335,25 +341,25 @@ impl TriangleMesh {
                 a.dot(b.cross(c))
             })
             .sum();
-        // A sum of nothing is −0.
+        // An empty sum is −0.
         six_fold / 6.0 + 0.0
     }
 
-    /// The sum of the areas of the triangles (square model units), in doubles. O(t).
+    /// Returns the sum of the triangles' areas (square model units), in doubles. O(t).
     pub fn area(&self) -> f64 {
         let twice = |t: &[u32; 3]| {
             let [a, b, c] = t.map(|v| self.position(v));
             (b - a).cross(c - a).length()
         };
-        // A sum of nothing is −0.
+        // An empty sum is −0.
         0.5 * self.triangles.iter().map(twice).sum::<f64>() + 0.0
     }
 
     /// Checks that the mesh bounds a solid under `rule`.
     ///
-    /// For [`FillRule::EvenOdd`] an even number of triangles must meet on every edge; for the others half of
-    /// them must also run in each direction, and then every winding number is an integer. Self-intersections,
-    /// overlaps, nested and inside-out bodies are all allowed.
+    /// For [`FillRule::EvenOdd`] an even number of triangles must meet on every edge. For the other rules
+    /// half of them must also run in each direction; then every winding number is an integer.
+    /// Self-intersections, overlaps, nested and inverted bodies are all allowed.
     ///
     /// The first call analyses the edges, in O(t + v) time and with 28 bytes per triangle and 9 per vertex of
     /// scratch memory; later calls are free.
@@ -377,21 +383,22 @@ impl TriangleMesh {
         }
     }
 
-    /// The mesh with every vertex moved to where `f` says. Vertices that meet are welded, as in
-    /// [`new`](Self::new); a reflection turns the mesh inside out. The report starts anew, and the surface as
-    /// it then is counts as the truth, whatever cracks were closed before, and whatever deviation was stated.
+    /// Returns the mesh with every vertex moved to the position that `f` returns. Vertices that coincide are
+    /// welded, as in [`new`](Self::new). A reflection turns the mesh inside out. The report starts anew, and
+    /// the new surface counts as exact: earlier displacements by closing cracks and a stated deviation are
+    /// discarded.
     ///
     /// O(v + t). Fails as `new` does.
     pub fn transformed(&self, f: impl FnMut([f64; 3]) -> [f64; 3]) -> Result<Self, Error> {
         let vertices = memory::collected(self.vertices.iter().copied().map(f))?;
         let attributes = attributes::copies(&self.attributes)?;
         let moved = Self::with_attributes(vertices, memory::copied(&self.triangles)?, attributes)?;
-        // (Triangles that vanish would have to vanish from the order.)
+        // (Vanished triangles would have to be removed from the order.)
         let order = self.known_order().filter(|_| moved.triangles.len() == self.triangles.len());
         Ok(Self { order, ..moved })
     }
 
-    /// The mesh with `f` applied to every coordinate. The report keeps what was found before.
+    /// Returns the mesh with `f` applied to every coordinate. The report keeps its earlier counts.
     ///
     /// O(v + t), in place. Fails as [`new`](Self::new) does.
     pub(crate) fn scaled(self, f: impl Fn(f64) -> f64) -> Result<Self, Error> {
@@ -402,31 +409,32 @@ impl TriangleMesh {
         Ok(Self { welded: welded + mesh.welded, degenerate: degenerate + mesh.degenerate, faces, ..mesh })
     }
 
-    /// The mesh moved by `offset`: [`transformed`](Self::transformed) by a rounded sum.
+    /// Returns the mesh moved by `offset`: [`transformed`](Self::transformed) by a rounded sum.
     pub fn translated(&self, offset: [f64; 3]) -> Result<Self, Error> {
         let moved = self.transformed(|p| (DVec3::from(p) + DVec3::from(offset)).to_array())?;
         Ok(Self { displacement: self.displacement, deviation: self.deviation, ..moved })
     }
 
-    /// The same mesh, of which it is known only that the true boundary lies within `deviation` (model units)
-    /// of it, as the boundary of a part lies beside a tessellation with that deflection. It takes the place
-    /// of a deviation that was stated before.
+    /// Returns the mesh with a stated deviation: the true boundary lies within `deviation` (model units) of
+    /// the mesh, as the boundary of a part does for a tessellation with that deflection. This replaces a
+    /// deviation that was stated before.
     ///
-    /// **What it means.** The true solid is bounded by the mesh's surface, of which each point was moved by
-    /// `deviation` at the most, continuously, and no part of which was turned over: around a point the true
-    /// boundary winds as often as the mesh does around some point within `deviation` of it. A dent, a hole or
-    /// a body that the mesh does not have at all is not covered, however small it is.
+    /// **Meaning.** The boundary of the true solid is the mesh's surface after a continuous motion that moves
+    /// no point by more than `deviation` and reverses no part: around each point the true boundary winds as
+    /// often as the mesh does around some point within `deviation` of it. A dent, a hole or a body that the
+    /// mesh does not have at all is not covered, however small it is.
     ///
-    /// **What follows.** Whatever is proven of a [`MeshSolid`](crate::MeshSolid) is proven of the true solid:
-    /// cells near to the triangles are undecided, intervals of volumes, moments, distances and clearances
-    /// contain the truth, a ray is told in which interval it meets the boundary, and nothing is told of a
-    /// point that is too near. The area of the true boundary is not known, since a boundary that waves has a
-    /// larger one. The deviation is carried through placements, Booleans and into octrees, whose
-    /// [`Proof`](crate::Proof) tells the [`displacement`](Self::displacement). What is no proof, as a sampled
-    /// octree, a tri-dexel model, a picture, [`bounds`](Self::bounds) and [`volume`](Self::volume), is that
-    /// of the mesh.
+    /// **Consequences.** Every proof about a [`MeshSolid`](crate::MeshSolid) is a proof about the true solid:
+    /// cells near to the triangles are undecided; intervals of volumes, moments, distances and clearances
+    /// contain the true values; a ray meets the boundary in a reported interval; and a point that is too near
+    /// to the mesh is undecided. The area of the true boundary is unknown, because a wavy boundary has a
+    /// larger area. The deviation is carried through placements, Booleans and into octrees, whose
+    /// [`Proof`](crate::Proof) contains the [`displacement`](Self::displacement). Results that are no proofs,
+    /// such as a sampled octree, a tri-dexel model, a picture, [`bounds`](Self::bounds) and
+    /// [`volume`](Self::volume), describe the mesh itself.
     ///
-    /// A solid of a mesh with a deviation needs a closed mesh: what an open one encloses is a convention.
+    /// A solid of a mesh with a deviation needs a closed mesh, because the inside of an open mesh is a
+    /// convention.
     ///
     /// # Errors
     /// [`Error::Argument`] unless the deviation is finite, not negative, and at most 2^256.
@@ -449,14 +457,15 @@ impl TriangleMesh {
         Err(Error::Argument { name: "deviation", problem: "must be finite, not negative, and at most 2^256" })
     }
 
-    /// How far the true boundary may lie from the mesh: what [`with_deviation`](Self::with_deviation) stated,
-    /// under what placed the mesh since then. In model units.
+    /// Returns the stated deviation, the maximum distance of the true boundary from the mesh, in model units:
+    /// the value of [`with_deviation`](Self::with_deviation), enlarged by later placements.
     pub fn deviation(&self) -> f64 {
         self.deviation
     }
 
-    /// How far along an axis the true boundary may lie from the mesh, in model units: what vertices were
-    /// moved by to close hair cracks, what a placement rounded, and the [`deviation`](Self::deviation).
+    /// Returns the maximum deviation of the true boundary from the mesh along an axis, in model units. It
+    /// covers moves of vertices to close hair cracks, rounding by placements, and the
+    /// [`deviation`](Self::deviation).
     pub fn displacement(&self) -> f64 {
         if self.deviation == 0.0 {
             return self.displacement;
@@ -464,12 +473,12 @@ impl TriangleMesh {
         if self.displacement == 0.0 { self.deviation } else { (self.displacement + self.deviation).next_up() }
     }
 
-    /// How far vertices may be off along an axis, whatever deviation was stated.
+    /// Returns the maximum error of a vertex along an axis, without a stated deviation.
     pub(super) fn vertex_displacement(&self) -> f64 {
         self.displacement
     }
 
-    /// How far, straight on, the true boundary may lie from the mesh at the most.
+    /// Returns the maximum distance of the true boundary from the mesh.
     pub(crate) fn radius(&self) -> f64 {
         let of_vertices =
             if self.displacement > 0.0 { (self.displacement * sqrt(3.0)).next_up().next_up() } else { 0.0 };
@@ -479,7 +488,7 @@ impl TriangleMesh {
         }
     }
 
-    /// The same with its triangles facing the other way.
+    /// Reverses the orientation of all triangles.
     pub(super) fn turn_round(&mut self) {
         self.triangles.iter_mut().for_each(|[_, b, c]| core::mem::swap(b, c));
         self.attributes.iter_mut().for_each(MeshAttribute::turn_round);
@@ -487,19 +496,19 @@ impl TriangleMesh {
         self.details = OnceBox::new();
     }
 
-    /// The same, made from these faces.
+    /// Returns the mesh with the statistics of the faces from which it was made.
     #[cfg(feature = "std")]
     pub(crate) fn made_from(self, faces: Faces) -> Self {
         Self { faces, ..self }
     }
 
-    /// The same with vertices that may be off by so much along an axis, and a boundary that may lie so far
+    /// Returns the mesh with a maximum error of vertices along an axis and a maximum distance of the boundary
     /// from the surface.
     pub(super) fn displaced(self, displacement: f64, deviation: f64) -> Self {
         Self { displacement, deviation, ..self }
     }
 
-    /// A copy.
+    /// Returns a copy.
     ///
     /// # Errors
     /// [`Error::OutOfMemory`].
@@ -511,8 +520,9 @@ impl TriangleMesh {
         Ok(Self { vertices, triangles, attributes, topology, details, tree, order, ..*self })
     }
 
-    /// The tree of the triangles: made when it is first asked for, and kept. The first call takes as
-    /// [`Tree::new`], of a moved copy of a mesh that has one as [`Tree::in_order`]; later calls are free.
+    /// Returns the tree of the triangles, which is built by the first call and kept. The first call costs the
+    /// same as [`Tree::new`], or as [`Tree::in_order`] for a moved copy of a mesh that has a tree; later
+    /// calls are free.
     ///
     /// # Errors
     /// [`Error::OutOfMemory`], and [`Error::Cancelled`] by `control`.
@@ -526,33 +536,34 @@ impl TriangleMesh {
         })
     }
 
-    /// The tree of the triangles, if it was made.
+    /// Returns the tree of the triangles, if it was built.
     #[inline(always)]
     pub(crate) fn known_tree(&self) -> Option<&Tree> {
         self.tree.get()
     }
 
-    /// The order of triangles in the tree, if it was made.
+    /// Returns the order of triangles in the tree, if it was built.
     fn known_order(&self) -> Option<Arc<Vec<u32>>> {
         self.tree.get().map(Tree::order).or(self.order.as_ref()).cloned()
     }
 
-    /// The loops of the surface's boundary, in the direction of its triangles.
+    /// Returns the loops of the surface's boundary, in the direction of its triangles.
     pub(crate) fn loops(&self) -> Result<Loops, Error> {
         Loops::of(&self.topology()?.boundary)
     }
 
-    /// The vertices at open edges, ascending.
+    /// Returns the vertices at open edges, ascending.
     pub(super) fn open_vertices(&self) -> Result<&[u32], Error> {
         Ok(&self.topology()?.open_vertices)
     }
 
-    /// The mesh with each first vertex of `moves` replaced by the second, none of which is replaced itself.
+    /// Returns the mesh with the first vertex of each pair in `moves` replaced by the second. A second vertex
+    /// is never replaced itself.
     pub(super) fn moved(mut self, moves: &[(u32, u32)], displacement: f64) -> Result<Self, Error> {
         let mut targets = memory::with_capacity(self.vertices.len())?;
         targets.extend(0..self.vertices.len() as u32);
         moves.iter().for_each(|&(from, onto)| targets[from as usize] = onto);
-        // Whoever is not replaced moves up to where the replaced ones leave room.
+        // Vertices that are kept move up to fill the gaps of replaced ones.
         let mut places = memory::filled(targets.len(), 0)?;
         let mut kept = 0;
         for vertex in 0..self.vertices.len() {
@@ -582,8 +593,8 @@ impl TriangleMesh {
     }
 }
 
-/// Drops triangles whose corners are not three different vertices, and what attributes say of them. Tells how
-/// many there were.
+/// Drops triangles whose corners are not three different vertices, with their attribute values. Returns their
+/// number.
 fn drop_improper(triangles: &mut Vec<[u32; 3]>, attributes: &mut [MeshAttribute]) -> u64 {
     let before = triangles.len();
     for attribute in attributes {
@@ -608,7 +619,7 @@ mod tests {
     use crate::mesh::report::MeshReport;
     use alloc::vec;
 
-    /// A tetrahedron of volume 1/6, seen from outside counter-clockwise.
+    /// A tetrahedron of volume 1/6, counter-clockwise as seen from outside.
     const CORNERS: [[f64; 3]; 4] = [[0., 0., 0.], [1., 0., 0.], [0., 1., 0.], [0., 0., 1.]];
     const FACES: [[u32; 3]; 4] = [[0, 2, 1], [0, 1, 3], [1, 2, 3], [2, 0, 3]];
 
@@ -669,7 +680,7 @@ mod tests {
 
     #[test]
     fn equal_vertices_are_welded() {
-        // Vertex 4 is vertex 0 with other signs of zero, vertex 5 is vertex 1; 6 is used by nobody.
+        // Vertex 4 is vertex 0 with other signs of zero, vertex 5 is vertex 1; vertex 6 is unused.
         let mut vertices = CORNERS.to_vec();
         vertices.extend([[-0.0, 0.0, -0.0], [1.0, -0.0, 0.0], [9.0, 9.0, 9.0]]);
         let mesh = TriangleMesh::new(vertices, vec![[4, 2, 5], [0, 1, 3], [1, 2, 3], [2, 4, 3]]).unwrap();
@@ -679,7 +690,7 @@ mod tests {
         assert_eq!(mesh.report().unwrap().welded, 2);
         mesh.check_closed(FillRule::NonZero).unwrap();
         assert!(mesh.vertices()[0].iter().all(|x| x.is_sign_positive()));
-        // The next number is another place.
+        // The next floating-point number is another place.
         let vertices = vec![[0.1 + 0.2, 0., 0.], [0.3, 0., 0.], [0., 1., 0.]];
         assert_eq!(TriangleMesh::new(vertices, vec![[0, 1, 2]]).unwrap().vertices().len(), 3);
     }
@@ -693,7 +704,7 @@ mod tests {
         assert_eq!(soup.triangles(), [[0, 1, 2], [0, 2, 3], [2, 1, 3], [1, 0, 3]]);
         assert_eq!((soup.report().unwrap().welded, soup.report().unwrap().bodies), (8, 1));
         soup.check_closed(FillRule::NonZero).unwrap();
-        // By reference, and from an iterator that does not know its length.
+        // By reference, and from an iterator of unknown length.
         let owned = facets(&mesh);
         let by_reference = TriangleMesh::from_facets(owned.iter()).unwrap();
         assert_eq!(by_reference.triangles(), soup.triangles());
@@ -756,7 +767,7 @@ mod tests {
             assert_eq!(mesh_error(check(&[], rule)), MeshError::Empty);
             assert_eq!(mesh_error(check(&[[0, 0, 1]], rule)), MeshError::Empty);
             assert_eq!(mesh_error(check(&FACES[1..], rule)), MeshError::Open { edges: 3 });
-            // Wholly inside out is consistent.
+            // A mesh that is inverted as a whole is consistent.
             check(&FACES.map(|[a, b, c]| [a, c, b]), rule).unwrap();
             // Two sheets of one triangle enclose nothing, but are closed.
             check(&[[0, 1, 2], [0, 2, 1]], rule).unwrap();
@@ -837,7 +848,7 @@ mod tests {
 
     #[test]
     fn claimed_lengths_are_not_believed() {
-        /// Claims to be endless, and ends.
+        /// An iterator that claims to be endless, and ends.
         struct Liar(u32);
         impl Iterator for Liar {
             type Item = [[f64; 3]; 3];

@@ -1,26 +1,25 @@
-//! How far two triangles are apart.
+//! The distance of two triangles.
 //!
-//! The nearest points are found in plain doubles, and nothing is proven by that. Any two points of the
-//! triangles bound the distance from above. Any direction bounds it from below: by the gap between what the
-//! two triangles cover of it. The direction from one nearest point to the other gives the best such bound.
+//! The nearest points are found in plain doubles, which proves nothing yet. Any two points of the triangles
+//! bound the distance from above. Any direction bounds it from below, by the gap between the projections of
+//! the two triangles onto it. The direction from one nearest point to the other gives the best lower bound.
 //!
 //! Coordinates are at most 1 in magnitude, so that rounding has one bound for all: [`SLACK`].
 
 use super::signs::Point;
 use core::array::from_fn as array;
 
-/// More than what rounding changes in a distance that is computed here, where coordinates are off by 2^-50
-/// each.
+/// Upper bound of the rounding error of a computed distance, for coordinates with errors of up to 2^-50 each.
 pub(super) const SLACK: f64 = 1.0 / (1_u64 << 46) as f64;
 
-/// Points of two triangles that are near to each other.
+/// Two points, one of each triangle, that are near to each other.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct NearPair {
     /// The square of their distance.
     pub(super) square: f64,
-    /// The weights of the corners of each triangle in its point.
+    /// The weights of each triangle's corners at its point.
     pub(super) weights: [[f64; 3]; 2],
-    /// The way from the first point to the second.
+    /// The vector from the first point to the second.
     pub(super) way: Point,
 }
 
@@ -39,19 +38,19 @@ fn cross(a: &Point, b: &Point) -> Point {
     [a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]]
 }
 
-/// A share between 0 and 1. (What is no number, because a length is lost, becomes 0.)
+/// Clamps a share to 0 to 1. (NaN, from a lost length, becomes 0.)
 #[inline(always)]
 fn share(x: f64) -> f64 {
     if x > 0.0 { if x < 1.0 { x } else { 1.0 } } else { 0.0 }
 }
 
-/// The edges of a triangle, each from its corner to the next one.
+/// Returns the edges of a triangle, each from its corner to the next one.
 #[inline(always)]
 fn edges(t: &[Point; 3]) -> [Point; 3] {
     array(|k| minus(&t[(k + 1) % 3], &t[k]))
 }
 
-/// Points of two triangles that are nearest to each other, up to rounding.
+/// Returns the nearest points of two triangles, up to rounding.
 pub(super) fn nearest(a: &[Point; 3], b: &[Point; 3]) -> NearPair {
     let (of_a, of_b) = (edges(a), edges(b));
     let (squares_a, squares_b) = (of_a.map(|e| dot(&e, &e)), of_b.map(|e| dot(&e, &e)));
@@ -84,8 +83,8 @@ pub(super) fn nearest(a: &[Point; 3], b: &[Point; 3]) -> NearPair {
     best
 }
 
-/// Takes in the corners of the second triangle that lie above or below the inside of the first, and its edges
-/// that pass through that.
+/// Tests the corners of the second triangle that lie above or below the interior of the first, and its edges
+/// that pass through the interior.
 #[inline(always)]
 fn above(a: &[Point; 3], b: &[Point; 3], edges: &[Point; 3], best: &mut NearPair, is_turned: bool) {
     let normal = cross(&edges[0], &edges[1]);
@@ -94,7 +93,7 @@ fn above(a: &[Point; 3], b: &[Point; 3], edges: &[Point; 3], best: &mut NearPair
         return;
     }
     let heights = b.map(|p| dot(&normal, &minus(&p, &a[0])));
-    // The weights of the corners in what lies below a point, if it is in the triangle.
+    // The weights of the corners at the projection of a point, if the projection lies in the triangle.
     let within = |p: &Point| -> Option<[f64; 3]> {
         let sides: [f64; 3] = array(|k| dot(&cross(&edges[k], &minus(p, &a[k])), &normal) / area);
         sides.iter().all(|&side| side >= 0.0).then_some([sides[1], sides[2], sides[0]])
@@ -133,28 +132,28 @@ fn take(best: &mut NearPair, square: f64, [own, other]: [[f64; 3]; 2], way: Poin
     };
 }
 
-/// How far apart two triangles are at least along a direction, up to rounding: negative if they overlap
-/// there.
+/// Returns a lower bound, up to rounding, of the gap between two triangles along a direction: negative if
+/// their projections overlap.
 #[inline(always)]
 pub(super) fn gap_along(way: &Point, a: &[Point; 3], b: &[Point; 3]) -> f64 {
     let along = |p: &Point| dot(way, &minus(p, &a[0]));
-    // (Where nothing is a number, neither is the result, or it is not greater than zero.)
+    // (If an operand is NaN, the result is NaN or not greater than zero.)
     let larger = |x: f64, y: f64| if x > y { x } else { y };
     let greatest = larger(larger(along(&a[1]), along(&a[2])), 0.0);
     let least = larger(larger(-along(&b[0]), -along(&b[1])), -along(&b[2]));
     -least - greatest
 }
 
-/// A lower bound of the distance of two triangles that are as near as `near` says.
+/// Returns a lower bound of the distance of two triangles whose nearest points are `near`.
 pub(super) fn at_least(near: &NearPair, a: &[Point; 3], b: &[Point; 3]) -> f64 {
     let length = |way: &Point| libm::sqrt(dot(way, way));
     let along = |way: &Point| gap_along(way, a, b) / length(way) - SLACK;
     let mut least = along(&near.way).max(0.0);
     if least < libm::sqrt(near.square) - 4.0 * SLACK {
-        // The points are not the nearest ones, or too near to each other to tell a direction.
+        // The points are not the nearest ones, or too near to each other to define a direction.
         let (of_a, of_b) = (edges(a), edges(b));
         let mut ask = |way: Point| {
-            // (Of no direction, what is found is no number, and does not count.)
+            // (A zero vector gives NaN, which does not count.)
             least = least.max(along(&way)).max(along(&way.map(|c| -c)));
         };
         ask(cross(&of_a[0], &of_a[1]));
@@ -164,8 +163,8 @@ pub(super) fn at_least(near: &NearPair, a: &[Point; 3], b: &[Point; 3]) -> f64 {
     least
 }
 
-/// Whether an edge of one triangle surely passes through the other one, however each corner is moved by up to
-/// `off`.
+/// Returns whether an edge of one triangle surely passes through the other triangle, even if each corner is
+/// moved by up to `off`.
 pub(super) fn surely_cross(a: &[Point; 3], b: &[Point; 3], off: f64) -> bool {
     let side = |[a, b, c]: [&Point; 3], p: &Point| {
         let (u, v, w) = (minus(b, a), minus(c, a), minus(p, a));
@@ -198,7 +197,7 @@ pub(super) fn surely_cross(a: &[Point; 3], b: &[Point; 3], off: f64) -> bool {
 mod tests {
     use super::*;
 
-    /// The least distance of points of a fine grid on both triangles, and how far it may be off.
+    /// Returns the least distance of points of a fine grid on both triangles, and its maximum error.
     fn sampled(a: &[Point; 3], b: &[Point; 3]) -> f64 {
         const STEPS: usize = 24;
         let points = |t: &[Point; 3]| -> alloc::vec::Vec<Point> {

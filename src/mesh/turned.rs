@@ -1,4 +1,4 @@
-//! Facets that are turned over.
+//! Facets with reversed orientation.
 
 use alloc::vec::Vec;
 
@@ -8,11 +8,11 @@ use crate::error::{Error, MeshError};
 use crate::memory;
 
 impl TriangleMesh {
-    /// How many triangles face the other way than most of those that they hang together with, over edges that
-    /// two triangles use.
+    /// Returns the number of triangles that face the other way than most triangles of their body. Triangles
+    /// belong to one body if they are connected by edges that exactly two triangles use.
     ///
-    /// A mesh that is inside out as a whole has none. On a one-sided surface, where no facet faces one way,
-    /// the count says no more than that there are some.
+    /// The number is 0 for a mesh that is inverted as a whole. For a one-sided surface, which has no
+    /// consistent orientation, the number only shows that there are such triangles.
     ///
     /// O(t + v), computed anew on each call.
     ///
@@ -24,7 +24,7 @@ impl TriangleMesh {
         if count > u32::MAX as usize / 2 {
             return Err(MeshError::TooMany.into());
         }
-        // Member 2 t stands for triangle t as it is, 2 t + 1 for the triangle turned over.
+        // Member 2 t stands for triangle t as it is, 2 t + 1 for the reversed triangle.
         let mut sets = DisjointSets::new(2 * count)?;
         for_each_edge(triangles, self.vertices().len(), |edge| {
             if edge.count() == 2 {
@@ -37,8 +37,8 @@ impl TriangleMesh {
             Ok(())
         })?;
         let numbers = sets.numbers();
-        // Of each set how many triangles are in it as they are. The other triangles of a body are in the set
-        // of its opposites.
+        // For each set, the number of triangles that are in it as they are. The other triangles of a body are
+        // in the set of its opposites.
         let mut sizes: Vec<u64> =
             memory::filled(numbers.iter().max().map_or(0, |&last| last as usize + 1), 0)?;
         numbers.chunks_exact(2).for_each(|sides| sizes[sides[0] as usize] += 1);
@@ -77,19 +77,19 @@ mod tests {
             facets[turned] = turn(facets[turned]);
             assert_eq!(count(corners(0.0), facets.into()), 1);
             assert_eq!(count(corners(0.0), facets.map(turn).into()), 1);
-            // Beside a body that is in order, or inside out.
+            // Beside a body that is correct, or inverted.
             let both = [corners(0.0), corners(5.0)].concat();
             let mut second = other_body(turned % 2 == 1);
             second.extend(facets);
             assert_eq!(count(both, second), 1);
         }
-        // A strip of Möbius.
+        // A Möbius strip.
         let ring: Vec<_> = (0..5).map(|i| [f64::from(i), f64::from(i * i), f64::from(i * i * i)]).collect();
         let strip = (0..5).map(|i| [i, (i + 1) % 5, (i + 2) % 5]).collect();
         assert_eq!(count(ring, strip), 1);
     }
 
-    /// A second tetrahedron, on the vertices behind those of the first.
+    /// A second tetrahedron, whose vertices follow those of the first.
     fn other_body(is_inside_out: bool) -> Vec<[u32; 3]> {
         let facets = [[4, 6, 5], [4, 5, 7], [5, 6, 7], [6, 4, 7]];
         if is_inside_out { facets.map(|[a, b, c]| [a, c, b]).into() } else { facets.into() }

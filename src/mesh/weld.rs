@@ -1,4 +1,4 @@
-//! Exact welding: which vertices lie at the same place.
+//! Exact welding of vertices at the same place.
 
 use alloc::vec::Vec;
 use core::borrow::Borrow;
@@ -8,18 +8,19 @@ use super::triangle_mesh::TriangleMesh;
 use crate::error::{Error, MeshError};
 use crate::memory;
 
-/// Facets whose corners are looked up together.
+/// Number of facets whose corners are looked up together.
 const FACETS: usize = BATCH / 3;
 const BATCH: usize = Places::BATCH;
 
 impl TriangleMesh {
-    /// A mesh of separate triangles, each given by its three corners. Vertices are in order of appearance.
+    /// Builds a mesh from separate triangles, each given by its three corners. Vertices are in order of
+    /// appearance.
     ///
     /// O(t).
     ///
     /// # Errors
-    /// [`MeshError::TooMany`], [`MeshError::NotFinite`], [`MeshError::TooLarge`] (both count the corners of
-    /// all facets through) or [`Error::OutOfMemory`].
+    /// [`MeshError::TooMany`]; [`MeshError::NotFinite`] or [`MeshError::TooLarge`] with the index of the
+    /// corner, counted through all facets; or [`Error::OutOfMemory`].
     pub fn from_facets<I>(facets: I) -> Result<Self, Error>
     where
         I: IntoIterator<Item: Borrow<[[f64; 3]; 3]>>,
@@ -33,10 +34,10 @@ impl TriangleMesh {
     }
 }
 
-/// Takes in a triangle soup some facets at a time, so that readers need not store it.
+/// A welder that accepts a triangle soup in portions, so that readers need not store it.
 ///
-/// Besides the mesh it needs 10.7 to 21.4 bytes for each vertex of the mesh (32 for a moment when it grows),
-/// or that for as many vertices as were expected.
+/// Besides the mesh it needs 10.7 to 21.4 bytes for each vertex of the mesh (briefly 32 when it grows), or
+/// for each of the expected number of vertices.
 pub(crate) struct FacetWelder {
     places: Places,
     vertices: Vec<[f64; 3]>,
@@ -45,9 +46,10 @@ pub(crate) struct FacetWelder {
 }
 
 impl FacetWelder {
-    /// A welder with room for about `facets` facets; `facets` must be backed by data that exists.
+    /// Makes a welder with room for about `facets` facets. The data of that many facets must exist.
     pub fn with_capacity(facets: usize) -> Result<Self, Error> {
-        // A closed mesh has about half as many vertices as triangles; a soup that welds worse makes it grow.
+        // A closed mesh has about half as many vertices as triangles. A soup with more vertices makes the
+        // table grow.
         let vertices = facets / 2 + facets / 16;
         let mut welder = Self {
             places: Places::with_capacity(vertices)?,
@@ -93,7 +95,7 @@ impl FacetWelder {
         Ok(())
     }
 
-    /// The mesh of all facets added.
+    /// Returns the mesh of all added facets.
     pub fn finish(self) -> TriangleMesh {
         let welded = self.facets * 3 - self.vertices.len() as u64;
         let degenerate = self.facets - self.triangles.len() as u64;
@@ -123,7 +125,7 @@ mod tests {
     use super::*;
     use alloc::collections::BTreeMap;
 
-    /// Positions that come again near by, far away, within one batch, and never.
+    /// Positions that recur near by, far away, within one batch, and never.
     fn positions(count: u32) -> impl Iterator<Item = [f64; 3]> {
         (0..count).map(move |i| {
             let i = match i % 7 {

@@ -1,4 +1,4 @@
-//! What the arguments of a call are.
+//! Evaluation of the arguments of a call.
 
 use alloc::format;
 use alloc::string::String;
@@ -12,7 +12,7 @@ use crate::memory;
 /// A call with its arguments in the order of its parameters.
 pub(super) struct Given<'a, const N: usize> {
     tree: &'a Tree<'a>,
-    /// Where the call is.
+    /// The byte offset of the call.
     at: usize,
     names: [&'static str; N],
     fineness: [Option<f64>; 3],
@@ -21,9 +21,9 @@ pub(super) struct Given<'a, const N: usize> {
 }
 
 impl<'a, const N: usize> Given<'a, N> {
-    /// Arguments without a name are for the parameters in order. Those `ignored` have no effect on a shape,
-    /// nor have those whose names begin with `$`, but for the three that say how fine curves are drawn; all
-    /// others must be parameters.
+    /// Assigns arguments to parameters. Arguments without a name are assigned in order. All others must be
+    /// parameters, with two exceptions that have no effect on a shape: names in `ignored`, and names that
+    /// begin with `$`, except for the three that control the fineness of curves.
     pub fn new(
         tree: &'a Tree<'a>,
         call: &Call<'a>,
@@ -66,12 +66,12 @@ impl<'a, const N: usize> Given<'a, N> {
         Ok(Given { tree, at: call.at, names, fineness, values })
     }
 
-    /// `$fn`, `$fa` and `$fs`, as far as they are given.
+    /// Returns `$fn`, `$fa` and `$fs`, each if it is given.
     pub fn fineness(&self) -> [Option<f64>; 3] {
         self.fineness
     }
 
-    /// The value of a parameter that has no default.
+    /// Returns the value of a parameter that has no default.
     pub fn required(&self, parameter: usize) -> Result<Item<'a>, Error> {
         self.optional(parameter)
             .ok_or_else(|| self.tree.fault(self.at, format!("`{}` is missing", self.names[parameter])))
@@ -108,14 +108,14 @@ impl<'a> Item<'a> {
 
     pub fn number(&self) -> Result<f64, Error> {
         match self.kind() {
-            // No negative zeros.
+            // Negative zero becomes zero.
             Kind::Number(number) if is_moderate(number) => Ok(number + 0.0),
             Kind::Number(_) => Err(self.fault(IMMODERATE)),
             _ => Err(self.fault("expected a number")),
         }
     }
 
-    /// A number that counts or names something.
+    /// Returns a whole number from 0, such as a count or an index.
     pub fn index(&self) -> Result<u32, Error> {
         match self.kind() {
             Kind::Number(number) if number >= 0.0 && number <= u32::MAX.into() && number % 1.0 == 0.0 => {
@@ -136,7 +136,7 @@ impl<'a> Item<'a> {
         matches!(self.kind(), Kind::List(_))
     }
 
-    /// A text, its escape sequences replaced.
+    /// Returns a text with its escape sequences replaced.
     pub fn text(&self) -> Result<String, Error> {
         let Kind::Text(raw) = self.kind() else { return Err(self.fault("expected a text in quotes")) };
         let mut text = String::new();
@@ -161,14 +161,14 @@ impl<'a> Item<'a> {
         Ok(text)
     }
 
-    /// The items of a list of any length.
+    /// Returns the items of a list of any length.
     pub fn items(&self) -> Result<impl Iterator<Item = Item<'a>> + use<'a>, Error> {
         let Kind::List(end) = self.kind() else { return Err(self.fault("expected a list")) };
         let tree = self.tree;
         Ok(tree.items(self.value, end).map(move |value| Item { tree, value }))
     }
 
-    /// The items of a list of this length.
+    /// Returns the items of a list of this length.
     pub fn list<const N: usize>(&self) -> Result<[Item<'a>; N], Error> {
         let mut list = [*self; N];
         let mut count = 0;
@@ -181,7 +181,7 @@ impl<'a> Item<'a> {
         if count == N { Ok(list) } else { Err(self.fault(format!("expected {N} items, found {count}"))) }
     }
 
-    /// A list of this many numbers.
+    /// Returns a list of this many numbers.
     pub fn numbers<const N: usize>(&self) -> Result<[f64; N], Error> {
         let mut numbers = [0.0; N];
         for (number, item) in numbers.iter_mut().zip(self.list::<N>()?) {
@@ -190,7 +190,7 @@ impl<'a> Item<'a> {
         Ok(numbers)
     }
 
-    /// A list of points.
+    /// Returns a list of points.
     pub fn points<const N: usize>(&self) -> Result<Vec<[f64; N]>, Error> {
         let mut points = Vec::new();
         for item in self.items()? {
@@ -199,7 +199,7 @@ impl<'a> Item<'a> {
         Ok(points)
     }
 
-    /// A list of indices of points, of which there are `count`.
+    /// Returns a list of indices of `count` points.
     pub fn indices(&self, count: usize) -> Result<Vec<u32>, Error> {
         let mut indices = Vec::new();
         for item in self.items()? {

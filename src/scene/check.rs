@@ -1,4 +1,4 @@
-//! From calls to shapes.
+//! Converts calls to shapes.
 
 use alloc::boxed::Box;
 use alloc::format;
@@ -19,52 +19,52 @@ use crate::memory;
 use crate::mesh::FillRule;
 use crate::solid::{Csg, Fan, Figure, HalfSpace, cos_degrees, sin_degrees, wedge};
 
-/// What makes up CSG dumps and has no counterpart here.
+/// Calls of CSG dumps that are not supported.
 const REFUSED: [&str; 9] =
     ["hull", "minkowski", "text", "projection", "offset", "resize", "surface", "roof", "fill"];
 
 /// The least number of sides that is refused.
 const MANY: u32 = MOST_SIDES + 1;
 
-/// What a call stands for.
+/// The result of a call.
 pub(super) enum Shape {
-    /// Neither a solid nor a figure: a group without anything in it.
+    /// Neither a solid nor a figure: a group without content.
     Nothing,
     Figure(Box<Figure>),
-    /// Index of a node.
+    /// A solid, by the index of its node.
     Solid(usize),
 }
 
 /// A call whose block is being read.
 struct Open {
     call: usize,
-    /// The first of the results that are in its block.
+    /// The first of the results in its block.
     first: usize,
 }
 
-/// Shapes from a tree of calls.
+/// A converter from a tree of calls to shapes.
 pub(super) struct Checker<'a> {
     pub(super) tree: &'a Tree<'a>,
     pub(super) files: Files<'a>,
     facets: Facets,
     pub(super) report: SceneReport,
-    /// Where the latest mesh is.
+    /// The place of the latest mesh.
     pub(super) cursor: Cursor,
     nodes: Vec<Node>,
-    /// What the calls stand for that are not part of a larger shape yet, and where they are.
+    /// The results of calls that are not yet part of a larger shape, with their places.
     results: Vec<(usize, Shape)>,
 }
 
 /// The files that a scene may name.
 #[derive(Clone, Copy)]
 pub(super) struct Files<'a> {
-    /// Where they are looked for.
+    /// The folder in which they are looked for.
     pub folder: Option<&'a Path>,
-    /// Most bytes of one.
+    /// Maximum number of bytes of a file.
     pub max_bytes: Option<u64>,
 }
 
-/// The scene of a whole text.
+/// Returns the scene of a whole text.
 pub(super) fn check(tree: &Tree<'_>, files: Files<'_>, facets: Facets) -> Result<Scene, Error> {
     let (report, cursor, nodes, results) =
         (SceneReport::default(), Cursor::default(), Vec::new(), Vec::new());
@@ -100,7 +100,7 @@ impl Checker<'_> {
         self.tree.fault(call.at, format!("`{}` {problem}", call.name))
     }
 
-    /// Says where an argument was found wrong that is so only together with others.
+    /// Adds the place of a call to an error about a combination of arguments.
     fn at<T>(&self, call: &Call<'_>, result: Result<T, Error>) -> Result<T, Error> {
         result.map_err(|error| match error {
             Error::OutOfMemory => error,
@@ -113,14 +113,14 @@ impl Checker<'_> {
         Ok(Shape::Solid(self.nodes.len() - 1))
     }
 
-    /// What the call stands for, of which the results from `first` on are the block.
+    /// Returns the shape of a call whose block consists of the results from `first` on.
     fn shape(&mut self, call: &Call<'_>, first: usize) -> Result<Shape, Error> {
         if REFUSED.contains(&call.name) {
             return Err(self.fault(call, "is not supported"));
         }
         let shape = match call.name {
             "group" | "union" | "render" | "color" => {
-                // No argument of these has an effect on a shape.
+                // No argument of these calls has an effect on a shape.
                 self.union(first)
             }
             "intersection" => self.intersection(call, first),
@@ -162,7 +162,7 @@ impl Checker<'_> {
                 self.node(solid)
             }
         }?;
-        // Operations have taken what is in their blocks.
+        // Operations have consumed the results in their blocks.
         match self.results.get(first) {
             Some(&(place, _)) => Err(self.tree.fault(place, format!("`{}` has no block", call.name))),
             None => Ok(shape),
@@ -180,7 +180,7 @@ enum Operands {
 }
 
 impl Checker<'_> {
-    /// The results from `first` on, those that are nothing at all left out.
+    /// Returns the results from `first` on, without those that are nothing at all.
     fn operands(&mut self, first: usize) -> Result<Operands, Error> {
         let (mut figures, mut solids) = (Vec::new(), Vec::new());
         for (at, shape) in self.results.drain(first..) {
@@ -214,7 +214,8 @@ impl Checker<'_> {
         }
     }
 
-    /// Whether a part of an intersection, or what a difference is taken from, is nothing.
+    /// Returns whether any of some operands is nothing: parts of an intersection, or the minuend of a
+    /// difference.
     fn has_nothing(&self, mut parts: impl Iterator<Item = usize>) -> bool {
         parts.any(|part| matches!(self.results[part].1, Shape::Nothing))
     }
@@ -248,7 +249,7 @@ impl Checker<'_> {
         Given::new(self.tree, call, [], &[]).map(|_| ())
     }
 
-    /// The figure that a block consists of.
+    /// Returns the figure that a block consists of.
     fn figure(&mut self, call: &Call<'_>, first: usize) -> Result<Option<Figure>, Error> {
         match self.union(first)? {
             Shape::Nothing => Ok(None),
@@ -274,7 +275,7 @@ impl Checker<'_> {
         }
         let Some(figure) = self.figure(call, first)? else { return Ok(Shape::Nothing) };
         let [low, high] = heights(height, is_centred);
-        // As in OpenSCAD, nothing is extruded downwards, and negative scales are 0.
+        // As in OpenSCAD, an extrusion downwards is empty, and negative scales are 0.
         let scale = scale.map(|scale| scale.max(0.0));
         if low >= high || direction[2] <= 0.0 {
             return self.node(Node::Solid(Csg::empty()));
@@ -304,7 +305,7 @@ impl Checker<'_> {
                 } else if angle == 0.0 {
                     Csg::empty()
                 } else {
-                    // A figure on the other side of the axis starts half a turn further on.
+                    // A figure on the other side of the axis starts half a turn later.
                     let from = if figure.is_mirrored() { start + 180.0 } else { start };
                     let wedge = wedge(from + angle.min(0.0), angle.abs());
                     Csg::intersection_of([solid, self.at(call, wedge)?])?
@@ -314,8 +315,8 @@ impl Checker<'_> {
         self.node(Node::Solid(solid))
     }
 
-    /// What `rotate_extrude` makes of a figure if it is drawn as a polygon; notes which. Figures with curves
-    /// are turned exactly.
+    /// Returns the result of `rotate_extrude` for a figure, if it is drawn as a polyhedron, and counts it in
+    /// the report. Figures with curves are rotated exactly.
     fn turned(
         &mut self,
         call: &Call<'_>,
@@ -327,7 +328,7 @@ impl Checker<'_> {
         let fan = match self.sides(call, given, figure.reach())? {
             Some(_) if figure.has_curves()? => None,
             Some(sides) if angle <= -360.0 || angle >= 360.0 => {
-                // A whole turn starts on the other side, unless it is said where.
+                // A whole turn starts on the other side, unless a start is given.
                 Fan::regular(if given.optional(1).is_some() { start } else { 180.0 }, sides)?
             }
             Some(sides) => {
@@ -351,12 +352,12 @@ impl From<Figure> for Shape {
 
 // ---- figures and solids -----------------------------------------------------------------------------------
 
-/// From 0 up, or half of it on both sides.
+/// Returns the range from 0 to `height`, or, if centred, half of it on both sides of 0.
 fn heights(height: f64, is_centred: bool) -> [f64; 2] {
     if is_centred { [-height / 2.0, height / 2.0] } else { [0.0, height] }
 }
 
-/// The sides of a box along each axis, and whether it is centred.
+/// Returns the range of a box along each axis, from its size and whether it is centred.
 fn sides<const N: usize>(given: &Given<'_, 2>) -> Result<[[f64; 2]; N], Error> {
     let size = match given.optional(0) {
         None => [1.0; N],
@@ -376,8 +377,8 @@ impl Checker<'_> {
         Ok(self.at(call, Figure::rectangle([x[0], y[0]], [x[1], y[1]]))?.into())
     }
 
-    /// With how many sides a curved call is to be drawn, which has a circle of this radius; `None` if it is
-    /// exact.
+    /// Returns the number of sides with which a curved call with a circle of this radius is drawn; `None` if
+    /// the circle is exact.
     fn sides<const N: usize>(
         &self,
         call: &Call<'_>,
@@ -391,7 +392,8 @@ impl Checker<'_> {
         }
     }
 
-    /// The regular polygon in place of a curved call's circle, if it is drawn so; notes which.
+    /// Returns the regular polygon in place of a curved call's circle, if it is drawn as one, and counts it
+    /// in the report.
     fn fan<const N: usize>(
         &mut self,
         call: &Call<'_>,
@@ -434,7 +436,7 @@ impl Checker<'_> {
             })
         };
         let Some(paths) = given.optional(1) else {
-            // As in OpenSCAD, fewer points are nothing.
+            // As in OpenSCAD, fewer than three points are nothing.
             return Ok((if points.len() < 3 { Figure::nothing() } else { figure(&item, &points)? }).into());
         };
         let mut outlines = Vec::new();
@@ -443,7 +445,7 @@ impl Checker<'_> {
             let outline = memory::collected(indices.iter().map(|&index| points[index as usize]))?;
             memory::push(&mut outlines, figure(&path, &outline)?)?;
         }
-        // Outlines within outlines are holes, and islands within those.
+        // Outlines within outlines are holes, and outlines within holes are islands.
         Ok(Figure::xor_of(outlines)?.into())
     }
 

@@ -1,4 +1,4 @@
-//! Is a text a scene?
+//! Detection of scenes among texts.
 
 use super::grammar::first_call;
 
@@ -42,8 +42,9 @@ const CALLS: [&str; 36] = [
     "fill",
 ];
 
-/// Whether a file with these bytes looks like a scene: behind blanks, comments and modifiers, it begins with
-/// a call of the language. (An empty scene does not tell.) O(blanks and comments at the beginning).
+/// Returns whether a file with these bytes looks like a scene: after blanks, comments and modifiers, it
+/// begins with a call of the language. (An empty scene is not recognised.) O(blanks and comments at the
+/// beginning).
 pub fn is_scene(bytes: &[u8]) -> bool {
     let text = match core::str::from_utf8(bytes) {
         Ok(text) => text,

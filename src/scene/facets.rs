@@ -1,25 +1,26 @@
-//! Circles as polygons.
+//! Approximation of circles by polygons.
 
-/// Which circles, cylinders, balls and solids of revolution are drawn as polygons, prisms and polyhedra.
+/// The choice of circles, cylinders, balls and solids of revolution that are drawn as polygons, prisms and
+/// polyhedra.
 ///
-/// OpenSCAD draws all of them so, with as many sides as `$fn` says, or else `$fa` and `$fs`. Where `$fn` is
-/// small, the prism is meant: a hexagonal nut is a cylinder with `$fn = 6`. Where it is large, the circle is
-/// meant.
+/// OpenSCAD draws all of them as such, with `$fn` sides, or else with a number that depends on `$fa` and
+/// `$fs`. If `$fn` is small, the author means a prism: a hexagonal nut is a cylinder with `$fn = 6`. If `$fn`
+/// is large, the author means a circle.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Default)]
 pub enum Facets {
-    /// Polygons where `$fn` is given and not more than 12; all others are exact.
+    /// Polygons if `$fn` is given and at most 12; all others are exact.
     #[default]
     Auto,
-    /// None: circles are round.
+    /// No polygons: circles are round.
     Exact,
-    /// All, with as many sides as OpenSCAD gives them. A polygon has 1024 sides at most.
+    /// Polygons always, with as many sides as in OpenSCAD, at most 1024.
     Polygon,
 }
 
-/// The largest `$fn` that means a polygon, and no circle.
+/// The largest `$fn` that means a polygon and not a circle.
 const MOST_MEANT: u32 = 12;
 
-/// Sides of a polygon.
+/// Maximum number of sides of a polygon.
 pub(super) const MOST_SIDES: u32 = 1024;
 
 /// `$fn`, `$fa` and `$fs` of a call.
@@ -31,13 +32,13 @@ pub(super) struct Fineness {
 }
 
 impl Fineness {
-    /// What is not given is as in OpenSCAD.
+    /// Makes the fineness; missing values have the defaults of OpenSCAD.
     pub fn new([count, angle, size]: [Option<f64>; 3]) -> Fineness {
         let positive = |given: Option<f64>, default| given.unwrap_or(default).max(0.01);
         Fineness { count: count.unwrap_or(0.0), angle: positive(angle, 12.0), size: positive(size, 2.0) }
     }
 
-    /// With how many sides OpenSCAD draws a circle.
+    /// Returns the number of sides with which OpenSCAD draws a circle.
     fn sides(&self, radius: f64) -> u32 {
         if radius < 1e-6 || !self.count.is_finite() {
             3
@@ -49,7 +50,7 @@ impl Fineness {
         }
     }
 
-    /// With how many sides a circle is to be drawn; `None` if it is to be exact.
+    /// Returns the number of sides with which to draw a circle; `None` if it is exact.
     pub fn drawn(&self, facets: Facets, radius: f64) -> Option<u32> {
         let sides = self.sides(radius);
         let is_meant = self.count != 0.0 && sides <= MOST_MEANT;

@@ -16,15 +16,15 @@ use crate::mesh::{FillRule, TriangleMesh};
 use crate::solid::MeshSolid;
 
 impl Checker<'_> {
-    /// What `read` makes of the file that is named in the text.
+    /// Calls `read` with the path of the file that is named in the text.
     fn read<T>(&self, file: &Item<'_>, read: impl FnOnce(&Path) -> Result<T, Error>) -> Result<T, Error> {
         let name = file.text()?;
         let Some(folder) = self.files.folder else {
             return Err(file.fault("files cannot be read by this scene, which has no folder"));
         };
         let path = folder.join(&name);
-        // What is no file may have no end, and opening a pipe may wait for ever. (What cannot be asked is
-        // told below.)
+        // A special file may have no end, and opening a pipe may wait for ever. (If the metadata cannot be
+        // read, reading reports the error below.)
         if let Ok(metadata) = std::fs::metadata(&path) {
             if !metadata.is_file() {
                 return Err(file.fault(format!("{name}: is no regular file")));
@@ -40,7 +40,7 @@ impl Checker<'_> {
         })
     }
 
-    /// `deviation` is that of the true boundary from the mesh.
+    /// Reads the mesh of a file. `deviation` is the maximum distance of the true boundary from it.
     pub(super) fn mesh(
         &mut self,
         call: &Call<'_>,
@@ -55,7 +55,7 @@ impl Checker<'_> {
         if read.mesh.triangles().is_empty() {
             return Err(file.fault(format!("{}", MeshError::Empty)));
         }
-        // Files have hair cracks, because their coordinates are rounded.
+        // Meshes in files have hair cracks, because their coordinates are rounded.
         let mut mesh = read.mesh.sewn()?;
         if let Some(item) = deviation {
             mesh = mesh
@@ -93,7 +93,7 @@ impl Checker<'_> {
         Ok(Node::Octree(Box::new(self.read(&file, |path| crate::file::open(path))?)))
     }
 
-    /// A mesh, of which the report is kept.
+    /// Makes a solid of a mesh, and keeps the mesh's report.
     pub(super) fn solid_mesh(
         &mut self,
         call: &Call<'_>,

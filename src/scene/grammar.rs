@@ -1,7 +1,7 @@
 //! The grammar of CSG dumps.
 //!
-//! Words, numbers, texts and the heads of calls are parsers of the crate `winnow`. What may be nested, calls
-//! in blocks and lists in lists, is kept in tables here, so that no nesting is too deep for the stack.
+//! Words, numbers, texts and the heads of calls are parsers of the crate `winnow`. Nested structures, calls
+//! in blocks and lists in lists, are kept in tables, so that deep nesting cannot overflow the stack.
 
 use alloc::format;
 use alloc::string::String;
@@ -17,7 +17,7 @@ use winnow::token::{any, one_of, take_till, take_until, take_while};
 use crate::error::{Error, SceneError};
 use crate::memory;
 
-/// A parsed text: its calls, each before those in its block.
+/// A parsed text: its calls, each before the calls in its block.
 pub(super) struct Tree<'t> {
     pub text: &'t str,
     pub calls: Vec<Call<'t>>,
@@ -27,13 +27,13 @@ pub(super) struct Tree<'t> {
 
 /// A call with its block.
 pub(super) struct Call<'t> {
-    /// Bytes of the text before it.
+    /// Number of bytes of the text before it.
     pub at: usize,
     pub name: &'t str,
     pub arguments: Range<usize>,
-    /// Index of the first call that is not in its block.
+    /// Index of the first call after its block.
     pub end: usize,
-    /// Whether a modifier takes it out of the scene.
+    /// True if a modifier removes it from the scene.
     pub is_ignored: bool,
 }
 
@@ -45,7 +45,7 @@ pub(super) struct Argument<'t> {
     pub value: usize,
 }
 
-/// A value; what is in a list follows it.
+/// A value. The items of a list follow the list.
 pub(super) struct Value<'t> {
     pub at: usize,
     pub kind: Kind<'t>,
@@ -58,23 +58,23 @@ pub(super) enum Kind<'t> {
     Number(f64),
     /// A text between its quotes, with its escape sequences.
     Text(&'t str),
-    /// Ends before the value of this index.
+    /// A list, which ends before the value with this index.
     List(usize),
 }
 
-/// The error that something is wrong `at` so many bytes from the beginning of a text.
+/// Makes the error that something is wrong at the byte offset `at` of a text.
 pub(super) fn fault(text: &str, at: usize, problem: impl Into<String>) -> Error {
     SceneError::new(place(text, at), problem.into()).into()
 }
 
-/// Line and column, counted from 1, of a place in a text.
+/// Returns line and column, counted from 1, of a place in a text.
 fn place(text: &str, at: usize) -> (u64, u64) {
     let mut cursor = Cursor::default();
     cursor.advance(text, at);
     (cursor.line, cursor.column)
 }
 
-/// A place in a text that moves forward only.
+/// A place in a text that only moves forward.
 pub(super) struct Cursor {
     at: usize,
     pub line: u64,
@@ -88,7 +88,7 @@ impl Default for Cursor {
 }
 
 impl Cursor {
-    /// Moves to a place that is not before this one. O(distance).
+    /// Moves to a place that is not before the current one. O(distance).
     pub fn advance(&mut self, text: &str, to: usize) {
         for c in text.get(self.at..to).unwrap_or_default().chars() {
             match c {
@@ -103,7 +103,7 @@ impl Cursor {
 
 const BYTE_ORDER_MARK: char = '\u{FEFF}';
 
-/// A name as it is shown in an error.
+/// Returns a name as an error shows it.
 pub(super) fn shown(name: &str) -> String {
     match name.char_indices().nth(40) {
         None => format!("`{name}`"),
@@ -113,7 +113,7 @@ pub(super) fn shown(name: &str) -> String {
 
 type Parsed<O> = Result<O, EmptyError>;
 
-/// White space and comments.
+/// Parses white space and comments.
 fn space(input: &mut &str) -> Parsed<()> {
     let comment = (("/*", take_until(0.., "*/")), "*/");
     repeat(0.., alt((multispace1.void(), ("//", till_line_ending).void(), comment.void()))).parse_next(input)
@@ -149,7 +149,7 @@ fn text<'t>(input: &mut &'t str) -> Parsed<&'t str> {
     delimited('"', pieces.take(), '"').parse_next(input)
 }
 
-/// A value that is no list.
+/// Parses a value that is no list.
 fn scalar<'t>(input: &mut &'t str) -> Parsed<Kind<'t>> {
     let word = name.verify_map(|word| match word {
         "undef" => Some(Kind::Undefined),
@@ -160,17 +160,17 @@ fn scalar<'t>(input: &mut &'t str) -> Parsed<Kind<'t>> {
     alt((number.map(Kind::Number), text.map(Kind::Text), word)).parse_next(input)
 }
 
-/// The name of an argument.
+/// Parses the name of an argument.
 fn label<'t>(input: &mut &'t str) -> Parsed<&'t str> {
     terminated(name, preceded(space, '=')).parse_next(input)
 }
 
-/// What stands before a call and changes what it means.
+/// Parses the modifiers before a call.
 fn modifiers<'t>(input: &mut &'t str) -> Parsed<&'t str> {
     take_while(0.., ['%', '#', '*', '!']).parse_next(input)
 }
 
-/// A text of which the beginning has been taken.
+/// A partly consumed text.
 struct Reader<'t> {
     text: &'t str,
     rest: &'t str,
@@ -181,7 +181,7 @@ impl<'t> Reader<'t> {
         self.text.len() - self.rest.len()
     }
 
-    /// Takes what `parser` accepts, and the space behind it.
+    /// Takes the text that `parser` accepts, and the space after it.
     fn take<O>(&mut self, parser: impl Parser<&'t str, O, EmptyError>) -> Option<O> {
         let mut rest = self.rest;
         let taken = terminated(parser, space).parse_next(&mut rest).ok()?;
@@ -204,7 +204,7 @@ impl<'t> Reader<'t> {
     }
 }
 
-/// The name of the first call, if the text begins with one.
+/// Returns the name of the first call, if the text begins with one.
 pub(super) fn first_call(text: &str) -> Option<&str> {
     let rest = text.strip_prefix(BYTE_ORDER_MARK).unwrap_or(text);
     let mut reader = Reader { text, rest };
@@ -217,7 +217,7 @@ pub(super) fn first_call(text: &str) -> Option<&str> {
 /// A call whose block has begun.
 struct Open {
     call: usize,
-    /// Whether the block is in braces, and no single call.
+    /// True if the block is in braces, false if it is a single call.
     is_braced: bool,
 }
 
@@ -252,7 +252,8 @@ pub(super) fn parse(text: &str) -> Result<Tree<'_>, Error> {
             !has_block
         };
         if is_ended {
-            // The block of the innermost call ends, and with it all that consist of a single call.
+            // The block of the innermost call ends, and with it all surrounding blocks that consist of a
+            // single call.
             let end = tree.calls.len();
             let mut ended = open.pop();
             while let Some(block) = ended {
@@ -263,7 +264,7 @@ pub(super) fn parse(text: &str) -> Result<Tree<'_>, Error> {
     }
 }
 
-/// Takes a call up to its closing parenthesis.
+/// Parses a call up to its closing parenthesis.
 fn head<'t>(reader: &mut Reader<'t>, tree: &mut Tree<'t>, expected: &str) -> Result<(), Error> {
     let start = reader.at();
     let modifiers = reader.take(modifiers).unwrap_or_default();
@@ -288,7 +289,7 @@ fn head<'t>(reader: &mut Reader<'t>, tree: &mut Tree<'t>, expected: &str) -> Res
     memory::push(&mut tree.calls, Call { at, name, arguments, end: 0, is_ignored })
 }
 
-/// Takes a value with all that is in it.
+/// Parses a value with everything in it.
 fn values<'t>(reader: &mut Reader<'t>, values: &mut Vec<Value<'t>>) -> Result<(), Error> {
     let mut lists: Vec<usize> = Vec::new();
     loop {
@@ -300,7 +301,7 @@ fn values<'t>(reader: &mut Reader<'t>, values: &mut Vec<Value<'t>>) -> Result<()
             let kind = reader.expect(scalar, "a number, a list, a text in quotes, true, false or undef")?;
             memory::push(values, Value { at, kind })?;
         }
-        // Behind a value: the end of lists, or the next item of one.
+        // After a value: the ends of lists, or the next item of a list.
         let mut is_after_item = !matches!(values.last(), Some(Value { kind: Kind::List(0), .. }));
         loop {
             let Some(&list) = lists.last() else { return Ok(()) };
@@ -319,12 +320,12 @@ fn values<'t>(reader: &mut Reader<'t>, values: &mut Vec<Value<'t>>) -> Result<()
 }
 
 impl Tree<'_> {
-    /// The error that something is wrong at a place.
+    /// Makes the error that something is wrong at a place.
     pub fn fault(&self, at: usize, problem: impl Into<String>) -> Error {
         fault(self.text, at, problem)
     }
 
-    /// Indices of the items of a list that ends before the value `end`.
+    /// Returns the indices of the items of a list that ends before the value `end`.
     pub fn items(&self, list: usize, end: usize) -> impl Iterator<Item = usize> {
         core::iter::successors(Some(list + 1), |&item| {
             Some(match self.values.get(item)?.kind {

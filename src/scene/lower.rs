@@ -1,4 +1,4 @@
-//! From scenes to solids.
+//! Converts scenes to solids.
 
 use alloc::vec::Vec;
 
@@ -8,16 +8,16 @@ use crate::lattice::{Affine, Bounds, Frame};
 use crate::memory;
 use crate::solid::{AnySolid, Csg, Solid, Transform};
 
-/// Of a box, the lower and the upper one.
+/// The lower and the upper corner of a box.
 type Corners = ([f64; 3], [f64; 3]);
 
-/// Matrices around each other that a mesh or an octree may be under; each has to be applied to all that it
-/// contains.
+/// Maximum number of nested matrices around a mesh or an octree; each has to be applied to everything inside
+/// of it.
 const MOST_NESTED: usize = 256;
 
 impl Scene {
-    /// A box (lower and upper corner) that holds the solid, if one is known; an empty scene has none. It may
-    /// be larger than the solid.
+    /// Returns a box (lower and upper corner) that contains the solid, if one is known; `None` for an empty
+    /// scene. The box may be larger than the solid.
     ///
     /// # Errors
     /// [`Error::OutOfMemory`].
@@ -25,25 +25,27 @@ impl Scene {
         Ok(self.lower(None)?.bounds().map(|Bounds { min, max }| (min, max)))
     }
 
-    /// Whether the scene is known to be empty: there is nothing in it, or what is intersected lies apart.
+    /// Returns whether the scene is known to be empty: it has no content, or the parts of an intersection lie
+    /// apart.
     ///
     /// # Errors
-    /// As [`bounds`](Self::bounds).
+    /// The errors of [`bounds`](Self::bounds).
     pub fn is_empty(&self) -> Result<bool, Error> {
         Ok(self.lower(None)?.is_known_empty())
     }
 
-    /// The solid, to be asked on this frame. Solids of scenes without octrees can be asked on any.
+    /// Returns the solid for use on this frame. The solid of a scene without octrees can be used on any
+    /// frame.
     ///
-    /// Octrees that are placed, or lie on another frame, blur by about a cell: see [`Transform`].
+    /// Octrees that are placed, or that lie on another frame, blur by about a cell: see [`Transform`].
     ///
     /// # Errors
-    /// As [`MeshSolid::new`](crate::MeshSolid::new) and [`Csg::placed`]; [`Error::OutOfMemory`].
+    /// The errors of [`MeshSolid::new`](crate::MeshSolid::new) and [`Csg::placed`]; [`Error::OutOfMemory`].
     pub fn solid(&self, frame: &Frame) -> Result<Csg, Error> {
         self.lower(Some(frame))
     }
 
-    /// The scene moved as a whole.
+    /// Returns the scene moved as a whole.
     ///
     /// # Errors
     /// [`Error::OutOfMemory`].
@@ -54,9 +56,9 @@ impl Scene {
         Ok(self)
     }
 
-    /// The solid; without a frame boxes take the place of meshes and octrees.
+    /// Returns the solid; without a frame, boxes replace meshes and octrees.
     fn lower(&self, frame: Option<&Frame>) -> Result<Csg, Error> {
-        // Of each node the solid, and how many matrices its meshes and octrees are under, if it has any.
+        // For each node the solid, and the number of matrices around its meshes and octrees, if it has any.
         let mut solids: Vec<(Csg, Option<usize>)> = memory::with_capacity(self.nodes.len())?;
         for node in &self.nodes {
             let part = |part: &usize| solids[*part].0.clone();
@@ -85,7 +87,7 @@ impl Scene {
     }
 }
 
-/// A mesh or an octree; without a frame a stand-in, of which only the bounds count.
+/// Returns the solid of a mesh or an octree; without a frame a substitute with the right bounds.
 fn leaf(node: &Node, frame: Option<&Frame>) -> Result<Csg, Error> {
     let Some(frame) = frame else {
         let Some(Bounds { min, max }) = (match node {
@@ -95,7 +97,7 @@ fn leaf(node: &Node, frame: Option<&Frame>) -> Result<Csg, Error> {
         }) else {
             return Ok(Csg::everything());
         };
-        // (Bounds of the complement are not known.)
+        // (Bounds of the complement are unknown.)
         return Ok(Csg::half_space([1.0, 0.0, 0.0], 0.0)?.within(min, max));
     };
     Ok(Csg::solid(match node {

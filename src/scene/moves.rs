@@ -1,4 +1,4 @@
-//! Calls that move their blocks: matrices, and what OpenSCAD's own language says instead.
+//! Calls that move their blocks: matrices, and the corresponding calls of OpenSCAD's own language.
 
 use alloc::format;
 
@@ -45,21 +45,21 @@ impl Checker<'_> {
         )
     }
 
-    /// The mirror image in the plane through the origin that is normal to a vector; nothing is mirrored in
-    /// that of no vector.
+    /// Returns the mirror image in the plane through the origin that is normal to a vector; the zero vector
+    /// mirrors nothing.
     pub(super) fn mirror(&mut self, call: &Call<'_>, first: usize) -> Result<Shape, Error> {
         let normal = Given::new(self.tree, call, ["v"], &[])?.required(0)?;
         let n = components(&normal, 0.0)?;
         let longest = n.iter().fold(0.0, |longest: f64, c| longest.max(c.abs()));
-        // The factor of each entry is divided last, so that planes of two equal axes swap these exactly.
+        // The division is last in each entry, so that planes of two equal axes swap these exactly.
         let n = n.map(|c| if longest > 0.0 { c / longest } else { 0.0 });
         let square = n.iter().map(|c| c * c).sum::<f64>().max(f64::MIN_POSITIVE);
         let entry = |i: usize, j: usize| f64::from(u8::from(i == j)) - 2.0 * (n[i] * n[j]) / square;
         self.moved(&normal, linear([0, 1, 2].map(|i| [0, 1, 2].map(|j| entry(i, j)))), first)
     }
 
-    /// Turned by an angle about an axis, which is z unless it is given; or about x, then y, then z, each by
-    /// its own angle.
+    /// Rotates by an angle about an axis, which is z by default; or about x, then y, then z, each by its own
+    /// angle.
     pub(super) fn rotate(&mut self, call: &Call<'_>, first: usize) -> Result<Shape, Error> {
         let given = Given::new(self.tree, call, ["a", "v"], &[])?;
         let angle = given.required(0)?;
@@ -74,19 +74,19 @@ impl Checker<'_> {
         self.moved(&angle, linear(turn), first)
     }
 
-    /// What is in the block under a map that the `argument` describes.
+    /// Returns the block moved by a map that the `argument` describes.
     fn moved(&mut self, argument: &Item<'_>, [x, y, z]: Rows, first: usize) -> Result<Shape, Error> {
         match self.union(first)? {
             Shape::Nothing => Ok(Shape::Nothing),
             Shape::Figure(figure) => {
-                // Of a figure only what happens in its plane counts.
+                // For a figure only the map within its plane counts.
                 let rows = [[x[0], x[1], x[3]], [y[0], y[1], y[3]]];
                 figure.placed(rows).map(Shape::from).map_err(|error| argument.fault(format!("{error}")))
             }
             Shape::Solid(node) => match Affine::new([x, y, z]) {
                 Ok(placement) if placement.is_identity() => Ok(Shape::Solid(node)),
                 Ok(placement) => self.node(Node::Placed(node, placement)),
-                // A solid that is pressed flat is nothing.
+                // A solid that is flattened is empty.
                 Err(_) if is_singular([x, y, z]) => self.node(Node::Solid(Csg::empty())),
                 Err(error) => Err(argument.fault(format!("{error}"))),
             },
@@ -94,12 +94,12 @@ impl Checker<'_> {
     }
 }
 
-/// Whether a matrix of finite numbers maps space onto a plane, a line or a point.
+/// Returns whether a matrix of finite numbers maps space onto a plane, a line or a point.
 fn is_singular(rows: Rows) -> bool {
     matches!(Affine::new(rows), Err(Error::Argument { problem: Affine::SINGULAR, .. }))
 }
 
-/// A vector of three numbers, or of two in the plane; `rest` is then the third one.
+/// Returns a vector of three numbers, or of two in the plane; `rest` is then the third one.
 fn components(vector: &Item<'_>, rest: f64) -> Result<[f64; 3], Error> {
     if vector.items()?.count() == 2 {
         let [x, y] = vector.numbers()?;
@@ -108,12 +108,12 @@ fn components(vector: &Item<'_>, rest: f64) -> Result<[f64; 3], Error> {
     vector.numbers()
 }
 
-/// A map that leaves the origin where it is.
+/// Returns a map that keeps the origin fixed.
 fn linear(matrix: [[f64; 3]; 3]) -> Rows {
     matrix.map(|[x, y, z]| [x, y, z, 0.0])
 }
 
-/// The turn about an axis through the origin; about none, which is the vector of zeros, nothing is turned.
+/// Returns the rotation about an axis through the origin; the zero vector as an axis rotates nothing.
 fn about(axis: [f64; 3], degrees: f64) -> [[f64; 3]; 3] {
     let longest = axis.iter().fold(0.0, |longest: f64, c| longest.max(c.abs()));
     let [x, y, z] = axis.map(|c| if longest > 0.0 { c / longest } else { 0.0 });

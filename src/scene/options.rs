@@ -1,4 +1,4 @@
-//! How scenes are read.
+//! Options for reading scenes.
 
 use std::path::Path;
 
@@ -7,7 +7,7 @@ use super::{Scene, check, grammar};
 use crate::error::Error;
 use crate::exchange::read_whole;
 
-/// How a scene is to be read.
+/// Options for reading a scene.
 ///
 /// ```
 /// use leafless::scene::{Facets, SceneOptions, read_scene};
@@ -20,26 +20,27 @@ use crate::exchange::read_whole;
 #[non_exhaustive]
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 pub struct SceneOptions {
-    /// Which curved calls are drawn as polygons.
+    /// The curved calls that are drawn as polygons.
     pub facets: Facets,
-    /// Refuse files that the scene names and that are longer than this many bytes; `None` means no limit.
+    /// Maximum number of bytes of a file that the scene names; longer files are refused. `None` means no
+    /// limit.
     pub max_bytes: Option<u64>,
 }
 
 impl SceneOptions {
-    /// The defaults, but for which curved calls are drawn as polygons.
+    /// Returns the defaults with this choice of curved calls that are drawn as polygons.
     pub fn with_facets(facets: Facets) -> SceneOptions {
         SceneOptions { facets, ..SceneOptions::default() }
     }
 
-    /// Reads a scene from its text, in UTF-8. Files that it names are looked for in `folder`; without one
-    /// they are refused, and so are pipes and devices, which may have no end.
+    /// Reads a scene from its text, in UTF-8. Files that it names are looked for in `folder`. Without a
+    /// folder they are refused; pipes and devices, which may have no end, are always refused.
     ///
-    /// O(text) for what is exact, times the sides of polygons, and the files.
+    /// O(text) for exact shapes, times the number of sides for polygons, plus the files.
     ///
     /// # Errors
-    /// [`SceneError`](crate::error::SceneError) with line and column for whatever is wrong with the text or a
-    /// file that it names; [`Error::OutOfMemory`].
+    /// [`SceneError`](crate::error::SceneError) with line and column for any problem in the text or in a file
+    /// that it names; [`Error::OutOfMemory`].
     pub fn read(&self, text: impl AsRef<[u8]>, folder: Option<&Path>) -> Result<Scene, Error> {
         let bytes = text.as_ref();
         let text = core::str::from_utf8(bytes).map_err(|error| {
@@ -50,12 +51,12 @@ impl SceneOptions {
         check::check(&grammar::parse(text)?, files, self.facets)
     }
 
-    /// Reads a scene from a file. Files that it names are looked for beside it.
+    /// Reads a scene from a file. Files that it names are looked for in the same folder.
     ///
     /// # Errors
-    /// [`Error::File`] with the path and one of these causes: as [`read`](Self::read), or [`Error::Io`] if
-    /// the file itself cannot be read, [`Error::Limit`] if it is a pipe that goes on after 1 GiB;
-    /// [`Error::OutOfMemory`].
+    /// [`Error::File`] with the path and one of these causes: the errors of [`read`](Self::read);
+    /// [`Error::Io`] if the file itself cannot be read; [`Error::Limit`] if it is a pipe with more than 1
+    /// GiB; [`Error::OutOfMemory`].
     pub fn open(&self, path: impl AsRef<Path>) -> Result<Scene, Error> {
         let path = path.as_ref();
         let folder = path.parent().unwrap_or(Path::new(""));
@@ -64,18 +65,18 @@ impl SceneOptions {
     }
 }
 
-/// [`SceneOptions::read`] with the default options.
+/// Reads a scene from its text with the default options ([`SceneOptions::read`]).
 ///
 /// # Errors
-/// As [`SceneOptions::read`].
+/// The errors of [`SceneOptions::read`].
 pub fn read_scene(text: impl AsRef<[u8]>, folder: Option<&Path>) -> Result<Scene, Error> {
     SceneOptions::default().read(text, folder)
 }
 
-/// [`SceneOptions::open`] with the default options.
+/// Reads a scene from a file with the default options ([`SceneOptions::open`]).
 ///
 /// # Errors
-/// As [`SceneOptions::open`].
+/// The errors of [`SceneOptions::open`].
 pub fn open_scene(path: impl AsRef<Path>) -> Result<Scene, Error> {
     SceneOptions::default().open(path)
 }

@@ -1,21 +1,21 @@
-//! What is told about a scene.
+//! Reports about scenes.
 
 use alloc::string::String;
 use alloc::vec::Vec;
 
 use crate::mesh::MeshReport;
 
-/// What was found while a scene was read: how its curves were drawn, what was left out of account, and what
-/// its meshes are like.
+/// The findings of reading a scene: how its curves are drawn, what is ignored, and the properties of its
+/// meshes.
 #[derive(Debug, Clone, Default)]
 pub struct SceneReport {
-    /// Calls of `circle`, `sphere`, `cylinder` and `rotate_extrude` that were drawn as polygons.
+    /// Number of calls of `circle`, `sphere`, `cylinder` and `rotate_extrude` that are drawn as polygons.
     pub polygons: u64,
-    /// Calls of these that are exact. OpenSCAD draws them as polygons.
+    /// Number of these calls that are exact. OpenSCAD draws them as polygons.
     pub exact: u64,
-    /// Calls of `linear_extrude` of which `slices` has no effect though it has one in OpenSCAD: the scales
-    /// along x and y differ, and the sides are the curved ones that OpenSCAD comes closer to with more
-    /// slices.
+    /// Number of calls of `linear_extrude` whose `slices` has an effect in OpenSCAD but none here: the scales
+    /// along x and y differ, and the sides are the curved surfaces that OpenSCAD approximates better with
+    /// more slices.
     pub ignored_slices: u64,
     /// The meshes and polyhedra that have triangles, in the order of the text.
     pub meshes: Vec<SceneMesh>,
@@ -30,8 +30,8 @@ pub struct SceneMesh {
     pub column: u64,
     /// The file as the text names it; empty for a polyhedron.
     pub file: String,
-    /// What was found while the mesh was taken in, as for a mesh file.
+    /// The findings of building the mesh, as for a mesh file.
     pub report: MeshReport,
-    /// Facets that face the other way than most facets of their body.
+    /// Number of facets that face the other way than most facets of their body.
     pub turned: u64,
 }

@@ -1,4 +1,4 @@
-//! Elements in ASCII.
+//! ASCII elements of a PLY.
 
 use alloc::vec::Vec;
 
@@ -20,7 +20,7 @@ impl Source for Text<'_> {
     }
 
     fn at_most(&self, values: usize, _: usize) -> usize {
-        // Behind each value but the last one stands something.
+        // Each value but the last is followed by a separator.
         self.rest().len().div_ceil(2) / values.max(1)
     }
 
@@ -201,11 +201,11 @@ mod tests {
         assert_eq!(warnings_of(with("", " 255 0 0 "), 1e-3), more(14, 4));
         assert_eq!(warnings_of(with(" .5 -1e3 7", " 0"), 1e-3), more(10, 8));
         assert_eq!(warnings_of(with(" 1", "").replace('\n', "\r\n"), 1e-3), more(10, 4));
-        // Not as many on every line, or no numbers: then nobody knows what is what.
+        // Different numbers of additional values, or no numbers: then the meaning of the values is ambiguous.
         assert_syntax(with(" 255", "").replacen("255", "255 0", 1), 11, "end of the line");
         assert_syntax(with(" 255", "").replacen("0 255", "0", 1), 11, "end of the line");
         assert_syntax(with(" red", ""), 10, "end of the line");
-        // A value of the line before that went missing.
+        // A value of the line before is missing.
         assert_syntax(with("", "").replacen("0 0 0\n", "0 0\n", 1), 11, "end of the line");
         let text = MeshWarning::MoreValues { line: 10, lines: 4 }.to_string();
         assert_eq!(

@@ -1,4 +1,4 @@
-//! Binary elements of both byte orders.
+//! Binary elements of a PLY, in both byte orders.
 
 use alloc::vec::Vec;
 
@@ -8,7 +8,7 @@ use super::source::Source;
 use crate::error::{Error, MeshFileError};
 use crate::exchange::bytes::Bytes;
 
-/// Adds the indices that `items` are, which come next in `source`.
+/// Adds the indices `items`, which are next in `source`.
 #[inline]
 fn read_indices<const BIG: bool, const N: usize>(
     source: &Bytes<BIG>,
@@ -163,7 +163,7 @@ mod tests {
                     other => panic!("{other:?}"),
                 }
             }
-            // Counts that the file does not hold.
+            // Counts that exceed the file.
             for name in ["vertex", "face"] {
                 let (header, data) = bytes.split_at(start);
                 let header = core::str::from_utf8(header).unwrap();

@@ -1,4 +1,4 @@
-//! The elements of a file, and the mesh that they make.
+//! The elements of a PLY, and the mesh made from them.
 
 use alloc::vec::Vec;
 
@@ -35,7 +35,7 @@ pub(super) fn read_elements<S: Source>(
     for element in elements {
         let steps = steps(element, &mut palette.declared, warnings)?;
         let least = least(element);
-        // At most the count, hence no overflow.
+        // At most the count, so there is no overflow.
         let present = (source.at_most(least.0, least.1) as u64).min(element.count) as usize;
         match element.name {
             b"vertex" => mesh.reserve(present, 0)?,

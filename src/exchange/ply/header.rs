@@ -1,4 +1,4 @@
-//! The header: the encoding, and which elements with which properties there are.
+//! The header of a PLY: the encoding, and the elements with their properties.
 
 use alloc::vec::Vec;
 
@@ -18,13 +18,13 @@ pub(super) enum Encoding {
 
 pub(super) struct Property<'a> {
     pub name: &'a [u8],
-    /// Of a list the type of its length.
+    /// The type of the length, for a list.
     pub count: Option<NumberKind>,
     pub kind: NumberKind,
 }
 
 pub(super) struct Element<'a> {
-    /// Where the header names it.
+    /// The place in the header that names the element.
     pub at: Text<'a>,
     pub name: &'a [u8],
     pub count: u64,
@@ -36,7 +36,7 @@ pub(super) struct Header<'a> {
     pub elements: Vec<Element<'a>>,
     /// Attributes that comments announce.
     pub declared: Vec<Declared<'a>>,
-    /// Bytes.
+    /// Length of the header in bytes.
     pub length: usize,
 }
 
@@ -44,10 +44,10 @@ impl<'a> Header<'a> {
     pub fn read(bytes: &'a [u8], warnings: &mut Vec<MeshWarning>) -> Result<Self, Error> {
         let mut text = Text::beginning(bytes);
         if text.word() != b"ply" {
-            return Err(Text::beginning(bytes).error("`ply`, with which every PLY file begins").into());
+            return Err(Text::beginning(bytes).error("`ply` at the beginning of a PLY file").into());
         }
         text.skip_blanks();
-        // Where lines end with a CR alone, an LF behind the header is part of the data.
+        // If lines end with CR alone, an LF after the header is part of the data.
         let old = matches!(text.rest(), [b'\r', next, ..] if *next != b'\n');
         end_line(&mut text)?;
         let mut encoding = None;
@@ -94,7 +94,7 @@ impl<'a> Header<'a> {
                     memory::push(&mut element.properties, property)?;
                 }
                 b"end_header" => break,
-                // No property can be lost before the first element.
+                // Before the first element, no property can be lost.
                 word if !word.is_empty()
                     && !is_keyword(word)
                     && elements.is_empty()
@@ -135,7 +135,7 @@ const PROPERTY: &str =
     "`property`, a type and a name, or `property list`, two types (first an integer) and a name";
 
 impl<'a> Property<'a> {
-    /// Reads what follows `property`.
+    /// Reads the text after `property`.
     fn read(text: &mut Text<'a>) -> Option<Self> {
         let mut word = || {
             text.skip_blanks();
@@ -246,7 +246,7 @@ mod tests {
         assert_syntax(&ascii[..ascii.find("at x").unwrap()], 4, "`property`");
         assert_syntax(&ascii[..ascii.find(" 1.0").unwrap()], 2, "a format");
         assert_syntax("ply\nformat ascii 1.0\n", 2, "`end_header`");
-        // Nothing to read is not wrong.
+        // A file with no elements is valid.
         assert_eq!(read_ply(b"ply\nformat ascii 1.0\nend_header").unwrap().triangles().len(), 0);
     }
 
@@ -261,7 +261,7 @@ mod tests {
             let two = format!("{line}comment a\n{line}");
             assert_eq!(warnings_of(with(&two), 0.125), [MeshWarning::HeaderLine { line: 3, lines: 2 }]);
         }
-        // Behind an element it may be a property that is spelt in a new way.
+        // After an element, it may be a property with a new spelling.
         assert_syntax(
             ascii().replacen(XYZ, &format!("{XYZ}propertz float a\n"), 1),
             7,

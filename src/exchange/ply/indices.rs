@@ -1,4 +1,4 @@
-//! Lists of indices: faces, and strips of triangles.
+//! Lists of indices in a PLY: faces, and strips of triangles.
 
 use super::number_kind::NumberKind;
 use crate::error::Error;
@@ -12,10 +12,10 @@ pub(super) struct Indices {
     pub strips: bool,
 }
 
-/// What ends a strip. No mesh has so many vertices.
+/// The marker that ends a strip. No mesh has that many vertices.
 const END_OF_STRIP: u32 = u32::MAX;
 
-/// The index as it is stored, if it is one.
+/// Returns the vertex index to store, if the number is valid.
 #[inline]
 pub(super) fn vertex(index: i64, of: &Indices, vertices: u64) -> Option<u32> {
     match u32::try_from(index) {
@@ -51,7 +51,7 @@ mod tests {
 
     #[test]
     fn strips() {
-        // A tetrahedron of two strips, and the same one of a strip with a turn.
+        // A tetrahedron of two strips, and the same tetrahedron of one strip with a turn.
         for (strips, expected) in [
             (vec![vec![vec![0., 2., 1., 3., -1., 2., 0., 3.]]], vec![[0, 2, 1], [1, 2, 3], [2, 0, 3]]),
             (

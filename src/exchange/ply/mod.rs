@@ -1,34 +1,34 @@
-//! PLY files: ASCII and binary of both byte orders.
+//! PLY files, ASCII and binary of both byte orders: reader.
 //!
 //! **Header.** `ply`, one `format` (`ascii`, `binary_little_endian` or `binary_big_endian`, version 1.0),
 //! elements with their properties, and `end_header`. `comment` and `obj_info` may stand on any line between.
-//! Lines end with LF, CR or both. Other lines before the first element are taken for comments, with a
-//! warning: Blender 2.47 and Assimp 3.0 forgot the keyword. The types are `char`, `uchar`, `short`, `ushort`,
-//! `int`, `uint`, `float`, `double` and the same as `int8` to `float64`. A keyword or a type that is none of
-//! these is refused.
+//! Lines end with LF, CR or both. Other lines before the first element count as comments, with a warning:
+//! Blender 2.47 and Assimp 3.0 forgot the keyword. The types are `char`, `uchar`, `short`, `ushort`, `int`,
+//! `uint`, `float`, `double` and their synonyms `int8` to `float64`. Any other keyword or type is refused.
 //!
 //! **Colours.** Vertices and faces may have the properties `red`, `green` and `blue`, and `alpha`; or
 //! `diffuse_red` and so on. Integers are from 0 to 255, but `ushort` from 0 to 65 535, and floating point
-//! numbers from 0 to 1. The colour of an element that has another number, or no number, is left out, with a
+//! numbers from 0 to 1. If an element has a number out of range, or no number, its colour is left out, with a
 //! warning.
 //!
-//! **Attributes** of faces that this library wrote are announced by comments of the header (`declared`).
+//! **Attributes** of faces that this library wrote are announced by comments in the header (`declared`).
 //!
-//! **Elements** come in any order; those of other names, and all properties that are not needed, single ones
-//! and lists, are skipped. `vertex` needs `x`, `y` and `z` of any type. `face` needs a list of integers that
-//! is called `vertex_indices` or `vertex_index`, of three or more vertices each; without such a list, and
-//! with a warning, there may be none. `tristrips`, as the Stanford scans have it, needs a list of that name,
-//! in which -1 ends a strip; every second triangle is turned.
+//! **Elements** come in any order. Elements of other names, and all properties that are not needed, single
+//! ones and lists, are skipped. `vertex` needs `x`, `y` and `z` of any type. `face` needs a list of integers
+//! named `vertex_indices` or `vertex_index`, of three or more vertices each. Without such a list, the header
+//! must announce no faces, and there is a warning. `tristrips`, as in the Stanford scans, needs a list of
+//! that name, in which -1 ends a strip; every second triangle is reversed.
 //!
 //! **ASCII.** The values of an element are separated by white space, also by line ends; each element begins
 //! on a new line. If the first element of a kind has more values on its line than the header announces, these
-//! are skipped, with a warning; then every element of the kind must have as many. A decimal coordinate
+//! are skipped, with a warning; every element of the kind must then have as many. A decimal coordinate
 //! becomes the nearest `f64`, also if its type is `float`.
 //!
-//! **Binary.** Coordinates are taken over exactly.
+//! **Binary.** Coordinates are read exactly.
 //!
-//! **The end.** Behind the last element only white space, zero bytes and Ctrl-Z may follow: if there is more,
-//! the header's counts are wrong. Nothing is allocated that a header claims and a file does not hold.
+//! **The end.** Only white space, zero bytes and Ctrl-Z may follow the last element: if there is more, the
+//! header's counts are wrong. Nothing is allocated for data that a header claims and the file does not
+//! contain.
 
 mod ascii;
 mod binary;
@@ -54,15 +54,15 @@ use header::{Encoding, Header};
 
 /// Reads a PLY file, ASCII or binary.
 ///
-/// Triangles keep the order of the faces. A face of more than three corners is cut into triangles that do not
-/// leave it; only where that cannot be, because its edges cross or it has no area, into the fan around its
-/// first corner. Equal vertices are welded, and triangles that two equal vertices make degenerate are dropped
-/// and counted, as in [`TriangleMesh::new`]. The mesh need not be closed, and may be empty. Colours of
-/// vertices become the attribute `colour` of corners; colours of faces the attribute `colour` of triangles,
-/// or, if there are both, `face_colour`.
+/// Triangles keep the order of the faces. A face of more than three corners is triangulated within the face.
+/// If that is impossible, because its edges cross or it has no area, it becomes the fan around its first
+/// corner. Equal vertices are welded, and triangles that become degenerate by that are dropped and counted,
+/// as in [`TriangleMesh::new`]. The mesh need not be closed, and may be empty. Colours of vertices become the
+/// attribute `colour` of corners. Colours of faces become the attribute `colour` of triangles, or
+/// `face_colour` if vertices have colours as well.
 ///
 /// O(n), or O(n log n) for faces that are not convex. Memory is at most 128 times the length of the file,
-/// whatever its header claims. What [`read_mesh`](super::read_mesh) warns of is not told.
+/// whatever the header claims. The warnings of [`read_mesh`](super::read_mesh) are not reported.
 ///
 /// # Errors
 /// [`MeshFileError::Empty`], [`MeshFileError::Unsupported`] (UTF-16), [`MeshFileError::Syntax`] and
@@ -73,7 +73,7 @@ pub fn read_ply(bytes: &[u8]) -> Result<TriangleMesh, Error> {
     read(bytes, &mut Vec::new())
 }
 
-/// The same, with warnings.
+/// Reads a PLY file and adds warnings.
 pub(super) fn read(bytes: &[u8], warnings: &mut Vec<MeshWarning>) -> Result<TriangleMesh, Error> {
     if bytes.is_empty() {
         return Err(MeshFileError::Empty.into());

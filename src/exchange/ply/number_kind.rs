@@ -1,4 +1,4 @@
-//! The types of numbers that a header names.
+//! Number types that a PLY header names.
 
 /// The type of a number.
 #[derive(Clone, Copy, PartialEq)]
@@ -14,7 +14,7 @@ pub(super) enum NumberKind {
 }
 
 impl NumberKind {
-    /// The type with this name.
+    /// Returns the type with this name.
     pub fn of(name: &[u8]) -> Option<Self> {
         Some(match name {
             b"char" | b"int8" => Self::I8,
@@ -33,7 +33,7 @@ impl NumberKind {
         !matches!(self, Self::F32 | Self::F64)
     }
 
-    /// A channel of a colour, from 0 to 255, that is stored as this number.
+    /// Converts a colour channel of this type to the range from 0 to 255.
     #[inline]
     pub fn channel(self, value: f64) -> f64 {
         match self {
@@ -43,7 +43,7 @@ impl NumberKind {
         }
     }
 
-    /// Bytes of a binary number.
+    /// Returns the number of bytes of a binary number.
     #[inline]
     pub fn size(self) -> usize {
         match self {

@@ -1,4 +1,4 @@
-//! What the elements of a file say of colours.
+//! The colours and attributes of a PLY's elements.
 
 use alloc::vec::Vec;
 
@@ -8,14 +8,14 @@ use crate::exchange::declared::Declared;
 use crate::memory;
 use crate::mesh::MeshAttribute;
 
-/// What the elements of a file say of colours.
+/// The colours and attributes of a PLY's elements.
 #[derive(Default)]
 pub(super) struct Palette<'a> {
     pub vertices: Option<Colours>,
     pub faces: Option<Colours>,
-    /// The colour of each triangle, of faces that have one.
+    /// The colour of each triangle, for faces that have colours.
     pub rows: Vec<u32>,
-    /// Attributes of faces that are announced.
+    /// The announced attributes of faces.
     pub declared: Vec<Declared<'a>>,
 }
 
@@ -24,7 +24,7 @@ impl Palette<'_> {
         [&self.vertices, &self.faces].into_iter().flatten().map(|colours| colours.unreadable).sum()
     }
 
-    /// The attributes of triangles of these vertices.
+    /// Returns the attributes of triangles with these vertices.
     pub fn attributes(mut self, triangles: &[[u32; 3]]) -> Result<Vec<MeshAttribute>, Error> {
         let mut attributes = Vec::new();
         let face = if self.vertices.is_some() { "face_colour" } else { "colour" };

@@ -22,7 +22,7 @@ pub(super) fn ascii() -> String {
     header("ascii") + DATA
 }
 
-/// A number as bytes of the type with that name.
+/// Returns a number as bytes of the type with this name.
 pub(super) fn bytes_of(value: f64, kind: &str, big: bool) -> Vec<u8> {
     let mut bytes = match kind {
         "char" | "int8" => (value as i8).to_le_bytes().to_vec(),
@@ -43,7 +43,7 @@ pub(super) fn bytes_of(value: f64, kind: &str, big: bool) -> Vec<u8> {
 
 pub(super) const FORMATS: [&str; 3] = ["ascii", "binary_little_endian", "binary_big_endian"];
 
-/// Of elements of one kind the name, the properties as the header has them, and the values of each.
+/// Elements of one kind: the name, the properties as in the header, and the values of each element.
 pub(super) type Elements<'a> = (&'a str, &'a [&'a str], Vec<Vec<Vec<f64>>>);
 
 pub(super) fn file(format: &str, elements: &[Elements]) -> Vec<u8> {
@@ -75,7 +75,7 @@ pub(super) fn file(format: &str, elements: &[Elements]) -> Vec<u8> {
     bytes
 }
 
-/// Values of elements that have single ones.
+/// Values of elements without lists.
 pub(super) fn singles(rows: &[&[f64]]) -> Vec<Vec<Vec<f64>>> {
     rows.iter().map(|row| row.iter().map(|&value| vec![value]).collect()).collect()
 }
@@ -86,7 +86,7 @@ pub(super) fn faces() -> Vec<Vec<Vec<f64>>> {
 
 pub(super) const CORNERS: [&[f64]; 4] = [&[0., 0., 0.], &[1.5, 0., 0.], &[0., 2.25, 0.], &[0., 0., 0.125]];
 
-/// A tetrahedron with a height as it is given.
+/// A tetrahedron with the given height.
 #[track_caller]
 pub(super) fn assert_tetrahedron(bytes: impl AsRef<[u8]>, height: f64) {
     let mesh = read_ply(bytes.as_ref()).unwrap();
@@ -118,12 +118,12 @@ pub(super) fn plain(format: &str) -> Vec<u8> {
     file(format, &[("vertex", &FLOATS, singles(&CORNERS)), ("face", &INTS, faces())])
 }
 
-/// Bytes of the header of [`plain`].
+/// Returns the length of the header of [`plain`] in bytes.
 pub(super) fn header_length(bytes: &[u8]) -> usize {
     bytes.windows(11).position(|window| window == b"end_header\n").unwrap() + 11
 }
 
-/// What is warned of; the mesh is the tetrahedron.
+/// Returns the warnings for a file whose mesh is the tetrahedron.
 #[track_caller]
 pub(super) fn warnings_of(bytes: impl AsRef<[u8]>, height: f64) -> Vec<MeshWarning> {
     let mut warnings = vec![];

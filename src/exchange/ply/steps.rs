@@ -1,4 +1,4 @@
-//! How elements are read: which of their properties are needed, and what they mean.
+//! The steps for reading an element: the needed properties and their meaning.
 
 use alloc::vec::Vec;
 
@@ -10,7 +10,7 @@ use crate::exchange::MeshWarning;
 use crate::exchange::declared::{Declared, place_of};
 use crate::memory;
 
-/// How the next values of an element are read.
+/// A step of reading an element.
 pub(super) enum Step {
     /// Values that are skipped.
     Skip {
@@ -39,7 +39,7 @@ pub(super) enum Step {
     Indices(Indices),
 }
 
-/// How to read an element; no step if it has no properties.
+/// Returns the steps for an element; none if it has no properties.
 pub(super) fn steps(
     element: &Element,
     declared: &mut [Declared<'_>],
@@ -101,8 +101,8 @@ pub(super) fn steps(
     Err(element.at.error(missing).into())
 }
 
-/// The properties of a vertex or face that are red, green, blue and alpha of its colour. If one of the first
-/// three is missing there is no colour.
+/// Returns the properties of a vertex or face that are red, green, blue and alpha of its colour. If one of
+/// the first three is missing there is no colour.
 fn channels(element: &Element) -> [Option<usize>; 4] {
     let find = |name: &[u8]| {
         let is_it = |property: &Property| property.name == name && property.count.is_none();
@@ -122,7 +122,7 @@ fn channels(element: &Element) -> [Option<usize>; 4] {
     }
 }
 
-/// The least number of values of an element that can be read, and of their bytes.
+/// Returns the least number of values of a readable element, and of their bytes.
 pub(super) fn least(element: &Element) -> (usize, usize) {
     let of = |property: &Property| match property.count {
         None => (1, property.kind.size()),

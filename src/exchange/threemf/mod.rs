@@ -1,45 +1,46 @@
-//! 3MF packages: the core specification 1.x and its draft 0.93, and the production extension's parts of
-//! models.
+//! 3MF packages: reader of the core specification 1.x, of its draft 0.93, and of the model parts of the
+//! production extension.
 //!
-//! **The way in.** A package is a ZIP archive (stored or DEFLATE). `_rels/.rels` must lead to one 3D model,
-//! and `[Content_Types].xml` must be there and not call it something else. Components and items of the build
-//! may refer to objects in other model parts by the production extension's `path`, from the root model only.
+//! **Finding the model.** A package is a ZIP archive (stored or DEFLATE). `_rels/.rels` must lead to one 3D
+//! model, and `[Content_Types].xml` must exist and not declare another type for the model. Components and
+//! build items may refer to objects in other model parts by the production extension's `path`, from the root
+//! model only.
 //!
-//! **What is built.** The items of the build in the root model, each an object that is a mesh or consists of
+//! **Built objects.** The build items of the root model are objects. An object is a mesh, or consists of
 //! placed components, which are objects again. All their triangles become one mesh in the unit of the root
-//! model. An object that is reached several times stands there several times. A transform that mirrors also
-//! turns the triangles round, so that a volume keeps its sign. Objects of all types but `model` (`support`,
-//! `solidsupport`, `surface`, and `other`, which a build should not reach, but slicers put their modifiers
-//! there) are left out, and counted; the type of an object of components has no meaning. Objects that the
-//! build does not reach are not built. Textures and triangle sets are ignored, all metadata but the deviation
-//! that this library writes, and so are extensions that the model does not require. The fill rule of 3MF is
+//! model. An object that is reached several times is built several times. A transform that mirrors also
+//! reverses the triangles, so that a volume keeps its sign. Objects of all types but `model` are left out and
+//! counted: `support`, `solidsupport`, `surface`, and `other`, which a build should not reach, but slicers
+//! use it for their modifiers. The type of an object of components has no meaning. Objects that the build
+//! does not reach are not built. Textures, triangle sets, all metadata but the deviation that this library
+//! writes, and extensions that the model does not require are ignored. The fill rule of 3MF is
 //! `FillRule::Positive` for each object, and the union of the objects: the mesh as a whole differs from that
-//! only where an object that is inside out overlaps another one.
+//! only where an inverted object overlaps another one.
 //!
 //! **Properties.** Base materials and colour groups become attributes of the mesh: `colour` and `material`. A
-//! triangle has the properties that it refers to, or else those of its object, wherever the object is placed.
-//! A group is one of the part in which it is referred to. Base materials are not mixed: that of the first
-//! corner counts. Groups of other kinds (textures, composites, multiproperties) are not read. Of what is not
-//! there, or is no colour, a triangle has nothing, and the caller is told how many there are. If several
-//! objects are built, `object` tells which one a triangle belongs to.
+//! triangle has the properties to which it refers, or else the properties of its object, wherever the object
+//! is placed. A reference means a group of the same part. Base materials are not mixed: the material of
+//! the first corner counts. Groups of other kinds (textures, composites, multiproperties) are not read. If a
+//! property does not exist, or is no colour, the triangle has none, and a warning counts these triangles. If
+//! several objects are built, `object` is the number of each triangle's object.
 //!
 //! **The draft 0.93** has a namespace of its own. Its relationship and content types, its objects, components
-//! and items are those of 1.0; its colours, materials and textures are ignored like others. The caller is
-//! told, for a warning.
+//! and items are those of 1.0; its colours, materials and textures are ignored like other unknown elements. A
+//! warning reports the draft.
 //!
 //! **Text** is UTF-8, or UTF-16 with a byte order mark.
 //!
-//! **What is refused.** Damaged archives, parts that are encrypted, packages with keys for protected content,
-//! models that require an extension other than production, materials and triangle sets; document type
-//! declarations, other encodings, attributes that stand twice in an element of any part; objects that are
-//! referred to before they are defined (which makes circles impossible) or defined twice, meshes that only
-//! stand for something finer (`lowres`, `obfuscated`), models without a build, indices of vertices that do
-//! not exist, numbers that are not finite.
+//! **Refused packages and models.** Damaged archives, encrypted parts, packages with keys for protected
+//! content, models that require an extension other than production, materials and triangle sets; document
+//! type declarations, other encodings, duplicate attributes in an element of any part; objects that are used
+//! before they are defined (which makes cycles impossible) or defined twice, meshes that only stand for
+//! something finer (`lowres`, `obfuscated`), models without a build, indices of vertices that do not exist,
+//! numbers that are not finite.
 //!
-//! **Memory.** Decompressed, the parts that are read may together be 64 times as long as the file and 16 MiB;
-//! what is read of them takes at most twenty times their length (of meshes three times). Instances may come
-//! to 2^25 vertices and 2^25 triangles, or to as many as the file has, and be made of 2^24 placements.
-//! Nothing is recursive.
+//! **Memory.** The decompressed parts may together be 64 times as long as the file plus 16 MiB. The data that
+//! is read from them takes at most twenty times their length (for meshes three times). Instances may have up
+//! to 2^25 vertices and 2^25 triangles altogether, or as many as the file has, and may be made of 2^24
+//! placements. Nothing is recursive.
 
 pub(super) mod model;
 mod package;
@@ -59,18 +60,18 @@ use crate::error::{Error, MeshError};
 use crate::memory;
 use crate::mesh::{MeshAttribute, TriangleMesh};
 
-/// Vertices and triangles that instances may come to.
+/// Maximum number of vertices, and of triangles, of all instances.
 const MAX_BUILT: u64 = 1 << 25;
-/// Placements that may be walked through.
+/// Maximum number of placements that are visited.
 const MAX_PLACED: u64 = 1 << 24;
 
-/// What a package builds.
+/// The result of building a package.
 pub(super) struct Built {
     pub mesh: TriangleMesh,
     pub unit: LengthUnit,
-    /// Instances of objects that are no solids.
+    /// Number of instances of objects that are no solids.
     pub skipped: u64,
-    /// How far the true boundary may lie from the mesh, if the root model says so.
+    /// Maximum distance of the true boundary from the mesh, if the root model states it.
     pub deviation: Option<f64>,
 }
 
@@ -81,7 +82,7 @@ pub(super) fn read(bytes: &[u8], warnings: &mut Vec<MeshWarning>) -> Result<Buil
     let text = package.text(root)?;
     let mut models = Models::default();
     let unit = models.read(&package, root, &text, true)?;
-    // What was found to be wrong in the root model when it had been read.
+    // An error in the root model that is found after it was read.
     let error = |package: &Package, component: &Component, problem: &str| {
         xml::error_at(&package.name(root), &text.text, component.offset, problem)
     };
@@ -115,7 +116,7 @@ pub(super) fn read(bytes: &[u8], warnings: &mut Vec<MeshWarning>) -> Result<Buil
     Ok(Built { mesh, unit, skipped: sum.skipped, deviation: models.deviation })
 }
 
-/// Reads the parts that the root model refers to, and replaces references to them by places of objects.
+/// Reads the parts to which the root model refers, and replaces references to them by numbers of objects.
 fn resolve(
     models: &mut Models,
     package: &mut Package,
@@ -156,12 +157,12 @@ fn resolve(
     Ok(())
 }
 
-/// What one instance of an object comes to.
+/// The size of one instance of an object.
 #[derive(Debug, Clone, Copy, Default)]
 struct Total {
     vertices: u64,
     triangles: u64,
-    /// Placements that a walk through it meets.
+    /// Number of placements in a walk through it.
     placed: u64,
     skipped: u64,
     reaches_unknown: bool,
@@ -177,7 +178,8 @@ impl Total {
     }
 }
 
-/// The totals of all objects. Those of the root model come first in the list, but refer to the others.
+/// Returns the sizes of all objects. The objects of the root model come first in the list, but refer to the
+/// others.
 fn totals_of_objects(models: &Models, own: usize) -> Result<Vec<Total>, Error> {
     let count = models.objects.len();
     let mut totals = memory::filled(count, Total::default())?;
@@ -196,14 +198,14 @@ fn totals_of_objects(models: &Models, own: usize) -> Result<Vec<Total>, Error> {
                 (total.vertices, total.triangles) = (vertices.len() as u64, triangles.len() as u64);
             }
         }
-        // Nobody walks where nothing is.
+        // A walk does not enter objects without triangles.
         total.placed = if total.triangles > 0 { total.placed.saturating_add(1) } else { 0 };
         totals[index] = total;
     }
     Ok(totals)
 }
 
-/// The total of what a component places, once its target is resolved.
+/// Returns the size of the target of a component, once it is resolved.
 fn target(totals: &[Total], component: &Component) -> Total {
     match component.target {
         Target::Object(object) => totals.get(object as usize).copied().unwrap_or_default(),
@@ -211,9 +213,9 @@ fn target(totals: &[Total], component: &Component) -> Total {
     }
 }
 
-/// The objects that triangles belong to, numbered in the order in which they are first placed.
+/// The objects of triangles, numbered in the order in which they are first placed.
 struct Places {
-    /// Of each object its number, or that it has none yet.
+    /// The number of each object, or a mark that it has none yet.
     numbers: Vec<u32>,
     /// The objects that have numbers.
     placed: Vec<u32>,
@@ -237,7 +239,7 @@ impl Places {
         Ok(())
     }
 
-    /// The attribute, if there are several objects.
+    /// Returns the attribute, if there are several objects.
     fn attribute(self, models: &Models) -> Result<Option<MeshAttribute>, Error> {
         if self.placed.len() < 2 {
             return Ok(None);
@@ -250,7 +252,7 @@ impl Places {
     }
 }
 
-/// All triangles of the build.
+/// Builds all triangles.
 fn build(
     models: &Models,
     totals: &[Total],
@@ -271,7 +273,7 @@ fn build(
     let mut properties = BuiltProperties::new(&models.properties, triangle_count)?;
     let several = models.objects.iter().filter(|object| matches!(object.shape, Shape::Mesh(..))).count() > 1;
     let mut places = Places::new(models.objects.len(), if several { triangle_count } else { 0 })?;
-    // Components that are yet to be placed, and what they are placed by; nested as the objects are.
+    // A stack of components to place, with their placements; nested as the objects are.
     let mut open = Vec::new();
     memory::push(&mut open, (models.items.iter(), Transform::IDENTITY))?;
     while let Some((components, placement)) = open.last_mut() {

@@ -1,4 +1,4 @@
-//! Model parts: objects of meshes or of components, and what of them is to be built.
+//! Model parts of a 3MF: objects of meshes or of components, and the build.
 
 use alloc::string::String;
 use alloc::vec::Vec;
@@ -14,51 +14,51 @@ use crate::error::Error;
 use crate::exchange::{LengthUnit, stated};
 use crate::memory;
 
-/// The name of metadata that tells how far the true boundary may lie from the mesh.
+/// The name of the metadata that states the maximum distance of the true boundary from the mesh.
 pub(in crate::exchange) const DEVIATION: &str = "leafless:deviation";
 
-/// What all model parts of a package hold.
+/// The contents of all model parts of a package.
 #[derive(Default)]
 pub(super) struct Models {
     pub vertices: Vec<[f64; 3]>,
-    /// Indices count from the beginning of the object's vertices.
+    /// Indices are relative to the object's first vertex.
     pub triangles: Vec<[u32; 3]>,
     pub components: Vec<Component>,
     pub objects: Vec<Object>,
-    /// What is to be built.
+    /// The build items.
     pub items: Vec<Component>,
     /// Objects by part and identifier.
     pub known: HashMap<(u32, u32), u32>,
-    /// What triangles may refer to, and do.
+    /// The properties, and the references of triangles to them.
     pub properties: Properties,
-    /// Whether a part is of the draft 0.93.
+    /// True if a part is of the draft 0.93.
     pub draft: bool,
-    /// What the root model says of how far the true boundary may lie from the mesh.
+    /// Maximum distance of the true boundary from the mesh, as the root model states it.
     pub deviation: Option<f64>,
 }
 
 pub(super) struct Object {
     pub purpose: Purpose,
     pub shape: Shape,
-    /// The part that it is in.
+    /// The part that contains the object.
     pub part: u32,
-    /// What its triangles have if they refer to nothing.
+    /// The property of triangles that refer to nothing.
     pub property: Reference,
-    /// Empty if it has none.
+    /// The name; empty if there is none.
     pub name: String,
 }
 
-/// What an object is meant for. Of objects of components it has no meaning.
+/// The purpose of an object. It has no meaning for objects of components.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(super) enum Purpose {
-    /// To be a solid.
+    /// A solid.
     Model,
-    /// To support one, to be a mere surface, or something else.
+    /// A support, a mere surface, or something else.
     Other,
 }
 
 pub(super) enum Shape {
-    /// Nothing that is known here.
+    /// Unknown content.
     Unknown,
     /// Ranges of vertices and triangles.
     Mesh(Range<usize>, Range<usize>),
@@ -66,24 +66,24 @@ pub(super) enum Shape {
     Components(Range<usize>),
 }
 
-/// An object that is placed in another one, or in the build.
+/// An object that is placed in another object, or in the build.
 #[derive(Clone, Copy)]
 pub(super) struct Component {
     pub target: Target,
     pub transform: Transform,
-    /// Where it stands in its part.
+    /// Its byte offset in its part.
     pub offset: usize,
 }
 
 #[derive(Clone, Copy)]
 pub(super) enum Target {
-    /// An object, by its place among all.
+    /// An object, by its number among all.
     Object(u32),
-    /// One in another part, by that part and its identifier there.
+    /// An object in another part, by the part and the identifier there.
     Elsewhere(u32, u32),
 }
 
-/// An element that has a meaning here.
+/// A known element.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 enum Node {
     Model,
@@ -96,12 +96,12 @@ enum Node {
     Triangles,
     Components,
     Build,
-    /// Whatever else. Its content is skipped.
+    /// Any other element. Its content is skipped.
     Skipped,
 }
 
 impl Models {
-    /// The place of an object among all.
+    /// Returns the number of an object among all.
     pub fn find(&self, part: u32, id: u32) -> Option<u32> {
         self.known.get(&(part, id)).copied()
     }
@@ -118,7 +118,7 @@ impl Models {
         let mut xml = Xml::new(&name, text);
         let mut unit = LengthUnit::Millimetre;
         let mut has_build = false;
-        // As deep as the reader allows.
+        // The reader limits the depth.
         let mut nodes = memory::with_capacity(64)?;
         while let Some(markup) = xml.next()? {
             let Markup::Start(element) = markup else {
@@ -230,7 +230,8 @@ impl Models {
                     };
                 }
                 ("", "name") => name = memory::text(&xml.name(attribute).unwrap_or_default())?,
-                // Of the slice and the production extension, which the model may not even require.
+                // An attribute of the slice or the production extension, which the model need not even
+                // require.
                 (_, "meshresolution" | "modelresolution") if attribute.value.trim_ascii() != "fullres" => {
                     return Err(xml.attribute_error(attribute, "says that the mesh is not the true shape"));
                 }
@@ -309,7 +310,8 @@ impl Models {
         Ok(())
     }
 
-    /// Of objects in the same part only the first `finished` of all may be referred to, hence no circles.
+    /// Reads a component. In the same part it may only refer to the first `finished` objects, so there are no
+    /// cycles.
     fn read_component(
         &self,
         xml: &Xml,
@@ -352,7 +354,7 @@ impl Models {
     }
 }
 
-/// The element around all others: the unit, and whether something is needed that is unknown here.
+/// Reads the root element: the unit, and whether it requires an unknown extension.
 fn read_model(xml: &Xml) -> Result<LengthUnit, Error> {
     let mut unit = LengthUnit::Millimetre;
     for attribute in xml.attributes() {

@@ -1,4 +1,4 @@
-//! The ZIP archive of a package and its parts, as the Open Packaging Conventions name them.
+//! The ZIP archive of a 3MF package and its parts, named according to the Open Packaging Conventions.
 
 use alloc::borrow::Cow;
 use alloc::string::String;
@@ -14,28 +14,28 @@ use super::xml::{Markup, Namespace, Text, Xml};
 use crate::error::{Error, PackageError};
 use crate::memory;
 
-/// How many times as long as the file its decompressed parts may be, together.
+/// Maximum ratio of the total length of the decompressed parts to the length of the file.
 const EXPANSION: u64 = 64;
-/// How much longer they may be whatever the file's length.
+/// Additional allowance for the decompressed parts, in bytes.
 const ALLOWANCE: u64 = 16 << 20;
-/// DEFLATE makes at most 258 bytes of two bits.
+/// DEFLATE expands two bits to at most 258 bytes.
 const DEFLATE_RATIO: u64 = 1032;
 
-/// Where the way into the package begins.
+/// The part that contains the package's relationships.
 const RELATIONSHIPS: &str = "_rels/.rels";
 const CONTENT_TYPES: &str = "[Content_Types].xml";
-/// The type of the relationship that leads to the model.
+/// The type of the relationship whose target is the model.
 const START_PART: &str = "http://schemas.microsoft.com/3dmanufacturing/2013/01/3dmodel";
-/// The type of the relationship that leads to the keys of protected content.
+/// The type of the relationship whose target is the keys of protected content.
 const KEY_STORE: &str = "http://schemas.microsoft.com/3dmanufacturing/2019/04/keystore";
 const MODEL_TYPE: &str = "application/vnd.ms-package.3dmanufacturing-3dmodel+xml";
 
 /// A package whose directory has been read.
 pub(super) struct Package<'a> {
     archive: ZipSliceArchive<&'a [u8]>,
-    /// Sorted by name, in which letter case does not count.
+    /// Sorted by name, ignoring letter case.
     entries: Vec<Entry<'a>>,
-    /// Bytes that may yet be decompressed.
+    /// Number of bytes that may still be decompressed.
     budget: u64,
 }
 
@@ -53,16 +53,16 @@ impl<'a> Package<'a> {
             |error: rawzip::Error| broken("", alloc::format!("the ZIP archive is damaged: {error}"));
         let archive = ZipArchive::from_slice(bytes).map_err(|error| {
             if is_markup(bytes) {
-                broken("", "this is plain XML: a 3MF is a ZIP archive, of which such a text is one part")
+                broken("", "this is plain XML, but a 3MF is a ZIP archive that contains such a text")
             } else {
                 damaged(error)
             }
         })?;
         let mut entries = Vec::new();
         let mut records = archive.entries();
-        // Every record is in the file, so there are not more than it has bytes.
+        // Every record is in the file, so the number of records is at most the file's length in bytes.
         while let Some(record) = records.next_entry().map_err(damaged)? {
-            // The archive is borrowed by the records, the names by the file.
+            // The records borrow the archive, the names borrow the file.
             let start = record.central_directory_offset() + CENTRAL_HEADER;
             let length = record.file_path().as_bytes().len();
             let name = usize::try_from(start).ok().and_then(|start| bytes.get(start..)?.get(..length));
@@ -87,7 +87,7 @@ impl<'a> Package<'a> {
         Ok(Self { archive, entries, budget })
     }
 
-    /// The part of this name, with or without a slash in front; anything that a URI may write for it.
+    /// Returns the part with this name, which may have a leading slash and URI escapes.
     pub fn find(&self, name: &str) -> Result<Option<u32>, Error> {
         let name = name.strip_prefix('/').unwrap_or(name);
         match self.position(name.as_bytes())? {
@@ -107,12 +107,12 @@ impl<'a> Package<'a> {
         u32::try_from(at).map(Some).map_err(|_| Error::OutOfMemory)
     }
 
-    /// The name of a part, for messages.
+    /// Returns the name of a part, for messages.
     pub fn name(&self, part: u32) -> Cow<'_, str> {
         self.entries.get(part as usize).map_or(Cow::Borrowed(""), |e| String::from_utf8_lossy(cut(e.name)))
     }
 
-    /// A part's text, decompressed and with its checksum verified.
+    /// Returns a part's text, decompressed, after verifying its checksum.
     pub fn text(&mut self, part: u32) -> Result<Text, Error> {
         Text::decode(self.bytes(part)?).map_err(|problem| match problem {
             Some(problem) => broken(&self.name(part), problem),
@@ -131,7 +131,7 @@ impl<'a> Package<'a> {
         let found = self.archive.get_entry(way);
         let found = found.map_err(|error| broken(&name, alloc::format!("is damaged: {error}")))?;
         let (data, length) = (found.data(), way.uncompressed_size_hint());
-        // What a header claims is believed as far as the data could make it true.
+        // The claim of a header is limited by the length of the data.
         let most = match method {
             CompressionMethod::STORE => data.len() as u64,
             _ => (data.len() as u64).saturating_mul(DEFLATE_RATIO),
@@ -164,7 +164,7 @@ impl<'a> Package<'a> {
         Ok(bytes)
     }
 
-    /// The part that holds the model: where the package's relationships lead.
+    /// Returns the part that contains the model: the target of the package's relationship.
     pub fn model(&mut self) -> Result<u32, Error> {
         let missing = |name| broken(name, "is missing, so this is no 3MF package");
         let types = self.find(CONTENT_TYPES)?.ok_or_else(|| missing(CONTENT_TYPES))?;
@@ -177,16 +177,16 @@ impl<'a> Package<'a> {
             Some(found) if !found.eq_ignore_ascii_case(MODEL_TYPE) => {
                 Err(broken(&target, "is declared to be something else than a 3D model"))
             }
-            // Some programs forget to declare it.
+            // Some programs do not declare it.
             _ => Ok(part),
         }
     }
 }
 
-/// Bytes of a record of the directory before the name.
+/// Number of bytes of a directory record before the name.
 const CENTRAL_HEADER: u64 = 46;
 
-/// The target of the one relationship that leads to a model.
+/// Returns the target of the only relationship that leads to a model.
 fn start_part(text: &Text) -> Result<String, Error> {
     let mut xml = Xml::new(RELATIONSHIPS, text);
     let mut target: Option<Cow<str>> = None;
@@ -226,7 +226,7 @@ fn start_part(text: &Text) -> Result<String, Error> {
     target.map(Cow::into_owned).ok_or_else(none)
 }
 
-/// The content type that the package declares for a part: by its name, or else by its extension.
+/// Returns the content type that the package declares for a part: by its name, or else by its extension.
 fn content_type<'a>(text: &'a Text, part: &str) -> Result<Option<Cow<'a, str>>, Error> {
     let mut xml = Xml::new(CONTENT_TYPES, text);
     let extension = part.rsplit_once('.').map_or("", |(_, extension)| extension);
@@ -260,17 +260,17 @@ fn content_type<'a>(text: &'a Text, part: &str) -> Result<Option<Cow<'a, str>>, 
     Ok(default)
 }
 
-/// Whether the first character is that of XML, in UTF-8 or UTF-16.
+/// Returns whether the first character is the beginning of XML, in UTF-8 or UTF-16.
 fn is_markup(bytes: &[u8]) -> bool {
-    // Byte order marks and the upper halves of UTF-16 before it.
+    // Skip byte order marks, and upper halves of UTF-16 characters.
     let mut start =
         bytes.iter().take(64).filter(|byte| !matches!(byte, 0 | 0xBB | 0xBF | 0xEF | 0xFE | 0xFF));
     start.find(|byte| !byte.is_ascii_whitespace()) == Some(&b'<')
 }
 
-/// Decompresses `data`, which must fill `bytes`. Whether it does.
+/// Decompresses `data`, which must fill `bytes` exactly. Returns whether it does.
 fn inflate(data: &[u8], bytes: &mut [u8]) -> Result<bool, Error> {
-    // It has 11 kB.
+    // The state has 11 kB.
     let mut state = memory::with_capacity(1)?;
     state.push(DecompressorOxide::new());
     let flags = TINFL_FLAG_USING_NON_WRAPPING_OUTPUT_BUF;
@@ -278,13 +278,13 @@ fn inflate(data: &[u8], bytes: &mut [u8]) -> Result<bool, Error> {
     Ok(status == TINFLStatus::Done && length == bytes.len())
 }
 
-/// Names of parts are the same if they differ in the case of ASCII letters only.
+/// Compares part names; names that differ only in the case of ASCII letters are equal.
 fn compare(a: &[u8], b: &[u8]) -> Ordering {
     let lower = u8::to_ascii_lowercase;
     a.iter().map(lower).cmp(b.iter().map(lower))
 }
 
-/// The bytes that a URI means. Names are of limited length.
+/// Returns the bytes that a URI encodes. The length of names is limited.
 fn percent_decoded(name: &str) -> Vec<u8> {
     let mut rest = name.as_bytes();
     let mut bytes = Vec::new();
@@ -297,12 +297,12 @@ fn percent_decoded(name: &str) -> Vec<u8> {
     bytes
 }
 
-/// As much of a name as a message needs.
+/// Returns the part of a name that a message shows.
 fn cut(name: &[u8]) -> &[u8] {
     &name[..name.len().min(256)]
 }
 
-/// An error of a whole part, or of the package if the name is empty.
+/// Makes an error about a whole part, or about the package if the name is empty.
 pub(super) fn broken(part: &str, problem: impl Into<String>) -> Error {
     let part = String::from_utf8_lossy(cut(part.as_bytes()));
     PackageError::new(part, (0, 0), problem.into()).into()

@@ -1,8 +1,7 @@
-//! Properties of a package: base materials and colour groups, and which of them triangles refer to.
+//! Properties of a 3MF package: base materials, colour groups, and the references of triangles to them.
 //!
-//! A triangle names a group and a member for each corner, or has those of its object. Nothing here is an
-//! error: what cannot be read, or is not there, is counted, and the mesh is read as if there were no
-//! properties.
+//! A triangle names a group and a member for each corner, or uses those of its object. There are no errors
+//! here: unreadable and missing properties are counted, and the mesh is read without them.
 
 use alloc::borrow::Cow;
 use alloc::string::String;
@@ -16,39 +15,39 @@ use crate::exchange::colours::Colours;
 use crate::memory;
 use crate::mesh::MeshAttribute;
 
-/// In the place of a group or member: there is none.
+/// A marker in place of a group or member: there is none.
 const ABSENT: u32 = u32::MAX;
-/// In the place of a group or member: something that is no number. No group has it, and no group so many
-/// members.
+/// A marker in place of a group or member: the text is no valid number. No group has this number, and no
+/// group has so many members.
 const WRONG: u32 = u32::MAX - 1;
 
 /// The groups of all parts, and the references of all triangles.
 #[derive(Default)]
 pub(super) struct Properties {
     groups: Vec<Group>,
-    /// By part and identifier.
+    /// Numbers of groups by part and identifier.
     known: HashMap<(u32, u32), u32>,
-    /// The colours of all groups, one group behind the other; `None` cannot be read.
+    /// The colours of all groups, one group after another; `None` for unreadable colours.
     colours: Vec<Option<[u8; 4]>>,
     /// The names of all base materials.
     materials: Vec<String>,
-    /// Of each triangle up to the last one that refers to something.
+    /// The reference of each triangle, up to the last one that refers to something.
     references: Vec<Reference>,
 }
 
 /// A group of properties.
 #[derive(Clone, Copy)]
 struct Group {
-    /// The first of its colours, and how many it has.
+    /// The index of its first colour, and the number of its colours.
     first: u32,
     count: u32,
-    /// Of base materials the first one's number; of other groups nothing.
+    /// For base materials the number of the first material; `None` for other groups.
     material: Option<u32>,
-    /// Whether it is read: a group of another kind has members that are not known here.
+    /// Whether the group is read. Members of groups of other kinds are unknown.
     is_read: bool,
 }
 
-/// What an object, or the corners of a triangle, refer to.
+/// The reference of an object, or of the corners of a triangle.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(super) struct Reference {
     group: u32,
@@ -58,7 +57,7 @@ pub(super) struct Reference {
 impl Reference {
     pub const NONE: Reference = Reference { group: ABSENT, members: [ABSENT; 3] };
 
-    /// Of an object.
+    /// Reads the reference of an object.
     pub fn of_object(xml: &Xml) -> Reference {
         Self::read(xml, ["pindex", "", ""])
     }
@@ -76,7 +75,7 @@ impl Reference {
     }
 }
 
-/// A number, or that it is none.
+/// Parses a number; returns a marker if it is invalid.
 fn number(attribute: &Attribute) -> u32 {
     attribute.value.trim_ascii().parse().ok().filter(|&number| number < WRONG).unwrap_or(WRONG)
 }
@@ -94,13 +93,13 @@ impl Properties {
         memory::push(&mut self.groups, Group { first, count: 0, material, is_read: has_material.is_some() })?;
         self.known.try_reserve(1)?;
         if let Some(id) = id {
-            // The first one of an identifier counts.
+            // The first group with an identifier counts.
             self.known.entry((part, self::number(id))).or_insert(index);
         }
         Ok(())
     }
 
-    /// Adds a member of the group that began last.
+    /// Adds a member to the last group.
     pub fn read_member(&mut self, xml: &Xml) -> Result<(), Error> {
         let (mut colour, mut name) = (None, Cow::Borrowed(""));
         for attribute in xml.attributes().iter().filter(|attribute| attribute.prefix.is_empty()) {
@@ -118,7 +117,7 @@ impl Properties {
         memory::push(&mut self.colours, colour)
     }
 
-    /// Reads what a triangle refers to, which has this place among all.
+    /// Reads the reference of a triangle that has the number `place` among all.
     pub fn read_triangle(&mut self, xml: &Xml, place: usize) -> Result<(), Error> {
         let reference = Reference::read(xml, ["p1", "p2", "p3"]);
         if reference == Reference::NONE {
@@ -131,7 +130,7 @@ impl Properties {
         Ok(())
     }
 
-    /// What the triangle at this place among all refers to.
+    /// Returns the reference of the triangle with the number `place` among all.
     fn of_triangle(&self, place: usize) -> Reference {
         self.references.get(place).copied().unwrap_or(Reference::NONE)
     }
@@ -141,7 +140,7 @@ impl Properties {
     }
 }
 
-/// `#RRGGBB` or `#RRGGBBAA`.
+/// Parses `#RRGGBB` or `#RRGGBBAA`.
 fn colour(text: &str) -> Option<[u8; 4]> {
     let digits = text.trim_ascii().strip_prefix('#')?;
     if !matches!(digits.len(), 6 | 8) || !digits.bytes().all(|digit| digit.is_ascii_hexdigit()) {
@@ -154,23 +153,23 @@ fn colour(text: &str) -> Option<[u8; 4]> {
     Some(colour)
 }
 
-/// What the triangles of a build have.
+/// The properties of built triangles.
 pub(super) struct BuiltProperties<'a> {
     properties: &'a Properties,
-    /// For each triangle and corner a colour of all groups.
+    /// A colour, numbered through all groups, for each triangle and corner.
     colours: Vec<[u32; 3]>,
-    /// For each triangle a base material.
+    /// A base material for each triangle.
     materials: Vec<u32>,
-    /// Whether the corners of a triangle differ.
+    /// True if the corners of a triangle differ.
     has_gradients: bool,
-    /// Triangles that refer to something that is not there.
+    /// Number of triangles with a reference to something that does not exist.
     pub missing: u64,
-    /// The group that was looked up last.
+    /// The last group that was looked up.
     last: Option<((u32, u32), Option<Group>)>,
 }
 
 impl<'a> BuiltProperties<'a> {
-    /// Of so many triangles.
+    /// Makes room for the given number of triangles.
     pub fn new(properties: &'a Properties, triangles: usize) -> Result<BuiltProperties<'a>, Error> {
         let with_room = |needed: bool| if needed { triangles } else { 0 };
         Ok(BuiltProperties {
@@ -183,8 +182,8 @@ impl<'a> BuiltProperties<'a> {
         })
     }
 
-    /// Adds the triangle at a place among all that were read, in an object of a part with a reference of its
-    /// own. A mirrored one is turned round.
+    /// Adds the triangle with the number `place` among all that were read, in an object of a part with a
+    /// reference of its own. A mirrored triangle is reversed.
     pub fn push(&mut self, place: usize, part: u32, object: Reference, mirrors: bool) -> Result<(), Error> {
         let mut colours = [MeshAttribute::NO_ROW; 3];
         let mut material = MeshAttribute::NO_ROW;
@@ -214,7 +213,7 @@ impl<'a> BuiltProperties<'a> {
         Ok(())
     }
 
-    /// The group and members that a triangle has; fails if they are not there.
+    /// Returns the group and members of a triangle; fails if they do not exist.
     fn members(
         &mut self,
         place: usize,
@@ -226,7 +225,7 @@ impl<'a> BuiltProperties<'a> {
             [ABSENT, ..] => (object.group, [object.members[0]; 3]),
             [first, second, third] => {
                 let id = if own.group == ABSENT { object.group } else { own.group };
-                // If one of the others is left out the first counts for all.
+                // If the second or third is missing, the first counts for all.
                 let all = second != ABSENT && third != ABSENT;
                 (id, if all { [first, second, third] } else { [first; 3] })
             }
@@ -253,7 +252,8 @@ impl<'a> BuiltProperties<'a> {
         Ok(Some((group, members)))
     }
 
-    /// The attributes, and how many colours could not be read. What no triangle has is left out.
+    /// Returns the attributes, and the number of unreadable colours. Attributes that no triangle has are left
+    /// out.
     pub fn finish(self) -> Result<(Vec<MeshAttribute>, u64), Error> {
         let Properties { colours, materials, .. } = self.properties;
         let mut attributes = Vec::new();

@@ -1,23 +1,23 @@
 //! Affine transforms of row vectors.
 
-/// A point p goes to p · (the first three rows) + the last row.
+/// An affine map. It maps a point p to p · (the first three rows) + the last row.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(super) struct Transform {
     rows: [[f64; 3]; 4],
-    /// Whether the determinant is negative, so that the surface is turned inside out.
+    /// True if the determinant is negative, so that the map turns a surface inside out.
     pub mirrors: bool,
 }
 
 impl Transform {
     pub const IDENTITY: Self = Self::scale(1.0);
 
-    /// By a positive factor, about the origin.
+    /// Returns the scaling by a positive factor about the origin.
     pub const fn scale(factor: f64) -> Self {
         let rows = [[factor, 0.0, 0.0], [0.0, factor, 0.0], [0.0, 0.0, factor], [0.0; 3]];
         Self { rows, mirrors: false }
     }
 
-    /// Twelve finite numbers, row by row, with white space between them.
+    /// Parses twelve finite numbers, row by row, separated by white space.
     pub fn parse(text: &str) -> Option<Self> {
         let mut rows = [[0.0; 3]; 4];
         let mut words = text.split_ascii_whitespace();
@@ -31,7 +31,7 @@ impl Transform {
         words.next().is_none().then_some(Self { rows, mirrors: determinant < 0.0 })
     }
 
-    /// This one, and then `next`.
+    /// Returns the composition: this map, and then `next`.
     pub fn then(&self, next: &Self) -> Self {
         if *next == Self::IDENTITY {
             return *self;
@@ -55,7 +55,7 @@ impl Transform {
     }
 }
 
-/// Scaled to about 1, lest products overflow or vanish.
+/// Scales a row to about 1, so that products neither overflow nor vanish.
 fn unit_row(row: [f64; 3]) -> [f64; 3] {
     let most = row.iter().fold(0.0, |most: f64, x| most.max(x.abs()));
     if most > 0.0 { row.map(|x| x / most) } else { row }

@@ -1,4 +1,4 @@
-//! XML as packages use it: elements and attributes with namespaces, and nothing that could expand.
+//! XML of 3MF packages: elements and attributes with namespaces, without anything that could expand.
 
 use alloc::borrow::Cow;
 use alloc::string::String;
@@ -11,21 +11,21 @@ use quick_xml::events::attributes::Attributes;
 use crate::error::{Error, PackageError};
 use crate::memory;
 
-/// How deep elements may be nested, and how long the names of the open ones may be together. The reader keeps
-/// them in memory that cannot be refused.
+/// Maximum nesting of elements, and maximum total length of the names of the open elements. The reader keeps
+/// these names in memory whose allocation cannot fail gracefully.
 const MAX_DEPTH: usize = 64;
 const MAX_NAMES: usize = 1024;
-/// How long names and paths in attributes may be.
+/// Maximum length of names and paths in attributes.
 const MAX_NAME: usize = 1024;
-/// How many prefixes may stand for a namespace at one place. Looking one up takes as many steps.
+/// Maximum number of prefixes with a namespace at one place. A look-up takes as many steps.
 const MAX_BINDINGS: usize = 256;
 
-/// The namespaces that have a meaning here.
+/// The known namespaces.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(super) enum Namespace {
     /// 3MF's core.
     Core,
-    /// 3MF's core as the draft 0.93 had it, of which the elements that matter here have the same meaning.
+    /// 3MF's core as in the draft 0.93. The elements that are read have the same meaning.
     Draft,
     /// 3MF's production extension.
     Production,
@@ -39,7 +39,7 @@ pub(super) enum Namespace {
     Relationships,
     /// Content types of a package.
     ContentTypes,
-    /// Any other, or none.
+    /// Any other namespace, or none.
     Other,
 }
 
@@ -58,7 +58,8 @@ impl Namespace {
     }
 }
 
-/// The name of an extension that cannot be read. Versions of one differ behind its name in the address.
+/// Returns the name of an extension that cannot be read. Versions of an extension differ after its name in
+/// the address.
 fn extension(uri: &str) -> Option<&'static str> {
     const EXTENSIONS: [(&str, &str); 11] = [
         ("beamlattice/balls/", "Beam Lattice: Balls"),
@@ -79,7 +80,7 @@ fn extension(uri: &str) -> Option<&'static str> {
     EXTENSIONS.into_iter().find(|(start, _)| path.starts_with(start)).map(|(_, name)| name)
 }
 
-/// A prefix that stands for a namespace within an element.
+/// A prefix that is bound to a namespace within an element.
 struct Binding<'a> {
     depth: usize,
     prefix: &'a str,
@@ -90,11 +91,11 @@ struct Binding<'a> {
 /// The start of an element.
 pub(super) struct Element<'a> {
     pub namespace: Namespace,
-    /// Without the prefix.
+    /// The name without the prefix.
     pub name: &'a str,
-    /// Whether it ends at once; then no end follows.
+    /// True if the element ends in the same tag; then no end follows.
     pub empty: bool,
-    /// Where the tag begins in the part.
+    /// The byte offset of the tag in the part.
     pub offset: usize,
 }
 
@@ -106,10 +107,10 @@ impl Element<'_> {
 
 #[derive(Clone, Copy)]
 pub(super) struct Attribute<'a> {
-    /// Empty if there is none.
+    /// The prefix; empty if there is none.
     pub prefix: &'a str,
     pub name: &'a str,
-    /// As it stands, with references.
+    /// The raw value, with references.
     pub value: &'a str,
     offset: usize,
 }
@@ -122,15 +123,15 @@ pub(super) enum Markup<'a> {
 /// The text of a part.
 pub(super) struct Text {
     pub text: String,
-    /// As a declaration in the text names it.
+    /// The encoding, as a declaration in the text names it.
     encoding: &'static str,
 }
 
 impl Text {
-    /// Decodes UTF-8, and UTF-16 that begins with its byte order mark.
+    /// Decodes UTF-8, and UTF-16 that begins with a byte order mark.
     ///
     /// # Errors
-    /// The problem, or `None` if there is no memory.
+    /// The problem, or `None` if there is not enough memory.
     pub fn decode(bytes: Vec<u8>) -> Result<Self, Option<String>> {
         let order: fn([u8; 2]) -> u16 = match *bytes {
             [0xFE, 0xFF, ..] => u16::from_be_bytes,
@@ -151,7 +152,7 @@ impl Text {
         };
         let (units, rest) = bytes.as_chunks::<2>();
         let mut text = String::new();
-        // Of a unit come three bytes at most.
+        // A UTF-16 unit becomes at most three bytes.
         text.try_reserve_exact(3 * units.len()).map_err(|_| None)?;
         for (k, character) in char::decode_utf16(units.iter().skip(1).map(|&unit| order(unit))).enumerate() {
             let problem = || alloc::format!("is no UTF-16 text from character {} on", k + 1);
@@ -164,15 +165,15 @@ impl Text {
     }
 }
 
-/// Reads a part from its begin to its end.
+/// A reader of a part from its beginning to its end.
 pub(super) struct Xml<'a> {
     part: &'a str,
     text: &'a str,
-    /// The encoding that the text had.
+    /// The encoding of the text.
     encoding: &'static str,
     reader: Reader<&'a [u8]>,
     bindings: Vec<Binding<'a>>,
-    /// Those of the element that was read last.
+    /// The attributes of the last element.
     attributes: Vec<Attribute<'a>>,
     /// Lengths of the names of the open elements.
     open: [u16; MAX_DEPTH],
@@ -182,7 +183,7 @@ pub(super) struct Xml<'a> {
 }
 
 impl<'a> Xml<'a> {
-    /// Of a part of this name with this text.
+    /// Makes a reader of a part with this name and this text.
     pub fn new(part: &'a str, text: &'a Text) -> Self {
         let Text { ref text, encoding } = *text;
         Self {
@@ -199,13 +200,13 @@ impl<'a> Xml<'a> {
         }
     }
 
-    /// The text behind the latest start, up to the next markup.
+    /// Returns the text after the latest start, up to the next markup.
     pub fn content_ahead(&self) -> &'a str {
         let rest = self.text.get(self.position()..).unwrap_or("");
         rest.split('<').next().unwrap_or("")
     }
 
-    /// The next start or end of an element; `None` at the end of a part with one element around all others.
+    /// Returns the next start or end of an element; `None` at the end of a part with one root element.
     pub fn next(&mut self) -> Result<Option<Markup<'a>>, Error> {
         let depth = self.depth;
         while self.bindings.last().is_some_and(|binding| binding.depth > depth) {
@@ -246,7 +247,7 @@ impl<'a> Xml<'a> {
                     let encoding = declaration.encoding().transpose().ok().flatten();
                     if encoding.is_some_and(|encoding| !encoding.eq_ignore_ascii_case(self.encoding)) {
                         let problem =
-                            alloc::format!("the encoding is not {}, in which the text is", self.encoding);
+                            alloc::format!("the encoding is not {}, but the text is", self.encoding);
                         return Err(self.error(offset, problem));
                     }
                 }
@@ -267,7 +268,8 @@ impl<'a> Xml<'a> {
         usize::try_from(self.reader.buffer_position()).unwrap_or(usize::MAX)
     }
 
-    /// The length of the name of the element that begins or ends at `offset`, or 0. Checked before reading.
+    /// Returns the length of the name of the element that begins or ends at `offset`, or 0. Checked before
+    /// reading.
     fn name_ahead(&self, offset: usize) -> Result<usize, Error> {
         let rest = self.text.as_bytes().get(offset..).unwrap_or(b"");
         let Some(rest) = rest.strip_prefix(b"<") else { return Ok(0) };
@@ -293,7 +295,7 @@ impl<'a> Xml<'a> {
         empty: bool,
     ) -> Result<Markup<'a>, Error> {
         if depth == 1 && core::mem::replace(&mut self.rooted, true) {
-            return Err(self.error(offset, "a second element stands beside the one around all others"));
+            return Err(self.error(offset, "there is a second element beside the root element"));
         }
         let qualified = tag.get(..name_length).unwrap_or(tag);
         self.read_attributes(tag, name_length, offset)?;
@@ -317,13 +319,13 @@ impl<'a> Xml<'a> {
     fn read_attributes(&mut self, tag: &'a str, name_length: usize, offset: usize) -> Result<(), Error> {
         self.attributes.clear();
         let mut found = Attributes::new(tag, name_length);
-        // The reader's own check allocates memory that cannot be refused.
+        // The reader's own check allocates memory in a way that cannot fail gracefully.
         found.with_checks(false);
         for attribute in found {
             let attribute = attribute.map_err(|error| self.error(offset, alloc::format!("{error}")))?;
             let key = attribute.key.0;
             let (prefix, name) = key.split_once(':').unwrap_or(("", key));
-            // A value is a piece of the tag.
+            // A value is a slice of the tag.
             let Cow::Borrowed(value) = attribute.value else {
                 return Err(self.error(offset, "an attribute cannot be read"));
             };
@@ -332,7 +334,7 @@ impl<'a> Xml<'a> {
         Ok(())
     }
 
-    /// Checks that no attribute stands twice in the element, be it by two prefixes of one namespace.
+    /// Checks that no attribute occurs twice in the element, not even by two prefixes of one namespace.
     fn check_attributes(&self) -> Result<(), Error> {
         let key = |attribute: &Attribute<'a>| match attribute.prefix {
             "" => ("", attribute.name),
@@ -351,17 +353,18 @@ impl<'a> Xml<'a> {
             sorted.windows(2).find(|pair| pair[0].0 == pair[1].0).map(|pair| *pair[1].1)
         };
         match twice {
-            Some(attribute) => Err(self.attribute_error(&attribute, "stands there a second time")),
+            Some(attribute) => Err(self.attribute_error(&attribute, "occurs a second time")),
             None => Ok(()),
         }
     }
 
-    /// What a prefix stands for at this place; the empty one for the default of elements.
+    /// Returns the namespace of a prefix at this place; the empty prefix gives the default namespace of
+    /// elements.
     pub fn namespace(&self, prefix: &str) -> Namespace {
         self.binding(prefix).map_or(Namespace::Other, |binding| binding.namespace)
     }
 
-    /// The address of the namespace that a prefix stands for at this place.
+    /// Returns the address of the namespace of a prefix at this place.
     pub fn uri(&self, prefix: &str) -> Option<&'a str> {
         self.binding(prefix).map(|binding| binding.uri)
     }
@@ -370,13 +373,13 @@ impl<'a> Xml<'a> {
         self.bindings.iter().rfind(|binding| binding.prefix == prefix)
     }
 
-    /// The attributes of the element that was read last, those that bind prefixes among them. All of them are
+    /// Returns the attributes of the last element, including those that bind prefixes. All of them are
     /// different.
     pub fn attributes(&self) -> &[Attribute<'a>] {
         &self.attributes
     }
 
-    /// An attribute's value as a finite number.
+    /// Parses an attribute's value as a finite number.
     pub fn number(&self, attribute: &Attribute) -> Result<f64, Error> {
         match attribute.value.trim_ascii().parse::<f64>() {
             Ok(number) if number.is_finite() => Ok(number),
@@ -384,7 +387,7 @@ impl<'a> Xml<'a> {
         }
     }
 
-    /// An attribute's value as an index or identifier.
+    /// Parses an attribute's value as an index or identifier.
     pub fn index(&self, attribute: &Attribute) -> Result<u32, Error> {
         match attribute.value.trim_ascii().parse::<u32>() {
             Ok(number) if number < 1 << 31 => Ok(number),
@@ -392,7 +395,7 @@ impl<'a> Xml<'a> {
         }
     }
 
-    /// An attribute's value as a name or path, its references replaced.
+    /// Returns an attribute's value as a name or path, with its references replaced.
     pub fn name(&self, attribute: &Attribute<'a>) -> Result<Cow<'a, str>, Error> {
         if attribute.value.len() > MAX_NAME {
             return Err(self.attribute_error(attribute, "is too long"));
@@ -401,21 +404,21 @@ impl<'a> Xml<'a> {
             .map_err(|error| self.error(attribute.offset, alloc::format!("{error}")))
     }
 
-    /// An error about an attribute.
+    /// Makes an error about an attribute.
     pub fn attribute_error(&self, attribute: &Attribute, problem: &str) -> Error {
         let value: String = attribute.value.chars().take(40).collect();
         let name: String = attribute.name.chars().take(40).collect();
         self.error(attribute.offset, alloc::format!("{name}=\"{value}\" {problem}"))
     }
 
-    /// An error at a place.
+    /// Makes an error at a place.
     #[cold]
     pub fn error(&self, offset: usize, problem: impl Into<String>) -> Error {
         error_at(self.part, self.text, offset, problem)
     }
 }
 
-/// An error in the line where `offset` is.
+/// Makes an error for the line that contains `offset`.
 #[cold]
 pub(super) fn error_at(part: &str, text: &str, offset: usize, problem: impl Into<String>) -> Error {
     let before = text.as_bytes().get(..offset).unwrap_or(text.as_bytes());

@@ -1,4 +1,4 @@
-//! What a header says, whatever its format.
+//! The contents of a volume file's header, independent of the format.
 
 use super::super::LengthUnit;
 use super::kind::SampleKind;
@@ -7,7 +7,7 @@ use crate::error::{Error, VolumeFileError};
 use crate::memory;
 use alloc::string::String;
 
-/// How the samples are written.
+/// The encoding of the samples.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(super) enum Encoding {
     Raw,
@@ -16,18 +16,18 @@ pub(super) enum Encoding {
     Text,
 }
 
-/// What stands before the samples.
+/// The data to skip before the samples.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(super) enum Skip {
     Bytes(u64),
-    /// As much as is more than the samples.
+    /// All data in excess of the samples.
     Rest,
 }
 
-/// Where the samples are.
+/// The location of the samples.
 #[derive(Debug, Clone, PartialEq)]
 pub(super) enum Place {
-    /// In the same file, from a byte on.
+    /// In the same file, from this byte on.
     Here(usize),
     /// In the file with this name.
     There(String),
@@ -39,19 +39,19 @@ pub(super) struct Header {
     pub(super) kind: SampleKind,
     pub(super) big: bool,
     pub(super) encoding: Encoding,
-    /// Lines of the data file before all else.
+    /// Number of lines of the data file to skip first.
     pub(super) lines: u64,
     pub(super) skip: Skip,
-    /// Whether what is to be skipped stands before compressed bytes, and is not one of them.
+    /// True if the data to skip precedes the compressed bytes, and is not part of them.
     pub(super) skips_compressed: bool,
-    /// Bytes that are compressed, if that is said.
+    /// Number of compressed bytes, if the header states it.
     pub(super) compressed: Option<u64>,
     pub(super) place: Place,
     pub(super) axes: Axes,
     pub(super) unit: Option<LengthUnit>,
 }
 
-/// A line of a header that says something.
+/// A line of a header with its value.
 #[derive(Clone, Copy)]
 pub(super) struct Line<'a> {
     pub(super) number: u64,
@@ -59,12 +59,12 @@ pub(super) struct Line<'a> {
 }
 
 impl<'a> Line<'a> {
-    /// The error that the line has another value than it may have.
+    /// Returns the error that the line has an invalid value.
     pub(super) fn error(&self, expected: &'static str) -> VolumeFileError {
         VolumeFileError::Syntax { line: self.number, expected }
     }
 
-    /// Whole numbers from 0, as many as are wanted, separated by blanks.
+    /// Parses `N` whole numbers from 0, separated by blanks.
     pub(super) fn whole<const N: usize>(&self, expected: &'static str) -> Result<[u64; N], Error> {
         self.each(expected, |word| word.parse().ok())
     }
@@ -85,18 +85,19 @@ impl<'a> Line<'a> {
         Ok(found)
     }
 
-    /// The value as a text of its own.
+    /// Returns a copy of the value.
     pub(super) fn text(&self) -> Result<String, Error> {
         memory::text(self.value)
     }
 }
 
-/// A finite number.
+/// Parses a finite number.
 pub(super) fn number(word: &str) -> Option<f64> {
     word.parse().ok().filter(|x: &f64| x.is_finite())
 }
 
-/// The extents of a file's axes: of more than three, those of one sample are dropped.
+/// Returns the extents of a file's axes. If there are more than three axes, those with one sample are
+/// dropped.
 pub(super) fn extents(sizes: &[u64], line: &Line<'_>) -> Result<([u32; 3], [usize; 3]), Error> {
     let wrong = || Error::from(line.error("three sizes from 1 to 2^20, and no other above 1"));
     let (mut extents, mut axes, mut count) = ([1; 3], [usize::MAX; 3], 0);
@@ -115,7 +116,8 @@ pub(super) fn extents(sizes: &[u64], line: &Line<'_>) -> Result<([u32; 3], [usiz
     if count == 0 { Err(wrong()) } else { Ok((extents, axes)) }
 }
 
-/// The lines of a text up to one that `is_last`, each with its number, and the bytes taken with that.
+/// The lines of a text up to the one for which `is_last` is true, with their numbers, and the number of bytes
+/// taken.
 pub(super) struct Lines<'a> {
     bytes: &'a [u8],
     pub(super) taken: usize,
@@ -127,7 +129,7 @@ impl<'a> Lines<'a> {
         Lines { bytes, taken: 0, number: 0 }
     }
 
-    /// The next line without its end; `None` at the end of the file.
+    /// Returns the next line without its end; `None` at the end of the file.
     pub(super) fn next(&mut self) -> Option<&'a [u8]> {
         let rest = self.bytes.get(self.taken..).filter(|rest| !rest.is_empty())?;
         let length = rest.iter().position(|&byte| byte == b'\n');

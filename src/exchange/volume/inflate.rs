@@ -1,5 +1,4 @@
-//! DEFLATE streams of a length that is known beforehand, in the wrapping of gzip (RFC 1952) or zlib (RFC
-//! 1950).
+//! Decompression of DEFLATE streams of a known length, wrapped as gzip (RFC 1952) or zlib (RFC 1950).
 
 use crate::error::{Error, VolumeFileError};
 use crate::memory;
@@ -10,20 +9,20 @@ use miniz_oxide::inflate::core::inflate_flags::{
 };
 use miniz_oxide::inflate::core::{DecompressorOxide, decompress};
 
-/// DEFLATE makes at most 258 bytes of two bits.
+/// DEFLATE expands two bits to at most 258 bytes.
 const RATIO: u64 = 1032;
 
-/// The `length` bytes that `data` holds compressed: one zlib stream, or one gzip member or several. What
-/// stands behind them does not count.
+/// Decompresses `length` bytes from `data`: one zlib stream, or one or several gzip members. Further bytes
+/// are ignored.
 ///
-/// A length that so many compressed bytes cannot make is refused before anything is allocated.
+/// A length that the compressed bytes cannot reach is refused before anything is allocated.
 pub(super) fn inflate(data: &[u8], length: u64) -> Result<Vec<u8>, Error> {
     if length > (data.len() as u64).saturating_mul(RATIO) {
         return Err(VolumeFileError::Length { expected: length, found: data.len() as u64 }.into());
     }
     let length = usize::try_from(length).map_err(|_| Error::OutOfMemory)?;
     let mut bytes = memory::filled(length, 0)?;
-    // It has 11 kB.
+    // The state has 11 kB.
     let mut state = memory::with_capacity(1)?;
     state.push(DecompressorOxide::new());
     let Some(state) = state.first_mut() else { return Err(Error::OutOfMemory) };
@@ -38,7 +37,7 @@ pub(super) fn inflate(data: &[u8], length: u64) -> Result<Vec<u8>, Error> {
         rest = after_header(rest).ok_or(damaged("a gzip header"))?;
         *state = DecompressorOxide::new();
         let flags = TINFL_FLAG_USING_NON_WRAPPING_OUTPUT_BUF;
-        // A member knows nothing of those before it.
+        // Members are independent of each other.
         let member = bytes.get_mut(from..).unwrap_or(&mut []);
         let (status, used, made) = decompress(state, rest, member, 0, flags);
         finished(status, true)?;
@@ -74,7 +73,7 @@ fn finished(status: TINFLStatus, whole: bool) -> Result<(), VolumeFileError> {
     }
 }
 
-/// What stands behind the header of a gzip member.
+/// Returns the bytes after the header of a gzip member.
 fn after_header(bytes: &[u8]) -> Option<&[u8]> {
     let (header, mut rest) = bytes.split_first_chunk::<10>()?;
     let [0x1F, 0x8B, 8, flags, ..] = *header else { return None };

@@ -1,4 +1,4 @@
-//! Numbers as files hold them, and what they become.
+//! Sample types of files, and their conversion.
 
 use crate::error::{Error, VolumeFileError};
 use crate::memory;
@@ -33,7 +33,7 @@ pub enum SampleKind {
 }
 
 impl SampleKind {
-    /// All of them.
+    /// All types.
     pub const ALL: [SampleKind; 11] = [
         SampleKind::Bit,
         SampleKind::I8,
@@ -48,7 +48,7 @@ impl SampleKind {
         SampleKind::F64,
     ];
 
-    /// Its name: `bit`, or a letter and the number of bits, from `i8` and `u8` to `f64`.
+    /// Returns the name: `bit`, or a letter and the number of bits, from `i8` and `u8` to `f64`.
     pub const fn name(self) -> &'static str {
         match self {
             SampleKind::Bit => "bit",
@@ -65,8 +65,8 @@ impl SampleKind {
         }
     }
 
-    /// The middle of the type's range, which is where a threshold lies if nobody says where: ½ of bits, 127½
-    /// of bytes, −½ of whole numbers with a sign; 0 of single and double precision.
+    /// Returns the middle of the type's range, which is the default threshold: ½ for bits, 127½ for bytes, −½
+    /// for signed whole numbers; 0 for single and double precision.
     pub const fn half_range(self) -> f64 {
         match self {
             SampleKind::Bit => 0.5,
@@ -79,7 +79,7 @@ impl SampleKind {
         }
     }
 
-    /// Bytes that the samples of a grid take; `None` beyond 2^64.
+    /// Returns the number of bytes of a grid's samples; `None` beyond 2^64.
     pub(super) fn bytes(self, grid: &VoxelGrid) -> Option<u64> {
         let [nx, ny, nz] = grid.extents().map(u64::from);
         let each = match self {
@@ -92,15 +92,15 @@ impl SampleKind {
         grid.count().checked_mul(each)
     }
 
-    /// The samples that bytes hold, of which there are as many as [`bytes`](Self::bytes) says, and how many
-    /// were rounded.
+    /// Converts bytes to samples, and returns the number of rounded samples. `bytes` must have the length
+    /// that [`bytes`](Self::bytes) returns.
     pub(super) fn samples(
         self,
         bytes: &[u8],
         big: bool,
         grid: &VoxelGrid,
     ) -> Result<(Samples<'static>, u64), Error> {
-        // The bytes of each number in the order of their weight.
+        // The bytes of each number, least significant first.
         fn numbers<const N: usize>(bytes: &[u8], big: bool) -> impl ExactSizeIterator<Item = [u8; N]> {
             bytes.as_chunks::<N>().0.iter().map(move |&(mut number)| {
                 if big {
@@ -124,9 +124,9 @@ impl SampleKind {
         })
     }
 
-    /// The samples that a text holds, separated by white space or commas.
+    /// Parses samples of a text, separated by white space or commas.
     pub(super) fn parsed(self, text: &[u8], grid: &VoxelGrid) -> Result<(Samples<'static>, u64), Error> {
-        // Each number but the last has a separator behind it.
+        // Each number but the last is followed by a separator.
         if grid.count() > (text.len() as u64).div_ceil(2) {
             let (expected, found) = (2 * grid.count() - 1, text.len() as u64);
             return Err(VolumeFileError::Length { expected, found }.into());
@@ -153,7 +153,7 @@ impl SampleKind {
         })
     }
 
-    /// Whether a number is one of this type.
+    /// Returns whether this type can represent a number.
     fn has(self, number: f64) -> bool {
         let (least, beyond) = match self {
             SampleKind::Bit => (0.0, 2.0),
@@ -171,7 +171,7 @@ impl SampleKind {
     }
 }
 
-/// Rows of bytes as rows of words.
+/// Packs rows of bytes into rows of words.
 fn bits(bytes: &[u8], grid: &VoxelGrid) -> Result<Vec<u64>, Error> {
     let [nx, ny, nz] = grid.extents().map(|extent| extent as usize);
     let mut words = memory::with_capacity(grid.words() * ny * nz)?;
@@ -183,7 +183,7 @@ fn bits(bytes: &[u8], grid: &VoxelGrid) -> Result<Vec<u64>, Error> {
     Ok(words)
 }
 
-/// Numbers rounded to single precision, and how many of them that changed.
+/// Rounds numbers to single precision, and returns the number of numbers that changed.
 fn singles(numbers: impl ExactSizeIterator<Item = f64>) -> Result<(Samples<'static>, u64), Error> {
     let mut rounded = 0;
     let singles = memory::collected(numbers.map(|number| {
@@ -194,7 +194,7 @@ fn singles(numbers: impl ExactSizeIterator<Item = f64>) -> Result<(Samples<'stat
     Ok((singles.into(), rounded))
 }
 
-/// The same with integers that doubles cannot hold.
+/// Does the same for integers that doubles cannot hold.
 fn wide(numbers: impl ExactSizeIterator<Item = i128>) -> Result<(Samples<'static>, u64), Error> {
     let mut rounded = 0;
     let singles = memory::collected(numbers.map(|number| {

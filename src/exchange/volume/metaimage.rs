@@ -1,4 +1,4 @@
-//! Headers of MetaImage files, as MetaIO, the library that defines them, reads and writes them.
+//! Headers of MetaImage files, according to MetaIO, the library that defines the format.
 
 use super::super::LengthUnit;
 use super::header::{Encoding, Header, Line, Lines, Place, Skip, extents};
@@ -11,10 +11,10 @@ use alloc::vec::Vec;
 /// The last field of a header.
 pub(super) const LAST: &[u8] = b"ElementDataFile";
 
-/// Bytes in which that must stand.
+/// Number of bytes from the start within which it must be found.
 const LONGEST: usize = 1 << 16;
 
-/// Whether this is a header, or begins with one.
+/// Returns whether the bytes are, or begin with, a MetaImage header.
 pub(super) fn is_header(bytes: &[u8]) -> bool {
     let start = &bytes[..bytes.len().min(LONGEST)];
     let first = start.split(|&byte| byte == b'\n').next().unwrap_or(b"");
@@ -28,7 +28,7 @@ struct Fields<'a> {
     sizes: Option<Line<'a>>,
     kind: Option<Line<'a>>,
     spacing: Option<Line<'a>>,
-    /// The size of a voxel, which is the spacing if that is not said.
+    /// The size of a voxel, which is the spacing if the spacing is missing.
     size: Option<Line<'a>>,
     offset: Option<Line<'a>>,
     matrix: Option<Line<'a>>,
@@ -121,7 +121,7 @@ pub(super) fn header(bytes: &[u8]) -> Result<Header, Error> {
     })
 }
 
-/// Takes in a line; the last is that which says where the samples are.
+/// Processes a line. Returns the last line, which names the location of the samples.
 fn take<'a>(fields: &mut Fields<'a>, line: &'a [u8], number: u64) -> Result<Option<Line<'a>>, Error> {
     let wrong = |expected| Error::from(VolumeFileError::Syntax { line: number, expected });
     if line.trim_ascii().is_empty() {
@@ -150,11 +150,12 @@ fn take<'a>(fields: &mut Fields<'a>, line: &'a [u8], number: u64) -> Result<Opti
             let value = core::str::from_utf8(value).map_err(|_| wrong("a name in UTF-8"))?;
             return Ok(Some(Line { number, value }));
         }
-        // Others say nothing of the samples or their places; names and comments may have any bytes.
+        // Other fields do not concern the samples or their positions; names and comments may contain any
+        // bytes.
         _ => return Ok(None),
     };
     let value = core::str::from_utf8(value).map_err(|_| wrong("a value in UTF-8"))?;
-    // MetaIO takes the last.
+    // MetaIO uses the last occurrence.
     *field = Some(Line { number, value });
     Ok(None)
 }
@@ -187,7 +188,7 @@ fn axes(fields: &Fields<'_>, chosen: [usize; 3], count: usize) -> Result<Axes, E
         list.as_ref().and_then(|list| list.get(axis)).copied().unwrap_or(default)
     };
     let mut axes = Axes::along([1.0; 3], [0.0; 3]);
-    // The directions lie in the space of the axes that are read.
+    // The directions are vectors in the space of the axes that are read.
     for (axis, &own) in chosen.iter().enumerate() {
         if own == usize::MAX {
             continue;
@@ -209,7 +210,7 @@ fn kind_of(name: &str) -> Option<SampleKind> {
         "MET_UCHAR" => SampleKind::U8,
         "MET_SHORT" => SampleKind::I16,
         "MET_USHORT" => SampleKind::U16,
-        // MetaIO's long is one of four bytes.
+        // MetaIO's `long` has four bytes.
         "MET_INT" | "MET_LONG" => SampleKind::I32,
         "MET_UINT" | "MET_ULONG" => SampleKind::U32,
         "MET_LONG_LONG" => SampleKind::I64,

@@ -1,26 +1,26 @@
-//! Files of volumes: raw arrays, NRRD and MetaImage.
+//! Volume files: raw arrays, NRRD and MetaImage.
 //!
-//! | | what is read |
+//! | format | what is read |
 //! |---|---|
 //! | raw | [`RawVolume`]: bits, 8, 16, 32 and 64 bits, both byte orders, bytes before the samples |
 //! | NRRD | versions 1 to 5; `.nrrd` and a detached `.nhdr` with one data file; encodings raw, gzip and ascii; all integer types and float, double; little and big endian; `spacings`, `axis mins` and `maxs` with `centers`, `space directions` with `space origin`; `line skip`, `byte skip` (−1 too); `units` and `space units`; comments, keys and values |
 //! | MetaImage | `.mha` and `.mhd` with one data file; binary, ASCII and compressed data (zlib, gzip); all types `MET_*` of single numbers; `ElementSpacing` (else `ElementSize`), `Offset`, `TransformMatrix` and their other names; `HeaderSize` (−1 too), `CompressedDataSize`, byte orders |
 //!
-//! | | what is refused, by name |
+//! | format | what is refused, by name |
 //! |---|---|
 //! | both | samples of several numbers (colours, vectors); more than three axes of more than one sample; samples in several files (`LIST`, patterns); a data file outside of the header's folder, also one that a link leads to ([`open_volume`]); spacings that are negative, zero, infinite or NaN, and directions that lie in one plane up to rounding |
 //! | NRRD | encodings bzip2, hex and zrl; blocks; spaces of another dimension than three; fields that the format does not have, values that a field does not have, and fields that stand twice; spacings or ends of an axis that has a direction, and a `space origin` without directions |
 //! | MetaImage | objects that are no images; flags that are neither true nor false; text that is compressed |
 //!
-//! Of a MetaImage, fields that are not known are skipped, as MetaIO does; `ElementToIntensityFunctionSlope`
-//! and `Offset` change nothing, as in ITK. Samples lie at the centres of voxels, in the words of NRRD: `space
-//! origin`, like `Offset`, is the first sample's place, and `axis mins` is that unless the axis is centred on
-//! cells.
+//! Unknown fields of a MetaImage are skipped, as MetaIO does; `ElementToIntensityFunctionSlope` and `Offset`
+//! change nothing, as in ITK. Samples lie at the centres of voxels, in the words of NRRD: `space origin`,
+//! like `Offset`, is the position of the first sample, and so is `axis mins`, unless the axis is
+//! cell-centred.
 //!
-//! Bytes may be anything: no reader panics, and a header that asks for more samples than its data can hold is
-//! refused before anything is allocated. Beside the samples and the file, compressed samples take memory for
-//! what they become (at most 1032 times as long as the file, the most that DEFLATE can compress), and samples
-//! in a text eight bytes each.
+//! Bytes may be anything: no reader panics, and a header with more samples than its data can contain is
+//! refused before anything is allocated. Besides the samples and the file, compressed samples need memory for
+//! the decompressed data (at most 1032 times the length of the file, the maximum ratio of DEFLATE), and
+//! samples in a text need eight bytes each.
 
 mod header;
 mod inflate;
@@ -47,7 +47,7 @@ use alloc::string::String;
 use core::fmt;
 use header::{Encoding, Header, Place, Skip};
 
-/// The formats of volumes that say themselves what they hold.
+/// The volume formats that describe their contents.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
 pub enum VolumeFormat {
     /// NRRD, `.nrrd` or `.nhdr`.
@@ -57,7 +57,7 @@ pub enum VolumeFormat {
 }
 
 impl VolumeFormat {
-    /// The format of a file with this content; `None` if it is none of these.
+    /// Returns the format of a file with this content; `None` if it is neither.
     pub fn detect(bytes: &[u8]) -> Option<VolumeFormat> {
         if bytes.starts_with(nrrd::MAGIC) {
             Some(VolumeFormat::Nrrd)
@@ -82,28 +82,29 @@ impl fmt::Display for VolumeFormat {
 #[non_exhaustive]
 #[derive(Debug, Clone)]
 pub struct VolumeFile {
-    /// The samples. What is neither bits nor 8 or 16 bits wide has become numbers of single precision, and
-    /// numbers of 8 bits with a sign have become 16 bits.
+    /// The samples. Bits and numbers of 8 or 16 bits are kept, but signed numbers of 8 bits become 16 bits
+    /// wide. All others become numbers of single precision.
     pub samples: Samples<'static>,
-    /// Where they lie, or before `placement` did.
+    /// The positions of the samples, before `placement` is applied.
     pub grid: VoxelGrid,
-    /// The map that moves the grid to the place that the file says, if its axes are not x, y and z: then the
-    /// grid's first sample lies at 0. Its directions are rounded.
+    /// The map that moves the grid to the position that the file states, if the file's axes are not x, y and
+    /// z. The first sample of the grid then lies at 0. Its directions are rounded.
     pub placement: Option<Affine>,
-    /// The unit of the grid's lengths, if the file says it.
+    /// The unit of the grid's lengths, if the file states it.
     pub unit: Option<LengthUnit>,
-    /// The format that the file has.
+    /// The format of the file.
     pub format: VolumeFormat,
-    /// The type that the samples have in the file.
+    /// The sample type in the file.
     pub kind: SampleKind,
-    /// How many samples single precision had to round.
+    /// Number of samples that single precision had to round.
     pub rounded: u64,
 }
 
 impl VolumeFile {
-    /// The solid of the voxels that are inside, where the file says that they lie: a [`Volume`], moved by
-    /// [`AnySolid::placed`] if its axes are not x, y and z. Without a band, a voxel is inside if its sample
-    /// is not below the middle of the type's range ([`SampleKind::half_range`]). The samples are shared.
+    /// Returns the solid of the voxels that are inside, at the position that the file states: a [`Volume`],
+    /// moved by [`AnySolid::placed`] if its axes are not x, y and z. Without a band, a voxel is inside if its
+    /// sample is at least the middle of the type's range ([`SampleKind::half_range`]). The samples are
+    /// shared.
     ///
     /// # Errors
     /// As [`Volume::new`].
@@ -113,7 +114,7 @@ impl VolumeFile {
     /// use leafless::{Control, Rule, build, solid::Band};
     /// let (file, control) = (open_volume("scan.nrrd")?, Control::default());
     /// let part = file.solid(Some(Band::at_least(900.0)?), &control)?;
-    /// // The frame is that of the voxels, which suits a file without a placement.
+    /// // The frame of the voxels, which suits a file without a placement.
     /// let tree = build(&part, &file.grid.frame()?, Rule::Sampled, &control)?;
     /// # Ok::<(), leafless::Error>(())
     /// ```
@@ -127,7 +128,7 @@ impl VolumeFile {
     }
 }
 
-/// The name of the file that has the samples of a header, relative to that; `None` if they stand behind the
+/// Returns the name of the data file of a header, relative to the header; `None` if the samples follow the
 /// header.
 ///
 /// # Errors
@@ -139,12 +140,12 @@ pub fn volume_data_file(bytes: &[u8]) -> Result<Option<String>, Error> {
     })
 }
 
-/// Reads a volume. `data` is the content of the file that [`volume_data_file`] names, if it names one.
+/// Reads a volume. `data` is the content of the data file, if [`volume_data_file`] returns one.
 ///
 /// O(n); the samples are copied, once.
 ///
 /// # Errors
-/// [`Error::VolumeFile`] says what is wrong where; [`Error::OutOfMemory`].
+/// [`Error::VolumeFile`] with the problem and its place; [`Error::OutOfMemory`].
 ///
 /// ```
 /// use leafless::exchange::read_volume;
@@ -180,7 +181,7 @@ fn header(bytes: &[u8]) -> Result<(VolumeFormat, Header), Error> {
     Ok((format, header))
 }
 
-/// The samples that a header describes, from the bytes behind it.
+/// Returns the samples that a header describes, from the bytes after the header.
 fn samples(header: &Header, data: &[u8], grid: &VoxelGrid) -> Result<(Samples<'static>, u64), Error> {
     let mut data = data;
     for _ in 0..header.lines {
@@ -219,7 +220,7 @@ fn samples(header: &Header, data: &[u8], grid: &VoxelGrid) -> Result<(Samples<'s
         Skip::Rest => found.checked_sub(length).ok_or_else(|| short(length))?,
     };
     let expected = length.checked_add(before).ok_or(Error::OutOfMemory)?;
-    // Editors and tools leave a line end behind.
+    // Editors and tools append a line end.
     let rest = behind(&data, expected).and_then(|end| data.get(end..));
     if !rest.is_some_and(|rest| rest.iter().all(|&byte| matches!(byte, b'\n' | b'\r' | 0))) {
         return Err(VolumeFileError::Length { expected, found }.into());

@@ -1,4 +1,4 @@
-//! Headers of NRRD files, versions 1 to 5, as the definition of the format by its authors (teem) has them.
+//! Headers of NRRD files, versions 1 to 5, as defined by the authors of the format (teem).
 
 use super::super::LengthUnit;
 use super::header::{Encoding, Header, Line, Lines, Place, Skip, extents, number};
@@ -8,13 +8,13 @@ use crate::error::{Error, VolumeFileError};
 use crate::memory;
 use alloc::vec::Vec;
 
-/// What every file begins with, before the version.
+/// The first bytes of every file, before the version.
 pub(super) const MAGIC: &[u8] = b"NRRD000";
 
-/// The most axes that a file may have.
+/// Maximum number of axes of a file.
 const MOST_AXES: u64 = 16;
 
-/// The fields that count, as they are found.
+/// The fields that are used.
 #[derive(Default)]
 struct Fields<'a> {
     dimension: Option<Line<'a>>,
@@ -61,7 +61,7 @@ pub(super) fn header(bytes: &[u8]) -> Result<Header, Error> {
     let encoding: Line<'_> = needed(fields.encoding, "encoding")?;
     let encoding = encoding_of(&encoding)?;
     let has_order = encoding != Encoding::Text && !matches!(kind, SampleKind::I8 | SampleKind::U8);
-    // A wrong word is refused also where the order of bytes does not matter.
+    // An invalid word is refused even if the byte order does not matter.
     let big = match fields.endian {
         Some(line) if line.value.eq_ignore_ascii_case("little") => false,
         Some(line) if line.value.eq_ignore_ascii_case("big") => true,
@@ -111,10 +111,10 @@ pub(super) fn header(bytes: &[u8]) -> Result<Header, Error> {
     })
 }
 
-/// Takes in a line. Names of fields have no case, and most may be written without their blank.
+/// Processes a line. Field names ignore letter case, and most may be written without their blank.
 fn take<'a>(fields: &mut Fields<'a>, line: &'a [u8], number: u64) -> Result<(), Error> {
     let wrong = |expected| Error::from(VolumeFileError::Syntax { line: number, expected });
-    // Keys of others, with their values, may be any text.
+    // Keys and values of other programs may be any text.
     let Some(colon) = line.iter().position(|&byte| byte == b':') else {
         return Err(wrong("a field, a colon and a blank, or an empty line before the samples"));
     };
@@ -151,7 +151,7 @@ fn take<'a>(fields: &mut Fields<'a>, line: &'a [u8], number: u64) -> Result<(), 
         b"spacedimension" => &mut fields.space_dimension,
         b"kinds" => &mut fields.kinds,
         b"thicknesses" => &mut fields.thicknesses,
-        // These say nothing of the samples or their places.
+        // These fields do not concern the samples or their positions.
         b"content" | b"number" | b"min" | b"max" | b"oldmin" | b"oldmax" | b"labels" | b"sampleunits"
         | b"measurementframe" | b"blocksize" => return Ok(()),
         _ => return Err(wrong("a field of the format")),
@@ -163,7 +163,7 @@ fn take<'a>(fields: &mut Fields<'a>, line: &'a [u8], number: u64) -> Result<(), 
     Ok(())
 }
 
-/// As many words as there are axes.
+/// Parses one word for each axis.
 fn list<T>(
     line: &Line<'_>,
     count: u64,
@@ -177,8 +177,8 @@ fn list<T>(
     if found.len() as u64 == count { Ok(found) } else { Err(line.error(expected).into()) }
 }
 
-/// Refuses axes of several numbers that belong together, such as colours: an axis of more than one sample
-/// must be one of space, of time, or of nobody knows what.
+/// Refuses axes whose numbers belong together, such as colours: an axis of more than one sample must be a
+/// space axis, a time axis, or of unknown kind.
 fn kinds(line: &Line<'_>, extents: &[u32; 3], chosen: [usize; 3], count: u64) -> Result<(), Error> {
     let all = list(line, count, "a kind of the format for each axis", is_domain)?;
     for (&extent, &axis) in extents.iter().zip(&chosen) {
@@ -189,7 +189,7 @@ fn kinds(line: &Line<'_>, extents: &[u32; 3], chosen: [usize; 3], count: u64) ->
     Ok(())
 }
 
-/// Whether samples lie one after the other along an axis of this kind; `None` for what is no kind.
+/// Returns whether samples follow each other along an axis of this kind; `None` for an unknown kind.
 fn is_domain(kind: &str) -> Option<bool> {
     const DOMAINS: [&str; 5] = ["domain", "space", "time", "none", "???"];
     const OTHERS: [&str; 28] = [
@@ -226,13 +226,13 @@ fn is_domain(kind: &str) -> Option<bool> {
     if is_one_of(&DOMAINS) { Some(true) } else { is_one_of(&OTHERS).then_some(false) }
 }
 
-/// Whether a word is a name of the format, with or without its hyphens and its letter cases.
+/// Returns whether a word is this name of the format, ignoring hyphens and letter case.
 fn is_word(word: &str, name: &str) -> bool {
     let plain = |text| str::bytes(text).filter(|&byte| byte != b'-').map(|byte| byte.to_ascii_lowercase());
     plain(word).eq(plain(name))
 }
 
-/// Refuses a space that has not three dimensions, or that the format does not have.
+/// Refuses a space that is not three-dimensional, or that the format does not define.
 fn check_space(fields: &Fields<'_>) -> Result<(), Error> {
     const SPACES: [&str; 9] = [
         "right-anterior-superior",
@@ -257,14 +257,14 @@ fn check_space(fields: &Fields<'_>) -> Result<(), Error> {
     }
 }
 
-/// A number for each axis of the file; NaN stands for an axis that has none.
+/// Parses a number for each axis of the file; NaN stands for an axis without one.
 fn numbers(line: Option<Line<'_>>, count: u64, expected: &'static str) -> Result<Option<Vec<f64>>, Error> {
     let number = |word: &str| word.parse::<f64>().ok().filter(|x| !x.is_infinite());
     line.map(|line| list(&line, count, expected, number)).transpose()
 }
 
-/// Where the samples lie: by directions in space, else by spacings and the ends of axes, else one unit apart
-/// from 0 on.
+/// Returns the positions of the samples: from directions in space; else from spacings and the ends of axes;
+/// else one unit apart, starting at 0.
 fn axes(fields: &Fields<'_>, extents: [u32; 3], chosen: [usize; 3], count: u64) -> Result<Axes, Error> {
     check_space(fields)?;
     let of = |line| numbers(line, count, "a finite number, or nan, for each axis");
@@ -291,9 +291,7 @@ fn axes(fields: &Fields<'_>, extents: [u32; 3], chosen: [usize; 3], count: u64) 
         return in_space(fields, &line, chosen, count, &given);
     }
     if let Some(line) = fields.origin {
-        return Err(line
-            .error("space directions besides, without which an origin in space says nothing")
-            .into());
+        return Err(line.error("space directions as well, because an origin in space needs them").into());
     }
     let chosen_ones = |line: Option<Line<'_>>, all: Option<Vec<f64>>, default: f64| {
         let (Some(line), Some(all)) = (line, all) else { return Ok([None; 3]) };
@@ -325,7 +323,7 @@ fn axes(fields: &Fields<'_>, extents: [u32; 3], chosen: [usize; 3], count: u64) 
         };
         found.steps[axis][axis] = spacing;
         let min = mins[axis].unwrap_or(0.0);
-        // The end of an axis of cells is half a spacing before the first sample.
+        // The end of a cell-centred axis is half a spacing before the first sample.
         found.origin[axis] = if is_cell(axis) && mins[axis].is_some() { min + 0.5 * spacing } else { min };
     }
     Ok(found)
@@ -358,7 +356,7 @@ fn in_space(
     if all.len() as u64 != count {
         return Err(line.error(EXPECTED).into());
     }
-    // As the format has it: a direction says all of an axis.
+    // According to the format, an axis with a direction has no other position data.
     for (line, numbers) in given {
         let (Some(line), Some(numbers)) = (line, numbers) else { continue };
         if numbers.iter().zip(&all).any(|(number, direction)| !number.is_nan() && direction.is_some()) {
@@ -383,7 +381,7 @@ fn in_space(
     Ok(axes)
 }
 
-/// `(x,y,z`.
+/// Parses `(x,y,z`.
 fn vector(text: &str) -> Option<[f64; 3]> {
     let mut parts = text.trim_ascii().strip_prefix('(')?.split(',').map(|part| number(part.trim_ascii()));
     let found = [parts.next()??, parts.next()??, parts.next()??];
@@ -434,7 +432,7 @@ fn kind_of(name: &str) -> Option<SampleKind> {
     })
 }
 
-/// The unit of all axes in space, `"mm" "mm" "mm"`, if they have the same.
+/// Returns the common unit of all axes in space, as in `"mm" "mm" "mm"`.
 fn unit_of(value: &str) -> Option<LengthUnit> {
     let mut named = value.split('"').skip(1).step_by(2).filter(|name| !name.is_empty());
     let first = named.next()?;

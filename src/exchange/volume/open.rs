@@ -1,4 +1,4 @@
-//! Volumes from paths, whose samples may be in another file.
+//! Opening volumes from paths; their samples may be in another file.
 
 use super::{VolumeFile, read_volume, volume_data_file};
 use crate::error::{Error, VolumeFileError};
@@ -9,20 +9,20 @@ use std::fs::{self, File};
 use std::io::{ErrorKind, Read};
 use std::path::{Component, Path, PathBuf};
 
-/// Reads a volume from a path, with the file of its samples if that is another one, in the header's folder or
-/// below it.
+/// Reads a volume from a path. If the samples are in another file, that file must be in the header's folder
+/// or below it.
 ///
-/// The header's folder is the one that the path names. Where the header itself is a link, the folder in which
-/// the header really lies counts too, and the data file is looked for there if there is none in the first.
-/// All links are followed before anything is judged: the real path of the data file must lie in one of these
-/// folders, so that a header from a stranger can name no other file. Folders above the header may be links. A
-/// link that somebody makes at the very moment of reading is noticed, unless it is gone again at once;
-/// whoever can do that in the header's folder could copy or hard-link the file there as well.
+/// The header's folder is the folder in the path. If the header itself is a link, the folder of its target
+/// counts too; the data file is looked for there if the first folder does not have it. All links are followed
+/// before the check: the real path of the data file must lie in one of these folders, so that a header from a
+/// stranger can name no other file. Folders above the header may be links. A link that is made during the
+/// reading is noticed, unless it is removed again at once. An attacker who can do that in the header's folder
+/// could also copy or hard-link the file there.
 ///
 /// # Errors
-/// As [`read_volume`], and [`Error::Io`], both as the cause of an [`Error::File`] with the path;
-/// [`VolumeFileError::Unsupported`] for samples outside of the header's folder, or in what is no regular
-/// file.
+/// The errors of [`read_volume`], and [`Error::Io`], both as the cause of an [`Error::File`] with the path;
+/// [`VolumeFileError::Unsupported`] for samples outside of the header's folder, or in a data file that is not
+/// a regular file.
 pub fn open_volume(path: impl AsRef<Path>) -> Result<VolumeFile, Error> {
     let path = path.as_ref();
     let bytes = read_whole(path).map_err(|error| error.of_file(path))?;
@@ -50,13 +50,13 @@ fn unsupported(what: &'static str) -> Error {
     VolumeFileError::Unsupported { what }.into()
 }
 
-/// A folder as it was named, and its real path.
+/// A folder as given, and its real path.
 struct Folder {
     given: PathBuf,
     real: PathBuf,
 }
 
-/// The folder that the path of a header names and, if the header is a link, the one in which the header lies.
+/// Returns the folder in the path of a header and, if the header is a link, the folder of its target.
 fn folders(header: &Path) -> Result<Vec<Folder>, Error> {
     let named = header.parent().unwrap_or(Path::new(""));
     let real = fs::canonicalize(if named.as_os_str().is_empty() { Path::new(".") } else { named })?;
@@ -67,11 +67,11 @@ fn folders(header: &Path) -> Result<Vec<Folder>, Error> {
     Ok(folders)
 }
 
-/// The data file as it is named and its real path, in the first folder that has it; `None` if that is outside
+/// Returns the data file as named and its real path, in the first folder that has it; `None` if it is outside
 /// of the folders.
 ///
 /// # Errors
-/// Why the data file cannot be found, with the path at which it was looked for first.
+/// The reason why the data file cannot be found, with the path at which it was looked for first.
 fn find(
     folders: &[Folder],
     relative: &Path,
@@ -88,24 +88,24 @@ fn find(
             Err(error) => return Err((given, error)),
         }
     }
-    // There is one folder at least, which does not have the file.
+    // There is at least one folder, and it does not have the file.
     match missing {
         Some(missing) => Err(missing),
         None => Ok(None),
     }
 }
 
-/// The bytes of a regular file with this real path.
+/// Returns the bytes of a regular file with this real path.
 fn content(real: &Path) -> Result<Vec<u8>, Error> {
-    // What is no file may have no end, and opening a pipe may wait for ever.
+    // A special file may have no end, and opening a pipe may wait for ever.
     let check = |metadata: fs::Metadata| match metadata.is_file() {
         true => Ok(()),
-        false => Err(unsupported("samples in what is no regular file")),
+        false => Err(unsupported("samples in a file that is not regular")),
     };
     check(fs::metadata(real)?)?;
     let mut file = File::open(real)?;
     check(file.metadata()?)?;
-    // A link may have taken the place of a part of the path since the path was resolved.
+    // A link may have replaced a part of the path since the path was resolved.
     if fs::canonicalize(real)? != real {
         return Err(unsupported("samples whose path changes while they are read"));
     }

@@ -1,4 +1,4 @@
-//! Where the samples of a file lie.
+//! Positions of the samples of a file.
 
 use crate::error::{Error, VolumeFileError};
 use crate::lattice::Affine;
@@ -6,18 +6,18 @@ use crate::lattice::axes;
 use crate::lattice::exact::sqrt;
 use crate::solid::VoxelGrid;
 
-/// What a file says of the place of its samples.
+/// The positions of samples as a file states them.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(super) struct Axes {
-    /// The way from one sample to the next, for each of the file's axes.
+    /// The vector from one sample to the next, for each of the file's axes.
     pub(super) steps: [[f64; 3]; 3],
-    /// The place of the first sample, or the lower corner of its voxel.
+    /// The position of the first sample, or of the lower corner of its voxel.
     pub(super) origin: [f64; 3],
     pub(super) is_corner: bool,
 }
 
 impl Axes {
-    /// Samples with these distances along the axes.
+    /// Returns samples with these distances along the axes.
     pub(super) fn along(spacing: [f64; 3], origin: [f64; 3]) -> Axes {
         let mut steps = [[0.0; 3]; 3];
         for axis in 0..3 {
@@ -26,7 +26,8 @@ impl Axes {
         Axes { steps, origin, is_corner: false }
     }
 
-    /// The grid, and the map that moves it to where the file says, if its axes are not x, y and z.
+    /// Returns the grid, and the map that moves the grid to the stated position, if the file's axes are not
+    /// x, y and z.
     pub(super) fn placed(&self, extents: [u32; 3]) -> Result<(VoxelGrid, Option<Affine>), Error> {
         let wrong = |_| VolumeFileError::Place;
         let is_straight = (0..3).all(|axis| {
@@ -42,7 +43,7 @@ impl Axes {
             return Ok((grid.map_err(wrong)?, None));
         }
         let spacing = self.steps.map(|[x, y, z]| match [x.abs(), y.abs(), z.abs()] {
-            // Along an axis nothing is rounded.
+            // Along a single axis nothing is rounded.
             [only, 0.0, 0.0] | [0.0, only, 0.0] | [0.0, 0.0, only] => only,
             _ => sqrt(x * x + y * y + z * z),
         });
@@ -51,7 +52,7 @@ impl Axes {
         if self.is_flat(spacing) {
             return Err(VolumeFileError::Place.into());
         }
-        // What is nothing but an error of rounding is nothing.
+        // Components that can only be rounding errors become zero.
         let part = |c: f64| if c.abs() < 1.0 / (1u64 << 60) as f64 { 0.0 } else { c };
         let row = |i: usize| {
             let [a, b, c] = axes(|axis| part(self.steps[axis][i] / spacing[axis]));
@@ -61,8 +62,8 @@ impl Axes {
         Ok((grid, Some(placement)))
     }
 
-    /// Whether the directions lie in one plane, up to the rounding of decimal numbers: then their box has
-    /// less than 2^-40 of the volume that it would have if they were square to each other.
+    /// Returns whether the directions lie in one plane, up to the rounding of decimal numbers: their
+    /// parallelepiped then has less than 2^-40 of the volume that it would have with right angles.
     fn is_flat(&self, spacing: [f64; 3]) -> bool {
         let [a, b, c] = axes(|axis| self.steps[axis].map(|x| x / spacing[axis]));
         let cross = axes(|i| {

@@ -4,7 +4,7 @@ use super::kind::SampleKind;
 use crate::error::{Error, VolumeFileError};
 use crate::solid::{Samples, VoxelGrid};
 
-/// What must be known of an array of samples to read it: x fastest, then y, then z.
+/// The layout of an array of samples without a header: x fastest, then y, then z.
 ///
 /// ```
 /// use leafless::solid::VoxelGrid;
@@ -18,22 +18,22 @@ use crate::solid::{Samples, VoxelGrid};
 /// ```
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct RawVolume {
-    /// How many samples there are, and where they lie.
+    /// The number of samples, and their positions.
     pub grid: VoxelGrid,
-    /// What numbers they are.
+    /// The type of the samples.
     pub kind: SampleKind,
-    /// Whether the byte of the highest weight comes first.
+    /// True if the most significant byte comes first.
     pub big_endian: bool,
-    /// Bytes before the first sample.
+    /// Number of bytes before the first sample.
     pub skip: u64,
 }
 
-/// Reads the samples of an array, and tells how many of them single precision had to round: what is neither
-/// bits nor 8 or 16 bits wide becomes numbers of single precision, and numbers of 8 bits with a sign become
-/// 16 bits. O(n).
+/// Reads the samples of an array, and returns them with the number of samples that single precision had to
+/// round. Bits and numbers of 8 or 16 bits are kept, but signed numbers of 8 bits become 16 bits wide; all
+/// others become numbers of single precision. O(n).
 ///
 /// # Errors
-/// [`VolumeFileError::Length`] if there are more or fewer bytes than the layout asks for;
+/// [`VolumeFileError::Length`] if there are more or fewer bytes than the layout needs;
 /// [`Error::OutOfMemory`].
 pub fn read_raw_volume(bytes: &[u8], layout: &RawVolume) -> Result<(Samples<'static>, u64), Error> {
     let length = layout.kind.bytes(&layout.grid).ok_or(Error::OutOfMemory)?;

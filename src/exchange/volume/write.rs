@@ -1,4 +1,4 @@
-//! Volumes as raw arrays and as NRRD.
+//! Writing volumes as raw arrays and as NRRD.
 
 use crate::error::Error;
 use crate::lattice::axes;
@@ -10,20 +10,20 @@ use miniz_oxide::deflate::core::{
     CompressorOxide, TDEFLFlush, TDEFLStatus, compress, create_comp_flags_from_zip_params,
 };
 
-/// How a NRRD holds its samples.
+/// The encoding of samples in a NRRD.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
 pub enum NrrdEncoding {
-    /// As they are.
+    /// Uncompressed.
     Raw,
     /// Compressed by DEFLATE, level 6.
     Gzip,
 }
 
-/// The bytes of samples, x fastest, the byte of the lowest weight first. Bits become bytes 0 and 1, which
-/// more programs read; bits beyond a row are left out. O(n).
+/// Returns the bytes of samples, x fastest, least significant byte first. Bits become bytes 0 and 1, which
+/// more programs can read; bits beyond a row are left out. O(n).
 ///
 /// # Errors
-/// [`Error::Argument`] if the grid has another number of samples; [`Error::OutOfMemory`].
+/// [`Error::Argument`] if the grid has a different number of samples; [`Error::OutOfMemory`].
 pub fn write_raw_volume(samples: &Samples<'_>, grid: &VoxelGrid) -> Result<Vec<u8>, Error> {
     samples.check(grid)?;
     Ok(match samples {
@@ -50,10 +50,10 @@ fn bytes_of<T: Copy, const N: usize>(values: &[T], of: impl Fn(T) -> [u8; N]) ->
     Ok(bytes)
 }
 
-/// A NRRD file, version 4, with the grid as `space directions` and `space origin`. The origin is the first
-/// sample's place, corner + spacing / 2, rounded to a double from which [`read_volume`](super::read_volume)
-/// finds the same corner. Where there is none, near a power of two, a grid that is read again lies half a
-/// last place beside. O(n).
+/// Returns a NRRD file, version 4, with the grid as `space directions` and `space origin`. The origin is the
+/// position of the first sample, corner + spacing / 2, rounded to a double from which
+/// [`read_volume`](super::read_volume) computes the same corner. If there is no such double, near a power of
+/// two, the grid that is read back is off by half a unit in the last place. O(n).
 ///
 /// # Errors
 /// As [`write_raw_volume`].
@@ -76,7 +76,7 @@ pub fn write_nrrd(samples: &Samples<'_>, grid: &VoxelGrid, encoding: NrrdEncodin
     };
     let ([nx, ny, nz], [x, y, z], [sx, sy, sz]) = (grid.extents(), origin(grid), grid.spacing());
     let mut header = memory::text("")?;
-    // Numbers of doubles take at most 80 characters, so that nothing is allocated below.
+    // A double takes at most 80 characters, so nothing is allocated below.
     header.try_reserve(1024)?;
     let endian = if is_wide { "endian: little\n" } else { "" };
     let name = if encoding == NrrdEncoding::Gzip { "gzip" } else { "raw" };
@@ -96,7 +96,8 @@ pub fn write_nrrd(samples: &Samples<'_>, grid: &VoxelGrid, encoding: NrrdEncodin
     Ok(file)
 }
 
-/// The first sample's place, as near as doubles come to it; of several, those that lead back to the corner.
+/// Returns the position of the first sample, as near as doubles come to it; if several are, one that leads
+/// back to the corner.
 fn origin(grid: &VoxelGrid) -> [f64; 3] {
     let (centre, corner, spacing) = (grid.centre([0; 3]), grid.corner(), grid.spacing());
     axes(|axis| {
@@ -106,7 +107,7 @@ fn origin(grid: &VoxelGrid) -> [f64; 3] {
     })
 }
 
-/// What the compressor allocates for itself, and more.
+/// More than the compressor allocates for itself.
 const COMPRESSOR: usize = 1 << 19;
 
 /// Appends a gzip member.
@@ -127,7 +128,7 @@ fn gzip(data: &[u8], file: &mut Vec<u8>) -> Result<(), Error> {
         match status {
             TDEFLStatus::Done => break,
             TDEFLStatus::Okay => {}
-            // Neither the parameters nor the buffer can be refused.
+            // Neither the parameters nor the buffer can cause a failure.
             _ => return Err(Error::OutOfMemory),
         }
     }

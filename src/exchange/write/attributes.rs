@@ -1,4 +1,4 @@
-//! Attributes of a mesh, as files have them.
+//! Attributes of a mesh in the form that files need.
 
 use crate::error::Error;
 use crate::memory;
@@ -6,23 +6,23 @@ use crate::mesh::{AttributeDomain, MeshAttribute, TriangleMesh};
 use alloc::string::String;
 use alloc::vec::Vec;
 
-/// What has no colour: black, of which nothing is seen.
+/// The colour of elements without a colour: transparent black.
 const NOTHING: [u8; 4] = [0; 4];
 
-/// A colour of three or four numbers from 0 to 255, rounded to whole ones.
+/// Returns a colour of three or four numbers from 0 to 255, rounded to whole numbers.
 fn colour(attribute: &MeshAttribute, triangle: usize, corner: usize) -> Option<[u8; 4]> {
     let [r, g, b, a] = attribute.value(triangle, corner)?;
     let a = if attribute.components() == 3 { 255.0 } else { a };
-    // (What is out of range ends at it.)
+    // (Numbers out of range are clamped.)
     Some([r, g, b, a].map(|channel| (channel + 0.5) as u8))
 }
 
-/// An attribute that is a colour.
+/// Returns an attribute if it is a colour.
 fn colours<'a>(mesh: &'a TriangleMesh, name: &str) -> Option<&'a MeshAttribute> {
     mesh.attribute(name).filter(|attribute| attribute.components() >= 3)
 }
 
-/// Colours of the three corners of triangles: `colour`, or else `face_colour`.
+/// Returns the colours of the three corners of triangles: `colour`, or else `face_colour`.
 #[cfg(feature = "threemf")]
 pub(super) fn of_corners<'a>(mesh: &'a TriangleMesh) -> Option<impl Fn(usize) -> Option<[[u8; 4]; 3]> + 'a> {
     let found = colours(mesh, "colour").or_else(|| colours(mesh, "face_colour"))?;
@@ -32,11 +32,11 @@ pub(super) fn of_corners<'a>(mesh: &'a TriangleMesh) -> Option<impl Fn(usize) ->
     })
 }
 
-/// What a PLY has of colours.
+/// The colours of a PLY.
 pub(super) struct Palette {
-    /// For each vertex, if corners have colours: that of the first corner there.
+    /// A colour for each vertex, if corners have colours: that of the first corner at the vertex.
     pub vertices: Option<Vec<[u8; 4]>>,
-    /// For each triangle.
+    /// A colour for each triangle.
     pub faces: Option<Vec<[u8; 4]>>,
 }
 
@@ -67,7 +67,7 @@ impl Palette {
     }
 }
 
-/// A name on one line, which is not empty.
+/// Returns a name without line ends, which is not empty.
 pub(super) fn line_of(name: &str, number: usize) -> Result<String, Error> {
     let name = name.trim();
     if name.is_empty() {
@@ -102,9 +102,9 @@ pub(super) struct Materials<'a> {
 }
 
 impl<'a> Materials<'a> {
-    /// `None` if the mesh has none. `MOST` numbers have names.
+    /// Returns the materials of a mesh; `None` if it has none. The first `MOST` numbers have names.
     pub fn of(mesh: &'a TriangleMesh) -> Result<Option<Materials<'a>>, Error> {
-        /// A material that has no name has its number, up to this one.
+        /// Number of materials that get their number as a name, if they have none.
         const MOST: usize = 1 << 16;
         let Some(attribute) = mesh.attribute("material").filter(|attribute| attribute.components() == 1)
         else {
@@ -123,7 +123,7 @@ impl<'a> Materials<'a> {
         Ok(Some(found))
     }
 
-    /// That of a triangle.
+    /// Returns the material of a triangle.
     pub fn get(&self, triangle: usize) -> Option<usize> {
         let number = self.attribute.value(triangle, 0)?[0];
         let is_whole =

@@ -1,4 +1,4 @@
-//! What a written mesh file keeps.
+//! The changes that writing a mesh file makes to a mesh.
 
 use super::stl::{rounded, text};
 use super::{WriteOptions, refuse};
@@ -9,34 +9,33 @@ use crate::mesh::{FacetWelder, TriangleMesh};
 use alloc::borrow::Cow;
 use alloc::vec::Vec;
 
-/// What a mesh file keeps of the mesh that it is written of: see [`written_form`].
+/// The mesh that a file keeps of the mesh written to it, and the losses: see [`written_form`].
 #[non_exhaustive]
 #[derive(Debug, Clone)]
 pub struct WrittenForm<'a> {
     /// The mesh that a reader gets back. Borrowed if the format keeps vertices and triangles as they are.
     pub mesh: Cow<'a, TriangleMesh>,
-    /// The farthest that rounding moves a vertex along an axis, in model units.
+    /// Maximum distance along an axis by which rounding moves a vertex, in model units.
     pub rounding: f64,
-    /// Vertices of triangles that are lost, because rounding puts them where others are.
+    /// Number of used vertices that are lost because rounding makes them coincide with others.
     pub merged: u64,
-    /// Triangles that are lost, because rounding puts two of their corners at one place.
+    /// Number of triangles that are lost because rounding makes two of their corners coincide.
     pub degenerate: u64,
 }
 
-/// The mesh that a reader gets back from the file that [`write_mesh`](super::write_mesh) makes, and what is
-/// lost on the way.
+/// Returns the mesh that a reader gets back from a file of [`write_mesh`](super::write_mesh), and the losses.
 ///
 /// PLY, OBJ, OFF and 3MF keep every bit of the coordinates, and nothing is lost. STL has 32-bit coordinates:
-/// vertices move, vertices that meet are one vertex for a reader, and triangles of which two corners meet are
-/// dropped. A closed mesh stays closed, but it may be flat, pinched, or have no triangle at all: a cube of
-/// edge 3 around x = 10⁹ becomes a square. Its [`report`](TriangleMesh::report) tells, and
-/// [`TriangleMesh::in_single_precision`] mends what can be mended before. An STL has no vertices that no
-/// triangle uses, and has the others in the order in which triangles first use them. What is kept of
-/// [attributes](TriangleMesh::attributes) stands at [`write_mesh`](super::write_mesh); those of the mesh that
-/// is told are none, or all.
+/// vertices move, coinciding vertices are one vertex for a reader, and triangles with two coinciding corners
+/// are dropped. A closed mesh stays closed, but it may be flat, pinched, or have no triangle at all: a cube
+/// of edge 3 around x = 10⁹ becomes a square. Its [`report`](TriangleMesh::report) shows this, and
+/// [`TriangleMesh::in_single_precision`] repairs most of it beforehand. An STL has no unused vertices, and
+/// has the others in the order in which triangles first use them. [`write_mesh`](super::write_mesh) documents
+/// which [attributes](TriangleMesh::attributes) are kept; the mesh returned here has either none or all of
+/// them.
 ///
-/// O(n) time; O(1) memory where nothing is lost, else that of a second mesh, and for an STL as text also that
-/// of the file.
+/// O(n) time; O(1) memory if nothing is lost, else the memory of a second mesh, and for an STL as text also
+/// that of the file.
 ///
 /// # Errors
 /// As [`write_mesh`](super::write_mesh).
@@ -74,7 +73,7 @@ pub fn written_form<'a>(
         Ok([a?, b?, c?].map(|corner| corner.map(f64::from)))
     };
     let kept = if options.text {
-        // Readers take decimal numbers for the doubles that are nearest to these, not for 32-bit ones.
+        // Readers take decimal numbers for the nearest doubles, not for 32-bit numbers.
         read_stl(&text(mesh)?)?
     } else {
         let mut welder = FacetWelder::with_capacity(mesh.triangles().len())?;

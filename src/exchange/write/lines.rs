@@ -1,17 +1,17 @@
-//! Text that grows as long as there is memory.
+//! Text output with fallible allocation.
 
 use crate::error::Error;
 use alloc::vec::Vec;
 use core::fmt::{self, Write};
 
-/// A text file that is being written.
+/// A text file in memory.
 #[derive(Default)]
 pub(super) struct Lines(Vec<u8>);
 
 impl Lines {
-    /// Adds what is formatted.
+    /// Appends formatted text.
     pub fn add(&mut self, text: fmt::Arguments<'_>) -> Result<(), Error> {
-        // Nothing that is formatted here fails for another reason.
+        // Formatting fails here only for lack of memory.
         self.write_fmt(text).map_err(|_| Error::OutOfMemory)
     }
 
@@ -28,13 +28,13 @@ impl Write for Lines {
     }
 }
 
-/// A number with as few digits as are read as the same number.
+/// A number, formatted with the fewest digits that are read back as the same number.
 pub(super) struct Number<T>(pub T);
 
 impl<T: Copy + Into<f64> + fmt::Display + fmt::LowerExp> fmt::Display for Number<T> {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         let size = self.0.into().abs();
-        // Others would have long rows of zeros.
+        // Other numbers would have long rows of zeros.
         if size == 0.0 || (1e-5..1e16).contains(&size) {
             fmt::Display::fmt(&self.0, f)
         } else {
@@ -43,7 +43,7 @@ impl<T: Copy + Into<f64> + fmt::Display + fmt::LowerExp> fmt::Display for Number
     }
 }
 
-/// Coordinates with blanks between them.
+/// Coordinates, separated by blanks.
 pub(super) struct Point<T>(pub [T; 3]);
 
 impl<T: Copy + Into<f64> + fmt::Display + fmt::LowerExp> fmt::Display for Point<T> {

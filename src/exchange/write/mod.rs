@@ -1,8 +1,8 @@
-//! Mesh files of all formats, written.
+//! Writers of mesh files in all formats.
 //!
-//! Whatever is written here comes back through this library's readers: text has the shortest decimal numbers
-//! that are read as the same doubles, binary PLY has the doubles themselves. STL alone has 32-bit
-//! coordinates; [`written_form`] tells what becomes of a mesh.
+//! This library's readers read every written file back: text has the shortest decimal numbers that are read
+//! as the same doubles, binary PLY has the doubles themselves. Only STL has 32-bit coordinates;
+//! [`written_form`] returns the mesh that remains.
 
 mod attributes;
 mod form;
@@ -34,23 +34,24 @@ use crate::error::MeshFileError;
 use crate::mesh::TriangleMesh;
 use alloc::vec::Vec;
 
-/// How a mesh file is written.
+/// Options for writing a mesh file.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
 pub struct WriteOptions {
-    /// STL and PLY as text, which is several times as long. OBJ and OFF always are text.
+    /// Writes STL and PLY as text, which is several times as long. OBJ and OFF always are text.
     pub text: bool,
-    /// The unit of the coordinates, which only a 3MF tells; `None` stands for its default, the millimetre.
+    /// The unit of the coordinates, which only a 3MF stores; `None` stands for its default, the millimetre.
     /// Nothing is converted.
     pub unit: Option<LengthUnit>,
-    /// PLY and OBJ with the normals at vertices ([`TriangleMesh::vertex_normals`]). Other formats have none.
+    /// Writes PLY and OBJ with normals at vertices ([`TriangleMesh::vertex_normals`]). Other formats have
+    /// none.
     pub normals: bool,
-    /// How far the true boundary may lie from the mesh ([`TriangleMesh::deviation`]), in model units: told by
-    /// a comment of a PLY, an OBJ or an OFF, and by metadata of a 3MF. An STL has no place for it.
-    /// [`MeshFile::deviation`](super::MeshFile::deviation) reads it.
+    /// The maximum distance of the true boundary from the mesh ([`TriangleMesh::deviation`]), in model units.
+    /// It is stored in a comment of a PLY, an OBJ or an OFF, and in metadata of a 3MF. An STL has no place
+    /// for it. [`MeshFile::deviation`](super::MeshFile::deviation) reads it.
     pub deviation: Option<f64>,
 }
 
-/// The file of a mesh in a format.
+/// Returns the bytes of a mesh file in a format.
 ///
 /// | format | what is written |
 /// |---|---|
@@ -60,23 +61,24 @@ pub struct WriteOptions {
 /// | OFF | vertices and triangles |
 /// | 3MF | (feature `threemf`) a package of the core specification: one object, which is the build's one item, in the given unit; base materials and colours |
 ///
-/// Coordinates are kept exactly by all but STL, which may lose vertices and triangles and flatten what is
-/// small and far away: [`written_form`] tells.
+/// All formats but STL keep coordinates exactly. STL may lose vertices and triangles, and may flatten details
+/// that are small and far from the origin: [`written_form`] returns the result.
 ///
-/// **Attributes.** What a format has a place for is written, and read back by the readers of this library:
+/// **Attributes.** Attributes for which a format has a place are written, and the readers of this library
+/// read them back:
 ///
-/// - Of `colour` and `face_colour` (three or four numbers from 0 to 255, which are rounded) a PLY has colours
-///   of faces, and of vertices if `colour` is one of corners: at a vertex that of the first corner there.
-///   What has no colour is black with an alpha of 0. A 3MF has colours of triangles or corners, of
-///   `face_colour` only if there is no `colour`.
-/// - Of `material` with its names an OBJ has `usemtl`, and no file of materials; a 3MF has base materials, of
-///   which each needs a colour: that of the first triangle of it, or grey. Materials are written, and not
-///   colours, where a 3MF would have both.
-/// - All other attributes of triangles whose names are one word of ASCII are properties of the faces of a
-///   PLY, with comments in the header that announce them to the reader.
+/// - `colour` and `face_colour` (three or four numbers from 0 to 255, which are rounded): A PLY has colours
+///   of faces, and colours of vertices if `colour` is an attribute of corners; a vertex gets the colour of
+///   the first corner there. Elements without a colour are black with an alpha of 0. A 3MF has colours of
+///   triangles or corners, from `face_colour` only if there is no `colour`.
+/// - `material` with its names: An OBJ has `usemtl`, without a file of materials. A 3MF has base materials.
+///   Each of them needs a colour: that of the first triangle with the material, or grey. If a 3MF would have
+///   both, materials are written, and colours are not.
+/// - All other attributes of triangles whose names are one word of ASCII: They become properties of the faces
+///   of a PLY, with comments in the header that announce them to the reader.
 ///
-/// Vertices and triangles keep their order. A 3MF leaves out triangles that have a vertex twice, which it
-/// must not have.
+/// Vertices and triangles keep their order. A 3MF leaves out triangles with a repeated vertex, which the
+/// format forbids.
 ///
 /// O(n) time and memory.
 ///
@@ -84,7 +86,8 @@ pub struct WriteOptions {
 /// [`Error::Argument`] for an STL of coordinates beyond the range of `f32`, for an OBJ without vertices, and
 /// for a deviation that [`TriangleMesh::with_deviation`] refuses;
 /// [`MeshFileError::Unsupported`](crate::error::MeshFileError::Unsupported) for a 3MF without the feature;
-/// [`Error::OutOfMemory`]. (Compressing a 3MF takes some 300 KiB that cannot be refused.)
+/// [`Error::OutOfMemory`]. (Compressing a 3MF takes some 300 KiB; a failure to allocate these is not reported
+/// as an error.)
 ///
 /// ```
 /// use leafless::exchange::{MeshFormat, WriteOptions, read_mesh, write_mesh};
@@ -117,13 +120,13 @@ pub fn write_mesh(mesh: &TriangleMesh, format: MeshFormat, options: &WriteOption
 const WITHOUT_3MF: MeshFileError =
     MeshFileError::Unsupported { what: "3MF, which was left out of this build," };
 
-/// Refuses meshes that a format does not have, apart from their coordinates, and options that are none.
+/// Refuses meshes that a format cannot store, apart from their coordinates, and invalid options.
 fn refuse(mesh: &TriangleMesh, format: MeshFormat, options: &WriteOptions) -> Result<(), Error> {
     stated::check(options.deviation)?;
     match format {
-        // A file of neither cannot be told from other text.
+        // A file with neither vertices nor faces cannot be told from other text.
         MeshFormat::Obj if mesh.vertices().is_empty() => {
-            Err(Error::Argument { name: "mesh", problem: "has no vertices, of which an OBJ must have some" })
+            Err(Error::Argument { name: "mesh", problem: "has no vertices, but an OBJ must have some" })
         }
         #[cfg(not(feature = "threemf"))]
         MeshFormat::ThreeMf => Err(WITHOUT_3MF.into()),

@@ -1,4 +1,4 @@
-//! Wavefront OBJ.
+//! Writer of Wavefront OBJ.
 
 use super::WriteOptions;
 use super::attributes::Materials;

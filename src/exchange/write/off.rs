@@ -1,4 +1,4 @@
-//! Geomview OFF.
+//! Writer of Geomview OFF.
 
 use super::WriteOptions;
 use super::lines::{Lines, Point};

@@ -1,4 +1,4 @@
-//! Stanford PLY.
+//! Writer of Stanford PLY.
 
 use super::WriteOptions;
 use super::attributes::{Palette, line_of};
@@ -11,7 +11,7 @@ use alloc::vec::Vec;
 
 const CHANNELS: [&str; 4] = ["red", "green", "blue", "alpha"];
 
-/// What a file has of a mesh.
+/// The data of a mesh that a file contains.
 struct Content<'a> {
     mesh: &'a TriangleMesh,
     normals: Vec<[f32; 3]>,
@@ -48,18 +48,18 @@ fn is_property(name: &str) -> bool {
     declared::is_property(name) && !declared::is_taken(name)
 }
 
-/// (Without the readers nothing would read it.)
+/// (Without the readers the properties would be of no use.)
 #[cfg(not(feature = "std"))]
 fn is_property(_: &str) -> bool {
     false
 }
 
-/// The greatest label is none, as in the mesh.
+/// Returns the label of a triangle. The greatest label means none, as in the mesh.
 fn label(attribute: &MeshAttribute, triangle: usize) -> u32 {
     attribute.value(triangle, 0).map_or(MeshAttribute::NO_ROW, |value| value[0] as u32)
 }
 
-/// The numbers of a value; none of it are no numbers.
+/// Returns the numbers of a value; NaNs if there is none.
 fn numbers(attribute: &MeshAttribute, triangle: usize) -> [f64; 4] {
     attribute.value(triangle, 0).unwrap_or([f64::NAN; 4])
 }
@@ -95,7 +95,7 @@ impl Content<'_> {
         lines.add(format_args!(
             "element face {}\nproperty list uchar {} vertex_indices\n",
             mesh.triangles().len(),
-            // Some programs read no other type than `int`; only the largest meshes need another.
+            // Some programs read only the type `int`; only the largest meshes need another type.
             if vertices <= i32::MAX as usize { "int" } else { "uint" },
         ))?;
         if palette.faces.is_some() {

@@ -1,16 +1,16 @@
-//! PNG.
+//! Writer of PNG.
 
 use crate::error::Error;
 use crate::render::Picture;
 use alloc::vec::Vec;
 use png::{BitDepth, ColorType, Encoder, SrgbRenderingIntent};
 
-/// Writes the colours of a picture as a PNG file: red, green and blue in sRGB, and opacity if any pixel is
-/// not opaque. The same picture makes the same bytes.
+/// Returns the colours of a picture as a PNG file: red, green and blue in sRGB, and opacity if any pixel is
+/// not opaque. Equal pictures give equal bytes.
 ///
 /// # Errors
-/// [`Error::OutOfMemory`]. (The encoder's own memory, some hundred kilobytes and a copy of the picture,
-/// cannot be refused.)
+/// [`Error::OutOfMemory`]. (A failure to allocate the encoder's own memory, some hundred kilobytes and a copy
+/// of the picture, is not reported as an error.)
 ///
 /// ```
 /// use leafless::{Control, exchange, render::{Camera, Lens, Shot, render}};
@@ -36,7 +36,7 @@ pub fn write_png(picture: &Picture) -> Result<Vec<u8>, Error> {
     encoder.set_color(if is_opaque { ColorType::Rgb } else { ColorType::Rgba });
     encoder.set_depth(BitDepth::Eight);
     encoder.set_source_srgb(SrgbRenderingIntent::Perceptual);
-    // A vector takes all bytes, and a picture has a size that the format knows.
+    // A vector accepts all bytes, and the format supports every picture size.
     let write = || -> Result<(), png::EncodingError> {
         let mut writer = encoder.write_header()?;
         writer.write_image_data(data)?;

@@ -1,9 +1,9 @@
-//! Polygons, written as such.
+//! Writers of polygons.
 //!
-//! The formats have no holes. A face with holes is triangulated, and the triangles are put together again: a
-//! polygon begins as a triangle and takes neighbours across its edges, each with a corner that is new to it,
-//! as long as there are any. So it stays a disc without corners that meet, and all corners of the face stay
-//! corners.
+//! The formats have no holes. A face with holes is triangulated, and the triangles are merged again: a
+//! polygon begins as a triangle and absorbs neighbours across its edges, as long as there is one whose third
+//! corner is new to the polygon. The polygon therefore stays a disc without repeated corners, and all corners
+//! of the face stay corners.
 
 use super::attributes::line_of;
 use super::lines::{Lines, Point};
@@ -17,20 +17,20 @@ use crate::mesh::{Polyhedron, PolyhedronArrays};
 use alloc::vec::Vec;
 use hashbrown::HashMap;
 
-/// The file of a polyhedron, in which its faces are polygons: an OBJ or an OFF. A face with holes, which
-/// these formats do not have, is cut into a few polygons without; all other faces are as they are given. No
-/// vertex is added, and vertices keep their order.
+/// Returns an OBJ or OFF file of a polyhedron, with its faces as polygons. A face with holes, which these
+/// formats do not have, is divided into a few polygons without holes; all other faces are written as given.
+/// No vertex is added, and vertices keep their order.
 ///
-/// The faces are checked as [`Polyhedron::new`] does, so that [`read_obj`](crate::exchange::read_obj) and
-/// [`read_off`](crate::exchange::read_off) get a closed mesh of the same solids back. Of the options the
-/// deviation counts. Needs the feature `std`.
+/// The faces are checked as in [`Polyhedron::new`], so that [`read_obj`](crate::exchange::read_obj) and
+/// [`read_off`](crate::exchange::read_off) return a closed mesh of the same solids. Only the option
+/// `deviation` is used. Needs the feature `std`.
 ///
 /// O(n log n) expected.
 ///
 /// # Errors
 /// [`Error::Argument`] for other formats, and for a deviation that
-/// [`TriangleMesh::with_deviation`](crate::TriangleMesh::with_deviation) refuses; what [`Polyhedron::new`]
-/// refuses; [`Error::OutOfMemory`].
+/// [`TriangleMesh::with_deviation`](crate::TriangleMesh::with_deviation) refuses; the errors of
+/// [`Polyhedron::new`]; [`Error::OutOfMemory`].
 ///
 /// ```
 /// use leafless::exchange::{MeshFormat, WriteOptions, read_obj, write_polygons};
@@ -57,11 +57,12 @@ pub fn write_polygons(
     write_grouped_polygons(arrays, &[], format, options)
 }
 
-/// As [`write_polygons`], in groups of an OBJ: the faces from a number on, up to those of the next group,
-/// belong to all groups whose names, between blanks, are told. The numbers ascend. An OFF has no groups.
+/// Writes polygons as [`write_polygons`] does, with groups in an OBJ. Each entry of `groups` applies to the
+/// faces from its number up to the next entry. These faces belong to all groups whose names are in the entry,
+/// separated by blanks. The numbers ascend. An OFF has no groups.
 ///
 /// # Errors
-/// As [`write_polygons`].
+/// The errors of [`write_polygons`].
 pub fn write_grouped_polygons(
     arrays: &PolyhedronArrays<'_>,
     groups: &[(u32, &str)],
@@ -74,11 +75,11 @@ pub fn write_grouped_polygons(
     }
     Polyhedron::new(arrays)?;
     let mut polygons = Polygons::default();
-    // How many polygons there are before each face.
+    // The number of polygons before each face.
     let mut starts = memory::with_capacity(arrays.faces.len())?;
     for (face, loops) in arrays.faces.windows(2).enumerate() {
         starts.push(polygons.ends.len());
-        // (The offsets were found to be right.)
+        // (The offsets were checked.)
         let loops = &arrays.loops[loops[0] as usize..=loops[1] as usize];
         let corners = &arrays.corners[loops[0] as usize..loops[loops.len() - 1] as usize];
         if loops.len() == 2 {
@@ -128,7 +129,7 @@ pub fn write_grouped_polygons(
     Ok(lines.bytes())
 }
 
-/// Simple polygons, one behind the other.
+/// Simple polygons, one after another.
 #[derive(Default)]
 struct Polygons {
     corners: Vec<u32>,
@@ -142,7 +143,7 @@ impl Polygons {
         memory::push(&mut self.ends, self.corners.len())
     }
 
-    /// Adds a face of several loops, in parts.
+    /// Adds a face of several loops, divided into polygons.
     fn push_cut(
         &mut self,
         vertices: &[[f64; 3]],
@@ -153,7 +154,7 @@ impl Polygons {
         let mut triangles = Vec::new();
         triangulate(vertices, corners, ends, &mut triangles).map_err(|defect| match defect {
             PolygonDefect::OutOfMemory => Error::OutOfMemory,
-            // (It was triangulated before.)
+            // (The triangulation succeeded before.)
             _ => PolyhedronError::Loops { face }.into(),
         })?;
         // The triangle to the left of each edge.
@@ -165,7 +166,7 @@ impl Polygons {
             }
         }
         let mut is_taken = memory::filled(triangles.len(), false)?;
-        // Where a corner of the polygon leads on, and the edges that were not looked at.
+        // The next corner after each corner of the polygon, and the edges that are not yet processed.
         let (mut next, mut open) = (HashMap::new(), Vec::new());
         for first in 0..triangles.len() {
             if core::mem::replace(&mut is_taken[first], true) {

@@ -1,4 +1,4 @@
-//! STL, binary and ASCII.
+//! Writer of STL, binary and ASCII.
 
 use super::lines::{Lines, Point};
 use crate::error::{Error, MeshError};
@@ -8,15 +8,16 @@ use crate::mesh::TriangleMesh;
 use alloc::vec::Vec;
 use glam::DVec3;
 
-/// What a binary file begins with; must not be `solid`.
+/// The beginning of a binary file; must not be `solid`.
 const TITLE: &[u8] = b"binary STL written by leafless";
 
 /// Writes a binary STL file.
 ///
-/// Coordinates are rounded to `f32`. Vertices stay common to their triangles, so a closed mesh stays closed,
-/// also where rounding makes a triangle degenerate, which readers drop; but what is smaller than the rounding
-/// is lost, up to the whole solid. [`written_form`](super::written_form) tells, and
-/// [`TriangleMesh::in_single_precision`] mends it before. Without area the normal is (0, 0, 0).
+/// Coordinates are rounded to `f32`. Triangles still share their vertices, so a closed mesh stays closed,
+/// even if rounding makes a triangle degenerate, which readers drop. Details smaller than the rounding are
+/// lost, up to the whole solid. [`written_form`](super::written_form) returns the result, and
+/// [`TriangleMesh::in_single_precision`] repairs the mesh beforehand. A triangle without area has the normal
+/// (0, 0, 0).
 ///
 /// O(t), 84 + 50 t bytes.
 ///
@@ -41,7 +42,7 @@ pub fn write_stl(mesh: &TriangleMesh) -> Result<Vec<u8>, Error> {
     Ok(bytes)
 }
 
-/// Writes an ASCII STL file, whose numbers are those of the binary one.
+/// Writes an ASCII STL file with the same numbers as the binary file.
 pub(super) fn text(mesh: &TriangleMesh) -> Result<Vec<u8>, Error> {
     let mut lines = Lines::default();
     lines.add(format_args!("solid leafless\n"))?;
@@ -57,7 +58,7 @@ pub(super) fn text(mesh: &TriangleMesh) -> Result<Vec<u8>, Error> {
     Ok(lines.bytes())
 }
 
-/// A vector in 32-bit numbers.
+/// Rounds a vector to 32-bit numbers.
 pub(super) fn rounded(vector: [f64; 3]) -> Result<[f32; 3], Error> {
     let vector = vector.map(|x| x as f32);
     if !vector.iter().all(|x| x.is_finite()) {
@@ -67,10 +68,10 @@ pub(super) fn rounded(vector: [f64; 3]) -> Result<[f32; 3], Error> {
     Ok(vector)
 }
 
-/// The unit normal, or zero for a triangle of no area.
+/// Returns the unit normal, or zero for a triangle without area.
 fn normal(corners: [[f64; 3]; 3]) -> [f64; 3] {
     let [a, b, c] = corners.map(DVec3::from);
-    // Scaled to about 1, lest the squares overflow or vanish.
+    // Scaled to about 1, so that the squares neither overflow nor vanish.
     let unit = |v: DVec3| (v / v.abs().max_element()).normalize_or_zero();
     unit(unit(b - a).cross(unit(c - a))).to_array()
 }

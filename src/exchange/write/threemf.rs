@@ -1,4 +1,5 @@
-//! 3MF packages of the core specification 1.x: one object that is built as it is, or several that are placed.
+//! Writer of 3MF packages of the core specification 1.x: one object that is built as it is, or several placed
+//! objects.
 
 use super::WriteOptions;
 use super::attributes::{self, Materials};
@@ -30,20 +31,20 @@ const RELATIONSHIPS: &str = "<?xml version=\"1.0\" encoding=\"UTF-8\"?>\n\
     <Relationship Target=\"/3D/3dmodel.model\" Id=\"rel0\" \
     Type=\"http://schemas.microsoft.com/3dmanufacturing/2013/01/3dmodel\"/></Relationships>\n";
 
-/// The 3MF of several meshes, each of which is built in any number of places: an object with its name for
-/// each of `objects`, and an item of the build with its transform for each of `items`, which are a number of
-/// an object and where it stands. A name may be empty.
+/// Returns a 3MF of several meshes, each built in any number of places. Each of `objects` becomes an object
+/// with a name, which may be empty. Each of `items`, the number of an object and its placement, becomes a
+/// build item with a transform.
 ///
-/// Objects are stored once, however often they stand somewhere. [`read_mesh`](crate::exchange::read_mesh)
-/// makes one mesh of all that is built. An object without triangles, which a 3MF must not have, is left out
-/// with its items. Of `options` the unit and the deviation count; for colours and materials see
+/// Each object is stored once, however often it is placed. [`read_mesh`](crate::exchange::read_mesh) makes
+/// one mesh of the whole build. An object without triangles, which the format forbids, is left out with its
+/// items. The options `unit` and `deviation` are used; for colours and materials see
 /// [`write_mesh`](crate::exchange::write_mesh).
 ///
 /// O(n) time and memory.
 ///
 /// # Errors
-/// [`Error::Argument`] if an item has the number of no object, if there are more than 2^30 objects, and for a
-/// deviation that [`TriangleMesh::with_deviation`] refuses; [`Error::OutOfMemory`].
+/// [`Error::Argument`] if an item has an invalid object number, if there are more than 2^30 objects, and for
+/// a deviation that [`TriangleMesh::with_deviation`] refuses; [`Error::OutOfMemory`].
 ///
 /// ```
 /// use leafless::exchange::{read_mesh, write_placed_meshes};
@@ -78,11 +79,11 @@ pub fn write_placed_meshes(
 
 pub(super) fn write(mesh: &TriangleMesh, options: &WriteOptions) -> Result<Vec<u8>, Error> {
     let object = Object { name: "", mesh, properties: Properties::of(mesh)? };
-    // Writing to memory fails only for want of it.
+    // Writing to memory fails only for lack of memory.
     package(&[object], &[(0, Affine::IDENTITY)], options).map_err(|_| Error::OutOfMemory)
 }
 
-/// What is placed.
+/// An object to write.
 struct Object<'a> {
     name: &'a str,
     mesh: &'a TriangleMesh,
@@ -90,12 +91,12 @@ struct Object<'a> {
 }
 
 impl Object<'_> {
-    /// The triangles that a 3MF may have, with their places.
+    /// Returns the triangles that a 3MF may contain, with their numbers.
     fn triangles(&self) -> impl Iterator<Item = (usize, &[u32; 3])> {
         self.mesh.triangles().iter().enumerate().filter(|(_, [a, b, c])| a != b && b != c && c != a)
     }
 
-    /// Whether nothing is left of it.
+    /// Returns whether it has no such triangle.
     fn is_empty(&self) -> bool {
         self.triangles().next().is_none()
     }
@@ -146,7 +147,7 @@ fn model(
         "<?xml version=\"1.0\" encoding=\"UTF-8\"?>\n<model unit=\"{unit}\" xml:lang=\"en-US\" \
          xmlns=\"http://schemas.microsoft.com/3dmanufacturing/core/2015/02\""
     )?;
-    // A name of one's own has a namespace.
+    // A private name needs a namespace.
     if options.deviation.is_some() {
         write!(out, " xmlns:leafless=\"urn:leafless\"")?;
     }
@@ -170,7 +171,7 @@ fn model(
     for (number, placement) in items.iter().filter(|(number, _)| !objects[*number].is_empty()) {
         write!(out, "<item objectid=\"{}\"", id(*number))?;
         if !placement.is_identity() {
-            // (Of row vectors.)
+            // (Transposed, because a 3MF multiplies row vectors.)
             let rows = placement.rows();
             for column in 0..4 {
                 let [x, y, z] = rows.map(|row| Number(row[column]));
@@ -184,7 +185,7 @@ fn model(
     out.flush()
 }
 
-/// The identifier of an object; that of its properties is the next one.
+/// Returns the identifier of an object; its properties have the next identifier.
 fn id(number: usize) -> usize {
     2 * number + 1
 }
@@ -198,7 +199,7 @@ impl Object<'_> {
         if !name.is_empty() {
             write!(out, " name=\"{}\"", Escaped(name))?;
         }
-        // What all triangles of an object have it should have, too.
+        // Properties that all triangles have should also be stated for the object.
         if properties.have_all(mesh.triangles().len()) {
             write!(out, " pid=\"{group}\" pindex=\"0\"")?;
         }
@@ -223,7 +224,7 @@ impl Object<'_> {
     }
 }
 
-/// A text as the value of an attribute. What XML has no place for are blanks.
+/// A text as an attribute's value. Characters that XML forbids become blanks.
 struct Escaped<'a>(&'a str);
 
 impl fmt::Display for Escaped<'_> {
@@ -242,12 +243,12 @@ impl fmt::Display for Escaped<'_> {
     }
 }
 
-/// What triangles refer to.
+/// The properties of triangles.
 enum Properties<'a> {
     None,
-    /// Base materials, and how they are displayed.
+    /// Base materials, and their display colours.
     Materials(Materials<'a>, Vec<[u8; 4]>),
-    /// Colours, and which of them corners have.
+    /// Colours, and the colour number of each corner.
     Colours {
         colours: Vec<[u8; 4]>,
         corners: Vec<Option<[u32; 3]>>,
@@ -256,7 +257,7 @@ enum Properties<'a> {
 
 impl<'a> Properties<'a> {
     fn of(mesh: &'a TriangleMesh) -> Result<Properties<'a>, Error> {
-        /// How a material is displayed that has no colour.
+        /// The display colour of a material without a colour.
         const GREY: [u8; 4] = [128, 128, 128, 255];
         let (all, colours) = (0..mesh.triangles().len(), attributes::of_corners(mesh));
         let materials = Materials::of(mesh)?;
@@ -294,7 +295,7 @@ impl<'a> Properties<'a> {
         Ok(if colours.is_empty() { Properties::None } else { Properties::Colours { colours, corners } })
     }
 
-    /// What the corners of a triangle have.
+    /// Returns the properties of a triangle's corners.
     fn get(&self, triangle: usize) -> Option<[u32; 3]> {
         match self {
             Properties::None => None,
@@ -309,7 +310,7 @@ impl<'a> Properties<'a> {
         !matches!(self, Properties::None) && (0..triangles).all(|triangle| self.get(triangle).is_some())
     }
 
-    /// Writes the group.
+    /// Writes the group of properties.
     fn group(&self, id: usize, out: &mut impl Write) -> io::Result<()> {
         match self {
             Properties::None => Ok(()),
@@ -332,7 +333,7 @@ impl<'a> Properties<'a> {
     }
 }
 
-/// Bytes that grow as long as there is memory.
+/// Bytes with fallible growth.
 #[derive(Default)]
 struct Bytes(Vec<u8>);
 
@@ -348,7 +349,7 @@ impl Write for Bytes {
     }
 }
 
-/// Compresses what is written to it.
+/// A writer that compresses its input.
 struct Deflate<W> {
     compressor: Box<CompressorOxide>,
     out: W,
