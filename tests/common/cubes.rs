@@ -1,6 +1,6 @@
-//! Solids of tests: functions of cubes, without anything that is remembered.
+//! Test solids that are stateless functions of cubes.
 
-// Each test program uses its own part of this.
+// Each test program uses only some of these items.
 #![allow(dead_code)]
 
 use super::exact::Definition;
@@ -9,10 +9,10 @@ use leafless::octree::Block;
 use leafless::solid::{Batch, FreeParts, Question, WholeQuestion, sample_one_by_one, split_one_by_one};
 use leafless::{Bounds, Cell, Classifier, Control, Csg, Error, Frame, Proof, Tag, Verdict, Worker};
 
-/// A shape whose verdict of a cell needs nothing but the cell. Types that have it become solids by
-/// [`solid_of_cubes`].
+/// A shape whose verdict on a cell depends on the cell alone. [`solid_of_cubes`] makes solids of types that
+/// implement this trait.
 pub trait Cubes: Clone + Send + Sync {
-    /// Whether parts are had without the way to them.
+    /// True if the worker can recall a part without the cells above it.
     const RECALLS: bool = false;
 
     fn verdict(&self, cube: &Cube<'_>) -> Result<Verdict<()>, Error>;
@@ -33,13 +33,13 @@ pub trait Cubes: Clone + Send + Sync {
         None
     }
 
-    /// Whether no piece of the boundary lies in a plane of any lattice.
+    /// Returns whether no piece of the boundary lies in a plane of any lattice.
     fn is_off_lattice(&self) -> bool {
         false
     }
 }
 
-/// A shape on a frame: handle and worker.
+/// A shape on a frame, which is both the classifier and its worker.
 #[derive(Clone)]
 pub struct OnFrame<T> {
     shape: T,
@@ -145,7 +145,7 @@ impl<T: Cubes> Worker for OnFrame<T> {
     }
 }
 
-/// Makes types with [`Cubes`] solids: `solid_of_cubes!(Ball, Dense<'a>: 'a)`.
+/// Implements `Solid` for types with [`Cubes`]: `solid_of_cubes!(Ball, Dense<'a>: 'a)`.
 #[macro_export]
 macro_rules! solid_of_cubes {
     ($($type:ty $(: $life:lifetime)?),*) => {$(
@@ -167,24 +167,24 @@ macro_rules! solid_of_cubes {
     )*};
 }
 
-/// A ball or a box by its definition: a solid of which the library knows nothing but what it answers.
+/// A ball or a box by its definition: a solid that gives the library only verdicts, samples and bounds.
 #[derive(Clone, Copy, Debug)]
 pub struct Plain(Definition);
 
 impl Plain {
-    /// Takes what [`Csg::ball`] takes.
+    /// Makes a ball, with the errors of [`Csg::ball`].
     pub fn ball(centre: [f64; 3], radius: f64) -> Result<Plain, Error> {
         Csg::ball(centre, radius)?;
         Ok(Plain(Definition::Ball { centre, radius }))
     }
 
-    /// Takes what [`Csg::cuboid`] takes.
+    /// Makes a box, with the errors of [`Csg::cuboid`].
     pub fn cuboid(min: [f64; 3], max: [f64; 3]) -> Result<Plain, Error> {
         Csg::cuboid(min, max)?;
         Ok(Plain(Definition::Box { min, max }))
     }
 
-    /// The verdict of a ball, if doubles leave no doubt: exact arithmetic takes a hundred times as long.
+    /// Returns the verdict of a ball if doubles decide it. Exact arithmetic takes a hundred times as long.
     fn roughly(&self, cube: &Cube<'_>) -> Option<Tag> {
         let Definition::Ball { centre, radius } = self.0 else { return None };
         let (min, max) = cube.bounds();

@@ -1,10 +1,11 @@
-//! Exact arithmetic on doubles and lattice planes, and shapes by their definition: slow, and without a
-//! rounding anywhere.
+//! Exact arithmetic on doubles and lattice planes, and shapes by their definition. It is slow, and never
+//! rounds.
 
 use leafless::{Frame, Tag};
 use num_bigint::{BigInt, Sign};
 
-/// mantissa · 2^exponent. Every double is one, and sums, differences and products stay such numbers.
+/// The number mantissa · 2^exponent. Every finite double is such a number, and so are sums, differences and
+/// products of such numbers.
 #[derive(Clone, Debug)]
 pub struct Exact {
     mantissa: BigInt,
@@ -58,7 +59,7 @@ impl Exact {
         if self.minus(&other).sign() <= 0 { self } else { other }
     }
 
-    /// origin + k·edge/2^(depth+1) on an axis: lattice planes for even k, centres for odd k.
+    /// Returns origin + k·edge/2^(depth+1) on an axis: a lattice plane for even k, a centre for odd k.
     pub fn half_plane(frame: &Frame, axis: usize, k: u32) -> Exact {
         let edge = Exact::from(frame.edge());
         let half = Exact { exponent: edge.exponent - frame.depth() as i64 - 1, ..edge };
@@ -70,7 +71,7 @@ impl Exact {
     }
 }
 
-/// Shapes by definition, as f(p) ≥ 0.
+/// A shape by its definition f(p) ≥ 0.
 #[derive(Clone, Copy, Debug)]
 pub enum Definition {
     Ball { centre: [f64; 3], radius: f64 },
@@ -79,12 +80,12 @@ pub enum Definition {
 }
 
 impl Definition {
-    /// The verdict that cannot be improved on a finest cell.
+    /// Returns the best possible verdict on a finest cell.
     pub fn tag(&self, frame: &Frame, at: [u32; 3]) -> Tag {
         self.tag_between(frame, at, at.map(|i| i + 1))
     }
 
-    /// The verdict that cannot be improved on the cell between lattice planes.
+    /// Returns the best possible verdict on the cell between lattice planes.
     pub fn tag_between(&self, frame: &Frame, lower: [u32; 3], upper: [u32; 3]) -> Tag {
         let [low, high] =
             [lower, upper].map(|planes| [0, 1, 2].map(|axis| Exact::plane(frame, axis, planes[axis])));
@@ -137,7 +138,7 @@ impl Definition {
         }
     }
 
-    /// Sign of f at a point, for the box the sign of being inside.
+    /// Returns the sign of f at a point. For a box the sign is 1 inside, 0 on the boundary and −1 outside.
     fn sign(&self, point: &[Exact; 3]) -> i32 {
         match *self {
             Definition::Ball { centre, radius } => {
@@ -165,9 +166,10 @@ impl Definition {
         }
     }
 
-    /// Whether the centre of a finest cell lies inside, all centres being shifted in the direction
-    /// (1, ε, ε²), whatever its length. Here the shift is a real one, with ε = 2^-3000 smaller than any
-    /// difference that doubles of moderate size can make, and so short that its square is smaller still.
+    /// Returns whether the centre of a finest cell lies inside. Centres on the boundary are shifted by an
+    /// infinitesimal step in the direction (1, ε, ε²). Here the step is 2^-20000 long and ε is 2^-3000:
+    /// smaller than any difference between doubles of moderate size, and so small that the square of the step
+    /// is smaller still.
     pub fn sampled(&self, frame: &Frame, at: [u32; 3]) -> bool {
         let mut centre = [0, 1, 2].map(|axis| Exact::half_plane(frame, axis, 2 * at[axis] + 1));
         match self.sign(&centre) {
@@ -183,7 +185,7 @@ impl Definition {
         }
     }
 
-    /// Whether the shape is proven to end inside of the universe.
+    /// Returns whether the shape ends inside of the universe.
     pub fn ends_inside(&self, frame: &Frame) -> bool {
         let bounds = |axis: usize| match *self {
             Definition::Ball { centre, radius } => {

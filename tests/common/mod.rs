@@ -1,7 +1,7 @@
-//! What the integration tests share: slow oracles that are obviously right, random trees, exact numbers,
-//! and the way to the model files.
+//! Items shared by the integration tests: slow and simple oracles, random trees, exact numbers, and access to
+//! the model files.
 
-// Each test program uses its own part of this.
+// Each test program uses only some of these items.
 #![allow(dead_code, unused_imports)]
 
 pub mod cubes;
@@ -20,13 +20,13 @@ pub use models::model;
 use proptest::prelude::*;
 pub use way::Way;
 
-/// The cube [0, 2^depth]³ with cells of edge 1, so that lattice coordinates are model coordinates.
+/// Returns the frame [0, 2^depth]³ with cells of edge 1, so that lattice coordinates are model coordinates.
 pub fn lattice_frame(depth: u8) -> Frame {
     Frame::new([0.0; 3], (1u32 << depth) as f64, depth).unwrap()
 }
 
-/// What `work` makes of each item, on as many threads as there are processors: for the few tests that take
-/// long.
+/// Returns the results of `work` for all items, in order. It runs as many threads as there are processors,
+/// for the few tests that take long.
 pub fn on_all_processors<T: Sync, R: Send>(items: &[T], work: impl Fn(&T) -> R + Sync) -> Vec<R> {
     use std::sync::atomic::{AtomicUsize, Ordering::Relaxed};
     let next = AtomicUsize::new(0);
@@ -51,20 +51,21 @@ pub fn on_all_processors<T: Sync, R: Send>(items: &[T], work: impl Fn(&T) -> R +
     found.into_iter().map(|(_, result)| result).collect()
 }
 
-/// How often something random is repeated, and how much of what takes long is done: `most` with
-/// LEAFLESS_THOROUGH=1, `few` without.
+/// Returns `most` with LEAFLESS_THOROUGH=1 and `few` without: a number of random repetitions, or the size of
+/// a long test.
 pub fn repeated<T>(few: T, most: T) -> T {
     if std::env::var_os("LEAFLESS_THOROUGH").is_some_and(|value| value == "1") { most } else { few }
 }
 
-/// One thread, and nothing else asked for.
+/// Returns a control with one thread and no limits.
 pub fn alone() -> Control<'static> {
     Control::threads(1)
 }
 
 pub const TAGS: [Tag; 3] = [Tag::Empty, Tag::Partial, Tag::Full];
 
-/// Kleene's three-valued logic, one cell at a time: what is possible for any choice of the undecided.
+/// Combines two tags by Kleene's three-valued logic: PARTIAL if different choices for undecided operands give
+/// different results.
 pub fn kleene(op: fn(bool, bool) -> bool, a: Tag, b: Tag) -> Tag {
     let choices = |tag| match tag {
         Tag::Empty => vec![false],
@@ -85,14 +86,14 @@ pub fn kleene(op: fn(bool, bool) -> bool, a: Tag, b: Tag) -> Tag {
     }
 }
 
-/// Every cell of the finest lattice with its tag: no tree, nothing clever.
+/// A dense array of the tags of all finest cells.
 #[derive(Clone, PartialEq, Eq)]
 pub struct Dense {
     pub depth: u8,
     pub tags: Vec<Tag>,
 }
 
-/// Rows along x, slices along z: `.` EMPTY, `?` PARTIAL, `#` FULL.
+/// Prints rows along x and slices along z: `.` EMPTY, `?` PARTIAL, `#` FULL.
 impl std::fmt::Debug for Dense {
     fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
         let row = |row: &[Tag]| row.iter().map(|&tag| b".x?#"[tag as usize] as char).collect::<String>();
@@ -111,7 +112,7 @@ impl Dense {
         Dense::from_fn(depth, |_| tag)
     }
 
-    /// What a tree says of every finest cell.
+    /// Returns the tags of a tree's finest cells.
     pub fn of(tree: &OctreeRef<'_>) -> Dense {
         Dense::from_fn(tree.frame().depth(), |at| tree.tag_at(at))
     }
@@ -134,7 +135,7 @@ impl Dense {
         self.combine(&Dense::uniform(self.depth, Tag::Full), |a, b| b & !a)
     }
 
-    /// The same with every PARTIAL cell made `tag`.
+    /// Returns a copy in which every PARTIAL cell has the tag `tag`.
     pub fn resolved(&self, tag: Tag) -> Dense {
         let resolve = |&cell: &Tag| if cell == Tag::Partial { tag } else { cell };
         Dense { depth: self.depth, tags: self.tags.iter().map(resolve).collect() }
@@ -148,7 +149,7 @@ impl Dense {
         self.count(Tag::Partial) == 0
     }
 
-    /// The one tag of all finest cells in `cell`, if they agree.
+    /// Returns the tag of all finest cells in `cell`, if they agree.
     pub fn tag_of(&self, cell: Cell) -> Option<Tag> {
         let edge = 1 << (self.depth - cell.level);
         let [x, y, z] = cell.at.map(|a| a * edge);
@@ -158,12 +159,13 @@ impl Dense {
         same.then_some(first)
     }
 
-    /// The same universe with 2^depth cells per axis: a cell whose finest cells differ becomes PARTIAL.
+    /// Returns the same universe with 2^depth cells per axis. A cell whose finest cells differ becomes
+    /// PARTIAL.
     pub fn cut(&self, depth: u8) -> Dense {
         Dense::from_fn(depth, |at| self.tag_of(Cell { level: depth, at }).unwrap_or(Tag::Partial))
     }
 
-    /// The same cells on a finer lattice.
+    /// Returns the same cells on a finer lattice.
     pub fn refined(&self, depth: u8) -> Dense {
         Dense::from_fn(depth, |at| self.at(at.map(|a| a >> (depth - self.depth))))
     }
@@ -172,7 +174,7 @@ impl Dense {
         Classical::of(self, Cell::ROOT)
     }
 
-    /// The tree, by way of the builder, on the frame of [`lattice_frame`].
+    /// Builds the tree on the frame of [`lattice_frame`].
     pub fn octree(&self) -> Octree {
         self.octree_with(Tag::Empty, &alone()).unwrap()
     }
@@ -182,7 +184,7 @@ impl Dense {
     }
 }
 
-/// All cells of the finest lattice in the order of [`Dense::tags`].
+/// Returns the coordinates of all finest cells in the order of [`Dense::tags`].
 pub fn positions(depth: u8) -> impl Iterator<Item = [u32; 3]> {
     let n = 1u32 << depth;
     (0..n).flat_map(move |z| (0..n).flat_map(move |y| (0..n).map(move |x| [x, y, z])))
@@ -212,7 +214,7 @@ impl cubes::Cubes for DenseSolid<'_> {
 
 crate::solid_of_cubes!(DenseSolid<'a>: 'a);
 
-/// An octree as textbooks draw it, with explicit leaves.
+/// A textbook octree with explicit leaves.
 #[derive(Debug)]
 pub enum Classical {
     Leaf(Tag),
@@ -236,7 +238,7 @@ impl Classical {
         }
     }
 
-    /// (internal nodes, leaves).
+    /// Returns the numbers of internal nodes and of leaves.
     pub fn nodes(&self) -> (u64, u64) {
         match self {
             Classical::Leaf(_) => (0, 1),
@@ -246,7 +248,7 @@ impl Classical {
         }
     }
 
-    /// Per level 0..=depth: internal nodes, and leaves EMPTY, FULL, PARTIAL.
+    /// Returns for each level 0..=depth the numbers of internal nodes and of EMPTY, FULL and PARTIAL leaves.
     pub fn levels(&self, depth: u8) -> Vec<[u64; 4]> {
         fn walk(tree: &Classical, level: usize, sums: &mut [[u64; 4]]) {
             match tree {
@@ -264,7 +266,7 @@ impl Classical {
         sums
     }
 
-    /// Asserts that a cursor sees just this tree, from where it stands, and comes back there.
+    /// Asserts that the subtree at a cursor equals this tree. The cursor returns to its cell.
     pub fn assert_same(&self, cursor: &mut Cursor<'_>) {
         let cell = cursor.cell();
         assert_eq!(cursor.tag(), self.tag(), "{cell:?}");
@@ -285,14 +287,14 @@ impl Classical {
                     assert!(cursor.ascend());
                     assert_eq!((cursor.cell(), cursor.tag()), (cell, Tag::Branch));
                 }
-                // A node is seen again after the walk below it.
+                // The node must be unchanged after the walk below it.
                 assert_eq!(cursor.node().unwrap().tags(), tags, "{cell:?}");
             }
         }
     }
 }
 
-/// Asserts everything that a tree says of itself against the dense array that it should be.
+/// Asserts that a tree and its statistics equal a dense array.
 pub fn assert_is(tree: &Octree, dense: &Dense) {
     tree.view().check().unwrap();
     assert_eq!(tree.frame().depth(), dense.depth);
@@ -331,8 +333,8 @@ fn assert_statistics(tree: &Octree, dense: &Dense, classical: &Classical) {
     );
 }
 
-/// A random solid as a tape of decisions, taken level by level: short tapes are simple solids, so that
-/// failures shrink to something that can be drawn.
+/// A random solid as a tape of decisions, applied level by level. Short tapes are simple solids, so that
+/// failures shrink to solids that can be drawn.
 #[derive(Clone, Debug)]
 pub struct Shape {
     pub depth: u8,
@@ -357,7 +359,7 @@ impl Shape {
                     1 => Tag::Empty,
                     _ => Tag::Partial,
                 }),
-                // A slope: cut cells along a surface, as real solids have them.
+                // A plane: cut cells along a surface, as in real solids.
                 8 => fill(&mut dense, cell, |[x, y, z]| match (x + 2 * y + 3 * z) as i64 {
                     s if s < 3 << (self.depth - 1) => Tag::Full,
                     s if s < (3 << (self.depth - 1)) + 3 => Tag::Partial,
@@ -383,7 +385,7 @@ fn fill(dense: &mut Dense, cell: Cell, tag: impl Fn([u32; 3]) -> Tag) {
     }
 }
 
-/// A well-mixed number for a cell.
+/// Returns a hash of a seed and a cell.
 pub fn noise(seed: u8, [x, y, z]: [u32; 3]) -> u64 {
     let mut h = (seed as u64) << 60 ^ (x as u64) << 40 ^ (y as u64) << 20 ^ z as u64;
     for _ in 0..2 {
@@ -392,7 +394,7 @@ pub fn noise(seed: u8, [x, y, z]: [u32; 3]) -> u64 {
     h >> 33
 }
 
-/// Random tapes for a depth: mostly with a root that is cut.
+/// Generates random tapes for a depth, mostly with a root that is cut.
 pub fn shapes_of(depth: u8) -> impl Strategy<Value = Shape> {
     let tape = proptest::collection::vec(any::<u8>(), 0..150);
     (tape, 0..16u8).prop_map(move |(mut tape, root)| {
@@ -403,7 +405,7 @@ pub fn shapes_of(depth: u8) -> impl Strategy<Value = Shape> {
     })
 }
 
-/// Two solids on one lattice. Half of the pairs nearly coincide, so that results collapse.
+/// Generates two solids on one lattice. Half of the pairs nearly coincide, so that results collapse.
 pub fn pairs_of(depth: u8) -> impl Strategy<Value = (Dense, Dense)> {
     let edits = proptest::collection::vec((0..8u8.pow(2), any::<u32>(), 0..3usize), 0..4);
     (shapes_of(depth), shapes_of(depth), any::<bool>(), edits).prop_map(move |(a, b, near, edits)| {
@@ -426,14 +428,14 @@ pub fn shapes(depths: std::ops::RangeInclusive<u8>) -> impl Strategy<Value = Sha
     depths.prop_flat_map(shapes_of)
 }
 
-/// So many cases of a property, and without LEAFLESS_THOROUGH=1 a third of them. Failures print their shrunk
-/// input; nothing is written beside the sources.
+/// Returns a configuration with this number of cases, or a third of it without LEAFLESS_THOROUGH=1. Failures
+/// print their shrunk input; no file is written beside the sources.
 pub fn cases(cases: u32) -> ProptestConfig {
     let cases = repeated(cases.div_ceil(3), cases);
     ProptestConfig { cases, failure_persistence: None, ..ProptestConfig::default() }
 }
 
-/// SplitMix64, for tests that want numbers rather than shrinking.
+/// The generator SplitMix64, for tests that need random numbers without shrinking.
 pub struct Random(pub u64);
 
 impl Random {
@@ -449,7 +451,7 @@ impl Random {
         self.next() % end
     }
 
-    /// In [0, 1).
+    /// Returns a number in [0, 1).
     pub fn unit(&mut self) -> f64 {
         (self.next() >> 11) as f64 / (1u64 << 53) as f64
     }

@@ -1,9 +1,9 @@
-//! What is asked of the meshes of surfaces.
+//! Checks of surface meshes.
 
 use leafless::TriangleMesh;
 use std::collections::{BTreeMap, HashMap};
 
-/// Every edge is run along as often in one direction as in the other, and every vertex is used.
+/// Asserts that the triangles run along every edge equally often in both directions, and use every vertex.
 #[track_caller]
 pub fn assert_balanced(mesh: &TriangleMesh) {
     let mut edges: HashMap<(u32, u32), i64> = HashMap::new();
@@ -19,8 +19,8 @@ pub fn assert_balanced(mesh: &TriangleMesh) {
     assert!(used.iter().all(|&used| used), "a vertex is not used");
 }
 
-/// Every edge belongs to two triangles, in opposite directions; every vertex is used; around each its
-/// triangles form one fan. Returns V − E + F.
+/// Asserts that the mesh is a closed manifold, and returns V − E + F. Every edge must belong to two
+/// triangles, in opposite directions. Every vertex must be used, and its triangles must form one fan.
 #[track_caller]
 pub fn euler_of_manifold(mesh: &TriangleMesh) -> i64 {
     let mut next = HashMap::new();
@@ -45,7 +45,7 @@ pub fn euler_of_manifold(mesh: &TriangleMesh) -> i64 {
     mesh.vertices().len() as i64 - next.len() as i64 / 2 + mesh.triangles().len() as i64
 }
 
-/// Sets of triangles that hang together over vertices.
+/// Returns the number of sets of triangles that are connected by vertices.
 pub fn components(mesh: &TriangleMesh) -> usize {
     let mut parent: Vec<u32> = (0..mesh.vertices().len() as u32).collect();
     fn root(parent: &mut [u32], mut v: u32) -> u32 {
@@ -64,10 +64,11 @@ pub fn components(mesh: &TriangleMesh) -> usize {
     (0..mesh.vertices().len() as u32).filter(|&v| parent[v as usize] == v).count()
 }
 
-/// A sample, or a direction.
+/// The lattice coordinates of a sample, or a direction.
 pub type Point = [i64; 3];
 
-/// The plane of a triangle with its outer side: a primitive normal, and its product with a vertex.
+/// Returns the oriented plane of a triangle: its scaled outward normal, and the product of that normal with a
+/// vertex.
 fn plane([p, q, r]: [Point; 3]) -> (Point, i64) {
     let (u, v) = ([0, 1, 2].map(|k| q[k] - p[k]), [0, 1, 2].map(|k| r[k] - p[k]));
     let normal = [u[1] * v[2] - u[2] * v[1], u[2] * v[0] - u[0] * v[2], u[0] * v[1] - u[1] * v[0]];
@@ -77,17 +78,17 @@ fn plane([p, q, r]: [Point; 3]) -> (Point, i64) {
     (normal, (0..3).map(|k| normal[k] * p[k]).sum())
 }
 
-/// The sample that a vertex is, on a lattice of unit cells.
+/// Returns the sample at which a vertex lies, on a lattice of unit cells.
 pub fn sample(vertex: [f64; 3]) -> Point {
     vertex.map(|x| (x - 0.5).round() as i64)
 }
 
-/// The outlines of planes, by their normals and offsets: how often each step is run along forwards.
+/// The outlines of planes by normal and offset: the net number of times that each step is traversed forwards.
 pub type Outlines = BTreeMap<(Point, i64), BTreeMap<(Point, Point), i64>>;
 
-/// For each plane the outline of what lies in it: its directed steps from sample to sample, those there and
-/// back taken away. Chains in a plane that have one outline are one chain, so that the triangles of a plane
-/// cover the same points equally often.
+/// Returns for each plane the outline of the triangles in it: the directed steps from sample to sample,
+/// without steps that cancel. If two sets of triangles in a plane have the same outline, they cover the same
+/// points equally often.
 pub fn outlines(mesh: &TriangleMesh) -> Outlines {
     let mut outlines = Outlines::new();
     for triangle in mesh.triangles() {

@@ -1,4 +1,4 @@
-//! Dense arrays of values, and channels of them.
+//! Dense arrays of values, and channels made from them.
 
 use super::{lattice_frame, noise, positions, shapes_of};
 use leafless::attribute::{Channel, FillOptions, FunctionAttribute, ScalarType, ValueType, fill_channel};
@@ -7,7 +7,7 @@ use proptest::prelude::*;
 
 pub type Value = Option<[f64; 4]>;
 
-/// A value, or none, of every finest cell, x fastest.
+/// The value, or no value, of every finest cell, x fastest.
 #[derive(Clone, PartialEq)]
 pub struct Values {
     pub depth: u8,
@@ -26,7 +26,7 @@ impl Values {
         Values { depth, cells: positions(depth).map(value).collect() }
     }
 
-    /// What a channel says of every finest cell.
+    /// Returns the values of a channel's finest cells.
     pub fn of(channel: &Channel) -> Values {
         let view = channel.view().unwrap();
         Values::from_fn(view.frame().depth(), |at| view.value_of_cell(at))
@@ -40,7 +40,7 @@ impl Values {
         Values::from_fn(depth, |at| self.at(at.map(|a| a >> (depth - self.depth))))
     }
 
-    /// The channel in the cube `[0, 2^cube]³`, by way of points.
+    /// Fills a channel in the cube `[0, 2^cube]³` from a function of points.
     pub fn channel(&self, cube: u8, kind: ValueType, solid: Option<&Octree>, threads: usize) -> Channel {
         let frame = lattice_frame(cube).with_depth(self.depth).unwrap();
         let attribute =
@@ -57,7 +57,7 @@ pub fn kinds() -> impl Strategy<Value = ValueType> {
         .prop_map(|(scalar, components)| ValueType::new(scalar, components).unwrap())
 }
 
-/// Coarse regions of equal values, regions without, and fine grain.
+/// Generates coarse regions of equal values, regions without values, and fine noise.
 pub fn values_of(depth: u8, kind: ValueType) -> impl Strategy<Value = Values> {
     let value = move |n: u64| -> Value {
         let fraction = if kind.scalar() == ScalarType::F32 { 0.25 } else { 0.0 };

@@ -1,11 +1,11 @@
-//! What the tests of volumes share: samples of all kinds, and what they are as a dense array.
+//! Items shared by the tests of volumes: samples of all kinds, and the same samples as dense arrays.
 
 #![allow(dead_code)]
 
 use super::Random;
 use leafless::solid::{Band, Samples, VoxelGrid};
 
-/// Samples of one kind, as the numbers that they are.
+/// Samples of one kind as doubles.
 #[derive(Clone)]
 pub struct Sampled {
     pub extents: [u32; 3],
@@ -13,11 +13,12 @@ pub struct Sampled {
     pub values: Vec<f64>,
 }
 
-/// Bits, bytes, and so on.
+/// The number of kinds: bits, `u8`, `u16`, `i16` and `f32`.
 pub const KINDS: usize = 5;
 
 impl Sampled {
-    /// Blobs, so that there are blocks that are alike, with some noise and, in single precision, odd numbers.
+    /// Generates blobs, so that some blocks are uniform, with noise, and in single precision with NaN,
+    /// infinities and −0.
     pub fn random(random: &mut Random, extents: [u32; 3], kind: usize) -> Sampled {
         let blobs: Vec<([f64; 3], f64)> = (0..1 + random.below(3))
             .map(|_| (extents.map(|extent| random.between(0.0, extent.into())), random.between(2.0, 30.0)))
@@ -51,7 +52,7 @@ impl Sampled {
         Sampled { extents, kind, values }
     }
 
-    /// As a volume takes them.
+    /// Returns the samples in the form that a volume takes.
     pub fn samples(&self) -> Samples<'static> {
         let values = self.values.iter();
         match self.kind {
@@ -63,7 +64,7 @@ impl Sampled {
         }
     }
 
-    /// One bit a sample, in rows of words; what does not count is set.
+    /// Returns one bit for each sample, in rows of words. Unused bits are set.
     pub fn bits(&self, is_set: impl Fn(f64) -> bool) -> Vec<u64> {
         let rows = self.values.chunks(self.extents[0] as usize);
         rows.flat_map(|row| {
@@ -75,7 +76,7 @@ impl Sampled {
         .collect()
     }
 
-    /// A band that cuts the values.
+    /// Returns a random band of values.
     pub fn band(&self, random: &mut Random) -> Band {
         let (middle, width) = match self.kind {
             0 => (0.5, 0.5),
@@ -100,7 +101,7 @@ impl Sampled {
         (x < nx && y < ny && z < nz).then(|| self.values[(z * ny + y) * nx + x])
     }
 
-    /// Whether a voxel is inside; none beyond the grid is.
+    /// Returns whether a voxel is inside. Voxels beyond the grid are outside.
     pub fn contains(&self, band: &Band, at: [u32; 3]) -> bool {
         self.at(at).is_some_and(|value| band.low() <= value && value <= band.high())
     }
@@ -110,7 +111,7 @@ impl Sampled {
     }
 }
 
-/// Extents of which some are one, some multiples of blocks, and none large.
+/// Returns random extents up to `most`, or of 16. Some are very small, and some are a whole block.
 pub fn extents(random: &mut Random, most: u64) -> [u32; 3] {
     [0; 3].map(|_| match random.below(6) {
         0 => 1 + random.below(3) as u32,
@@ -119,7 +120,7 @@ pub fn extents(random: &mut Random, most: u64) -> [u32; 3] {
     })
 }
 
-/// A grid with voxels that are cubes, or not.
+/// Returns a random grid. Its voxels are cubes if `cubes` is set.
 pub fn grid(random: &mut Random, extents: [u32; 3], cubes: bool) -> VoxelGrid {
     let corner = [0; 3].map(|_| random.between(-20.0, 20.0));
     let spacing = [0; 3].map(|_| random.between(0.3, 2.0));

@@ -1,9 +1,9 @@
-//! Ways from the universe down through cells that are PARTIAL.
+//! Descents from the universe through PARTIAL cells.
 
 use super::Random;
 use leafless::{Cell, Verdict, Worker};
 
-/// A worker in one of its PARTIAL cells.
+/// A worker at one of its PARTIAL cells.
 pub struct Way<W: Worker> {
     pub worker: W,
     pub cell: Cell,
@@ -11,7 +11,7 @@ pub struct Way<W: Worker> {
 }
 
 impl<W: Worker> Way<W> {
-    /// At the universe; `None` if that is decided.
+    /// Starts at the universe. Returns `None` if the universe is decided.
     pub fn new(mut worker: W) -> Option<Way<W>> {
         match worker.root().unwrap() {
             Verdict::Partial(part) => Some(Way { worker, cell: Cell::ROOT, part }),
@@ -19,7 +19,7 @@ impl<W: Worker> Way<W> {
         }
     }
 
-    /// The PARTIAL children, in Morton order; none of a finest cell.
+    /// Returns the PARTIAL children in Morton order. A finest cell has none.
     pub fn children(&mut self) -> Vec<(Cell, W::Part)> {
         if self.cell.level == self.worker.frame().depth() {
             return Vec::new();
@@ -32,7 +32,7 @@ impl<W: Worker> Way<W> {
         partial.collect()
     }
 
-    /// On to a random PARTIAL child; `false` if there is none.
+    /// Descends to a random PARTIAL child. Returns `false` if there is none.
     pub fn descend(&mut self, random: &mut Random) -> bool {
         let mut children = self.children();
         if children.is_empty() {
@@ -42,7 +42,7 @@ impl<W: Worker> Way<W> {
         true
     }
 
-    /// On to a child, which the complement says is PARTIAL.
+    /// Descends to a child that is PARTIAL in the complement. Panics if the child is decided here.
     #[track_caller]
     pub fn follow(&mut self, cell: Cell) {
         let child = self.children().into_iter().find(|(child, _)| *child == cell);

@@ -1,6 +1,6 @@
-//! ZIP archives, as sound or as broken as a test wants them.
+//! ZIP archives, valid or damaged as a test needs them.
 
-/// A file in an archive, and what its headers say of it.
+/// A file in an archive with the fields of its headers.
 #[derive(Clone)]
 pub struct Entry {
     pub name: Vec<u8>,
@@ -25,7 +25,7 @@ impl Entry {
     }
 }
 
-/// The archive of these files.
+/// Returns the archive of these files.
 pub fn zip(entries: &[Entry]) -> Vec<u8> {
     let mut bytes = Vec::new();
     let mut directory = Vec::new();
@@ -76,7 +76,7 @@ pub const RELATIONSHIPS: &str = r#"<?xml version="1.0" encoding="UTF-8"?>
   <Relationship Target="/3D/3dmodel.model" Id="rel1" Type="http://schemas.microsoft.com/3dmanufacturing/2013/01/3dmodel"/>
 </Relationships>"#;
 
-/// A 3MF package around a model part.
+/// Returns the files of a 3MF package with this model part.
 pub fn package(model: impl AsRef<[u8]>) -> Vec<Entry> {
     vec![
         Entry::deflated("[Content_Types].xml", CONTENT_TYPES),
@@ -85,7 +85,7 @@ pub fn package(model: impl AsRef<[u8]>) -> Vec<Entry> {
     ]
 }
 
-/// A model part with these resources and this build.
+/// Returns a model part with these resources and this build.
 pub fn model(attributes: &str, resources: &str, build: &str) -> String {
     format!(
         r#"<?xml version="1.0" encoding="UTF-8"?>
@@ -103,7 +103,8 @@ pub fn model(attributes: &str, resources: &str, build: &str) -> String {
     )
 }
 
-/// The tetrahedron with its corners in the origin and at distance 1 from it on the axes, of volume 1/6.
+/// Returns an object that is the tetrahedron with corners at the origin and at distance 1 on the axes, of
+/// volume 1/6.
 pub fn tetrahedron(id: u32, attributes: &str) -> String {
     format!(
         r#"    <object id="{id}" {attributes}>

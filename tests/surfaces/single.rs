@@ -121,3 +121,21 @@ fn deviations_and_losses() {
     let refused = refused.and_then(|mesh| mesh.in_single_precision(0.05, &alone()));
     assert!(matches!(refused, Err(Error::Argument { name: "mesh", .. } | Error::Mesh(_))), "{refused:?}");
 }
+
+/// Bodies that overlap before they are rounded: rounding made none of these pairs, and moves nothing.
+#[test]
+fn pairs_of_the_given_mesh_stay() {
+    let turn = Affine::rotation([1.0, 2.0, 3.0], 0.5).unwrap();
+    let ball = |x: f64| {
+        let placed = Csg::ball([x, 0.1, 0.2], 1.0).unwrap().placed(&turn).unwrap();
+        cubes(&placed, 5)
+    };
+    let (a, b) = (ball(0.0), ball(0.7));
+    let corners = [&a, &b].map(|mesh| mesh.triangles().iter().map(|t| t.map(|v| mesh.vertices()[v as usize])));
+    let mesh = TriangleMesh::from_facets(corners.into_iter().flatten()).unwrap();
+    let given = mesh.intersecting_pairs(0, &alone()).unwrap().count;
+    let single = mesh.in_single_precision(0.05, &alone()).unwrap();
+    assert!(given > 50 && single.deviation > 0.0, "{given}");
+    assert_eq!((single.moved, single.intersecting_pairs), (0, given));
+    assert_eq!(lost(&single.mesh).2, given);
+}
