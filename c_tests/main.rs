@@ -419,24 +419,42 @@ fn boundary() {
 // --- What users read
 // --------------------------------------------------------------------------------------------
 
-/// The first block of a language in a text.
-fn block(text: &str, language: &str) -> String {
-    let opening = format!("```{language}\n");
-    let (_, rest) = text.split_once(&opening).unwrap_or_else(|| panic!("there is no block in {language}"));
-    rest.split_once("```").unwrap().0.to_string()
+/// The blocks of code in C and C++ of a text, with the standard of each.
+fn blocks(text: &str) -> Vec<(Standard, &str)> {
+    let pieces = text.split("\n```");
+    let standard = |piece: &'_ str| match piece.split('\n').next() {
+        Some("c") => Some(C99),
+        Some("cpp") => Some(CPP17),
+        _ => None,
+    };
+    pieces.filter_map(|piece| Some((standard(piece)?, piece.split_once('\n')?.1))).collect()
 }
 
+/// The programs of the README and of the guide.
 #[test]
-fn readme() {
-    let example = block(&text("README.md"), "c");
-    assert!(example.lines().count() <= 45, "{} lines", example.lines().count());
-    let source = kit().folder("readme").join("readme.c");
-    std::fs::write(&source, example).unwrap();
-    for link in [Link::Static, Link::Shared] {
-        let program = kit().compile("readme", std::slice::from_ref(&source), C99, link);
-        let told = kit().run(&program, &[]);
-        assert!(told.contains("volume"), "{told}");
+fn guide() {
+    let mut pages = vec!["README.md".to_string()];
+    for entry in std::fs::read_dir(root().join("docs")).unwrap() {
+        let name = entry.unwrap().file_name().into_string().unwrap();
+        if name.ends_with(".md") {
+            pages.push(format!("docs/{name}"));
+        }
     }
+    let mut count = 0;
+    for page in pages {
+        for (standard, program) in blocks(&text(&page)) {
+            count += 1;
+            let name = format!("guide_{count}");
+            let source = kit().folder("guide").join(&name).with_extension(standard.extension());
+            std::fs::write(&source, program).unwrap();
+            for link in [Link::Static, Link::Shared] {
+                let program = kit().compile(&name, std::slice::from_ref(&source), standard, link);
+                let told = kit().run(&program, &[]);
+                assert!(told.contains("volume 0.6"), "{page}: {told}");
+            }
+        }
+    }
+    assert!(count >= 3, "{count}");
 }
 
 /// The example at the top of the header.

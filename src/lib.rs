@@ -166,7 +166,27 @@ pub use query::{
 pub use solid::{AnySolid, Callback, Classifier, Csg, MeshSolid, Solid, Verdict, Volume, Worker};
 pub use surface::marching_cubes;
 
-/// Compiles and runs the examples of the README.
+/// The examples of the README and of the guide, which are compiled and run.
 #[cfg(all(doctest, feature = "mmap"))]
-#[doc = include_str!("../README.md")]
-struct Readme;
+mod guide {
+    #[doc = include_str!("../README.md")]
+    pub struct Readme;
+    #[doc = include_str!("../docs/questions/section.md")]
+    pub struct Section;
+    #[doc = include_str!("../docs/cells.md")]
+    pub struct Cells;
+    #[doc = include_str!("../docs/meshes-in.md")]
+    pub struct MeshesIn;
+    #[doc = include_str!("../docs/half-spaces.md")]
+    pub struct HalfSpaces;
+    #[doc = include_str!("../docs/meshes-out.md")]
+    pub struct MeshesOut;
+    #[doc = include_str!("../docs/files.md")]
+    pub struct Files;
+    #[doc = include_str!("../docs/rust.md")]
+    pub struct Rust;
+    #[doc = include_str!("../docs/own-solid.md")]
+    pub struct OwnSolid;
+    #[doc = include_str!("../docs/own-query.md")]
+    pub struct OwnQuery;
+}

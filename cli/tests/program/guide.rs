@@ -46,7 +46,8 @@ fn links(page: &str) -> Vec<String> {
         let line: String = line.split('`').step_by(2).collect::<Vec<_>>().join("`");
         let mut rest = line.as_str();
         while let Some((_, after)) = rest.split_once("](") {
-            let (target, after) = after.split_once(')').unwrap_or_else(|| panic!("a link without its end: {line}"));
+            let (target, after) =
+                after.split_once(')').unwrap_or_else(|| panic!("a link without its end: {line}"));
             targets.push(target.split(' ').next().unwrap().to_owned());
             rest = after;
         }
@@ -123,7 +124,10 @@ impl Shell {
     /// Writes the files of a block of scenes.
     fn write_scenes(&self, block: &str) {
         let mut files = block.split("// ").skip(1).map(|file| file.split_once('\n').unwrap()).peekable();
-        assert!(files.peek().is_some_and(|(name, _)| name.ends_with(".csg")), "a scene without a name:\n{block}");
+        assert!(
+            files.peek().is_some_and(|(name, _)| name.ends_with(".csg")),
+            "a scene without a name:\n{block}"
+        );
         for (name, scene) in files {
             std::fs::write(self.folder.join(name), scene).unwrap();
         }
@@ -172,14 +176,19 @@ fn run(path: &str) -> usize {
         match language {
             Some("openscad") => scene += &format!("{line}\n"),
             Some("console") => {
-                let mut command = line.strip_prefix("$ ").unwrap_or_else(|| panic!("{path}: {line}: no command")).to_owned();
+                let mut command = line
+                    .strip_prefix("$ ")
+                    .unwrap_or_else(|| panic!("{path}: {line}: no command"))
+                    .to_owned();
                 while command.ends_with('\\') {
                     let next = lines.next().unwrap();
                     written += &format!("{next}\n");
                     command = format!("{}{}", command.trim_end_matches('\\'), next.trim_start());
                 }
                 let mut expected = String::new();
-                while let Some(answer) = lines.next_if(|line| !line.starts_with("$ ") && !line.starts_with("```")) {
+                while let Some(answer) =
+                    lines.next_if(|line| !line.starts_with("$ ") && !line.starts_with("```"))
+                {
                     expected += &format!("{answer}\n");
                 }
                 let told = shell.run(&command);
@@ -196,7 +205,9 @@ fn run(path: &str) -> usize {
     if blessing() && written != page {
         std::fs::write(root().join(path), written).unwrap();
     }
-    for picture in links(&page).iter().filter_map(|target| target.split_once("pictures/")).map(|(_, name)| name) {
+    for picture in
+        links(&page).iter().filter_map(|target| target.split_once("pictures/")).map(|(_, name)| name)
+    {
         let made = shell.folder.join(picture);
         if made.exists() {
             pictures::check(picture, &std::fs::read(made).unwrap());
@@ -325,7 +336,10 @@ fn links_lead_somewhere() {
             // The book has pages of its own only; of all else it has the files.
             let docs = root.join("docs");
             if path.starts_with(&docs) && !file.starts_with(&docs) {
-                assert!(file.extension().is_none_or(|ending| ending != "md"), "{at}: a page that is not in the book");
+                assert!(
+                    file.extension().is_none_or(|ending| ending != "md"),
+                    "{at}: a page that is not in the book"
+                );
             }
             if !fragment.is_empty() && file.extension().is_some_and(|ending| ending == "md") {
                 let known = anchors.entry(file.clone()).or_insert_with(|| {
@@ -359,10 +373,14 @@ fn all_pictures_are_shown_and_made() {
     for (picture, page) in &shown {
         let stem = picture.strip_suffix(".png").unwrap();
         let words = [format!("\"{picture}\""), format!("\"{}\"", stem.rsplit('-').next().unwrap())];
-        assert!(!page.is_empty() || words.iter().any(|word| elsewhere.contains(word)), "{picture}: who makes it?");
+        assert!(
+            !page.is_empty() || words.iter().any(|word| elsewhere.contains(word)),
+            "{picture}: who makes it?"
+        );
     }
     let files = std::fs::read_dir(root().join("docs/pictures")).unwrap();
-    let files: BTreeSet<String> = files.map(|entry| entry.unwrap().file_name().into_string().unwrap()).collect();
+    let files: BTreeSet<String> =
+        files.map(|entry| entry.unwrap().file_name().into_string().unwrap()).collect();
     assert_eq!(files, shown.into_keys().collect::<BTreeSet<_>>());
 }
 

@@ -11,6 +11,7 @@ mod command_lines;
 mod commands;
 mod deviation;
 mod dexels;
+mod guide;
 mod heights;
 mod interfere;
 mod layout;

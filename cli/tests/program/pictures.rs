@@ -54,53 +54,6 @@ fn check_picture(name: &str, picture: &Picture) {
     check(name, &exchange::write_png(picture).unwrap());
 }
 
-#[test]
-fn the_part_of_the_demo() {
-    let place = Place::new();
-    assert_eq!(place.run("demo .").code, Some(0));
-    let view = "--size 420x320 --from 35,35";
-    for (file, name, options) in [
-        ("flange.stl", "part.png", "--edges"),
-        ("flange.lfl", "before.png", ""),
-        ("drilled.lfl", "after.png", ""),
-        ("drilled.lfl", "open.png", "--clip 0,1,0,0"),
-    ] {
-        if file == "flange.lfl" {
-            place.run("voxelize flange.stl -o flange.lfl --depth 10").good();
-        }
-        place.run(&format!("render {file} -o {name} {view} {options}")).good();
-        check(name, &place.bytes(name));
-    }
-    place.run("voxelize flange.stl -o coarse.lfl --depth 6").good();
-    place.run("render coarse.lfl -o slice.png --view slice --size 520x320").good();
-    check("slice.png", &place.bytes("slice.png"));
-    for method in ["smc", "shrink"] {
-        place
-            .run(&format!("mesh coarse.lfl -o {method}.ply --method {method} --resolve outer"))
-            .noted(&[method, "has a volume"]);
-        let name = format!("{method}.png");
-        place.run(&format!("render {method}.ply -o {name} {view} --edges all")).good();
-        check(&name, &place.bytes(&name));
-    }
-}
-
-/// A plate with a bore by marching cubes and by its faces; and what the documentation says of both.
-#[test]
-fn a_plate_with_a_bore() {
-    let place = Place::new();
-    let bore = "translate([40, 30, -1]) cylinder(r = 5, h = 12, $fn = 0);";
-    place.write("plate.csg", format!("difference() {{ cube([80, 60, 10]); {bore} }}"));
-    let page = std::fs::read_to_string(folder().join("../../README.md")).unwrap();
-    for (name, options, triangles) in [("cubes", "--method mc --depth 6", "15,184"), ("faces", "", "152")] {
-        let told = place.run(&format!("mesh plate.csg -o {name}.ply {options}")).good();
-        assert!(told.text().contains(&format!(" {triangles} triangles")), "{told:?}");
-        assert!(page.contains(&format!("{triangles} triangles")), "{triangles}");
-        let view = "--edges all --size 420x300 --from 30,50 --fov 26";
-        place.run(&format!("render {name}.ply -o {name}.png {view}")).good();
-        check(&format!("plate-{name}.png"), &place.bytes(&format!("{name}.png")));
-    }
-}
-
 /// A plate with twenty bores by its cells, and by the cells of which some keep surfaces; and what the
 /// documentation says of both.
 #[test]
