@@ -65,8 +65,8 @@ pub enum leafless_range_kind {
 #[derive(Clone, Copy)]
 #[repr(C)]
 pub struct leafless_value_range {
-    /// For each number of a value an interval that contains it, if `kind` is LEAFLESS_RANGE_KIND_WITHIN. All numbers
-    /// are NaN otherwise, and beyond the numbers that a value has.
+    /// For each number of a value an interval that contains it, if `kind` is LEAFLESS_RANGE_KIND_WITHIN. All
+    /// numbers are NaN otherwise, and beyond the numbers that a value has.
     pub values: [leafless_interval; 4],
     /// A leafless_range_kind.
     pub kind: u32,
@@ -217,8 +217,8 @@ pub struct leafless_attribute_info {
     pub struct_size: u32,
     /// How many numbers a value has: 1 to 4.
     pub components: u32,
-    /// About how many bytes of memory (or of mapped files) the attribute keeps alive: its own, and those of the mesh, channel
-    /// or samples that it shares. 0 for constants and for objects of the host.
+    /// About how many bytes of memory (or of mapped files) the attribute keeps alive: its own, and those of
+    /// the mesh, channel or samples that it shares. 0 for constants and for objects of the host.
     pub bytes: u64,
 }
 
@@ -246,8 +246,8 @@ pub unsafe extern "C" fn leafless_attribute_describe(
 
 /// The values of an attribute at points.
 ///
-/// - Buffers: `points_model`, `count` points of 3 numbers; `values`, room for `count` values of as many numbers
-///   as leafless_attribute_describe says. Both may be NULL if `count` is 0.
+/// - Buffers: `points_model`, `count` points of 3 numbers; `values`, room for `count` values of as many
+///   numbers as leafless_attribute_describe says. Both may be NULL if `count` is 0.
 /// - Result: the value at point i from `values[components * i]` on; NaN where there is none.
 /// - Errors: LEAFLESS_E_CALLBACK; LEAFLESS_E_DAMAGED; LEAFLESS_E_NO_MEMORY.
 /// - Untrusted input: any attribute, any numbers.

@@ -10,14 +10,14 @@ use leafless::Error;
 use leafless::attribute::{Attribute, ValueRange};
 use leafless::memory;
 
-/// The value of the host's attribute at a point (3 numbers, model units): sets the numbers of `value`, as many as
-/// the attribute has components. All are NaN before; they stay so where there is no value, and a value whose
-/// first number is NaN is none. 0, or the number of the host's own error, which ends the operation with
-/// LEAFLESS_E_CALLBACK and the number in the message.
+/// The value of the host's attribute at a point (3 numbers, model units): sets the numbers of `value`, as
+/// many as the attribute has components. All are NaN before; they stay so where there is no value, and a
+/// value whose first number is NaN is none. 0, or the number of the host's own error, which ends the
+/// operation with LEAFLESS_E_CALLBACK and the number in the message.
 ///
 /// It is called from several threads at once, which may all be the library's own, unless the operation's
-/// options say `threads` = 1; and it must give the same answer to the same point. It must return: no exception,
-/// no longjmp. It may call this library.
+/// options say `threads` = 1; and it must give the same answer to the same point. It must return: no
+/// exception, no longjmp. It may call this library.
 pub type leafless_attribute_value_fn =
     Option<unsafe extern "C" fn(ctx: *mut c_void, point: *const f64, value: *mut f64) -> i32>;
 
@@ -27,10 +27,10 @@ pub type leafless_attribute_values_fn =
     Option<unsafe extern "C" fn(ctx: *mut c_void, points: *const f64, count: u64, values: *mut f64) -> i32>;
 
 /// Bounds the values of the host's attribute in the interior of the box [min, max] (3 numbers each, model
-/// units): sets `kind` and the intervals of `*range`, of which the kind is LEAFLESS_RANGE_KIND_UNKNOWN and all numbers
-/// are NaN before. The answer must be proven: a wrong range hides details that nobody looks for any more. An
-/// interval that contains a NaN, or of which lower > upper, says nothing; a `kind` that is none ends the operation
-/// with LEAFLESS_E_CALLBACK. Else as leafless_attribute_value_fn.
+/// units): sets `kind` and the intervals of `*range`, of which the kind is LEAFLESS_RANGE_KIND_UNKNOWN and
+/// all numbers are NaN before. The answer must be proven: a wrong range hides details that nobody looks for
+/// any more. An interval that contains a NaN, or of which lower > upper, says nothing; a `kind` that is none
+/// ends the operation with LEAFLESS_E_CALLBACK. Else as leafless_attribute_value_fn.
 pub type leafless_attribute_range_fn = Option<
     unsafe extern "C" fn(
         ctx: *mut c_void,
@@ -40,8 +40,8 @@ pub type leafless_attribute_range_fn = Option<
     ) -> i32,
 >;
 
-/// An attribute of the host. `components` and one of `value` and `values` must be set; all other fields but the
-/// first may be zero.
+/// An attribute of the host. `components` and one of `value` and `values` must be set; all other fields but
+/// the first may be zero.
 #[derive(Clone, Copy)]
 #[repr(C)]
 pub struct leafless_attribute_callbacks {
@@ -53,8 +53,8 @@ pub struct leafless_attribute_callbacks {
     pub value: leafless_attribute_value_fn,
     /// The values at many points, as many as the work has at hand.
     pub values: leafless_attribute_values_fn,
-    /// Bounds the values in a box; optional. With it channels that hardly change are filled without asking at every
-    /// cell, and LEAFLESS_CRITERION_RANGE misses no detail.
+    /// Bounds the values in a box; optional. With it channels that hardly change are filled without asking at
+    /// every cell, and LEAFLESS_CRITERION_RANGE misses no detail.
     pub range: leafless_attribute_range_fn,
     /// Called when `ctx` is not needed any more; optional.
     pub destroy: leafless_destroy_fn,
@@ -138,8 +138,8 @@ impl Attribute for HostAttribute {
 ///
 /// - Buffers: `callbacks`, one struct, which is copied; `attribute`, one pointer.
 /// - Result: `*attribute`.
-/// - Errors: LEAFLESS_E_NULL if `value` and `values` are NULL; LEAFLESS_E_ARGUMENT unless `components` is 1 to 4.
-///   After an error `destroy` is not called.
+/// - Errors: LEAFLESS_E_NULL if `value` and `values` are NULL; LEAFLESS_E_ARGUMENT unless `components` is 1
+///   to 4. After an error `destroy` is not called.
 /// - Ownership: `ctx` must live until `destroy` is called with it; give `*attribute` back with
 ///   leafless_attribute_free.
 /// - Threads: any; in which the functions are called, leafless_attribute_value_fn says.

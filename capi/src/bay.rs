@@ -8,7 +8,8 @@ use super::status::leafless_status;
 use leafless::layout::{Bay, Item, Orientations};
 use leafless::memory;
 
-/// A container, obstacles and items: what leafless_layout_new makes a layout of. It is filled by one thread at a time.
+/// A container, obstacles and items: what leafless_layout_new makes a layout of. It is filled by one thread
+/// at a time.
 pub struct leafless_bay(pub(super) Bay);
 
 /// The ways in which an item may be turned.
@@ -19,7 +20,8 @@ pub enum leafless_orientations {
     LEAFLESS_ORIENTATIONS_TURNS = 0,
     /// Only as it is.
     LEAFLESS_ORIENTATIONS_AS_GIVEN = 1,
-    /// As it is, and `free_count` turns by chance, evenly spread over all turns. They depend on the seed of the search.
+    /// As it is, and `free_count` turns by chance, evenly spread over all turns. They depend on the seed of
+    /// the search.
     LEAFLESS_ORIENTATIONS_FREE = 2,
     /// Any of `matrices`, of which only the linear part M counts.
     LEAFLESS_ORIENTATIONS_LIST = 3,
@@ -43,8 +45,8 @@ pub struct leafless_item_options {
     pub orientations: Number<leafless_orientations>,
     /// Mass per cubic model unit, a positive number; 0 means 1.
     pub density: f64,
-    /// Of LEAFLESS_ORIENTATIONS_LIST: `matrix_count` times 12 numbers, the rows of [M | t]. M must turn; it may neither mirror nor
-    /// stretch lengths by more than 10^-9 of them.
+    /// Of LEAFLESS_ORIENTATIONS_LIST: `matrix_count` times 12 numbers, the rows of [M | t]. M must turn; it
+    /// may neither mirror nor stretch lengths by more than 10^-9 of them.
     pub matrices: *const f64,
     /// Of LEAFLESS_ORIENTATIONS_LIST: how many matrices there are, 1 to 4096.
     pub matrix_count: u64,
@@ -104,10 +106,12 @@ fn distance(value: f64, name: &'static str) -> Result<f64, Failure> {
 
 /// A bay with a container, without obstacles and items. The container is any solid that ends.
 ///
-/// - Buffers: `bay`, one pointer. `clearance_model` is the least distance between two items, and between an item and an
-///   obstacle; `wall_clearance_model` that between an item and what lies outside of the container.
+/// - Buffers: `bay`, one pointer. `clearance_model` is the least distance between two items, and between an
+///   item and an obstacle; `wall_clearance_model` that between an item and what lies outside of the
+///   container.
 /// - Result: `*bay`.
-/// - Errors: LEAFLESS_E_ARGUMENT if a distance is not between 0 and 2^64; if the container has no bounds, or no extent along an axis.
+/// - Errors: LEAFLESS_E_ARGUMENT if a distance is not between 0 and 2^64; if the container has no bounds, or
+///   no extent along an axis.
 /// - Ownership: the bay shares the container, which may be freed; give `*bay` back with leafless_bay_free.
 /// - Untrusted input: any solid and numbers.
 #[unsafe(no_mangle)]
@@ -142,7 +146,8 @@ pub unsafe extern "C" fn leafless_bay_free(bay: *mut leafless_bay) {
 ///
 /// - Buffers: `number`, one number.
 /// - Result: `*number`, which leafless_neighbour tells: obstacles are counted from 0.
-/// - Errors: LEAFLESS_E_ARGUMENT if the solid has no bounds, or no extent along an axis; LEAFLESS_E_NO_MEMORY.
+/// - Errors: LEAFLESS_E_ARGUMENT if the solid has no bounds, or no extent along an axis;
+///   LEAFLESS_E_NO_MEMORY.
 /// - Ownership: the bay shares the solid, which may be freed.
 /// - Threads: any, but no other call may use the bay.
 /// - Untrusted input: any solid.
@@ -159,13 +164,14 @@ pub unsafe extern "C" fn leafless_bay_add_obstacle(
     })
 }
 
-/// Adds an item: a solid, of which leafless_layout_search places so many copies. leafless_layout_place places any number.
+/// Adds an item: a solid, of which leafless_layout_search places so many copies. leafless_layout_place places
+/// any number.
 ///
 /// - Buffers: `item`, one struct or NULL, which means 24 turns and a density of 1; `number`, one number.
 /// - Result: `*number`, by which leafless_layout_place takes it: items are counted from 0.
-/// - Errors: LEAFLESS_E_ARGUMENT if the solid has no bounds, or no extent along an axis; if a field of `item` is none of its
-///   enumeration, or is set though it is not used; if the density is neither 0 nor a positive number; if a matrix does
-///   not turn, or there is none though there should be one; LEAFLESS_E_NO_MEMORY.
+/// - Errors: LEAFLESS_E_ARGUMENT if the solid has no bounds, or no extent along an axis; if a field of `item`
+///   is none of its enumeration, or is set though it is not used; if the density is neither 0 nor a positive
+///   number; if a matrix does not turn, or there is none though there should be one; LEAFLESS_E_NO_MEMORY.
 /// - Ownership: the bay shares the solid, which may be freed. It copies the matrices.
 /// - Threads: any, but no other call may use the bay.
 /// - Untrusted input: any solid and numbers. A search takes memory for the cells of each orientation.

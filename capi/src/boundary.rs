@@ -118,9 +118,9 @@ impl From<&Failure> for leafless_status {
 /// Runs the body of a function.
 ///
 /// A panic does not reach the host. Nothing that survives it can be half-changed: handles are immutable but
-/// for atomic flags, cursors, bays, lazy octrees, editors and layouts. A cursor's position is checked at every step; a bay gets
-/// one thing at a time; a lazy octree changes only once the solid has answered; an editor and a layout that a panic left refuse
-/// everything.
+/// for atomic flags, cursors, bays, lazy octrees, editors and layouts. A cursor's position is checked at
+/// every step; a bay gets one thing at a time; a lazy octree changes only once the solid has answered; an
+/// editor and a layout that a panic left refuse everything.
 #[inline(always)]
 pub(super) fn guard(body: impl FnOnce() -> Result<(), Failure>) -> leafless_status {
     match catch_unwind(AssertUnwindSafe(body)) {
@@ -559,8 +559,8 @@ pub(super) unsafe fn filled<T: Output>(pointer: *mut T, name: &'static str) -> R
 }
 
 impl<T: Output> Filled<T> {
-    /// Writes what the host's struct has room for. Its size stays, and so do fields that this library does not
-    /// know.
+    /// Writes what the host's struct has room for. Its size stays, and so do fields that this library does
+    /// not know.
     pub(super) fn write(self, value: T) -> Result<(), Failure> {
         const FIRST: usize = size_of::<u32>();
         let end = self.size.min(size_of::<T>());

@@ -14,8 +14,8 @@ pub struct leafless_camera {
     pub at_model: [f64; 3],
     /// The direction that is shown upward, of any length but 0; not along the view.
     pub up: [f64; 3],
-    /// The field of view in degrees, from the lower to the upper edge of the picture: above 0, below 180. What is
-    /// farther away looks smaller. 0: parallel lines stay parallel, and `height_model` counts.
+    /// The field of view in degrees, from the lower to the upper edge of the picture: above 0, below 180.
+    /// What is farther away looks smaller. 0: parallel lines stay parallel, and `height_model` counts.
     pub field_of_view_degrees: f64,
     /// With parallel lines the height of what is seen; else not read.
     pub height_model: f64,
@@ -34,10 +34,10 @@ impl leafless_camera {
     }
 }
 
-/// A camera that shows all of some points in a picture of width : height = `aspect`, as large as can be with a
-/// small margin. Points may be the vertices of a mesh, or the eight corners of a bounding box. It looks at them
-/// from an azimuth and an elevation in degrees: 0, 0 is from -y with x to the right and z upward, a positive
-/// azimuth from further right, a positive elevation from further above.
+/// A camera that shows all of some points in a picture of width : height = `aspect`, as large as can be with
+/// a small margin. Points may be the vertices of a mesh, or the eight corners of a bounding box. It looks at
+/// them from an azimuth and an elevation in degrees: 0, 0 is from -y with x to the right and z upward, a
+/// positive azimuth from further right, a positive elevation from further above.
 ///
 /// - Buffers: `points_model`, 3 · `count` numbers; `camera`, one struct.
 /// - Result: `*camera`. O(count).

@@ -32,15 +32,15 @@ impl From<TaggedCell> for leafless_cell {
     }
 }
 
-/// A square between two cells that are not split: one of a tag that was asked for, and one of another. It is a
-/// whole face of the smaller one.
+/// A square between two cells that are not split: one of a tag that was asked for, and one of another. It is
+/// a whole face of the smaller one.
 #[derive(Clone, Copy)]
 #[repr(C)]
 pub struct leafless_boundary_face {
     /// The cell of a tag that was asked for.
     pub inner: leafless_cell,
-    /// The cell of another tag. Outside of the universe: the inner cell's place and level, with the exterior's
-    /// tag.
+    /// The cell of another tag. Outside of the universe: the inner cell's place and level, with the
+    /// exterior's tag.
     pub outer: leafless_cell,
     /// The axis from the inner cell to the outer one: 0 is x, 1 y, 2 z.
     pub axis: u8,
@@ -201,9 +201,9 @@ pub unsafe extern "C" fn leafless_cursor_seek(
     })
 }
 
-/// The neighbour of a cursor's cell through a face, an edge or a vertex: the cell of the same size, which is a
-/// BRANCH if it is split, or the larger one that contains it and is not split. The cursor stays where it is.
-/// Along a walk amortised O(1), at most O(depth).
+/// The neighbour of a cursor's cell through a face, an edge or a vertex: the cell of the same size, which is
+/// a BRANCH if it is split, or the larger one that contains it and is not split. The cursor stays where it
+/// is. Along a walk amortised O(1), at most O(depth).
 ///
 /// - Buffers: `direction`, 3 numbers of -1, 0 and 1: the steps along x, y and z; `neighbour`, one struct;
 ///   `exists`, one truth value, or NULL.
@@ -269,13 +269,13 @@ pub unsafe extern "C" fn leafless_cursor_neighbours(
     })
 }
 
-/// Cells of an octree one after another, in Morton order: those of some tags, on some levels, in a box. A cell
-/// that is split comes before the cells in it. It reads no parts of the octree outside of the box or below the
-/// levels.
+/// Cells of an octree one after another, in Morton order: those of some tags, on some levels, in a box. A
+/// cell that is split comes before the cells in it. It reads no parts of the octree outside of the box or
+/// below the levels.
 ///
-/// - Buffers: `min_cell` and `max_cell`, 3 numbers each, or NULL both for the whole universe: the first finest
-///   cell of the box on each axis, and the first beyond it; `cells`, one pointer. `tags` are leafless_tags.
-///   `min_level` and `max_level` may be greater than the depth.
+/// - Buffers: `min_cell` and `max_cell`, 3 numbers each, or NULL both for the whole universe: the first
+///   finest cell of the box on each axis, and the first beyond it; `cells`, one pointer. `tags` are
+///   leafless_tags. `min_level` and `max_level` may be greater than the depth.
 /// - Result: `*cells`, which stands before the first such cell.
 /// - Errors: LEAFLESS_E_ARGUMENT if `tags` are none.
 /// - Ownership: `*cells` shares the octree, which may be freed; give it back with leafless_cells_free.
@@ -337,7 +337,8 @@ pub unsafe extern "C" fn leafless_cells_seek(
 
 /// Reads the next cells.
 ///
-/// - Buffers: `buffer`, room for `capacity` structs, which may be NULL if `capacity` is 0; `count`, one number.
+/// - Buffers: `buffer`, room for `capacity` structs, which may be NULL if `capacity` is 0; `count`, one
+///   number.
 /// - Result: the cells; `*count`, how many: fewer than `capacity` only if there are no more.
 /// - Threads: no other call may use `cells`.
 /// - Untrusted input: any octree; damage reads as PARTIAL, and no array element is met twice.
@@ -375,9 +376,9 @@ unsafe fn room<T>(buffer: *mut T, capacity: u64) -> Result<usize, Failure> {
 
 /// Boundary faces of an octree one after another: those between cells of some tags and cells of others, which
 /// are both not split. With FULL, the boundary of what is surely solid; with FULL and PARTIAL, of what is
-/// possibly solid. Where cells of different sizes meet there is one face for each of the smaller ones. What is
-/// outside of the universe has the exterior's tag. They come in Morton order of the inner cells, for each of
-/// these in the order -z, -y, -x, +x, +y, +z, and for each side in the Morton order of the outer cells.
+/// possibly solid. Where cells of different sizes meet there is one face for each of the smaller ones. What
+/// is outside of the universe has the exterior's tag. They come in Morton order of the inner cells, for each
+/// of these in the order -z, -y, -x, +x, +y, +z, and for each side in the Morton order of the outer cells.
 ///
 /// - Buffers: as leafless_cells_new; levels and box are those of the inner cells; `faces`, one pointer.
 ///   BRANCH among the tags does nothing.
@@ -443,11 +444,12 @@ pub unsafe extern "C" fn leafless_faces_seek(
 
 /// Reads the next faces.
 ///
-/// - Buffers: `buffer`, room for `capacity` structs, which may be NULL if `capacity` is 0; `count`, one number.
+/// - Buffers: `buffer`, room for `capacity` structs, which may be NULL if `capacity` is 0; `count`, one
+///   number.
 /// - Result: the faces; `*count`, how many: fewer than `capacity` only if there are no more.
 /// - Threads: no other call may use `faces`.
-/// - Untrusted input: any octree; damage reads as PARTIAL. An array element is met once for its own cells, and
-///   no oftener for those beside them than in a sound octree: six times.
+/// - Untrusted input: any octree; damage reads as PARTIAL. An array element is met once for its own cells,
+///   and no oftener for those beside them than in a sound octree: six times.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn leafless_faces_next(
     faces: *mut leafless_faces,

@@ -11,9 +11,9 @@ use leafless::attribute::{Channel, ScalarType};
 use leafless::octree::MetadataLimit;
 use leafless_scalar_type::*;
 
-/// Values inside a cube, in a tree of their own: a colour, a temperature, a material at every point, or at some.
-/// leafless_octree_with_channel attaches it to a solid, in whose file it then travels. The tree may be finer or
-/// coarser than the solid's.
+/// Values inside a cube, in a tree of their own: a colour, a temperature, a material at every point, or at
+/// some. leafless_octree_with_channel attaches it to a solid, in whose file it then travels. The tree may be
+/// finer or coarser than the solid's.
 ///
 /// Immutable: all its functions may be called at once from any number of threads, but leafless_channel_free
 /// needs the reference that it gives back for itself.
@@ -21,8 +21,8 @@ pub struct leafless_channel {
     pub(super) channel: Channel,
 }
 
-/// The type of the numbers of a channel. Numbers are rounded to the nearest one of the type, to an even integer
-/// half-way.
+/// The type of the numbers of a channel. Numbers are rounded to the nearest one of the type, to an even
+/// integer half-way.
 #[derive(Clone, Copy)]
 #[repr(u32)]
 pub enum leafless_scalar_type {
@@ -108,8 +108,8 @@ pub unsafe extern "C" fn leafless_channel_free(channel: *mut leafless_channel) {
     unsafe { release(channel) }
 }
 
-/// What can be said of a channel at once. O(1), but for a channel of a file that was mapped unverified: when such
-/// a channel is first read, by whichever function, its links are checked in one pass.
+/// What can be said of a channel at once. O(1), but for a channel of a file that was mapped unverified: when
+/// such a channel is first read, by whichever function, its links are checked in one pass.
 ///
 /// - Buffers: `info`, one struct.
 /// - Result: `*info`.
@@ -146,8 +146,8 @@ pub unsafe extern "C" fn leafless_channel_check(channel: *const leafless_channel
     guard(|| unsafe { Ok(shared(channel, "channel")?.channel.view()?.check()?) })
 }
 
-/// Whether two channels have the same values in the same cells, of one type and on one frame. Metadata does not
-/// count. O(n).
+/// Whether two channels have the same values in the same cells, of one type and on one frame. Metadata does
+/// not count. O(n).
 ///
 /// - Buffers: `equal`, one truth value.
 /// - Result: `*equal`.
@@ -164,13 +164,13 @@ pub unsafe extern "C" fn leafless_channel_equal(
     })
 }
 
-/// The values of a channel as an attribute, which may be placed, or fill a channel on another frame. It has no
-/// values outside of the channel's cube.
+/// The values of a channel as an attribute, which may be placed, or fill a channel on another frame. It has
+/// no values outside of the channel's cube.
 ///
 /// - Buffers: `attribute`, one pointer.
 /// - Result: `*attribute`.
-/// - Errors: only the general ones; asking for its values returns LEAFLESS_E_DAMAGED if the channel was mapped
-///   unverified and its links are damaged.
+/// - Errors: only the general ones; asking for its values returns LEAFLESS_E_DAMAGED if the channel was
+///   mapped unverified and its links are damaged.
 /// - Ownership: the attribute shares the channel, which may be freed; give `*attribute` back with
 ///   leafless_attribute_free.
 /// - Untrusted input: any channel.
@@ -186,9 +186,9 @@ pub unsafe extern "C" fn leafless_attribute_from_channel(
     })
 }
 
-/// The channel with one more fact in its metadata, or with another value of one; the arrays are shared. Names in
-/// use: "name", by which a solid knows the channel, "unit" (of the values), "meaning" (what they are, such as
-/// "colour" or "density").
+/// The channel with one more fact in its metadata, or with another value of one; the arrays are shared. Names
+/// in use: "name", by which a solid knows the channel, "unit" (of the values), "meaning" (what they are, such
+/// as "colour" or "density").
 ///
 /// - Buffers: `key` and `value`, `key_length` and `value_length` bytes of UTF-8; `named`, one pointer.
 /// - Result: `*named`.

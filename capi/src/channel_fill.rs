@@ -20,11 +20,11 @@ use leafless::octree::MetadataLimit;
 pub enum leafless_criterion {
     /// To the finest cells, wherever it is not proven that all of a cell has one value.
     LEAFLESS_CRITERION_NONE = 0,
-    /// Until the variance of the values at a cell's corners is at most the square of the tolerance. The variance of
-    /// several numbers is the sum of their variances. A detail between the corners is missed.
+    /// Until the variance of the values at a cell's corners is at most the square of the tolerance. The
+    /// variance of several numbers is the sum of their variances. A detail between the corners is missed.
     LEAFLESS_CRITERION_VARIANCE = 1,
-    /// Until the values in a cell are proven to differ by no more than the tolerance, in each of their numbers.
-    /// Nothing is missed. A cell whose range is unknown is split.
+    /// Until the values in a cell are proven to differ by no more than the tolerance, in each of their
+    /// numbers. Nothing is missed. A cell whose range is unknown is split.
     LEAFLESS_CRITERION_RANGE = 2,
 }
 
@@ -53,15 +53,15 @@ pub struct leafless_channel_fill_options {
     /// least memory.
     pub solid: *const leafless_octree,
     /// A leafless_criterion. Unless it is LEAFLESS_CRITERION_NONE, a cell is split until its edge is at most
-    /// `coarse_model` and the criterion holds, or until its edge is at most `fine_model`. It then has the value at its
-    /// centre.
+    /// `coarse_model` and the criterion holds, or until its edge is at most `fine_model`. It then has the
+    /// value at its centre.
     pub criterion: Number<leafless_criterion>,
     /// Zero.
     pub reserved: u32,
     /// The longest edge of cells with a criterion; 0 means any.
     pub coarse_model: f64,
-    /// The edge below which cells are not split any more, with a criterion, at most `coarse_model`; 0 means that of the
-    /// finest cells.
+    /// The edge below which cells are not split any more, with a criterion, at most `coarse_model`; 0 means
+    /// that of the finest cells.
     pub fine_model: f64,
     /// The tolerance of the criterion, in the attribute's units; may be infinite.
     pub tolerance: f64,
@@ -103,21 +103,21 @@ impl leafless_channel_fill_options {
 /// numbers; a cell whose centre has no value has none. Cells are as large as proven ranges and the criterion
 /// allow. The result is the same bit for bit for any number of threads.
 ///
-/// Without a criterion the result is that of asking at the centre of every finest cell. An attribute without ranges is
-/// asked there: 8^depth times, or as often as the solid has cells that are not EMPTY.
+/// Without a criterion the result is that of asking at the centre of every finest cell. An attribute without
+/// ranges is asked there: 8^depth times, or as often as the solid has cells that are not EMPTY.
 ///
-/// - Buffers: `frame`, one struct, or NULL for the frame of `fill->solid`, which is then needed; `fill`, one struct
-///   or NULL; `options`, one struct or NULL; `channel`, one pointer.
+/// - Buffers: `frame`, one struct, or NULL for the frame of `fill->solid`, which is then needed; `fill`, one
+///   struct or NULL; `options`, one struct or NULL; `channel`, one pointer.
 /// - Result: `*channel`, with the name as its only fact, if there is one.
-/// - Errors: LEAFLESS_E_ARGUMENT as leafless_frame_check, if a field of `fill` is wrong, or a value beyond the range
-///   of the type, infinite, or partly NaN; LEAFLESS_E_FRAME if the solid lies in another cube than the frame;
-///   LEAFLESS_E_NULL if both are missing; LEAFLESS_E_UTF8; LEAFLESS_E_CALLBACK; LEAFLESS_E_DAMAGED;
-///   LEAFLESS_E_LIMIT; LEAFLESS_E_CANCELLED; LEAFLESS_E_NO_MEMORY.
+/// - Errors: LEAFLESS_E_ARGUMENT as leafless_frame_check, if a field of `fill` is wrong, or a value beyond
+///   the range of the type, infinite, or partly NaN; LEAFLESS_E_FRAME if the solid lies in another cube than
+///   the frame; LEAFLESS_E_NULL if both are missing; LEAFLESS_E_UTF8; LEAFLESS_E_CALLBACK;
+///   LEAFLESS_E_DAMAGED; LEAFLESS_E_LIMIT; LEAFLESS_E_CANCELLED; LEAFLESS_E_NO_MEMORY.
 /// - Ownership: nothing is kept of the attribute, the solid and the name; give `*channel` back with
 ///   leafless_channel_free.
 /// - Threads: any; uses as many as `options` says.
-/// - Untrusted input: any attribute, any octree; set `max_bytes` where the depth or the attribute is not your own
-///   choice.
+/// - Untrusted input: any attribute, any octree; set `max_bytes` where the depth or the attribute is not your
+///   own choice.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn leafless_channel_fill(
     attribute: *const leafless_attribute,
@@ -157,12 +157,13 @@ pub unsafe extern "C" fn leafless_channel_fill(
     })
 }
 
-/// The values of a channel at points. A point on a face between cells belongs to the upper one. O(depth) each.
+/// The values of a channel at points. A point on a face between cells belongs to the upper one. O(depth)
+/// each.
 ///
-/// - Buffers: `points_model`, `count` points of 3 numbers; `values`, room for `count` values of as many numbers as
-///   `components` of leafless_channel_describe. Both may be NULL if `count` is 0.
-/// - Result: the value at point i from `values[components * i]` on; NaN where there is none, and outside of the
-///   channel's cube.
+/// - Buffers: `points_model`, `count` points of 3 numbers; `values`, room for `count` values of as many
+///   numbers as `components` of leafless_channel_describe. Both may be NULL if `count` is 0.
+/// - Result: the value at point i from `values[components * i]` on; NaN where there is none, and outside of
+///   the channel's cube.
 /// - Errors: LEAFLESS_E_DAMAGED.
 /// - Untrusted input: any channel, any numbers; damage reads as no value.
 #[unsafe(no_mangle)]
@@ -186,7 +187,8 @@ fn four(value: Option<[f64; 4]>) -> [f64; 4] {
 /// The value of a channel at a point, as leafless_channel_values.
 ///
 /// - Buffers: `point_model`, 3 numbers; `value`, room for 4 numbers.
-/// - Result: `value`: as many numbers as the channel's values have, and 0 beyond them; four NaN if there is none.
+/// - Result: `value`: as many numbers as the channel's values have, and 0 beyond them; four NaN if there is
+///   none.
 /// - Errors: LEAFLESS_E_DAMAGED.
 /// - Untrusted input: any channel, any numbers; damage reads as no value.
 ///
@@ -227,14 +229,15 @@ pub unsafe extern "C" fn leafless_channel_value_at(
     })
 }
 
-/// The channel with one value wherever an octree is not EMPTY, and as it is elsewhere. It is as deep as the deeper of
-/// the two. The same bit for bit for any number of threads.
+/// The channel with one value wherever an octree is not EMPTY, and as it is elsewhere. It is as deep as the
+/// deeper of the two. The same bit for bit for any number of threads.
 ///
-/// - Buffers: `region`, a handle; `value`, as many numbers as the channel's values have, or NULL to take values
-///   away; `options`, one struct or NULL; `changed`, one pointer.
+/// - Buffers: `region`, a handle; `value`, as many numbers as the channel's values have, or NULL to take
+///   values away; `options`, one struct or NULL; `changed`, one pointer.
 /// - Result: `*changed`, with the metadata of `channel`.
-/// - Errors: LEAFLESS_E_ARGUMENT if the value is beyond the type's range, or not finite; LEAFLESS_E_FRAME unless both
-///   lie in one cube; LEAFLESS_E_DAMAGED; LEAFLESS_E_LIMIT; LEAFLESS_E_CANCELLED; LEAFLESS_E_NO_MEMORY.
+/// - Errors: LEAFLESS_E_ARGUMENT if the value is beyond the type's range, or not finite; LEAFLESS_E_FRAME
+///   unless both lie in one cube; LEAFLESS_E_DAMAGED; LEAFLESS_E_LIMIT; LEAFLESS_E_CANCELLED;
+///   LEAFLESS_E_NO_MEMORY.
 /// - Ownership: `channel` stays as it is; give `*changed` back with leafless_channel_free.
 /// - Threads: any; uses as many as `options` says.
 /// - Untrusted input: any channel, any octree, any numbers.

@@ -46,8 +46,8 @@ pub struct leafless_channel_summary {
     pub least: [f64; 4],
     /// The greatest value of any cell that may belong to the region.
     pub greatest: [f64; 4],
-    /// The integral of the value over the region, in the value's units times cubic model units: of a density, the
-    /// mass.
+    /// The integral of the value over the region, in the value's units times cubic model units: of a density,
+    /// the mass.
     pub integral: [leafless_interval; 4],
     /// The mean value.
     pub mean: [leafless_interval; 4],
@@ -101,15 +101,15 @@ impl From<&MaterialProperties> for leafless_material {
     }
 }
 
-/// Least, greatest, mean and integral of a channel's values in the part of a solid that lies in a box, whose faces may
-/// lie anywhere. O(cells that the box meets).
+/// Least, greatest, mean and integral of a channel's values in the part of a solid that lies in a box, whose
+/// faces may lie anywhere. O(cells that the box meets).
 ///
-/// - Buffers: `solid`, a handle, or NULL for all space; `min_model` and `max_model`, 3 numbers each, which may be
-///   infinite, or both NULL for all of the channel's cube; `options`, one struct or NULL, of which limits do not
-///   matter; `summary`, one struct.
+/// - Buffers: `solid`, a handle, or NULL for all space; `min_model` and `max_model`, 3 numbers each, which
+///   may be infinite, or both NULL for all of the channel's cube; `options`, one struct or NULL, of which
+///   limits do not matter; `summary`, one struct.
 /// - Result: `*summary`.
-/// - Errors: LEAFLESS_E_ARGUMENT if a coordinate is not a number, or min > max; LEAFLESS_E_FRAME if the solid lies in
-///   another cube; LEAFLESS_E_DAMAGED; LEAFLESS_E_CANCELLED.
+/// - Errors: LEAFLESS_E_ARGUMENT if a coordinate is not a number, or min > max; LEAFLESS_E_FRAME if the solid
+///   lies in another cube; LEAFLESS_E_DAMAGED; LEAFLESS_E_CANCELLED.
 /// - Untrusted input: any channel, any octree, any numbers.
 ///
 /// cbindgen:ptrs-as-arrays=[[min_model; 3], [max_model; 3]]
@@ -140,15 +140,15 @@ pub unsafe extern "C" fn leafless_channel_summarise(
     })
 }
 
-/// The octree of the cells whose values lie in a band: every number between those of `low` and `high`, both included.
-/// Where there is no value, it is EMPTY. It lies on the channel's frame, and nothing is PARTIAL. A Boolean makes it that of
-/// a part: of a material, of all that is hotter than a limit.
+/// The octree of the cells whose values lie in a band: every number between those of `low` and `high`, both
+/// included. Where there is no value, it is EMPTY. It lies on the channel's frame, and nothing is PARTIAL. A
+/// Boolean makes it that of a part: of a material, of all that is hotter than a limit.
 ///
-/// - Buffers: `low` and `high`, as many numbers each as the channel's values have, which may be infinite; `options`, one
-///   struct or NULL; `octree`, one pointer.
+/// - Buffers: `low` and `high`, as many numbers each as the channel's values have, which may be infinite;
+///   `options`, one struct or NULL; `octree`, one pointer.
 /// - Result: `*octree`.
-/// - Errors: LEAFLESS_E_ARGUMENT if a bound is not a number; LEAFLESS_E_DAMAGED; LEAFLESS_E_LIMIT; LEAFLESS_E_CANCELLED;
-///   LEAFLESS_E_NO_MEMORY.
+/// - Errors: LEAFLESS_E_ARGUMENT if a bound is not a number; LEAFLESS_E_DAMAGED; LEAFLESS_E_LIMIT;
+///   LEAFLESS_E_CANCELLED; LEAFLESS_E_NO_MEMORY.
 /// - Ownership: give `*octree` back with leafless_octree_free.
 /// - Threads: any; uses as many as `options` says.
 /// - Untrusted input: any channel, any numbers.
@@ -175,16 +175,17 @@ pub unsafe extern "C" fn leafless_channel_region(
     })
 }
 
-/// Measures the parts of a solid in which a channel has one value, each as leafless_solid_measure: one for each value of
-/// the channel that the solid may have somewhere, in ascending order of the values. The channel is taken as it is; its
-/// cells decide what is which material. To ask for the count alone takes as long.
+/// Measures the parts of a solid in which a channel has one value, each as leafless_solid_measure: one for
+/// each value of the channel that the solid may have somewhere, in ascending order of the values. The channel
+/// is taken as it is; its cells decide what is which material. To ask for the count alone takes as long.
 ///
-/// - Buffers: `frame`, one struct: where the solid is split, in the channel's cube; `options`, one struct or NULL;
-///   `measured`, room for `capacity` structs, or NULL to ask for the count only; `count`, one number. `relative` and
-///   `absolute_model` are those of leafless_solid_measure.
+/// - Buffers: `frame`, one struct: where the solid is split, in the channel's cube; `options`, one struct or
+///   NULL; `measured`, room for `capacity` structs, or NULL to ask for the count only; `count`, one number.
+///   `relative` and `absolute_model` are those of leafless_solid_measure.
 /// - Result: `*count`; the materials.
-/// - Errors: LEAFLESS_E_LIMIT if the channel has more than 4096 different values; LEAFLESS_E_FRAME unless `frame` is of
-///   the channel's cube; LEAFLESS_E_BUFFER if the capacity is too small; else as leafless_solid_measure.
+/// - Errors: LEAFLESS_E_LIMIT if the channel has more than 4096 different values; LEAFLESS_E_FRAME unless
+///   `frame` is of the channel's cube; LEAFLESS_E_BUFFER if the capacity is too small; else as
+///   leafless_solid_measure.
 /// - Threads: any; uses as many as `options` says.
 /// - Untrusted input: any solid, any channel; the default of `max_splits` bounds the work for each value.
 #[unsafe(no_mangle)]
@@ -213,12 +214,12 @@ pub unsafe extern "C" fn leafless_solid_materials(
     })
 }
 
-/// The samples of a volume as an attribute of one number, where the file says that they lie. There is no value outside of
-/// the voxels, nor where a sample that counts is not a number. The first solid, range or attribute of a volume reads all
-/// samples, in O(n).
+/// The samples of a volume as an attribute of one number, where the file says that they lie. There is no
+/// value outside of the voxels, nor where a sample that counts is not a number. The first solid, range or
+/// attribute of a volume reads all samples, in O(n).
 ///
-/// - Buffers: `interpolation`, a leafless_interpolation; `options`, one struct or NULL, of which limits do not matter;
-///   `attribute`, one pointer.
+/// - Buffers: `interpolation`, a leafless_interpolation; `options`, one struct or NULL, of which limits do
+///   not matter; `attribute`, one pointer.
 /// - Result: `*attribute`.
 /// - Errors: LEAFLESS_E_ARGUMENT if the map that places the volume has no inverse that a map can have;
 ///   LEAFLESS_E_CANCELLED; LEAFLESS_E_NO_MEMORY.

@@ -19,7 +19,8 @@ pub enum leafless_gap_verdict {
     LEAFLESS_GAP_VERDICT_YES = 0,
     /// Proven: two points are nearer.
     LEAFLESS_GAP_VERDICT_NO = 1,
-    /// Not decided at the frame's depth, or before the splits were spent; or a solid may go on outside of the universe.
+    /// Not decided at the frame's depth, or before the splits were spent; or a solid may go on outside of the
+    /// universe.
     LEAFLESS_GAP_VERDICT_UNDECIDED = 2,
 }
 
@@ -43,8 +44,8 @@ pub struct leafless_gap {
     pub verdict: u32,
     /// What was known of the distance when the search ended, in model units.
     pub distance_model: leafless_interval,
-    /// If `has_points`, a point of the first solid, in model units: both points are no further apart than the upper bound, but
-    /// for the rounding of their coordinates. Else zeros.
+    /// If `has_points`, a point of the first solid, in model units: both points are no further apart than the
+    /// upper bound, but for the rounding of their coordinates. Else zeros.
     pub point_a_model: [f64; 3],
     /// A point of the second solid.
     pub point_b_model: [f64; 3],
@@ -163,13 +164,15 @@ impl From<&Clearance> for leafless_placed_clearance {
     }
 }
 
-/// Whether no point of a solid is nearer than `least_model` to one of another solid, as they are in the universe of a frame. The
-/// search ends as soon as that is proven or disproven. If the distance is `least_model` to the last digit, nothing may be proven
-/// within `max_splits`, which are counted and limited as for leafless_solid_clearance.
+/// Whether no point of a solid is nearer than `least_model` to one of another solid, as they are in the
+/// universe of a frame. The search ends as soon as that is proven or disproven. If the distance is
+/// `least_model` to the last digit, nothing may be proven within `max_splits`, which are counted and limited
+/// as for leafless_solid_clearance.
 ///
 /// - Buffers: `frame`, one struct; `options`, one struct or NULL; `gap`, one struct.
 /// - Result: `*gap`.
-/// - Errors: as leafless_solid_interfere; LEAFLESS_E_ARGUMENT also if `least_model` is not between 2^-256 and 2^256.
+/// - Errors: as leafless_solid_interfere; LEAFLESS_E_ARGUMENT also if `least_model` is not between 2^-256 and
+///   2^256.
 /// - Untrusted input: any solids; the default of `max_splits` bounds the work.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn leafless_solid_gap_at_least(
@@ -229,11 +232,13 @@ pub unsafe extern "C" fn leafless_solid_clearance_many(
     })
 }
 
-/// As leafless_solid_gap_at_least of `a` with `b` under each of many affine maps, as leafless_solid_transformed makes them.
-/// `max_splits` concerns each of them. The results are the same for any number of threads.
+/// As leafless_solid_gap_at_least of `a` with `b` under each of many affine maps, as
+/// leafless_solid_transformed makes them. `max_splits` concerns each of them. The results are the same for
+/// any number of threads.
 ///
 /// - Buffers: `own`, one struct, the frame of `b`; `matrices`, `count` times 12 numbers; `frame`, one struct,
-///   that of `a`; `options`, one struct or NULL; `gaps`, room for `count`. `matrices` and `gaps` may be NULL if `count` is 0.
+///   that of `a`; `options`, one struct or NULL; `gaps`, room for `count`. `matrices` and `gaps` may be NULL
+///   if `count` is 0.
 /// - Result: `gaps[i]` for map i.
 /// - Errors: as leafless_solid_gap_at_least and leafless_solid_transformed; nothing is then written.
 /// - Threads: any; uses as many as `options` says.

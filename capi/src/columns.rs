@@ -67,17 +67,17 @@ enumeration! {
     }
 }
 
-/// Which of an octree's cells are solid in a rectangle of columns, whatever they prove of the solid that it was made
-/// from. A column is a row of finest cells along an axis, from one side of the universe to the other. It stands for
-/// all lines along the axis within it, such as the ray through the centres of its cells. O(cells in the columns +
-/// columns · cells along each), counting cells as they are stored.
+/// Which of an octree's cells are solid in a rectangle of columns, whatever they prove of the solid that it
+/// was made from. A column is a row of finest cells along an axis, from one side of the universe to the
+/// other. It stands for all lines along the axis within it, such as the ray through the centres of its cells.
+/// O(cells in the columns + columns · cells along each), counting cells as they are stored.
 ///
-/// - Buffers: `first` and `end`, 2 numbers each, or NULL both for all columns: the coordinates of the first column's
-///   cells on the other two axes in the order x, y, z, and the first beyond the last one's; `columns`, one pointer.
-///   `axis` is 0 for x, 1 for y, 2 for z.
+/// - Buffers: `first` and `end`, 2 numbers each, or NULL both for all columns: the coordinates of the first
+///   column's cells on the other two axes in the order x, y, z, and the first beyond the last one's;
+///   `columns`, one pointer. `axis` is 0 for x, 1 for y, 2 for z.
 /// - Result: `*columns`, to be read with leafless_columns_copy.
-/// - Errors: LEAFLESS_E_ARGUMENT if `axis` is greater than 2, `first` lies beyond `end`, or the columns reach beyond
-///   the universe; LEAFLESS_E_NO_MEMORY.
+/// - Errors: LEAFLESS_E_ARGUMENT if `axis` is greater than 2, `first` lies beyond `end`, or the columns reach
+///   beyond the universe; LEAFLESS_E_NO_MEMORY.
 /// - Ownership: give `*columns` back with leafless_columns_free.
 /// - Untrusted input: any octree, any numbers; damage reads as PARTIAL, and no array element is met twice.
 ///
@@ -98,11 +98,11 @@ pub unsafe extern "C" fn leafless_octree_columns(
     })
 }
 
-/// Which cells of a frame are solid in a rectangle of columns, without an octree: all PARTIAL cells in the columns are
-/// split down to the frame's depth.
+/// Which cells of a frame are solid in a rectangle of columns, without an octree: all PARTIAL cells in the
+/// columns are split down to the frame's depth.
 ///
-/// - Buffers: as leafless_octree_columns; `frame`, one struct; `options`, one struct or NULL, of which `max_bytes`
-///   counts and `max_splits` does not.
+/// - Buffers: as leafless_octree_columns; `frame`, one struct; `options`, one struct or NULL, of which
+///   `max_bytes` counts and `max_splits` does not.
 /// - Result: `*columns`, to be read with leafless_columns_copy; the same for any number of threads.
 /// - Errors: LEAFLESS_E_ARGUMENT as leafless_octree_columns; LEAFLESS_E_LIMIT if the result takes more than
 ///   `max_bytes`; else as leafless_solid_contains_many.
@@ -132,15 +132,15 @@ pub unsafe extern "C" fn leafless_solid_columns(
 }
 
 /// The runs of solid cells in columns, in compressed rows: those of column i are `runs[offsets[i]]` to before
-/// `runs[offsets[i + 1]]`. They ascend, and no two of them touch. The column at steps (u, v) from the first is
-/// i = v · width + u, of a rectangle that is `width` columns wide along the first of the other two axes.
+/// `runs[offsets[i + 1]]`. They ascend, and no two of them touch. The column at steps (u, v) from the first
+/// is i = v · width + u, of a rectangle that is `width` columns wide along the first of the other two axes.
 ///
-/// - Buffers: `offsets`, room for `offset_capacity` numbers, and `runs`, room for `run_capacity` structs, each NULL to
-///   ask for its count only; `offset_count` and `run_count`, one number each. `on` is a leafless_obstacle: FULL for
-///   the cells that are proven to be solid, UPPER for those that may be.
+/// - Buffers: `offsets`, room for `offset_capacity` numbers, and `runs`, room for `run_capacity` structs,
+///   each NULL to ask for its count only; `offset_count` and `run_count`, one number each. `on` is a
+///   leafless_obstacle: FULL for the cells that are proven to be solid, UPPER for those that may be.
 /// - Result: `offsets`, one more than columns; `runs`; their counts.
-/// - Errors: LEAFLESS_E_ARGUMENT if `on` is none; LEAFLESS_E_BUFFER if a capacity is too small: nothing is written
-///   then.
+/// - Errors: LEAFLESS_E_ARGUMENT if `on` is none; LEAFLESS_E_BUFFER if a capacity is too small: nothing is
+///   written then.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn leafless_columns_copy(
     columns: *const leafless_columns,
@@ -209,17 +209,17 @@ unsafe fn write_heights(
     }
 }
 
-/// How far an octree's solid cells reach in a rectangle of columns, whatever they prove of the solid that it was made
-/// from: a height map. Costs as leafless_octree_columns.
+/// How far an octree's solid cells reach in a rectangle of columns, whatever they prove of the solid that it
+/// was made from: a height map. Costs as leafless_octree_columns.
 ///
-/// - Buffers: `first` and `end` as leafless_octree_columns; `heights_model`, room for `capacity` structs, or NULL to
-///   ask for the count only; `count`, one number. `side` is a leafless_side.
-/// - Result: `*count`, that of the columns; for each column, in the order of leafless_columns_copy, an interval in
-///   which the greatest coordinate of the solid's points in the column lies, or from below the least one. The end
-///   that needs a proof is infinite if no cell of the column is FULL. Both are -INFINITY (from below INFINITY) if
-///   the column is empty.
-/// - Errors: LEAFLESS_E_ARGUMENT as leafless_octree_columns, or if `side` is none; LEAFLESS_E_BUFFER if the capacity
-///   is too small; LEAFLESS_E_NO_MEMORY.
+/// - Buffers: `first` and `end` as leafless_octree_columns; `heights_model`, room for `capacity` structs, or
+///   NULL to ask for the count only; `count`, one number. `side` is a leafless_side.
+/// - Result: `*count`, that of the columns; for each column, in the order of leafless_columns_copy, an
+///   interval in which the greatest coordinate of the solid's points in the column lies, or from below the
+///   least one. The end that needs a proof is infinite if no cell of the column is FULL. Both are -INFINITY
+///   (from below INFINITY) if the column is empty.
+/// - Errors: LEAFLESS_E_ARGUMENT as leafless_octree_columns, or if `side` is none; LEAFLESS_E_BUFFER if the
+///   capacity is too small; LEAFLESS_E_NO_MEMORY.
 /// - Untrusted input: any octree, any numbers; damage reads as PARTIAL, and no array element is met twice.
 ///
 /// cbindgen:ptrs-as-arrays=[[first; 2], [end; 2]]
@@ -243,11 +243,11 @@ pub unsafe extern "C" fn leafless_octree_heights(
     })
 }
 
-/// How far a solid reaches in a rectangle of columns, without an octree, as far as cells of the frame tell: a height
-/// map. PARTIAL cells in the columns are split down to the frame's depth, unless FULL ones hide them.
+/// How far a solid reaches in a rectangle of columns, without an octree, as far as cells of the frame tell: a
+/// height map. PARTIAL cells in the columns are split down to the frame's depth, unless FULL ones hide them.
 ///
-/// - Buffers: as leafless_octree_heights; `frame`, one struct; `options`, one struct or NULL, of which `max_bytes`
-///   counts and `max_splits` does not.
+/// - Buffers: as leafless_octree_heights; `frame`, one struct; `options`, one struct or NULL, of which
+///   `max_bytes` counts and `max_splits` does not.
 /// - Result: as leafless_octree_heights; the same for any number of threads.
 /// - Errors: LEAFLESS_E_ARGUMENT as leafless_octree_heights; LEAFLESS_E_BUFFER if the capacity is too small;
 ///   LEAFLESS_E_LIMIT if the result takes more than `max_bytes`; else as leafless_solid_contains_many.

@@ -14,11 +14,11 @@ use leafless::surface::{ContourReport, contour};
 pub struct leafless_contour_report {
     /// sizeof(leafless_contour_report).
     pub struct_size: u32,
-    /// No point of the mesh is further from the boundary of the solid than that, and no point of the boundary from the mesh
-    /// (model units). That is proven; infinite if nothing is.
+    /// No point of the mesh is further from the boundary of the solid than that, and no point of the boundary
+    /// from the mesh (model units). That is proven; infinite if nothing is.
     pub deviation_model: f64,
-    /// Pairs of triangles that intersect each other: 0 but where cells of the frame's depth do not tell sheets of the surface
-    /// apart.
+    /// Pairs of triangles that intersect each other: 0 but where cells of the frame's depth do not tell
+    /// sheets of the surface apart.
     pub intersecting_pairs: u64,
     /// Cells that the surface passes through.
     pub cells: u64,
@@ -30,24 +30,27 @@ pub struct leafless_contour_report {
 
 output!(leafless_contour_report);
 
-/// A closed mesh of any solid, with few triangles where it is flat and small ones where it is not: of meshes, expressions with meshes in
-/// them, volumes, octrees, tri-dexel models, and functions of the host. The solid must end inside of the universe of the frame.
-/// (leafless_solid_boundary is sharper for solids that know their surfaces.)
+/// A closed mesh of any solid, with few triangles where it is flat and small ones where it is not: of meshes,
+/// expressions with meshes in them, volumes, octrees, tri-dexel models, and functions of the host. The solid
+/// must end inside of the universe of the frame. (leafless_solid_boundary is sharper for solids that know
+/// their surfaces.)
 ///
-/// Cells are split until the surface in each is one piece that a single vertex can stand for: where planes of the surface meet, so that
-/// edges and corners are sharp. The mesh is then about as near to the solid as `tolerance_model`, as far as cells of the frame's depth
-/// can be. It is closed, exactly two triangles meet in each edge, and the triangles around each vertex are one fan, whatever the solid
-/// is. Of a solid that is thinner than a finest cell nothing may be left. Points of which the solid does not tell on which side they lie
-/// count as outside.
+/// Cells are split until the surface in each is one piece that a single vertex can stand for: where planes of
+/// the surface meet, so that edges and corners are sharp. The mesh is then about as near to the solid as
+/// `tolerance_model`, as far as cells of the frame's depth can be. It is closed, exactly two triangles meet
+/// in each edge, and the triangles around each vertex are one fan, whatever the solid is. Of a solid that is
+/// thinner than a finest cell nothing may be left. Points of which the solid does not tell on which side they
+/// lie count as outside.
 ///
 /// About 100 microseconds a cell of a mesh, and more for solids that answer no rays; one thread does it all.
 ///
-/// - Buffers: `frame`, one struct; `options`, one struct or NULL, of which `max_nodes` bounds the splits, and with `max_splits` spent
-///   cells stay as they are; `report`, one struct or NULL; `mesh`, one pointer.
+/// - Buffers: `frame`, one struct; `options`, one struct or NULL, of which `max_nodes` bounds the splits, and
+///   with `max_splits` spent cells stay as they are; `report`, one struct or NULL; `mesh`, one pointer.
 /// - Result: `*mesh`; `*report`.
-/// - Errors: LEAFLESS_E_ARGUMENT if the solid is not known to end inside of the universe, or `tolerance_model` is not between 2^-256
-///   and 2^256; LEAFLESS_E_MESH if there would be more than 2^32 - 1 vertices or triangles; LEAFLESS_E_CALLBACK;
-///   LEAFLESS_E_DAMAGED; LEAFLESS_E_LIMIT; LEAFLESS_E_CANCELLED; LEAFLESS_E_NO_MEMORY.
+/// - Errors: LEAFLESS_E_ARGUMENT if the solid is not known to end inside of the universe, or
+///   `tolerance_model` is not between 2^-256 and 2^256; LEAFLESS_E_MESH if there would be more than 2^32 - 1
+///   vertices or triangles; LEAFLESS_E_CALLBACK; LEAFLESS_E_DAMAGED; LEAFLESS_E_LIMIT; LEAFLESS_E_CANCELLED;
+///   LEAFLESS_E_NO_MEMORY.
 /// - Ownership: give `*mesh` back with leafless_mesh_free.
 /// - Threads: any.
 /// - Untrusted input: any solid; set `max_nodes` where the depth or the solid is not your own choice.

@@ -38,11 +38,11 @@ pub struct leafless_options {
     pub threads: u32,
     /// Refuse results of more octree nodes than this; 0 means no limit.
     pub max_nodes: u64,
-    /// Refuse results whose working form is larger than this many bytes; 0 means no limit. Where the size is known
-    /// beforehand nothing is done. When a result is put together, it takes as much again for a moment. Set a limit
-    /// where a solid or its depth is not your own choice: a file of some hundred bytes may hold a cell whose surface
-    /// has 2^43 triangles. Interference, clearance, deviations and bounding boxes end with what they know, as with max_splits spent,
-    /// before what they remember of a solid's parts takes so much.
+    /// Refuse results whose working form is larger than this many bytes; 0 means no limit. Where the size is
+    /// known beforehand nothing is done. When a result is put together, it takes as much again for a moment.
+    /// Set a limit where a solid or its depth is not your own choice: a file of some hundred bytes may hold a
+    /// cell whose surface has 2^43 triangles. Interference, clearance, deviations and bounding boxes end with
+    /// what they know, as with max_splits spent, before what they remember of a solid's parts takes so much.
     pub max_bytes: u64,
     /// Split at most this many cells; 0 means no limit, or the one that the function names. Only functions
     /// that split on demand heed it, and say so: with it spent they stop, and keep or return what they have;
@@ -115,8 +115,8 @@ pub(super) unsafe fn controlled<R>(
     })?)
 }
 
-/// Makes any struct that begins with `struct_size` its default: its size, and zeros. In C and C++ the macro LEAFLESS_INIT
-/// does the same; this function is for other languages.
+/// Makes any struct that begins with `struct_size` its default: its size, and zeros. In C and C++ the macro
+/// LEAFLESS_INIT does the same; this function is for other languages.
 ///
 /// - Buffers: `value`, one struct of `struct_size` bytes, which need not be initialised.
 /// - Result: `*value`.

@@ -151,11 +151,11 @@ pub unsafe extern "C" fn leafless_solid_new_quadric(
     })
 }
 
-/// The ellipsoid around `centre` with the semi-axes `radii` along x, y and z, moved by `matrix` if there is one. The
-/// surface has exact coefficients. Its verdicts are exact, too, unless `matrix` turns it.
+/// The ellipsoid around `centre` with the semi-axes `radii` along x, y and z, moved by `matrix` if there is
+/// one. The surface has exact coefficients. Its verdicts are exact, too, unless `matrix` turns it.
 ///
-/// - Buffers: `centre_model` and `radii_model`, 3 numbers each; `matrix`, 12 numbers as for leafless_solid_placed, or
-///   NULL; `solid`, one pointer.
+/// - Buffers: `centre_model` and `radii_model`, 3 numbers each; `matrix`, 12 numbers as for
+///   leafless_solid_placed, or NULL; `solid`, one pointer.
 /// - Result: `*solid`.
 /// - Errors: LEAFLESS_E_ARGUMENT if a radius is not between 2^-256 and 2^256, or a coordinate neither 0 nor
 ///   of such a magnitude; for `matrix` as leafless_solid_placed.
@@ -177,14 +177,14 @@ pub unsafe extern "C" fn leafless_solid_new_ellipsoid(
     })
 }
 
-/// The cylinder of `radius` around the segment between two points, with flat ends through them. The axis may have any
-/// direction, and nothing is rounded: the surface has exact coefficients. If the axis is parallel to x, y or z, the
-/// verdicts are exact, too.
+/// The cylinder of `radius` around the segment between two points, with flat ends through them. The axis may
+/// have any direction, and nothing is rounded: the surface has exact coefficients. If the axis is parallel to
+/// x, y or z, the verdicts are exact, too.
 ///
 /// - Buffers: `from_model` and `to_model`, 3 numbers each; `solid`, one pointer.
 /// - Result: `*solid`.
-/// - Errors: LEAFLESS_E_ARGUMENT if the points are equal, the radius is not between 2^-256 and 2^256, or a coordinate
-///   neither 0 nor of such a magnitude.
+/// - Errors: LEAFLESS_E_ARGUMENT if the points are equal, the radius is not between 2^-256 and 2^256, or a
+///   coordinate neither 0 nor of such a magnitude.
 /// - Ownership: give `*solid` back with leafless_solid_free.
 /// - Untrusted input: any numbers.
 ///
@@ -203,13 +203,14 @@ pub unsafe extern "C" fn leafless_solid_new_cylinder(
     })
 }
 
-/// The frustum of a cone around the segment between two points: it has the radius `from_radius` at `from`, and
-/// `to_radius` at `to`. One of the radii may be 0, which makes a cone. Exact as leafless_solid_new_cylinder is.
+/// The frustum of a cone around the segment between two points: it has the radius `from_radius` at `from`,
+/// and `to_radius` at `to`. One of the radii may be 0, which makes a cone. Exact as
+/// leafless_solid_new_cylinder is.
 ///
 /// - Buffers: `from_model` and `to_model`, 3 numbers each; `solid`, one pointer.
 /// - Result: `*solid`.
-/// - Errors: LEAFLESS_E_ARGUMENT if the points are equal, if both radii are 0 or one is not between 2^-256 and 2^256,
-///   or a coordinate neither 0 nor of such a magnitude.
+/// - Errors: LEAFLESS_E_ARGUMENT if the points are equal, if both radii are 0 or one is not between 2^-256
+///   and 2^256, or a coordinate neither 0 nor of such a magnitude.
 /// - Ownership: give `*solid` back with leafless_solid_free.
 /// - Untrusted input: any numbers.
 ///
@@ -258,14 +259,15 @@ pub unsafe extern "C" fn leafless_solid_new_power(
     })
 }
 
-/// The torus around the axis through `centre` in the direction `axis`, of any length: all points at most `minor` from
-/// the circle of radius `major` around the centre; where `minor` is greater, there is no hollow core. If the axis is
-/// parallel to x, y or z, nothing is rounded. Otherwise its direction is rounded to double precision.
+/// The torus around the axis through `centre` in the direction `axis`, of any length: all points at most
+/// `minor` from the circle of radius `major` around the centre; where `minor` is greater, there is no hollow
+/// core. If the axis is parallel to x, y or z, nothing is rounded. Otherwise its direction is rounded to
+/// double precision.
 ///
 /// - Buffers: `centre_model` and `axis`, 3 numbers each; `solid`, one pointer.
 /// - Result: `*solid`.
-/// - Errors: LEAFLESS_E_ARGUMENT if the axis is zero, a radius is not between 2^-256 and 2^256, or a coordinate neither
-///   0 nor of such a magnitude; `major` may be 0, which makes a ball.
+/// - Errors: LEAFLESS_E_ARGUMENT if the axis is zero, a radius is not between 2^-256 and 2^256, or a
+///   coordinate neither 0 nor of such a magnitude; `major` may be 0, which makes a ball.
 /// - Ownership: give `*solid` back with leafless_solid_free.
 /// - Untrusted input: any numbers.
 ///
@@ -289,10 +291,11 @@ pub unsafe extern "C" fn leafless_solid_new_torus(
 /// or widened, to 0 ≤ x ≤ `top`; 0 makes that face an edge. (So it is defined by STEP, ISO 10303-42.)
 /// `matrix` moves it elsewhere without rounding.
 ///
-/// - Buffers: `size_model`, 3 numbers; `matrix`, 12 numbers as for leafless_solid_placed, or NULL; `solid`, one pointer.
+/// - Buffers: `size_model`, 3 numbers; `matrix`, 12 numbers as for leafless_solid_placed, or NULL; `solid`,
+///   one pointer.
 /// - Result: `*solid`.
-/// - Errors: LEAFLESS_E_ARGUMENT if a size, or `top` unless it is 0, is not between 2^-256 and 2^256; for `matrix` as
-///   leafless_solid_placed.
+/// - Errors: LEAFLESS_E_ARGUMENT if a size, or `top` unless it is 0, is not between 2^-256 and 2^256; for
+///   `matrix` as leafless_solid_placed.
 /// - Ownership: give `*solid` back with leafless_solid_free.
 /// - Untrusted input: any numbers.
 ///
@@ -315,8 +318,8 @@ pub unsafe extern "C" fn leafless_solid_new_wedge(
 /// are given in order, in either direction of rotation; the last is joined to the first. The planes through
 /// its edges are exact. `matrix` moves it elsewhere without rounding.
 ///
-/// - Buffers: `polygon_model`, `count` points of 2 numbers each; `matrix`, 12 numbers as for leafless_solid_placed, or
-///   NULL; `solid`, one pointer.
+/// - Buffers: `polygon_model`, `count` points of 2 numbers each; `matrix`, 12 numbers as for
+///   leafless_solid_placed, or NULL; `solid`, one pointer.
 /// - Result: `*solid`.
 /// - Errors: LEAFLESS_E_ARGUMENT if the outline touches or crosses itself or encloses nothing, a coordinate
 ///   is neither 0 nor of a magnitude between 2^-256 and 2^256, or `low` not less than `high`; for `matrix` as
@@ -366,8 +369,8 @@ pub unsafe extern "C" fn leafless_solid_new_convex(
 }
 
 /// What a set operation makes of solids. Of no solid, the union and the xor are empty. The intersection of no
-/// solid is everything. No tree is built: the result asks its operands about each cell that it is asked about,
-/// and expressions of half-spaces join into one.
+/// solid is everything. No tree is built: the result asks its operands about each cell that it is asked
+/// about, and expressions of half-spaces join into one.
 ///
 /// - Buffers: `solids`, `count` handles, or NULL if there is none; `result`, one pointer. `operation` is a
 ///   leafless_operation.
@@ -428,9 +431,9 @@ pub enum leafless_motion {
     /// The vertices of a mesh are moved and rounded, by some 10^-16 of their coordinates; what is proven
     /// allows for that.
     LEAFLESS_MOTION_VERTICES = 1,
-    /// A surface that is not parallel to the lattice blurs by about a cell: as leafless_solid_transformed does, on a frame
-    /// that is chosen for the solid; a host's shape is asked about boxes around the inverse images of cells. Where cells
-    /// are the images of cells, nothing blurs.
+    /// A surface that is not parallel to the lattice blurs by about a cell: as leafless_solid_transformed
+    /// does, on a frame that is chosen for the solid; a host's shape is asked about boxes around the inverse
+    /// images of cells. Where cells are the images of cells, nothing blurs.
     LEAFLESS_MOTION_CONSERVATIVE = 2,
 }
 use leafless_motion::*;
@@ -478,9 +481,9 @@ pub unsafe extern "C" fn leafless_solid_placed(
     })
 }
 
-/// A solid whose cells are not split where its surface is known to lie within a layer no thicker than a tolerance:
-/// an octree of it stays coarse where the surface is flat. Such cells stay PARTIAL. Half-spaces know such layers;
-/// a solid that knows none is split as ever.
+/// A solid whose cells are not split where its surface is known to lie within a layer no thicker than a
+/// tolerance: an octree of it stays coarse where the surface is flat. Such cells stay PARTIAL. Half-spaces
+/// know such layers; a solid that knows none is split as ever.
 ///
 /// - Result: `*solid`, a new solid.
 /// - Errors: LEAFLESS_E_ARGUMENT if `tolerance_model` is negative or not a number; LEAFLESS_E_NO_MEMORY.

@@ -14,14 +14,15 @@ use leafless::{Deviation, deviation};
 #[derive(Clone, Copy)]
 #[repr(C)]
 pub struct leafless_one_way {
-    /// The greatest distance of a point of the one boundary from the nearest point of the other, in model units. 0 if the first
-    /// solid has no boundary; infinite if the second has none and the first has.
+    /// The greatest distance of a point of the one boundary from the nearest point of the other, in model
+    /// units. 0 if the first solid has no boundary; infinite if the second has none and the first has.
     pub distance_model: leafless_interval,
     /// If `has_witness`, a point next to the first boundary; else zeros.
     pub point_model: [f64; 3],
     /// If `has_witness`, the first boundary is that near to the point, or nearer; else 0.
     pub apart_model: f64,
-    /// If `has_witness`, the point next to the second boundary that is nearest to it, but for what is not known; else zeros.
+    /// If `has_witness`, the point next to the second boundary that is nearest to it, but for what is not
+    /// known; else zeros.
     pub nearest_model: [f64; 3],
     /// Whether the lower bound was found at a point.
     pub has_witness: bool,
@@ -119,19 +120,20 @@ impl leafless_deviation {
     }
 }
 
-/// How far the boundaries of two solids are from each other, in both directions, as they are in the universe of a frame.
+/// How far the boundaries of two solids are from each other, in both directions, as they are in the universe
+/// of a frame.
 ///
-/// The boundary of a closed mesh whose triangles do not intersect is known exactly, and the answer for two of them is found to
-/// rounding. Of any other solid, cells are split until the slabs of each tell where the boundary lies to a twelfth of
-/// `tolerance_model` (model units); what is not decided widens the intervals.
+/// The boundary of a closed mesh whose triangles do not intersect is known exactly, and the answer for two of
+/// them is found to rounding. Of any other solid, cells are split until the slabs of each tell where the
+/// boundary lies to a twelfth of `tolerance_model` (model units); what is not decided widens the intervals.
 ///
-/// `measured` of the result says why the search ended. With LEAFLESS_STOP_REASON_TOLERANCE both intervals are no wider than
-/// `tolerance_model`. With LEAFLESS_STOP_REASON_EXHAUSTED neither cells nor pieces of the boundaries have more to tell. With
-/// LEAFLESS_STOP_REASON_BUDGET `max_splits` cells of a solid were split, or 262 144 if that is 0, or 64 times as many pieces of a
-/// boundary cut, or `max_bytes` are near.
+/// `measured` of the result says why the search ended. With LEAFLESS_STOP_REASON_TOLERANCE both intervals are
+/// no wider than `tolerance_model`. With LEAFLESS_STOP_REASON_EXHAUSTED neither cells nor pieces of the
+/// boundaries have more to tell. With LEAFLESS_STOP_REASON_BUDGET `max_splits` cells of a solid were split,
+/// or 262 144 if that is 0, or 64 times as many pieces of a boundary cut, or `max_bytes` are near.
 ///
-/// `verdict` of the result is a leafless_within: whether the boundaries are proven to be within `within_model` of each other. If that
-/// is not a number, nothing is decided.
+/// `verdict` of the result is a leafless_within: whether the boundaries are proven to be within
+/// `within_model` of each other. If that is not a number, nothing is decided.
 ///
 /// - Buffers: `frame`, one struct; `options`, one struct or NULL; `deviation`, one struct.
 /// - Result: `*deviation`.

@@ -36,8 +36,8 @@ enumeration! {
 #[derive(Clone, Copy)]
 #[repr(C)]
 pub struct leafless_point_distance {
-    /// The distance, in model units. The upper bound is infinite as long as nothing is proven to be there, and the lower
-    /// one if it is proven that nothing is.
+    /// The distance, in model units. The upper bound is infinite as long as nothing is proven to be there,
+    /// and the lower one if it is proven that nothing is.
     pub distance_model: leafless_interval,
     /// How many times a cell was split.
     pub splits: u64,
@@ -48,9 +48,10 @@ pub struct leafless_point_distance {
     pub surface: u32,
     /// Why the search ended.
     pub measured: leafless_stop_reason,
-    /// Whether the nearest point is known. A mesh within the universe tells it with the triangle, unless the nearest triangle intersects
-    /// another one, or the boundary may lie nearer over a hole. Of other solids it is known if the upper bound is finite, unless the
-    /// point may lie on the side of the boundary from which no distance is measured; then it is as near as that bound says.
+    /// Whether the nearest point is known. A mesh within the universe tells it with the triangle, unless the
+    /// nearest triangle intersects another one, or the boundary may lie nearer over a hole. Of other solids
+    /// it is known if the upper bound is finite, unless the point may lie on the side of the boundary from
+    /// which no distance is measured; then it is as near as that bound says.
     pub has_nearest: bool,
 }
 
@@ -71,8 +72,8 @@ impl From<&PointDistance> for leafless_point_distance {
 #[derive(Clone, Copy)]
 #[repr(C)]
 pub struct leafless_near_cell {
-    /// The point of the closed cell that is nearest to the given one: each coordinate is the given point's own, or a
-    /// rounded one of the cell's faces.
+    /// The point of the closed cell that is nearest to the given one: each coordinate is the given point's
+    /// own, or a rounded one of the cell's faces.
     pub point_model: [f64; 3],
     /// The distance of the closed cell from the given point, rounded outward.
     pub distance_model: leafless_interval,
@@ -90,19 +91,19 @@ impl From<&NearCell> for leafless_near_cell {
     }
 }
 
-/// The distances of points from a solid, its complement or its boundary, as an octree's cells and its exterior tell
-/// them. FULL cells bound a distance from the solid from above, FULL and PARTIAL ones from below. Points may lie outside
-/// of the universe. Some dozen array elements are read a point as a rule.
+/// The distances of points from a solid, its complement or its boundary, as an octree's cells and its
+/// exterior tell them. FULL cells bound a distance from the solid from above, FULL and PARTIAL ones from
+/// below. Points may lie outside of the universe. Some dozen array elements are read a point as a rule.
 ///
-/// - Buffers: `points_model`, `count` points of 3 numbers; `options`, one struct or NULL, of which limits do not matter;
-///   `distances_model`, room for `count`. `points_model` and `distances_model` may be NULL if `count` is 0. `to` is a
-///   leafless_distance_to.
-/// - Result: `distances_model[i]` for point i, the same for any number of threads: 0 to infinity if a coordinate is not a
-///   finite number, and all numbers for LEAFLESS_DISTANCE_TO_BOUNDARY.
+/// - Buffers: `points_model`, `count` points of 3 numbers; `options`, one struct or NULL, of which limits do
+///   not matter; `distances_model`, room for `count`. `points_model` and `distances_model` may be NULL if
+///   `count` is 0. `to` is a leafless_distance_to.
+/// - Result: `distances_model[i]` for point i, the same for any number of threads: 0 to infinity if a
+///   coordinate is not a finite number, and all numbers for LEAFLESS_DISTANCE_TO_BOUNDARY.
 /// - Errors: LEAFLESS_E_CANCELLED; LEAFLESS_E_NO_MEMORY.
 /// - Threads: any; uses as many as `options` says.
-/// - Untrusted input: any octree, any numbers; damage reads as PARTIAL, and for each point no more array elements are
-///   read than twice those that there are.
+/// - Untrusted input: any octree, any numbers; damage reads as PARTIAL, and for each point no more array
+///   elements are read than twice those that there are.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn leafless_octree_distances(
     octree: *const leafless_octree,
@@ -126,22 +127,23 @@ pub unsafe extern "C" fn leafless_octree_distances(
     })
 }
 
-/// The distances of points from a solid, its complement or its boundary, without an octree. Points may lie outside of
-/// the universe of the frame. The cells that may be nearest are split first.
+/// The distances of points from a solid, its complement or its boundary, without an octree. Points may lie
+/// outside of the universe of the frame. The cells that may be nearest are split first.
 ///
-/// `measured` of a result says why the search for the point ended. With LEAFLESS_STOP_REASON_TOLERANCE the interval is no
-/// wider than `tolerance_model` (model units), or both ends are infinite. With LEAFLESS_STOP_REASON_EXHAUSTED no cell is
-/// left whose split would help, or of a solid without slabs, the nearest undecided cell cannot be split, and the interval
-/// is no wider than twice the diagonal of the frame's finest cells. With LEAFLESS_STOP_REASON_BUDGET `max_splits` cells were
-/// split for the point, or 65 536 if that is 0.
+/// `measured` of a result says why the search for the point ended. With LEAFLESS_STOP_REASON_TOLERANCE the
+/// interval is no wider than `tolerance_model` (model units), or both ends are infinite. With
+/// LEAFLESS_STOP_REASON_EXHAUSTED no cell is left whose split would help, or of a solid without slabs, the
+/// nearest undecided cell cannot be split, and the interval is no wider than twice the diagonal of the
+/// frame's finest cells. With LEAFLESS_STOP_REASON_BUDGET `max_splits` cells were split for the point, or 65
+/// 536 if that is 0.
 ///
-/// - Buffers: `frame`, one struct; `points_model`, `count` points of 3 numbers; `options`, one struct or NULL;
-///   `distances`, room for `count`. `points_model` and `distances` may be NULL if `count` is 0. `to` is a
-///   leafless_distance_to.
+/// - Buffers: `frame`, one struct; `points_model`, `count` points of 3 numbers; `options`, one struct or
+///   NULL; `distances`, room for `count`. `points_model` and `distances` may be NULL if `count` is 0. `to` is
+///   a leafless_distance_to.
 /// - Result: `distances[i]` for point i, the same for any number of threads.
-/// - Errors: LEAFLESS_E_FRAME if the solid belongs to another frame; LEAFLESS_E_ARGUMENT as leafless_frame_check, or if
-///   the tolerance is negative or not a number; LEAFLESS_E_CALLBACK; LEAFLESS_E_DAMAGED; LEAFLESS_E_CANCELLED;
-///   LEAFLESS_E_NO_MEMORY.
+/// - Errors: LEAFLESS_E_FRAME if the solid belongs to another frame; LEAFLESS_E_ARGUMENT as
+///   leafless_frame_check, or if the tolerance is negative or not a number; LEAFLESS_E_CALLBACK;
+///   LEAFLESS_E_DAMAGED; LEAFLESS_E_CANCELLED; LEAFLESS_E_NO_MEMORY.
 /// - Threads: any; uses as many as `options` says.
 /// - Untrusted input: any solid, any numbers; the default of `max_splits` bounds the work.
 #[unsafe(no_mangle)]
@@ -171,18 +173,19 @@ pub unsafe extern "C" fn leafless_solid_distances(
     })
 }
 
-/// The cells of an octree that are nearest to a point, of those whose tag is among `tags`: the nearest first, and of
-/// equally near ones the first in Morton order. A cell is closed, as large as the octree has it, and no BRANCH. With
-/// LEAFLESS_TAGS_FULL and a capacity of 1 this is the nearest cell that is proven solid. The point may lie outside of the
-/// universe. It is rounded to 2^-56 of the universe's edge, or further out to 2^-57 of its distance, before cells are
-/// compared.
+/// The cells of an octree that are nearest to a point, of those whose tag is among `tags`: the nearest first,
+/// and of equally near ones the first in Morton order. A cell is closed, as large as the octree has it, and
+/// no BRANCH. With LEAFLESS_TAGS_FULL and a capacity of 1 this is the nearest cell that is proven solid. The
+/// point may lie outside of the universe. It is rounded to 2^-56 of the universe's edge, or further out to
+/// 2^-57 of its distance, before cells are compared.
 ///
-/// - Buffers: `point_model`, 3 numbers; `cells`, room for `capacity` structs, which may be NULL if `capacity` is 0;
-///   `count`, one number. `tags` is one or several leafless_tags.
+/// - Buffers: `point_model`, 3 numbers; `cells`, room for `capacity` structs, which may be NULL if `capacity`
+///   is 0; `count`, one number. `tags` is one or several leafless_tags.
 /// - Result: `*count`, which is `capacity` unless the octree has fewer such cells; the cells.
-/// - Errors: LEAFLESS_E_ARGUMENT if `tags` is none, or a coordinate is not a finite number; LEAFLESS_E_NO_MEMORY.
-/// - Untrusted input: any octree, any numbers; damage reads as PARTIAL, and no more array elements are read than there
-///   are.
+/// - Errors: LEAFLESS_E_ARGUMENT if `tags` is none, or a coordinate is not a finite number;
+///   LEAFLESS_E_NO_MEMORY.
+/// - Untrusted input: any octree, any numbers; damage reads as PARTIAL, and no more array elements are read
+///   than there are.
 ///
 /// cbindgen:ptrs-as-arrays=[[point_model; 3]]
 #[unsafe(no_mangle)]
@@ -209,24 +212,26 @@ pub unsafe extern "C" fn leafless_octree_nearest_cells(
     })
 }
 
-/// The signed distances of the finest cells in a box from the boundary of the solid. Entry (z·ny + y)·nx + x, two
-/// numbers, is for the cell `min_cell` + (x, y, z), where nx, ny and nz are `max_cell` − `min_cell`.
+/// The signed distances of the finest cells in a box from the boundary of the solid. Entry (z·ny + y)·nx + x,
+/// two numbers, is for the cell `min_cell` + (x, y, z), where nx, ny and nz are `max_cell` − `min_cell`.
 ///
-/// The interval between the two (model units) contains the signed distance of the cell's centre from the boundary of any
-/// solid that the octree's cells and its exterior describe: positive outside, negative inside. The field is that of the
-/// whole solid, also of what lies outside of the box. The ends are exact distances from the nearest closed cells, but
-/// for one rounding, outward; they are infinite where there is no such cell.
+/// The interval between the two (model units) contains the signed distance of the cell's centre from the
+/// boundary of any solid that the octree's cells and its exterior describe: positive outside, negative
+/// inside. The field is that of the whole solid, also of what lies outside of the box. The ends are exact
+/// distances from the nearest closed cells, but for one rounding, outward; they are infinite where there is
+/// no such cell.
 ///
-/// The time is linear in the cells of the box and a margin around it as wide as the largest distance. Memory beside
-/// `field` is a quarter of a byte for each of these, and for each thread some 140 bytes for each cell of a slice across
-/// z. A small box far away from the solid costs as much as leafless_octree_distances for its cells.
+/// The time is linear in the cells of the box and a margin around it as wide as the largest distance. Memory
+/// beside `field` is a quarter of a byte for each of these, and for each thread some 140 bytes for each cell
+/// of a slice across z. A small box far away from the solid costs as much as leafless_octree_distances for
+/// its cells.
 ///
-/// - Buffers: `min_cell` and `max_cell`, 3 numbers each: the first finest cell, and the first one beyond the box on each
-///   axis; `options`, one struct or NULL, of which limits do not matter; `field`, `capacity` numbers, two for each cell,
-///   which may be NULL if there are none.
+/// - Buffers: `min_cell` and `max_cell`, 3 numbers each: the first finest cell, and the first one beyond the
+///   box on each axis; `options`, one struct or NULL, of which limits do not matter; `field`, `capacity`
+///   numbers, two for each cell, which may be NULL if there are none.
 /// - Result: the field, the same for any number of threads.
-/// - Errors: LEAFLESS_E_ARGUMENT if the box is none or lies outside of the universe, or if `capacity` is not twice the
-///   number of its cells; LEAFLESS_E_CANCELLED; LEAFLESS_E_NO_MEMORY.
+/// - Errors: LEAFLESS_E_ARGUMENT if the box is none or lies outside of the universe, or if `capacity` is not
+///   twice the number of its cells; LEAFLESS_E_CANCELLED; LEAFLESS_E_NO_MEMORY.
 /// - Threads: any; uses as many as `options` says.
 /// - Untrusted input: any octree, any numbers; damage reads as PARTIAL.
 ///

@@ -17,8 +17,8 @@ use leafless::{Cell, SurfaceOptions, build_extended, op};
 pub struct leafless_cut_options {
     /// sizeof(leafless_cut_options).
     pub struct_size: u32,
-    /// Where nothing exact is known of a surface (a mesh, a function of the host), two parallel planes may stand for it that
-    /// are at most this far apart. 0: only exact surfaces are kept.
+    /// Where nothing exact is known of a surface (a mesh, a function of the host), two parallel planes may
+    /// stand for it that are at most this far apart. 0: only exact surfaces are kept.
     pub tolerance_model: f64,
 }
 
@@ -43,7 +43,8 @@ pub struct leafless_cut_counts {
     pub struct_size: u32,
     /// Surfaces.
     pub surfaces: u32,
-    /// Cells of which it is known which function of surfaces the solid is. Parts of cells count that have functions of their own.
+    /// Cells of which it is known which function of surfaces the solid is. Parts of cells count that have
+    /// functions of their own.
     pub cells: u64,
     /// Cells of which nothing is known.
     pub given_up: u64,
@@ -67,8 +68,8 @@ pub enum leafless_stored_surface_kind {
     LEAFLESS_STORED_SURFACE_KIND_POWERS = 2,
     /// R, q, s, t of q - (sqrt((s x)² + (s y)²) - R)² - (s z + t)².
     LEAFLESS_STORED_SURFACE_KIND_TORUS = 3,
-    /// a, b, c and two offsets: positive where a x + b y + c z is less than the first, negative where it is greater than the
-    /// second, and not known between.
+    /// a, b, c and two offsets: positive where a x + b y + c z is less than the first, negative where it is
+    /// greater than the second, and not known between.
     LEAFLESS_STORED_SURFACE_KIND_SLAB = 4,
 }
 use leafless_stored_surface_kind::*;
@@ -91,7 +92,8 @@ pub struct leafless_stored_surface_info {
     pub term_count: u32,
     /// Whether a slab can be told from others.
     pub has_origin: bool,
-    /// If so: its number where it was made. Numbers from 2^63 on are those of slabs that were made for one cell.
+    /// If so: its number where it was made. Numbers from 2^63 on are those of slabs that were made for one
+    /// cell.
     pub origin_number: u64,
     /// And the fingerprint of what it was made from, the lower half first.
     pub origin: [u64; 2],
@@ -107,25 +109,28 @@ pub struct leafless_cell_function {
     pub surfaces: [u32; 3],
     /// How many they are; 0 if nothing is known of the cell, or if it is decided.
     pub surface_count: u32,
-    /// Bit m is set if points lie in the solid that are on the positive side of those surfaces i for which bit i of m is set, and on
-    /// the negative side of the others.
+    /// Bit m is set if points lie in the solid that are on the positive side of those surfaces i for which
+    /// bit i of m is set, and on the negative side of the others.
     pub table: u8,
 }
 
-/// Builds the extended octree of a solid: a certified octree whose PARTIAL cells keep the surfaces that cross them, up to three,
-/// and the function of their sides that the solid is. A cell ends as soon as three surfaces are left in it, at any size, so that
-/// the octree is small, and as exact as the solid. With exact surfaces alone take a frame of depth 20. The result is the same
-/// bit for bit for any number of threads.
+/// Builds the extended octree of a solid: a certified octree whose PARTIAL cells keep the surfaces that cross
+/// them, up to three, and the function of their sides that the solid is. A cell ends as soon as three
+/// surfaces are left in it, at any size, so that the octree is small, and as exact as the solid. With exact
+/// surfaces alone take a frame of depth 20. The result is the same bit for bit for any number of threads.
 ///
-/// Points, rays and boxes of an octree (leafless_octree_contains, leafless_octree_cast_rays, leafless_octree_classify_box) are
-/// decided by the surfaces where they lie; next to a surface they may stay undecided. As a solid (leafless_solid_from_octree) it
-/// answers as its source would. Set operations (leafless_octree_combine, leafless_octree_complement) keep the surfaces. Functions
-/// that mean cells see the cells alone: leafless_octree_plain makes them.
+/// Points, rays and boxes of an octree (leafless_octree_contains, leafless_octree_cast_rays,
+/// leafless_octree_classify_box) are decided by the surfaces where they lie; next to a surface they may stay
+/// undecided. As a solid (leafless_solid_from_octree) it answers as its source would. Set operations
+/// (leafless_octree_combine, leafless_octree_complement) keep the surfaces. Functions that mean cells see the
+/// cells alone: leafless_octree_plain makes them.
 ///
-/// - Buffers: `frame`, one struct; `cuts`, one struct or NULL; `options`, one struct or NULL; `octree`, one pointer.
+/// - Buffers: `frame`, one struct; `cuts`, one struct or NULL; `options`, one struct or NULL; `octree`, one
+///   pointer.
 /// - Result: `*octree`.
-/// - Errors: as leafless_octree_build under LEAFLESS_RULE_CERTIFIED; LEAFLESS_E_ARGUMENT if the tolerance is negative or no
-///   number; LEAFLESS_E_LIMIT also if an exact number of a surface is the sum of more than seven doubles.
+/// - Errors: as leafless_octree_build under LEAFLESS_RULE_CERTIFIED; LEAFLESS_E_ARGUMENT if the tolerance is
+///   negative or no number; LEAFLESS_E_LIMIT also if an exact number of a surface is the sum of more than
+///   seven doubles.
 /// - Ownership: give `*octree` back with leafless_octree_free.
 /// - Threads: any; uses as many as `options` says.
 /// - Untrusted input: any solid; set `max_bytes` where the depth or the solid is not your own choice.
@@ -146,8 +151,9 @@ pub unsafe extern "C" fn leafless_octree_build_extended(
     })
 }
 
-/// The octree without surfaces that says what one with surfaces does, to a depth: for functions that mean cells. What is undecided at
-/// the depth is resolved by a rule. Of an octree without surfaces it is the same octree, cut at the depth.
+/// The octree without surfaces that says what one with surfaces does, to a depth: for functions that mean
+/// cells. What is undecided at the depth is resolved by a rule. Of an octree without surfaces it is the same
+/// octree, cut at the depth.
 ///
 /// - Buffers: `options`, one struct or NULL; `plain`, one pointer. `rule` is a leafless_rule.
 /// - Result: `*plain`, with the octree's metadata and channels.
@@ -172,7 +178,8 @@ pub unsafe extern "C" fn leafless_octree_plain(
     })
 }
 
-/// What the PARTIAL cells of an octree keep of the surfaces that cross them; all 0 if they keep nothing. O(cells that keep something).
+/// What the PARTIAL cells of an octree keep of the surfaces that cross them; all 0 if they keep nothing.
+/// O(cells that keep something).
 ///
 /// - Buffers: `counts`, one struct.
 /// - Result: `*counts`.
@@ -198,11 +205,12 @@ pub unsafe extern "C" fn leafless_octree_count_cuts(
 
 /// A surface of an extended octree: what it is, its numbers, and the maps that place it. O(1).
 ///
-/// - Buffers: `info`, one struct; `terms`, room for `term_capacity` doubles, or NULL: those whose sums the numbers are, one number
-///   after the other; `placements`, room for `placement_capacity` doubles, or NULL: the 12 of the rows of [M | t] of each map, in
-///   the order in which the maps are applied.
+/// - Buffers: `info`, one struct; `terms`, room for `term_capacity` doubles, or NULL: those whose sums the
+///   numbers are, one number after the other; `placements`, room for `placement_capacity` doubles, or NULL:
+///   the 12 of the rows of [M | t] of each map, in the order in which the maps are applied.
 /// - Result: `*info`, `terms` and `placements`.
-/// - Errors: LEAFLESS_E_ARGUMENT if there is no such surface, or it is damaged; LEAFLESS_E_BUFFER if a capacity is too small.
+/// - Errors: LEAFLESS_E_ARGUMENT if there is no such surface, or it is damaged; LEAFLESS_E_BUFFER if a
+///   capacity is too small.
 /// - Untrusted input: any octree, any number.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn leafless_octree_surface_at(
@@ -254,8 +262,8 @@ pub unsafe extern "C" fn leafless_octree_surface_at(
 /// The function that the solid is in a cell that lies in a PARTIAL one, or is one. O(depth).
 ///
 /// - Buffers: `cell`, 3 numbers, of which each is less than 2^level; `function`, one struct.
-/// - Result: `*function`. It has no surface if nothing is known of the cell, if the cell is decided, if different functions hold in
-///   parts of it, or if there is no such cell.
+/// - Result: `*function`. It has no surface if nothing is known of the cell, if the cell is decided, if
+///   different functions hold in parts of it, or if there is no such cell.
 /// - Untrusted input: any octree, any numbers.
 ///
 /// cbindgen:ptrs-as-arrays=[[cell; 3]]

@@ -154,11 +154,12 @@ impl From<&Section> for leafless_file_section {
 }
 
 /// What a file says of itself, without looking at more than header and section table. Whether the rest is
-/// good is not known then. Bytes may be the first ones of a file only: 128 and 40 for each section. 488 suffice
-/// for an octree without channels that this library wrote, 808 for a tri-dexel model, 163 968 for any file.
+/// good is not known then. Bytes may be the first ones of a file only: 128 and 40 for each section. 488
+/// suffice for an octree without channels that this library wrote, 808 for a tri-dexel model, 163 968 for any
+/// file.
 ///
-/// - Buffers: `source`, one struct, of which `access` makes no difference; `probe`, one struct; `sections`, room
-///   for `capacity` structs, or NULL if they are not wanted.
+/// - Buffers: `source`, one struct, of which `access` makes no difference; `probe`, one struct; `sections`,
+///   room for `capacity` structs, or NULL if they are not wanted.
 /// - Result: `*probe`; as many sections as it says.
 /// - Errors: LEAFLESS_E_FORMAT, also if bytes end before the section table does; LEAFLESS_E_VERSION;
 ///   LEAFLESS_E_IO; LEAFLESS_E_BUFFER; LEAFLESS_E_UTF8; LEAFLESS_E_NO_MEMORY.
@@ -200,8 +201,9 @@ unsafe fn verify_mapped(path: &str) -> Result<(), Error> {
     }
 }
 
-/// Checks everything that the format promises of a whole file, of an octree or of a tri-dexel model: O(n). With
-/// LEAFLESS_ACCESS_COPY a file is read into memory, else it is mapped. Bytes are looked at where they lie.
+/// Checks everything that the format promises of a whole file, of an octree or of a tri-dexel model: O(n).
+/// With LEAFLESS_ACCESS_COPY a file is read into memory, else it is mapped. Bytes are looked at where they
+/// lie.
 ///
 /// - Buffers: `source`, one struct; bytes on an address that is a multiple of 8.
 /// - Result: LEAFLESS_OK if the file is good.
@@ -229,8 +231,8 @@ pub unsafe extern "C" fn leafless_file_verify(source: *const leafless_source) ->
 ///   level table contradicts the header; LEAFLESS_E_ARGUMENT if the file holds a tri-dexel model, if there is
 ///   no regular file that could be mapped, or if bytes that shall be viewed are misaligned; LEAFLESS_E_IO;
 ///   LEAFLESS_E_UTF8; LEAFLESS_E_NO_MEMORY.
-/// - Ownership: how long a file or bytes must stay as they are, leafless_source tells. Give `*octree` back with
-///   leafless_octree_free.
+/// - Ownership: how long a file or bytes must stay as they are, leafless_source tells. Give `*octree` back
+///   with leafless_octree_free.
 /// - Untrusted input: as leafless_source tells.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn leafless_octree_read(
@@ -257,8 +259,8 @@ pub unsafe extern "C" fn leafless_octree_read(
     })
 }
 
-/// Writes an octree's file. Equal octrees with equal metadata and channels give equal bytes. Only for a buffer is
-/// the file in memory as a whole.
+/// Writes an octree's file. Equal octrees with equal metadata and channels give equal bytes. Only for a
+/// buffer is the file in memory as a whole.
 ///
 /// - Buffers: `sink`, one struct.
 /// - Errors: LEAFLESS_E_DAMAGED if the octree was mapped unverified and is damaged; LEAFLESS_E_IO;

@@ -108,8 +108,8 @@ unsafe fn around(
     }
 }
 
-/// The cube of edge L·(1 + 1/32) around the centre of a shape, L being its longest extent; the same universe at
-/// every depth. For parts with round dimensions leafless_frame_aligned is better.
+/// The cube of edge L·(1 + 1/32) around the centre of a shape, L being its longest extent; the same universe
+/// at every depth. For parts with round dimensions leafless_frame_aligned is better.
 ///
 /// - Buffers: `min_model` and `max_model`, 3 numbers each; `frame`, one struct.
 /// - Result: `*frame`.
@@ -131,8 +131,9 @@ pub unsafe extern "C" fn leafless_frame_around(
     })
 }
 
-/// The frame of leafless_frame_around whose finest cells are no longer than a tolerance, the greater of a length and a part of the
-/// longest extent. It has the least such depth; where 20 levels do not suffice, and for tolerances of 0, it has 20.
+/// The frame of leafless_frame_around whose finest cells are no longer than a tolerance, the greater of a
+/// length and a part of the longest extent. It has the least such depth; where 20 levels do not suffice, and
+/// for tolerances of 0, it has 20.
 ///
 /// - Buffers: `min_model` and `max_model`, 3 numbers each; `frame`, one struct.
 /// - Result: `*frame`.
@@ -178,13 +179,13 @@ pub unsafe extern "C" fn leafless_frame_aligned(
     })
 }
 
-/// A frame with cells of a given size around a shape with these bounds, its origin a multiple of the cell size
-/// times as great a power of two as possible, of the least depth that holds the bounds.
+/// A frame with cells of a given size around a shape with these bounds, its origin a multiple of the cell
+/// size times as great a power of two as possible, of the least depth that holds the bounds.
 ///
 /// - Buffers: `min_model` and `max_model`, 3 numbers each; `frame`, one struct.
 /// - Result: `*frame`.
-/// - Errors: as leafless_frame_around; LEAFLESS_E_ARGUMENT also if `cell_size_model` is not 2^-256 to 2^256, or
-///   if the bounds take more than 2^20 cells on an axis.
+/// - Errors: as leafless_frame_around; LEAFLESS_E_ARGUMENT also if `cell_size_model` is not 2^-256 to 2^256,
+///   or if the bounds take more than 2^20 cells on an axis.
 /// - Untrusted input: any values.
 ///
 /// cbindgen:ptrs-as-arrays=[[min_model; 3], [max_model; 3]]
@@ -200,8 +201,9 @@ pub unsafe extern "C" fn leafless_frame_with_cells(
     })
 }
 
-/// The frame that suits a shape with these bounds: leafless_frame_aligned if all bounds are multiples of 2^-12 of
-/// its edge, as those of parts that people draw, else leafless_frame_around. The same universe at every depth.
+/// The frame that suits a shape with these bounds: leafless_frame_aligned if all bounds are multiples of
+/// 2^-12 of its edge, as those of parts that people draw, else leafless_frame_around. The same universe at
+/// every depth.
 ///
 /// - Buffers: `min_model` and `max_model`, 3 numbers each; `frame`, one struct.
 /// - Result: `*frame`.

@@ -68,8 +68,8 @@ pub type leafless_distance_many_fn = Option<
     unsafe extern "C" fn(ctx: *mut c_void, points: *const f64, count: u64, distances_model: *mut f64) -> i32,
 >;
 
-/// What a function f of the host does over a box. The shape is the set of the points where f is not positive, as for
-/// a signed distance; the gradient leads out of it. NaN, or lower > upper, says nothing of the box.
+/// What a function f of the host does over a box. The shape is the set of the points where f is not positive,
+/// as for a signed distance; the gradient leads out of it. NaN, or lower > upper, says nothing of the box.
 #[derive(Clone, Copy)]
 #[repr(C)]
 pub struct leafless_gradient {
@@ -80,9 +80,9 @@ pub struct leafless_gradient {
     pub gradient: [leafless_interval; 3],
 }
 
-/// Bounds the host's function f over the box [min, max] (3 numbers each, model units), of which `middle` is the
-/// middle (3 numbers): sets `*gradient`, all of which is NaN before. 0, or the number of the host's own error. Else
-/// as leafless_classify_fn.
+/// Bounds the host's function f over the box [min, max] (3 numbers each, model units), of which `middle` is
+/// the middle (3 numbers): sets `*gradient`, all of which is NaN before. 0, or the number of the host's own
+/// error. Else as leafless_classify_fn.
 pub type leafless_gradient_fn = Option<
     unsafe extern "C" fn(
         ctx: *mut c_void,
@@ -95,12 +95,13 @@ pub type leafless_gradient_fn = Option<
 
 /// Two balls that touch the surface of the host's shape at a point, one inside and one outside.
 ///
-/// Let d = y - `point` for a point y of the box, and n = `normal` divided by its length. Each y of the box with
-/// n . d < -(inner_curvature / 2 |d|^2 + error) must lie in the shape, and no y with
-/// n . d > outer_curvature / 2 |d|^2 + error may. So without an error the balls have the radii 1 / `inner_curvature`
-/// and 1 / `outer_curvature`; 0 stands for a half-space, a negative curvature for all that lies outside of a ball,
-/// and infinity for nothing. The reciprocal of the surface's reach does for both: it is no less than any
-/// curvature, nor than 2 over the width of any wall or gap. NaN, or a negative error, says nothing of the box.
+/// Let d = y - `point` for a point y of the box, and n = `normal` divided by its length. Each y of the box
+/// with n . d < -(inner_curvature / 2 |d|^2 + error) must lie in the shape, and no y with n . d >
+/// outer_curvature / 2 |d|^2 + error may. So without an error the balls have the radii 1 / `inner_curvature`
+/// and 1 / `outer_curvature`; 0 stands for a half-space, a negative curvature for all that lies outside of a
+/// ball, and infinity for nothing. The reciprocal of the surface's reach does for both: it is no less than
+/// any curvature, nor than 2 over the width of any wall or gap. NaN, or a negative error, says nothing of the
+/// box.
 #[derive(Clone, Copy)]
 #[repr(C)]
 pub struct leafless_tangent {
@@ -116,8 +117,8 @@ pub struct leafless_tangent {
     pub error: f64,
 }
 
-/// Tells where the surface of the host's own shape runs next to the middle of a box, and how it bends: sets `*tangent`,
-/// all of which is NaN before. Else as leafless_gradient_fn.
+/// Tells where the surface of the host's own shape runs next to the middle of a box, and how it bends: sets
+/// `*tangent`, all of which is NaN before. Else as leafless_gradient_fn.
 pub type leafless_tangent_fn = Option<
     unsafe extern "C" fn(
         ctx: *mut c_void,

@@ -57,13 +57,14 @@ pub struct leafless_interference {
     pub verdict: u32,
     /// The finest level of which cells were looked at.
     pub level: u32,
-    /// If they are proven to overlap, the centre of a ball, all of which is proven to lie in both, in model units; else zeros. It is not
-    /// the largest one.
+    /// If they are proven to overlap, the centre of a ball, all of which is proven to lie in both, in model
+    /// units; else zeros. It is not the largest one.
     pub ball_centre_model: [f64; 3],
     /// The radius of that ball.
     pub ball_radius_model: f64,
-    /// The cell in which that ball lies: its position in cells of its level; else zeros. leafless_frame_cell_bounds gives its box. (Of octrees
-    /// under a map there may be none: they may overlap by less than a cell.)
+    /// The cell in which that ball lies: its position in cells of its level; else zeros.
+    /// leafless_frame_cell_bounds gives its box. (Of octrees under a map there may be none: they may overlap
+    /// by less than a cell.)
     pub witness: [u32; 3],
     /// The level of that cell.
     pub witness_level: u32,
@@ -102,8 +103,9 @@ pub struct leafless_clearance {
     /// bound is infinite as long as no point of one of them is proven, and the lower one too
     /// if one of them is proven to be empty.
     pub distance_model: leafless_interval,
-    /// If `has_nearest`, a point of the first solid, in model units. Both points are no further apart than the upper bound, but
-    /// for the rounding of their coordinates; of solids with a `depth_model` both are the same. Else zeros.
+    /// If `has_nearest`, a point of the first solid, in model units. Both points are no further apart than
+    /// the upper bound, but for the rounding of their coordinates; of solids with a `depth_model` both are
+    /// the same. Else zeros.
     pub point_a_model: [f64; 3],
     /// A point of the second solid.
     pub point_b_model: [f64; 3],
@@ -111,7 +113,8 @@ pub struct leafless_clearance {
     pub normal_a: [f64; 3],
     /// The same of the second solid.
     pub normal_b: [f64; 3],
-    /// Of solids that overlap: the radius of a ball, in model units, that is proven to lie in both. 0 if none was found.
+    /// Of solids that overlap: the radius of a ball, in model units, that is proven to lie in both. 0 if none
+    /// was found.
     pub depth_model: f64,
     /// What of the first solid is proven: what is not counts as undecided.
     pub proof_a: leafless_proof,
@@ -121,7 +124,8 @@ pub struct leafless_clearance {
     pub splits_a: u64,
     /// Cells of the second solid that were split.
     pub splits_b: u64,
-    /// If `has_nearest`, cells of the first and of the second solid with such points: the position of the first in cells of its level; else zeros.
+    /// If `has_nearest`, cells of the first and of the second solid with such points: the position of the
+    /// first in cells of its level; else zeros.
     pub nearest_a: [u32; 3],
     /// The level of that cell.
     pub nearest_a_level: u32,
@@ -214,19 +218,20 @@ unsafe fn transformed(
     Ok(Transform::new(operand.clone(), &own, &placement))
 }
 
-/// As leafless_solid_transformed, but that LEAFLESS_RULE_SAMPLED decides every centre, by the cell of the solid's own frame
-/// from which it comes: that cell is FULL, or its own centre lies inside.
+/// As leafless_solid_transformed, but that LEAFLESS_RULE_SAMPLED decides every centre, by the cell of the
+/// solid's own frame from which it comes: that cell is FULL, or its own centre lies inside.
 ///
-/// So an octree that is made of samples is sampled again, on a lattice that is turned, coarser or finer, where
-/// leafless_solid_transformed is refused with LEAFLESS_E_NOT_SAMPLED. A surface is displaced by up to half a diagonal of the
-/// solid's own cells. A centre that comes from a face between two cells belongs to the one above. Other rules, and all that is
-/// said of cells, are as for leafless_solid_transformed.
+/// So an octree that is made of samples is sampled again, on a lattice that is turned, coarser or finer,
+/// where leafless_solid_transformed is refused with LEAFLESS_E_NOT_SAMPLED. A surface is displaced by up to
+/// half a diagonal of the solid's own cells. A centre that comes from a face between two cells belongs to the
+/// one above. Other rules, and all that is said of cells, are as for leafless_solid_transformed.
 ///
 /// - Buffers: `own`, one struct; `matrix`, 12 numbers, the rows of [M | t], where a point p goes to M p + t;
 ///   `solid`, one pointer.
 /// - Result: `*solid`.
-/// - Errors: as leafless_solid_transformed. An octree by LEAFLESS_RULE_SAMPLED is refused with LEAFLESS_E_NOT_SAMPLED only if a
-///   centre comes from a cell that is itself undecided: leafless_octree_resolve decides those before.
+/// - Errors: as leafless_solid_transformed. An octree by LEAFLESS_RULE_SAMPLED is refused with
+///   LEAFLESS_E_NOT_SAMPLED only if a centre comes from a cell that is itself undecided:
+///   leafless_octree_resolve decides those before.
 /// - Ownership: the operand is shared and may be freed; give `*solid` back with leafless_solid_free.
 /// - Untrusted input: any solid and numbers.
 ///
@@ -248,9 +253,9 @@ pub unsafe extern "C" fn leafless_solid_resampled(
 /// is refined until the interval is no wider than `tolerance_model` cubic model units; infinity ends the work
 /// with the proof.
 ///
-/// Where both solids are made of surfaces (expressions of half-spaces, and octrees that keep their surfaces), a surface that bounds both is
-/// one, however both were placed, and solids that touch in it from opposite sides are proven to be disjoint. Meshes and functions of
-/// the host that touch stay undecided.
+/// Where both solids are made of surfaces (expressions of half-spaces, and octrees that keep their surfaces),
+/// a surface that bounds both is one, however both were placed, and solids that touch in it from opposite
+/// sides are proven to be disjoint. Meshes and functions of the host that touch stay undecided.
 ///
 /// Only cells of one solid are split where the other one is. The work ends at the frame's depth, or once
 /// `max_splits` cells of both are split, with what is known by then.
@@ -326,21 +331,23 @@ pub unsafe extern "C" fn leafless_solid_interfere_many(
 /// The distance between two solids, as they are in the universe of a frame.
 ///
 /// `measured` of the result says why the search ended. With LEAFLESS_STOP_REASON_TOLERANCE the interval is no
-/// wider than `tolerance_model` (model units). With LEAFLESS_STOP_REASON_EXHAUSTED the cells of the frame's depth
-/// cannot raise the lower bound, and the interval is no wider than twice their diagonal, which is what cells
-/// can tell of most solids; or no pair of cells is left; or a solid may go on outside of the universe, which keeps
-/// the lower bound at 0. With LEAFLESS_STOP_REASON_BUDGET `max_splits` steps were
-/// taken, or 1 048 576 if that is 0. A step looks at the children of one cell. A cell whose children are
-/// looked at again, next to another cell, counts once more.
+/// wider than `tolerance_model` (model units). With LEAFLESS_STOP_REASON_EXHAUSTED the cells of the frame's
+/// depth cannot raise the lower bound, and the interval is no wider than twice their diagonal, which is what
+/// cells can tell of most solids; or no pair of cells is left; or a solid may go on outside of the universe,
+/// which keeps the lower bound at 0. With LEAFLESS_STOP_REASON_BUDGET `max_splits` steps were taken, or 1 048
+/// 576 if that is 0. A step looks at the children of one cell. A cell whose children are looked at again,
+/// next to another cell, counts once more.
 ///
-/// The distance of two closed meshes in the universe is found by their triangles, to rounding: some 10^-13 of their sizes and of the distance. Bodies
-/// of a mesh may overlap, unless only positive winding numbers count, triangles lie on each other, or vertices were moved. A step is then 64 pairs
-/// of boxes around triangles, and no cells are split.
+/// The distance of two closed meshes in the universe is found by their triangles, to rounding: some 10^-13 of
+/// their sizes and of the distance. Bodies of a mesh may overlap, unless only positive winding numbers count,
+/// triangles lie on each other, or vertices were moved. A step is then 64 pairs of boxes around triangles,
+/// and no cells are split.
 ///
-/// Where both solids know slabs, as expressions, open meshes and extended octrees do, each level makes the interval about four times as
-/// narrow, and plane faces, balls and cylinders are known at once. Other solids are known to the size of cells: the upper bound is
-/// finite once the search has met a FULL cell of each, and the work grows with the area
-/// where the distance is about the least one, measured in cells as large as the tolerance.
+/// Where both solids know slabs, as expressions, open meshes and extended octrees do, each level makes the
+/// interval about four times as narrow, and plane faces, balls and cylinders are known at once. Other solids
+/// are known to the size of cells: the upper bound is finite once the search has met a FULL cell of each, and
+/// the work grows with the area where the distance is about the least one, measured in cells as large as the
+/// tolerance.
 ///
 /// - Buffers: `frame`, one struct; `options`, one struct or NULL; `clearance`, one struct.
 /// - Result: `*clearance`.

@@ -9,10 +9,11 @@ use leafless::attribute::Attribute;
 use leafless::render::{Clip, ClippedLayer, ColourMap, Layer, Transfer};
 use std::sync::Arc;
 
-/// Something that is seen in a picture: the surface of an octree, a solid or a mesh, lines, a plane section, voxels.
+/// Something that is seen in a picture: the surface of an octree, a solid or a mesh, lines, a plane section,
+/// voxels.
 ///
-/// A layer shares or copies what it shows, which may be freed. It knows nothing of cameras: it may be part of any
-/// number of pictures.
+/// A layer shares or copies what it shows, which may be freed. It knows nothing of cameras: it may be part of
+/// any number of pictures.
 ///
 /// Immutable: all its functions may be called at once from any number of threads, but leafless_layer_free
 /// needs the reference that it gives back for itself.
@@ -75,12 +76,13 @@ enumeration! {
     }
 }
 
-/// What values look like. A value of one number has the colour of a map over a range. A value of three or four
-/// numbers is a colour itself: red, green and blue in sRGB, 0 to 255, and of volumes an opacity, 0 to 255, that
-/// scales `alpha_upper`. Of a value of two numbers the first counts. Where there is no value the colour is grey.
+/// What values look like. A value of one number has the colour of a map over a range. A value of three or
+/// four numbers is a colour itself: red, green and blue in sRGB, 0 to 255, and of volumes an opacity, 0 to
+/// 255, that scales `alpha_upper`. Of a value of two numbers the first counts. Where there is no value the
+/// colour is grey.
 ///
-/// The range must be set, and for volumes the opacity. All other fields but the first may be zero, which is their
-/// default.
+/// The range must be set, and for volumes the opacity. All other fields but the first may be zero, which is
+/// their default.
 #[derive(Clone, Copy)]
 #[repr(C)]
 pub struct leafless_transfer {
@@ -92,13 +94,13 @@ pub struct leafless_transfer {
     pub range_lower: f64,
     /// The value at its end; greater than `range_lower`.
     pub range_upper: f64,
-    /// Of volumes: the opacity, 0 to 1, of a path of `length_model` through the value `range_lower`. Between the
-    /// two ends it changes linearly.
+    /// Of volumes: the opacity, 0 to 1, of a path of `length_model` through the value `range_lower`. Between
+    /// the two ends it changes linearly.
     pub alpha_lower: f64,
     /// The same of `range_upper`, of values that are colours, and of voxels without a value.
     pub alpha_upper: f64,
-    /// The path for which the opacities hold: what has the opacity a for it lets (1 - a)^(s / length_model) of the
-    /// light through a path s. 0: 1.
+    /// The path for which the opacities hold: what has the opacity a for it lets (1 - a)^(s / length_model)
+    /// of the light through a path s. 0: 1.
     pub length_model: f64,
 }
 
@@ -114,7 +116,8 @@ impl leafless_transfer {
     }
 }
 
-/// The colour of a value under a transfer function, as surfaces show it in full light: for a legend of the host's own.
+/// The colour of a value under a transfer function, as surfaces show it in full light: for a legend of the
+/// host's own.
 ///
 /// - Buffers: `transfer`, one struct; `value`, `components` numbers; `colour`, 4 bytes.
 /// - Result: `colour`: red, green and blue (sRGB), and 255. Grey if a number is NaN.
@@ -212,13 +215,13 @@ pub(super) unsafe fn clip(
     Ok(clip)
 }
 
-/// What lies of a layer within planes and a box of its own, which count instead of the picture's: a surface that is
-/// cut away, for instance, to show the voxels behind it. A layer that has some already keeps what lies within all
-/// of them.
+/// What lies of a layer within planes and a box of its own, which count instead of the picture's: a surface
+/// that is cut away, for instance, to show the voxels behind it. A layer that has some already keeps what
+/// lies within all of them.
 ///
-/// - Buffers: `planes`, 4 · `plane_count` numbers: a, b, c and d of each plane, which keeps the points with
-///   a x + b y + c z + d ≥ 0; `box_model`, 6 numbers, the least and the greatest corner of the box, or NULL for none;
-///   `clipped`, one pointer.
+/// - Buffers: `planes`, 4 · `plane_count` numbers: a, b, c and d of each plane, which keeps the points with a
+///   x + b y + c z + d ≥ 0; `box_model`, 6 numbers, the least and the greatest corner of the box, or NULL for
+///   none; `clipped`, one pointer.
 /// - Result: `*clipped`.
 /// - Errors: LEAFLESS_E_ARGUMENT if a number is not zero and not between 2^-256 and 2^256 in magnitude, a, b
 ///   and c are zero, or the box is none; LEAFLESS_E_NO_MEMORY.
@@ -241,9 +244,9 @@ pub unsafe extern "C" fn leafless_layer_clipped(
     })
 }
 
-/// About how many bytes of memory (or of mapped files) a layer keeps alive: its own, and those of the octree, solid, mesh and
-/// attribute that it shows, as leafless_octree_describe, leafless_solid_describe and so on tell them. What a picture needs
-/// while it is rendered is not in.
+/// About how many bytes of memory (or of mapped files) a layer keeps alive: its own, and those of the octree,
+/// solid, mesh and attribute that it shows, as leafless_octree_describe, leafless_solid_describe and so on
+/// tell them. What a picture needs while it is rendered is not in.
 ///
 /// - Buffers: `bytes`, one number.
 /// - Result: `*bytes`.
@@ -272,8 +275,8 @@ pub unsafe extern "C" fn leafless_layer_ref(
     guard(|| unsafe { refer(layer, "layer", reference) })
 }
 
-/// Gives back a reference to a layer; with the last one the layer is gone. What it shows stays, as far as others
-/// have references to it.
+/// Gives back a reference to a layer; with the last one the layer is gone. What it shows stays, as far as
+/// others have references to it.
 ///
 /// - Buffers: `layer`, a handle or NULL, which does nothing.
 /// - Ownership: the reference is gone.

@@ -16,9 +16,9 @@ use leafless::voxel::VoxelRecords;
 use leafless::{Frame, Solid};
 use std::sync::Arc;
 
-/// What a plane section looks like. NULL means the defaults. All fields but the first may be zero, which is their
-/// default. Colours are red, green and blue (sRGB) and opacity, 0 to 255; what is
-/// to be invisible is {255, 255, 255, 0}.
+/// What a plane section looks like. NULL means the defaults. All fields but the first may be zero, which is
+/// their default. Colours are red, green and blue (sRGB) and opacity, 0 to 255; what is to be invisible is
+/// {255, 255, 255, 0}.
 #[derive(Clone, Copy)]
 #[repr(C)]
 pub struct leafless_slice_look {
@@ -103,14 +103,14 @@ unsafe fn section(
     }
 }
 
-/// A plane section of an octree: in the colours of its cells' tags or of an attribute's values, with the outlines of
-/// the cells.
+/// A plane section of an octree: in the colours of its cells' tags or of an attribute's values, with the
+/// outlines of the cells.
 ///
-/// - Buffers: `plane`, 4 numbers a, b, c and d: the plane of the points with a x + b y + c z + d = 0; `look`, one struct or
-///   NULL; `layer`, one pointer.
+/// - Buffers: `plane`, 4 numbers a, b, c and d: the plane of the points with a x + b y + c z + d = 0; `look`,
+///   one struct or NULL; `layer`, one pointer.
 /// - Result: `*layer`.
-/// - Errors: LEAFLESS_E_ARGUMENT if a number is not zero and not between 2^-256 and 2^256 in magnitude, a, b and c are
-///   zero, or the look is not as it must be.
+/// - Errors: LEAFLESS_E_ARGUMENT if a number is not zero and not between 2^-256 and 2^256 in magnitude, a, b
+///   and c are zero, or the look is not as it must be.
 /// - Ownership: the layer shares the octree and the attribute, which may be freed; give `*layer` back with
 ///   leafless_layer_free.
 /// - Untrusted input: any octree, any numbers.
@@ -126,12 +126,13 @@ pub unsafe extern "C" fn leafless_layer_from_octree_slice(
     guard(|| unsafe { section(Cut::Octree(share(octree, "octree")?), plane, look, layer) })
 }
 
-/// A plane section of a solid on a frame, of which the cells at the plane are split down to the frame's depth.
+/// A plane section of a solid on a frame, of which the cells at the plane are split down to the frame's
+/// depth.
 ///
 /// - Buffers: `frame`, one struct; the others as leafless_layer_from_octree_slice.
 /// - Result: `*layer`.
-/// - Errors: as leafless_layer_from_octree_slice; LEAFLESS_E_ARGUMENT as leafless_frame_check. Taking a picture also returns
-///   what leafless_octree_build does.
+/// - Errors: as leafless_layer_from_octree_slice; LEAFLESS_E_ARGUMENT as leafless_frame_check. Taking a
+///   picture also returns what leafless_octree_build does.
 /// - Ownership: the layer shares the solid and the attribute, which may be freed; give `*layer` back with
 ///   leafless_layer_free.
 /// - Untrusted input: any solid, any numbers.
@@ -151,12 +152,12 @@ pub unsafe extern "C" fn leafless_layer_from_solid_slice(
     })
 }
 
-/// Which part of each voxel is solid, 0 to 1: weights of voxels in a picture. Inside voxels have 1, outside and refined
-/// ones 0. Of a boundary voxel it is what the solid knows of its volume there, or the middle between what its slabs
-/// enclose; 1/2 where the solid knows neither.
+/// Which part of each voxel is solid, 0 to 1: weights of voxels in a picture. Inside voxels have 1, outside
+/// and refined ones 0. Of a boundary voxel it is what the solid knows of its volume there, or the middle
+/// between what its slabs enclose; 1/2 where the solid knows neither.
 ///
-/// - Buffers: `lattice`, `codes`, `levels` and `kinds` as leafless_voxels_find; `options`, one struct or NULL; `parts`,
-///   room for `count` numbers.
+/// - Buffers: `lattice`, `codes`, `levels` and `kinds` as leafless_voxels_find; `options`, one struct or
+///   NULL; `parts`, room for `count` numbers.
 /// - Result: `parts`. O(count · levels).
 /// - Errors: LEAFLESS_E_ARGUMENT if the arrays are no records; the solid's own; LEAFLESS_E_NO_MEMORY;
 ///   LEAFLESS_E_CANCELLED.
@@ -181,8 +182,8 @@ pub unsafe extern "C" fn leafless_voxels_solid_parts(
     })
 }
 
-/// Voxels in arrays, as leafless_octree_voxels writes them: those of record i at `codes[i]`, `levels[i]`, `kinds[i]`.
-/// All fields but the first that are not said to be optional must be set.
+/// Voxels in arrays, as leafless_octree_voxels writes them: those of record i at `codes[i]`, `levels[i]`,
+/// `kinds[i]`. All fields but the first that are not said to be optional must be set.
 #[derive(Clone, Copy)]
 #[repr(C)]
 pub struct leafless_voxel_arrays {
@@ -231,16 +232,17 @@ impl Shown for OfVoxels {
     }
 }
 
-/// Voxels as a translucent volume, seen in their right order from everywhere; surfaces of other layers hide them, and
-/// are seen through them. Of two such layers the one that comes first in a picture is taken to be in front.
+/// Voxels as a translucent volume, seen in their right order from everywhere; surfaces of other layers hide
+/// them, and are seen through them. Of two such layers the one that comes first in a picture is taken to be
+/// in front.
 ///
-/// - Buffers: `voxels`, one struct; `transfer`, one struct: what values look like; `layer`, one pointer. `unit_model`: 0
-///   composites by the exact length of each line of sight in a voxel. Else it is done as published (Zhu, Tang and Dong
-///   2002): a voxel is a cell of the edge `unit_model`, repeated as often as its own edge is longer, and the transfer
-///   function's opacity holds for one repetition.
+/// - Buffers: `voxels`, one struct; `transfer`, one struct: what values look like; `layer`, one pointer.
+///   `unit_model`: 0 composites by the exact length of each line of sight in a voxel. Else it is done as
+///   published (Zhu, Tang and Dong 2002): a voxel is a cell of the edge `unit_model`, repeated as often as
+///   its own edge is longer, and the transfer function's opacity holds for one repetition.
 /// - Result: `*layer`.
-/// - Errors: LEAFLESS_E_ARGUMENT if the arrays are no records, a weight is not 0 to 1, the transfer function not as it
-///   must be, or the unit below 0 or not finite; LEAFLESS_E_NO_MEMORY.
+/// - Errors: LEAFLESS_E_ARGUMENT if the arrays are no records, a weight is not 0 to 1, the transfer function
+///   not as it must be, or the unit below 0 or not finite; LEAFLESS_E_NO_MEMORY.
 /// - Ownership: the layer copies the arrays; give `*layer` back with leafless_layer_free.
 /// - Untrusted input: any numbers.
 #[unsafe(no_mangle)]

@@ -23,8 +23,8 @@ use std::sync::Arc;
 pub enum leafless_edges {
     /// None.
     LEAFLESS_EDGES_NONE = 0,
-    /// Those at which a mesh ends, or where its triangles meet at more than the crease angle. Of octrees and solids:
-    /// silhouettes, and where faces meet at more than that angle.
+    /// Those at which a mesh ends, or where its triangles meet at more than the crease angle. Of octrees and
+    /// solids: silhouettes, and where faces meet at more than that angle.
     LEAFLESS_EDGES_FEATURES = 1,
     /// Those of all triangles of a mesh.
     LEAFLESS_EDGES_ALL = 2,
@@ -50,24 +50,25 @@ pub struct leafless_look {
     pub faces: u32,
     /// The colour in full light; all zero: light grey.
     pub colour: [u8; 4],
-    /// The colour of what clip planes cut open, and of a mesh's faces that are seen from behind; all zero: orange, or
-    /// of a mesh the face's own colour mixed with orange.
+    /// The colour of what clip planes cut open, and of a mesh's faces that are seen from behind; all zero:
+    /// orange, or of a mesh the face's own colour mixed with orange.
     pub inside: [u8; 4],
     /// A leafless_edges.
     pub edges: Number<leafless_edges>,
     /// The colour of edges; all zero: dark grey.
     pub edge_colour: [u8; 4],
-    /// The width of edges in pixels, at most 256, or of octrees and solids 8; 0: 1, or of octrees and solids 1.5.
+    /// The width of edges in pixels, at most 256, or of octrees and solids 8; 0: 1, or of octrees and solids
+    /// 1.5.
     pub edge_width: f64,
-    /// The angle in degrees, at most 180, at which faces meet at an edge, and up to which neighbouring triangles of a
-    /// mesh look smooth; 0: 30.
+    /// The angle in degrees, at most 180, at which faces meet at an edge, and up to which neighbouring
+    /// triangles of a mesh look smooth; 0: 30.
     pub crease_degrees: f64,
     /// Of meshes: 4 · `triangle_count` bytes, a colour for each triangle; NULL: all have one.
     pub triangle_colours: *const u8,
     /// How many colours of triangles there are.
     pub triangle_count: u64,
-    /// Of octrees and solids: values, as a channel's, that are shown half a finest cell below the surface, or of solids half
-    /// a pixel; optional.
+    /// Of octrees and solids: values, as a channel's, that are shown half a finest cell below the surface, or
+    /// of solids half a pixel; optional.
     pub attribute: *const leafless_attribute,
     /// With an attribute: the colours of its values.
     pub transfer: *const leafless_transfer,
@@ -144,14 +145,15 @@ impl Shown for OfOctree {
     }
 }
 
-/// The surface of an octree: along each line of sight the first cell that is not EMPTY. Its normals are those of the
-/// surface that the cells seem to stand for. An octree that keeps surfaces is shown as leafless_layer_from_solid shows a
-/// solid, unless the look asks for faces of cells: these are its own, so leafless_octree_plain makes smaller ones first.
+/// The surface of an octree: along each line of sight the first cell that is not EMPTY. Its normals are those
+/// of the surface that the cells seem to stand for. An octree that keeps surfaces is shown as
+/// leafless_layer_from_solid shows a solid, unless the look asks for faces of cells: these are its own, so
+/// leafless_octree_plain makes smaller ones first.
 ///
 /// - Buffers: `look`, one struct or NULL; `layer`, one pointer.
 /// - Result: `*layer`.
-/// - Errors: LEAFLESS_E_ARGUMENT if the look is not as it must be. Of an octree that keeps surfaces, taking a picture also
-///   returns what leafless_octree_build does.
+/// - Errors: LEAFLESS_E_ARGUMENT if the look is not as it must be. Of an octree that keeps surfaces, taking a
+///   picture also returns what leafless_octree_build does.
 /// - Ownership: the layer shares the octree and the attribute, which may be freed; give `*layer` back with
 ///   leafless_layer_free.
 /// - Untrusted input: any octree.
@@ -191,14 +193,15 @@ impl Shown for OfSolid {
     }
 }
 
-/// The surface of a solid within a universe. For each picture the solid is split to cells as large as a pixel, 2^11
-/// to an axis at the most; in these a line of sight meets what the solid knows of its boundary there, with the
-/// normals of that.
+/// The surface of a solid within a universe. For each picture the solid is split to cells as large as a
+/// pixel, 2^11 to an axis at the most; in these a line of sight meets what the solid knows of its boundary
+/// there, with the normals of that.
 ///
-/// - Buffers: `frame`, one struct, of which the depth does not count; `look`, one struct or NULL; `layer`, one pointer.
+/// - Buffers: `frame`, one struct, of which the depth does not count; `look`, one struct or NULL; `layer`,
+///   one pointer.
 /// - Result: `*layer`.
-/// - Errors: LEAFLESS_E_ARGUMENT if the look or the frame is not as it must be; taking a picture also returns what
-///   leafless_octree_build does.
+/// - Errors: LEAFLESS_E_ARGUMENT if the look or the frame is not as it must be; taking a picture also returns
+///   what leafless_octree_build does.
 /// - Ownership: the layer shares the solid and the attribute, which may be freed; give `*layer` back with
 ///   leafless_layer_free.
 /// - Untrusted input: any solid.
@@ -264,11 +267,11 @@ impl Shown for OfMesh {
 ///
 /// - Buffers: `look`, one struct or NULL; `layer`, one pointer.
 /// - Result: `*layer`.
-/// - Errors: LEAFLESS_E_ARGUMENT if the look is not as it must be, or there are colours of triangles and not one for
-///   each; LEAFLESS_E_NO_MEMORY. Taking a picture returns LEAFLESS_E_ARGUMENT if the width or the crease angle is out
-///   of range.
-/// - Ownership: the layer shares the mesh, which may be freed, and copies the colours; give `*layer` back with
-///   leafless_layer_free.
+/// - Errors: LEAFLESS_E_ARGUMENT if the look is not as it must be, or there are colours of triangles and not
+///   one for each; LEAFLESS_E_NO_MEMORY. Taking a picture returns LEAFLESS_E_ARGUMENT if the width or the
+///   crease angle is out of range.
+/// - Ownership: the layer shares the mesh, which may be freed, and copies the colours; give `*layer` back
+///   with leafless_layer_free.
 /// - Untrusted input: any mesh.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn leafless_layer_from_mesh(
@@ -337,13 +340,15 @@ unsafe fn colour_at(colour: *const u8) -> Result<Option<[u8; 4]>, Failure> {
     Ok(colours.first().copied().and_then(chosen))
 }
 
-/// Lines in space, some pixels wide, with round ends. A surface hides what lies behind it; a line on a surface is seen.
+/// Lines in space, some pixels wide, with round ends. A surface hides what lies behind it; a line on a
+/// surface is seen.
 ///
-/// - Buffers: `points_model`, 6 · `count` numbers: the ends of each line; `colour`, 4 numbers: red, green, blue (sRGB) and
-///   opacity, or NULL for dark grey; `layer`, one pointer. `width` is in pixels, at most 256; 0 means 1.
+/// - Buffers: `points_model`, 6 · `count` numbers: the ends of each line; `colour`, 4 numbers: red, green,
+///   blue (sRGB) and opacity, or NULL for dark grey; `layer`, one pointer. `width` is in pixels, at most 256;
+///   0 means 1.
 /// - Result: `*layer`.
-/// - Errors: LEAFLESS_E_NO_MEMORY. Taking a picture returns LEAFLESS_E_ARGUMENT if the width is out of range, or a
-///   coordinate not zero and not between 2^-256 and 2^256 in magnitude.
+/// - Errors: LEAFLESS_E_NO_MEMORY. Taking a picture returns LEAFLESS_E_ARGUMENT if the width is out of range,
+///   or a coordinate not zero and not between 2^-256 and 2^256 in magnitude.
 /// - Ownership: the layer copies the lines; give `*layer` back with leafless_layer_free.
 /// - Untrusted input: any numbers.
 #[unsafe(no_mangle)]
@@ -372,12 +377,14 @@ struct Untagged {
 
 const _: () = assert!(size_of::<Untagged>() == size_of::<leafless_cell>());
 
-/// The edges of cells as lines. What several cells have in common is drawn once. A cell that is none of the frame is
-/// left out. Tags are not read.
+/// The edges of cells as lines. What several cells have in common is drawn once. A cell that is none of the
+/// frame is left out. Tags are not read.
 ///
-/// - Buffers: `frame`, one struct; `cells`, `count` structs; `colour`, `width` and `layer` as leafless_layer_new_lines.
+/// - Buffers: `frame`, one struct; `cells`, `count` structs; `colour`, `width` and `layer` as
+///   leafless_layer_new_lines.
 /// - Result: `*layer`.
-/// - Errors: LEAFLESS_E_ARGUMENT as leafless_frame_check, and as leafless_layer_new_lines; LEAFLESS_E_NO_MEMORY.
+/// - Errors: LEAFLESS_E_ARGUMENT as leafless_frame_check, and as leafless_layer_new_lines;
+///   LEAFLESS_E_NO_MEMORY.
 /// - Ownership: give `*layer` back with leafless_layer_free.
 /// - Untrusted input: any numbers.
 #[unsafe(no_mangle)]

@@ -80,8 +80,9 @@ pub struct leafless_search_options {
     pub rounds: u32,
     /// Cells along the longest side of the container, 4 to 512; 0 means as many as the items ask for.
     pub cells: u32,
-    /// A leafless_free_along: all copies can be taken out in this direction, one after another, the last that was placed first. No
-    /// other copy and no obstacle is in the way of a straight move; the container may be.
+    /// A leafless_free_along: all copies can be taken out in this direction, one after another, the last that
+    /// was placed first. No other copy and no obstacle is in the way of a straight move; the container may
+    /// be.
     pub free_along: Number<leafless_free_along>,
     /// 0.
     pub reserved: u32,
@@ -163,7 +164,8 @@ pub struct leafless_search_report {
     pub rounds: u64,
     /// Places that the solids themselves were asked about.
     pub tests: u64,
-    /// Cells that were split for that. (Cells of items and of the container by which places are found are not counted.)
+    /// Cells that were split for that. (Cells of items and of the container by which places are found are not
+    /// counted.)
     pub splits: u64,
 }
 
@@ -193,13 +195,15 @@ pub struct leafless_layout_measures {
     pub volume_model: leafless_interval,
     /// The part of the container's volume that this is.
     pub filled_part: leafless_interval,
-    /// How far the highest point is above the lower end of the container's bounds, along z; 0 if nothing is placed.
+    /// How far the highest point is above the lower end of the container's bounds, along z; 0 if nothing is
+    /// placed.
     pub height_model: leafless_interval,
     /// The mass, by the densities of the items.
     pub mass: leafless_interval,
     /// The centre of gravity; all numbers unless `has_centroid`.
     pub centroid_model: [leafless_interval; 3],
-    /// Tensor of inertia about the model's origin, row by row, as leafless_measures has it, times the densities.
+    /// Tensor of inertia about the model's origin, row by row, as leafless_measures has it, times the
+    /// densities.
     pub inertia_origin_model: [leafless_interval; 9],
     /// The same about the centre of gravity; about the origin unless `has_centroid`.
     pub inertia_centroid_model: [leafless_interval; 9],
@@ -225,22 +229,24 @@ impl From<LayoutMeasures> for leafless_layout_measures {
     }
 }
 
-/// Places copies of items of which fewer are placed than their counts say. Copies that are placed already stay where they are.
+/// Places copies of items of which fewer are placed than their counts say. Copies that are placed already
+/// stay where they are.
 ///
-/// Each copy is proven to lie in the container, to overlap with nothing, and to be as far from everything as it should be: by boxes, by
-/// the triangles of meshes, or by splits of the solids. What could not be proven is not placed. The layout that stays is
-/// the best of all rounds by what the search is after. A cancel ends the search and keeps what was best by then, and so does a
-/// budget: neither is an error.
+/// Each copy is proven to lie in the container, to overlap with nothing, and to be as far from everything as
+/// it should be: by boxes, by the triangles of meshes, or by splits of the solids. What could not be proven
+/// is not placed. The layout that stays is the best of all rounds by what the search is after. A cancel ends
+/// the search and keeps what was best by then, and so does a budget: neither is an error.
 ///
-/// Memory is that of the items' cells in all orientations, and of the container's cells: some megabytes. A step takes
-/// O(r n² / 64), with n the cells along the container and r the runs of cells of an item, for each layer of cells that is looked
-/// at.
+/// Memory is that of the items' cells in all orientations, and of the container's cells: some megabytes. A
+/// step takes O(r n² / 64), with n the cells along the container and r the runs of cells of an item, for each
+/// layer of cells that is looked at.
 ///
 /// - Buffers: `search`, one struct or NULL; `options`, one struct or NULL; `report`, one struct.
 /// - Result: the layout is changed; `*report`.
-/// - Errors: LEAFLESS_E_ARGUMENT if `cells` is neither 0 nor between 4 and 512, if a field is none of its enumeration, or if
-///   `target_model` is not finite, or is set though it is not used; LEAFLESS_E_FRAME if a solid belongs to another frame;
-///   LEAFLESS_E_CALLBACK; LEAFLESS_E_DAMAGED; LEAFLESS_E_NO_MEMORY; LEAFLESS_E_BUSY. Then the layout is as it was.
+/// - Errors: LEAFLESS_E_ARGUMENT if `cells` is neither 0 nor between 4 and 512, if a field is none of its
+///   enumeration, or if `target_model` is not finite, or is set though it is not used; LEAFLESS_E_FRAME if a
+///   solid belongs to another frame; LEAFLESS_E_CALLBACK; LEAFLESS_E_DAMAGED; LEAFLESS_E_NO_MEMORY;
+///   LEAFLESS_E_BUSY. Then the layout is as it was.
 /// - Threads: any; uses as many as `options` says; LEAFLESS_E_BUSY while another call uses the layout.
 /// - Untrusted input: any numbers; set `max_tests` and `max_splits` where the solids are not your own choice.
 #[unsafe(no_mangle)]
@@ -258,15 +264,16 @@ pub unsafe extern "C" fn leafless_layout_search(
     })
 }
 
-/// Measures the container and each item of which there is a copy, once, as leafless_solid_measure does it, and adds up the
-/// copies. `relative` says how wide the interval of each volume may be, as a part of it.
+/// Measures the container and each item of which there is a copy, once, as leafless_solid_measure does it,
+/// and adds up the copies. `relative` says how wide the interval of each volume may be, as a part of it.
 ///
 /// - Buffers: `options`, one struct or NULL; `measures`, one struct.
 /// - Result: `*measures`.
-/// - Errors: LEAFLESS_E_ARGUMENT if `relative` is negative or not a number; LEAFLESS_E_CALLBACK; LEAFLESS_E_DAMAGED;
-///   LEAFLESS_E_CANCELLED; LEAFLESS_E_NO_MEMORY; LEAFLESS_E_BUSY.
+/// - Errors: LEAFLESS_E_ARGUMENT if `relative` is negative or not a number; LEAFLESS_E_CALLBACK;
+///   LEAFLESS_E_DAMAGED; LEAFLESS_E_CANCELLED; LEAFLESS_E_NO_MEMORY; LEAFLESS_E_BUSY.
 /// - Threads: any; uses as many as `options` says; LEAFLESS_E_BUSY while another call changes the layout.
-/// - Untrusted input: any number; the default of `max_splits`, that of leafless_solid_measure, bounds the work.
+/// - Untrusted input: any number; the default of `max_splits`, that of leafless_solid_measure, bounds the
+///   work.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn leafless_layout_measure(
     layout: *const leafless_layout,

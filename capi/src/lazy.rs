@@ -188,8 +188,8 @@ pub unsafe extern "C" fn leafless_lazy_split(
 pub enum leafless_zone_kind {
     /// All of the universe.
     LEAFLESS_ZONE_KIND_EVERYTHING = 0,
-    /// The cells that have more than their surface in common with the box from `min_model` to `max_model`; of a box without
-    /// thickness, those that it lies in.
+    /// The cells that have more than their surface in common with the box from `min_model` to `max_model`; of
+    /// a box without thickness, those that it lies in.
     LEAFLESS_ZONE_KIND_BOX = 1,
     /// The cells that contain `point_model`: one of each level.
     LEAFLESS_ZONE_KIND_POINT = 2,
@@ -219,7 +219,8 @@ pub struct leafless_zone {
     pub min_model: [f64; 3],
     /// A box's upper corner.
     pub max_model: [f64; 3],
-    /// A point, or a point of a ray; of a ray each coordinate is 0 or of a magnitude between 2^-256 and 2^256.
+    /// A point, or a point of a ray; of a ray each coordinate is 0 or of a magnitude between 2^-256 and
+    /// 2^256.
     pub point_model: [f64; 3],
     /// A ray's direction, of any length but zero; each coordinate is as that of its point.
     pub direction_model: [f64; 3],
@@ -232,15 +233,17 @@ pub struct leafless_zone {
 // SAFETY: numbers.
 unsafe impl Sized32 for leafless_zone {}
 
-/// Splits the cells of a zone down to `level`, those that can be. Limits in `options` (`max_splits`; `max_nodes` and
-/// `max_bytes` of all that the octree then holds) end the work, not the octree; coarser cells are then split before
-/// finer ones, and along a ray those that it comes to first.
+/// Splits the cells of a zone down to `level`, those that can be. Limits in `options` (`max_splits`;
+/// `max_nodes` and `max_bytes` of all that the octree then holds) end the work, not the octree; coarser cells
+/// are then split before finer ones, and along a ray those that it comes to first.
 ///
-/// - Buffers: `zone`, one struct, or NULL for everything; `options`, one struct or NULL; `done`, one truth value, or NULL.
+/// - Buffers: `zone`, one struct, or NULL for everything; `options`, one struct or NULL; `done`, one truth
+///   value, or NULL.
 /// - Result: `*done`, whether no limit was reached first.
-/// - Errors: LEAFLESS_E_ARGUMENT if `level` is beyond the frame's depth, a box has min > max on an axis, a number is not as
-///   leafless_zone says, or not from ≤ to; LEAFLESS_E_SOURCE if the solid contradicts what the octree holds;
-///   LEAFLESS_E_CALLBACK; LEAFLESS_E_CANCELLED; LEAFLESS_E_NO_MEMORY. What was split before stays so.
+/// - Errors: LEAFLESS_E_ARGUMENT if `level` is beyond the frame's depth, a box has min > max on an axis, a
+///   number is not as leafless_zone says, or not from ≤ to; LEAFLESS_E_SOURCE if the solid contradicts what
+///   the octree holds; LEAFLESS_E_CALLBACK; LEAFLESS_E_CANCELLED; LEAFLESS_E_NO_MEMORY. What was split before
+///   stays so.
 /// - Threads: any; LEAFLESS_E_BUSY while another call uses the handle; uses the calling thread alone.
 /// - Untrusted input: any solid, any numbers; set limits where the level or the solid is not your own choice.
 #[unsafe(no_mangle)]

@@ -6,13 +6,15 @@
 //!
 //! # A new function
 //!
-//! 1. It stands in the file of its topic with its documentation, of which the entries have a fixed order; the header's preface says
-//!    which of them may be left out. An array of a fixed length is marked by `/// cbindgen:ptrs-as-arrays=[…]`.
-//! 2. A new struct or enumeration has its lines in `layout`; an enumeration that comes in has `enumeration!`, and its name in
-//!    `include/cbindgen.toml`.
+//! 1. It stands in the file of its topic with its documentation, of which the entries have a fixed order; the
+//!    header's preface says which of them may be left out. An array of a fixed length is marked by
+//!    `/// cbindgen:ptrs-as-arrays=[…]`.
+//! 2. A new struct or enumeration has its lines in `layout`; an enumeration that comes in has `enumeration!`,
+//!    and its name in `include/cbindgen.toml`.
 //! 3. A new file has its place in `SECTIONS` of `c_tests/generated.rs`, and in the table below.
-//! 4. Every pointer is tried NULL and misaligned, every number out of range, in `c_tests/null.c` (an array of a fixed length
-//!    misaligned by `WRONG(out)`). A program in `c_tests` compares what the function does with a truth.
+//! 4. Every pointer is tried NULL and misaligned, every number out of range, in `c_tests/null.c` (an array of
+//!    a fixed length misaligned by `WRONG(out)`). A program in `c_tests` compares what the function does with
+//!    a truth.
 //! 5. `LEAFLESS_BLESS=1 cargo test --test c_api generated` writes the headers for C and C++ anew.
 //!
 //! # Files

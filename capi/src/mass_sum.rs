@@ -12,11 +12,12 @@ use leafless::query::{MassSum, measure_in};
 
 /// What is known of the volume and the moments of a solid in some cells of its frame.
 ///
-/// Sums are exact: they are the same in any order, and subtracting what was added leaves what there was. So several machines can measure
-/// the cells of one solid, and one of them adds up.
+/// Sums are exact: they are the same in any order, and subtracting what was added leaves what there was. So
+/// several machines can measure the cells of one solid, and one of them adds up.
 ///
-/// The struct has no pointers. A program may store it or send it to another machine as it lies in memory. Only the version of the
-/// library that made a sum reads it. The functions refuse bytes that are no sum; they cannot tell every damage.
+/// The struct has no pointers. A program may store it or send it to another machine as it lies in memory.
+/// Only the version of the library that made a sum reads it. The functions refuse bytes that are no sum; they
+/// cannot tell every damage.
 #[derive(Clone, Copy)]
 #[repr(C)]
 pub struct leafless_mass_sum {
@@ -56,18 +57,19 @@ unsafe fn sum_of(pointer: *const leafless_mass_sum, name: &'static str) -> Resul
     MassSum::from_bytes(&given.bytes).map_err(|_| Failure::Argument { name, problem })
 }
 
-/// Measures the part of a solid in one cell of a frame, as leafless_solid_measure measures the whole. The tolerances concern the volume
-/// in the cell. A solid that knows its own moments is split all the same.
+/// Measures the part of a solid in one cell of a frame, as leafless_solid_measure measures the whole. The
+/// tolerances concern the volume in the cell. A solid that knows its own moments is split all the same.
 ///
-/// If the solid is an octree without surfaces, and both tolerances are 0, the sum over all cells of a level has the measures of the
-/// whole octree.
+/// If the solid is an octree without surfaces, and both tolerances are 0, the sum over all cells of a level
+/// has the measures of the whole octree.
 ///
-/// - Buffers: `frame`, one struct; `options`, one struct or NULL, of which `max_nodes` and `max_bytes` do not matter; `sum`, one struct.
-///   `code` is that of a cell of level `level`, as in leafless_shard.
+/// - Buffers: `frame`, one struct; `options`, one struct or NULL, of which `max_nodes` and `max_bytes` do not
+///   matter; `sum`, one struct. `code` is that of a cell of level `level`, as in leafless_shard.
 /// - Result: `*sum`.
 /// - Errors: as leafless_solid_measure; LEAFLESS_E_ARGUMENT also if the frame does not have the cell.
 /// - Threads: any; uses as many as `options` says.
-/// - Untrusted input: any solid, any numbers; set `max_splits` where the depth or the solid is not your own choice.
+/// - Untrusted input: any solid, any numbers; set `max_splits` where the depth or the solid is not your own
+///   choice.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn leafless_solid_measure_cell(
     solid: *const leafless_solid,
@@ -91,10 +93,11 @@ pub unsafe extern "C" fn leafless_solid_measure_cell(
 
 /// The sum of a cell of which nothing is known. Adding it to a sum takes nothing from what that sum proves.
 ///
-/// To measure a top and its shards: take the sum of the top in the whole universe (level 0, code 0). For each shard subtract the
-/// unknown sum of its cell, and add the sum of the shard in that cell.
+/// To measure a top and its shards: take the sum of the top in the whole universe (level 0, code 0). For each
+/// shard subtract the unknown sum of its cell, and add the sum of the shard in that cell.
 ///
-/// - Buffers: `frame` and `sum`, one struct each. `code` is that of a cell of level `level`, as in leafless_shard.
+/// - Buffers: `frame` and `sum`, one struct each. `code` is that of a cell of level `level`, as in
+///   leafless_shard.
 /// - Result: `*sum`.
 /// - Errors: LEAFLESS_E_ARGUMENT if the frame does not have the cell.
 /// - Untrusted input: any numbers.
@@ -116,8 +119,8 @@ pub unsafe extern "C" fn leafless_mass_sum_unknown(
 ///
 /// - Buffers: `a`, `b` and `sum`, one struct each; `sum` may be `a` or `b`.
 /// - Result: `*sum`.
-/// - Errors: LEAFLESS_E_ARGUMENT if `a` or `b` is no sum of this version, or if the result is more than the universe holds: then a cell
-///   was added twice; LEAFLESS_E_FRAME if the frames differ.
+/// - Errors: LEAFLESS_E_ARGUMENT if `a` or `b` is no sum of this version, or if the result is more than the
+///   universe holds: then a cell was added twice; LEAFLESS_E_FRAME if the frames differ.
 /// - Untrusted input: any bytes; of damaged sums the result is wrong.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn leafless_mass_sum_add(
@@ -132,13 +135,13 @@ pub unsafe extern "C" fn leafless_mass_sum_add(
     })
 }
 
-/// The sum over the cells of `a` without those of `b`, which are some of them. What `a` proves, the result proves. Splits are counted
-/// together.
+/// The sum over the cells of `a` without those of `b`, which are some of them. What `a` proves, the result
+/// proves. Splits are counted together.
 ///
 /// - Buffers: as leafless_mass_sum_add.
 /// - Result: `*sum`.
-/// - Errors: LEAFLESS_E_ARGUMENT if `a` or `b` is no sum of this version, or if less than nothing would be left; LEAFLESS_E_FRAME if the
-///   frames differ.
+/// - Errors: LEAFLESS_E_ARGUMENT if `a` or `b` is no sum of this version, or if less than nothing would be
+///   left; LEAFLESS_E_FRAME if the frames differ.
 /// - Untrusted input: any bytes; of damaged sums the result is wrong.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn leafless_mass_sum_subtract(
@@ -157,7 +160,8 @@ pub unsafe extern "C" fn leafless_mass_sum_subtract(
 ///
 /// - Buffers: `sum` and `measures`, one struct each.
 /// - Result: `*measures`.
-/// - Errors: LEAFLESS_E_ARGUMENT if `sum` is no sum of this version, or if the frame's universe is too small for cells of level 20.
+/// - Errors: LEAFLESS_E_ARGUMENT if `sum` is no sum of this version, or if the frame's universe is too small
+///   for cells of level 20.
 /// - Untrusted input: any bytes; of a damaged sum the measures are wrong.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn leafless_mass_sum_measures(

@@ -65,8 +65,8 @@ pub struct leafless_measures {
     pub has_centroid: bool,
     /// Whether the solid may go on outside of the universe, or does.
     pub is_clipped: bool,
-    /// Whether the solid was not split because it knows its own moments, up to rounding: a mesh does that is closed and
-    /// whose triangles do not intersect.
+    /// Whether the solid was not split because it knows its own moments, up to rounding: a mesh does that is
+    /// closed and whose triangles do not intersect.
     pub is_exact: bool,
 }
 
@@ -204,11 +204,11 @@ impl From<Extent> for leafless_extent {
     }
 }
 
-/// Measures a solid in the universe of a frame, without building an octree: the cells of which most is in doubt are
-/// split first, until the width of the volume's interval is at most `relative` times its middle or at most
-/// `absolute_model` (cubic model units), `max_splits` of the options is spent (2^26 splits without it), or nothing is
-/// left to split at the frame's depth. Under a budget the last whole pass counts. The result is the same bit for
-/// bit for any number of threads.
+/// Measures a solid in the universe of a frame, without building an octree: the cells of which most is in
+/// doubt are split first, until the width of the volume's interval is at most `relative` times its middle or
+/// at most `absolute_model` (cubic model units), `max_splits` of the options is spent (2^26 splits without
+/// it), or nothing is left to split at the frame's depth. Under a budget the last whole pass counts. The
+/// result is the same bit for bit for any number of threads.
 ///
 /// - Buffers: `frame`, one struct; `options`, one struct or NULL, of which `max_nodes` and `max_bytes` do not
 ///   matter; `measures`, one struct.
@@ -236,12 +236,13 @@ pub unsafe extern "C" fn leafless_solid_measure(
     })
 }
 
-/// The area of a solid's boundary in the universe of a frame, as leafless_solid_measure finds the volume: `relative` and
-/// `absolute_model` (square model units) say how wide the interval may be, and without `max_splits` of the options it ends
-/// after 2^23 splits. With N splits the width goes down with 1/N on curved surfaces; plane faces are exact. Where faces
-/// lie in planes of the frame's lattice, and the solid ends inside of the universe, another lattice is taken. Of an
-/// octree that keeps surfaces, of one without undecided cells, and of an expression that is clipped, faces between cells are
-/// counted as they are. Nothing is known of other octrees, of a host program's functions, and of a clipped mesh with such faces.
+/// The area of a solid's boundary in the universe of a frame, as leafless_solid_measure finds the volume:
+/// `relative` and `absolute_model` (square model units) say how wide the interval may be, and without
+/// `max_splits` of the options it ends after 2^23 splits. With N splits the width goes down with 1/N on
+/// curved surfaces; plane faces are exact. Where faces lie in planes of the frame's lattice, and the solid
+/// ends inside of the universe, another lattice is taken. Of an octree that keeps surfaces, of one without
+/// undecided cells, and of an expression that is clipped, faces between cells are counted as they are.
+/// Nothing is known of other octrees, of a host program's functions, and of a clipped mesh with such faces.
 ///
 /// - Buffers: as leafless_solid_measure; `surface`, one struct.
 /// - Result: `*surface`.
@@ -266,23 +267,23 @@ pub unsafe extern "C" fn leafless_solid_surface_area(
     })
 }
 
-/// The area of a solid's section with a plane, in the universe of a frame. The plane goes through a point, perpendicular to
-/// a normal of any length and either direction. The search splits only cells that the plane runs through. It ends with
-/// LEAFLESS_STOP_REASON_TOLERANCE if the interval is no wider than `relative` times its middle, or than `absolute_model` (square
-/// model units); with LEAFLESS_STOP_REASON_EXHAUSTED if no cell is left whose split would help; with LEAFLESS_STOP_REASON_BUDGET
-/// after `max_splits` of the options, or 2^20 splits if that is 0. With N splits the width goes down with 1/N² on curved
-/// surfaces of half-spaces and what is made of them, with 1/N for other solids; plane faces of the former are known to
-/// rounding.
+/// The area of a solid's section with a plane, in the universe of a frame. The plane goes through a point,
+/// perpendicular to a normal of any length and either direction. The search splits only cells that the plane
+/// runs through. It ends with LEAFLESS_STOP_REASON_TOLERANCE if the interval is no wider than `relative`
+/// times its middle, or than `absolute_model` (square model units); with LEAFLESS_STOP_REASON_EXHAUSTED if no
+/// cell is left whose split would help; with LEAFLESS_STOP_REASON_BUDGET after `max_splits` of the options,
+/// or 2^20 splits if that is 0. With N splits the width goes down with 1/N² on curved surfaces of half-spaces
+/// and what is made of them, with 1/N for other solids; plane faces of the former are known to rounding.
 ///
-/// If faces of the solid lie in the plane, the sections on both sides of it differ. A plane perpendicular to an axis is taken
-/// as the limit from above, in the universe's upper face as that from below. If it is a plane of the lattice, the cells above
-/// it are those that count, and nothing is in doubt about faces there. Of any other plane the area contains the limits from
-/// both sides, and faces that lie in it stay in doubt.
+/// If faces of the solid lie in the plane, the sections on both sides of it differ. A plane perpendicular to
+/// an axis is taken as the limit from above, in the universe's upper face as that from below. If it is a
+/// plane of the lattice, the cells above it are those that count, and nothing is in doubt about faces there.
+/// Of any other plane the area contains the limits from both sides, and faces that lie in it stay in doubt.
 ///
 /// - Buffers: as leafless_solid_measure; `point_model` and `normal`, 3 numbers each; `section`, one struct.
 /// - Result: `*section`.
-/// - Errors: as leafless_solid_measure, and LEAFLESS_E_ARGUMENT also if the normal is zero, or a number of point or normal is
-///   neither 0 nor of a magnitude between 2^-256 and 2^256.
+/// - Errors: as leafless_solid_measure, and LEAFLESS_E_ARGUMENT also if the normal is zero, or a number of
+///   point or normal is neither 0 nor of a magnitude between 2^-256 and 2^256.
 /// - Threads: any; works in the calling thread.
 /// - Untrusted input: any solid, any numbers; the default of `max_splits` bounds the work.
 ///
@@ -309,17 +310,17 @@ pub unsafe extern "C" fn leafless_solid_section_area(
     })
 }
 
-/// The bounding box of a solid in the universe of a frame: six intervals, one for each side. The search splits
-/// only cells that may reach beyond what is proven solid. It ends with LEAFLESS_STOP_REASON_TOLERANCE if no interval
-/// is wider than `tolerance_model`, or than 2^-44 of the universe's edge; with LEAFLESS_STOP_REASON_EXHAUSTED if
-/// the outermost undecided cells cannot be split, and either the interval is no wider than one of the frame's
-/// finest cells, or nothing else is left to split; with LEAFLESS_STOP_REASON_BUDGET after `max_splits` of the
-/// options, or 2^20 splits if that is 0.
+/// The bounding box of a solid in the universe of a frame: six intervals, one for each side. The search
+/// splits only cells that may reach beyond what is proven solid. It ends with LEAFLESS_STOP_REASON_TOLERANCE
+/// if no interval is wider than `tolerance_model`, or than 2^-44 of the universe's edge; with
+/// LEAFLESS_STOP_REASON_EXHAUSTED if the outermost undecided cells cannot be split, and either the interval
+/// is no wider than one of the frame's finest cells, or nothing else is left to split; with
+/// LEAFLESS_STOP_REASON_BUDGET after `max_splits` of the options, or 2^20 splits if that is 0.
 ///
-/// Of half-spaces and what is made of them, a corner of three plane faces is known to rounding, and a curved side
-/// to some 10^-12 of the universe's edge at depth 20, after some hundred splits; a side that a cylinder touches
-/// along a line takes more. Of other solids, with n the universe's edge over the tolerance, a curved side takes
-/// some n splits and, unless it lies on a plane of the lattice, a flat one n².
+/// Of half-spaces and what is made of them, a corner of three plane faces is known to rounding, and a curved
+/// side to some 10^-12 of the universe's edge at depth 20, after some hundred splits; a side that a cylinder
+/// touches along a line takes more. Of other solids, with n the universe's edge over the tolerance, a curved
+/// side takes some n splits and, unless it lies on a plane of the lattice, a flat one n².
 ///
 /// - Buffers: as leafless_solid_measure; `extent`, one struct.
 /// - Result: `*extent`.

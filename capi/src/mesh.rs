@@ -88,11 +88,12 @@ pub struct leafless_mesh_report {
     pub inside_out_bodies: u64,
     /// Vertices that leafless_mesh_sewn moved onto another one.
     pub sewn: u64,
-    /// The farthest that any of them was moved along an axis, in model units. (A stated deviation is not in it.)
+    /// The farthest that any of them was moved along an axis, in model units. (A stated deviation is not in
+    /// it.)
     pub displacement_model: f64,
-    /// Closed bodies that are proven to overlap another one: their surfaces cross, or one lies within the other
-    /// with the same sense and no cavity between them. There the surface winds around points more than once,
-    /// and leafless_mesh_volume is not what a fill rule encloses.
+    /// Closed bodies that are proven to overlap another one: their surfaces cross, or one lies within the
+    /// other with the same sense and no cavity between them. There the surface winds around points more than
+    /// once, and leafless_mesh_volume is not what a fill rule encloses.
     pub overlapping_bodies: u64,
     /// Other closed bodies that may overlap another one: they touch in a way that is not decided, such as a
     /// peg that fits its hole exactly, or there was too much to look at.
@@ -113,8 +114,8 @@ pub struct leafless_mesh_report {
     /// V - E + F of the vertices that triangles use, the edges and the triangles: of a 2-manifold, 2 for each
     /// component less 2 for each of its handles.
     pub euler_characteristic: i64,
-    /// Whether the mesh is closed and consistently oriented: every edge is run along as often in one direction
-    /// as in the other. (An empty mesh is.)
+    /// Whether the mesh is closed and consistently oriented: every edge is run along as often in one
+    /// direction as in the other. (An empty mesh is.)
     pub is_closed: bool,
     /// Whether exactly two triangles meet on every edge, which run along it in opposite directions.
     pub is_manifold: bool,
@@ -252,8 +253,8 @@ pub struct leafless_mesh_info {
     pub bytes: u64,
     /// How far the true boundary may lie from the mesh: what leafless_mesh_with_deviation stated of it.
     pub deviation_model: f64,
-    /// How far it may lie from the mesh along an axis: the deviation, what vertices were moved by to close hair
-    /// cracks, and what a placement rounded.
+    /// How far it may lie from the mesh along an axis: the deviation, what vertices were moved by to close
+    /// hair cracks, and what a placement rounded.
     pub displacement_model: f64,
 }
 
@@ -307,12 +308,12 @@ pub unsafe extern "C" fn leafless_mesh_copy(
 }
 
 /// The unit normals at the vertices of a mesh, outward where triangles turn counter-clockwise as seen from
-/// outside: the mean of the normals of the triangles there, each weighted by its angle. So they do not depend on
-/// how plane parts are cut into triangles. Where the mean is zero, as at a vertex without triangles, so is the
-/// normal. O(t + v).
+/// outside: the mean of the normals of the triangles there, each weighted by its angle. So they do not depend
+/// on how plane parts are cut into triangles. Where the mean is zero, as at a vertex without triangles, so is
+/// the normal. O(t + v).
 ///
-/// - Buffers: `normals`, room for `capacity` normals of 3 numbers, or NULL to ask for their number only; `count`,
-///   one number.
+/// - Buffers: `normals`, room for `capacity` normals of 3 numbers, or NULL to ask for their number only;
+///   `count`, one number.
 /// - Result: `*count`, that of the vertices; the normals, in the order of the vertices.
 /// - Errors: LEAFLESS_E_BUFFER if the capacity is too small; LEAFLESS_E_NO_MEMORY.
 /// - Threads: any. Each call computes them.
@@ -460,9 +461,9 @@ pub unsafe extern "C" fn leafless_mesh_check_closed(
     })
 }
 
-/// The mesh with hair cracks closed: vertices at open edges become one if they lie no further apart than 2^-24
-/// of the longest extent of the larger one of their pieces. (A piece is all triangles that hang together by
-/// common vertices.) Verdicts about solids made of it stay proven: the distance is added outward.
+/// The mesh with hair cracks closed: vertices at open edges become one if they lie no further apart than
+/// 2^-24 of the longest extent of the larger one of their pieces. (A piece is all triangles that hang
+/// together by common vertices.) Verdicts about solids made of it stay proven: the distance is added outward.
 ///
 /// - Buffers: `sewn`, one pointer.
 /// - Result: `*sewn`; leafless_mesh_inspect tells how many vertices moved and how far.
@@ -481,20 +482,21 @@ pub unsafe extern "C" fn leafless_mesh_sewn(
     })
 }
 
-/// The same mesh, of which it is known only that the true boundary lies within a distance of it, as the boundary of
-/// a part lies beside a tessellation with that deflection. It takes the place of a deviation that was stated before.
+/// The same mesh, of which it is known only that the true boundary lies within a distance of it, as the
+/// boundary of a part lies beside a tessellation with that deflection. It takes the place of a deviation that
+/// was stated before.
 ///
-/// The true solid is bounded by the mesh's surface, of which each point was moved by that distance at the most,
-/// continuously, and no part of which was turned over. A dent, a hole or a body that the mesh does not have at all
-/// is not covered, however small it is. Whatever is proven of solids made of the mesh is then proven of the true
-/// solid: cells near to the triangles are undecided, intervals contain the truth, and nothing is told of a point that
-/// is too near. The area of the true boundary is not known. Placements and set operations carry the deviation along,
-/// and leafless_proof tells it. What is no proof, as a sampled octree, a tri-dexel model, a picture,
-/// leafless_mesh_bounds and leafless_mesh_volume, is that of the mesh.
+/// The true solid is bounded by the mesh's surface, of which each point was moved by that distance at the
+/// most, continuously, and no part of which was turned over. A dent, a hole or a body that the mesh does not
+/// have at all is not covered, however small it is. Whatever is proven of solids made of the mesh is then
+/// proven of the true solid: cells near to the triangles are undecided, intervals contain the truth, and
+/// nothing is told of a point that is too near. The area of the true boundary is not known. Placements and
+/// set operations carry the deviation along, and leafless_proof tells it. What is no proof, as a sampled
+/// octree, a tri-dexel model, a picture, leafless_mesh_bounds and leafless_mesh_volume, is that of the mesh.
 ///
 /// - Buffers: `stated`, one pointer.
-/// - Result: `*stated`; leafless_mesh_describe tells its deviation. A solid of it needs a closed mesh, and is refused
-///   with LEAFLESS_E_MESH otherwise.
+/// - Result: `*stated`; leafless_mesh_describe tells its deviation. A solid of it needs a closed mesh, and is
+///   refused with LEAFLESS_E_MESH otherwise.
 /// - Errors: LEAFLESS_E_ARGUMENT unless `deviation_model` is finite, not negative, and at most 2^256;
 ///   LEAFLESS_E_NO_MEMORY.
 /// - Ownership: `mesh` stays as it is; give `*stated` back with leafless_mesh_free.
@@ -540,7 +542,8 @@ pub unsafe extern "C" fn leafless_mesh_transformed(
     })
 }
 
-/// The mesh moved by a vector, rounded. What leafless_mesh_sewn has found stays known, and so does a deviation.
+/// The mesh moved by a vector, rounded. What leafless_mesh_sewn has found stays known, and so does a
+/// deviation.
 ///
 /// - Buffers: `offset_model`, 3 numbers; `moved`, one pointer.
 /// - Result: `*moved`.

@@ -18,8 +18,8 @@ use std::sync::Arc;
 #[derive(Clone, Copy, PartialEq)]
 #[repr(u32)]
 pub enum leafless_mesh_format {
-    /// To be found out: when reading from the file's content and, where that is not clear, its name; when writing
-    /// from its name.
+    /// To be found out: when reading from the file's content and, where that is not clear, its name; when
+    /// writing from its name.
     LEAFLESS_MESH_FORMAT_ANY = 0,
     /// STL, binary or ASCII; which of the two is always found out.
     LEAFLESS_MESH_FORMAT_STL = 1,
@@ -97,8 +97,8 @@ pub struct leafless_mesh_options {
     pub struct_size: u32,
     /// The file's format.
     pub format: Number<leafless_mesh_format>,
-    /// The unit of the numbers in the file. LEAFLESS_UNIT_UNKNOWN means what the file says, which only a 3MF does;
-    /// anything else overrides that.
+    /// The unit of the numbers in the file. LEAFLESS_UNIT_UNKNOWN means what the file says, which only a 3MF
+    /// does; anything else overrides that.
     pub unit: Number<leafless_unit>,
     /// The unit that the mesh shall have. LEAFLESS_UNIT_UNKNOWN means that of the file.
     pub target: Number<leafless_unit>,
@@ -122,8 +122,8 @@ pub struct leafless_mesh_file_info {
     /// Instances of objects that are not meant to be solid, such as supports in a 3MF, and that the mesh does
     /// not contain.
     pub skipped: u64,
-    /// How far, as the file says, the true boundary may lie from the mesh, converted and scaled; 0 if it does not say
-    /// so. It is not believed: leafless_mesh_with_deviation states it, for who does.
+    /// How far, as the file says, the true boundary may lie from the mesh, converted and scaled; 0 if it does
+    /// not say so. It is not believed: leafless_mesh_with_deviation states it, for who does.
     pub deviation_model: f64,
 }
 
@@ -176,8 +176,8 @@ fn give(file: MeshFile) -> Result<*mut leafless_mesh, Failure> {
 
 /// Reads a mesh file. Everything in it becomes one mesh, welded as by leafless_mesh_new; polygons become
 /// triangles. Hair cracks, which files have because their numbers are rounded, are closed as by
-/// leafless_mesh_sewn; leafless_mesh_inspect tells how many vertices moved and how far. Of bytes no name is known
-/// that could tell the format.
+/// leafless_mesh_sewn; leafless_mesh_inspect tells how many vertices moved and how far. Of bytes no name is
+/// known that could tell the format.
 ///
 /// - Buffers: `source`, one struct, with LEAFLESS_ACCESS_COPY; `options`, one struct, or NULL; `found`, one
 ///   struct, or NULL if it is not wanted; `mesh`, one pointer.
@@ -216,10 +216,11 @@ pub unsafe extern "C" fn leafless_mesh_read(
 }
 
 /// What a mesh file departs from its format in, though it could be read: a sentence in UTF-8 for each kind of
-/// departure, by its place among all. A mesh that was not read from a file, or was made from another mesh, has
-/// none.
+/// departure, by its place among all. A mesh that was not read from a file, or was made from another mesh,
+/// has none.
 ///
-/// - Buffers: `count`, one number; `warning`, `warning_length`, one each, both NULL to ask for the count only.
+/// - Buffers: `count`, one number; `warning`, `warning_length`, one each, both NULL to ask for the count
+///   only.
 /// - Result: `*count`, the number of all warnings; the text, not NUL-terminated, with its length in bytes.
 /// - Errors: LEAFLESS_E_ARGUMENT if there is no warning `index`, unless only the count is asked for.
 /// - Ownership: the text belongs to the mesh and lives as long as the reference `mesh`.

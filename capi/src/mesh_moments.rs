@@ -18,14 +18,16 @@ pub enum leafless_moments_verdict {
     LEAFLESS_MOMENTS_VERDICT_KNOWN = 0,
     /// They are not: the mesh is empty, not closed, or not consistently oriented as the fill rule demands.
     LEAFLESS_MOMENTS_VERDICT_OPEN = 1,
-    /// They are not: too many triangles lie close to each other to find out, or all triangles of a body are slivers.
+    /// They are not: too many triangles lie close to each other to find out, or all triangles of a body are
+    /// slivers.
     LEAFLESS_MOMENTS_VERDICT_UNDECIDED = 2,
     /// They are not: two triangles intersect.
     LEAFLESS_MOMENTS_VERDICT_INTERSECTING = 3,
 }
 use leafless_moments_verdict::*;
 
-/// Mass properties of what a mesh encloses, of density 1, as in leafless_measures: all numbers unless they are known.
+/// Mass properties of what a mesh encloses, of density 1, as in leafless_measures: all numbers unless they
+/// are known.
 #[derive(Clone, Copy)]
 #[repr(C)]
 pub struct leafless_mesh_moments {
@@ -108,12 +110,12 @@ impl From<&IntersectingPair> for leafless_intersecting_pair {
     }
 }
 
-/// The volume and the moments of what a mesh encloses by a fill rule, exact up to rounding: usually to 14 digits.
-/// They are known if the mesh is closed and no two triangles intersect. leafless_solid_measure of a solid of such a
-/// mesh tells the same.
+/// The volume and the moments of what a mesh encloses by a fill rule, exact up to rounding: usually to 14
+/// digits. They are known if the mesh is closed and no two triangles intersect. leafless_solid_measure of a
+/// solid of such a mesh tells the same.
 ///
-/// - Buffers: `options`, one struct or NULL, of which the limits do not matter; `moments`, one struct. `fill` is
-///   a leafless_fill.
+/// - Buffers: `options`, one struct or NULL, of which the limits do not matter; `moments`, one struct. `fill`
+///   is a leafless_fill.
 /// - Result: `*moments`, whether they are known or not.
 /// - Errors: LEAFLESS_E_ARGUMENT if `fill` is no leafless_fill; LEAFLESS_E_CANCELLED; LEAFLESS_E_NO_MEMORY.
 /// - Threads: any; works in the calling thread. Each call analyses the mesh.
@@ -133,14 +135,14 @@ pub unsafe extern "C" fn leafless_mesh_measure(
     })
 }
 
-/// The pairs of triangles that intersect: they cross, touch, or fold onto each other. Decided exactly. Triangles
-/// without area are left out.
+/// The pairs of triangles that intersect: they cross, touch, or fold onto each other. Decided exactly.
+/// Triangles without area are left out.
 ///
-/// - Buffers: `options`, one struct or NULL, of which the limits do not matter; `pairs`, room for `capacity` of
-///   them, or NULL to ask for their number only; `count`, one number; `is_complete`, one number.
-/// - Result: `*count`, how many were found; the first `capacity` of them in `pairs`, in ascending order of triangles;
-///   `*is_complete`, whether these are all: else the search was ended, because too many triangles lie close to each
-///   other.
+/// - Buffers: `options`, one struct or NULL, of which the limits do not matter; `pairs`, room for `capacity`
+///   of them, or NULL to ask for their number only; `count`, one number; `is_complete`, one number.
+/// - Result: `*count`, how many were found; the first `capacity` of them in `pairs`, in ascending order of
+///   triangles; `*is_complete`, whether these are all: else the search was ended, because too many triangles
+///   lie close to each other.
 /// - Errors: LEAFLESS_E_CANCELLED; LEAFLESS_E_NO_MEMORY. A `capacity` that is too small is none.
 /// - Threads: any; works in the calling thread. Each call analyses the mesh.
 /// - Untrusted input: any mesh; the work is limited.

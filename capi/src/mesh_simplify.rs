@@ -22,21 +22,24 @@ pub struct leafless_simplified {
 
 output!(leafless_simplified);
 
-/// The same mesh with fewer triangles, no point of which is further than `tolerance_model` from the mesh, and none of the mesh further
-/// from it: proven in both directions by the triangles of both.
+/// The same mesh with fewer triangles, no point of which is further than `tolerance_model` from the mesh, and
+/// none of the mesh further from it: proven in both directions by the triangles of both.
 ///
-/// Vertices are taken out, and none is moved. Edges between triangles whose normals differ by more than 30 degrees stay edges, and so
-/// do those between triangles that bear different values; along an edge vertices go as far as the tolerance allows, and corners stay.
-/// A mesh that is closed and a manifold stays so, with as many bodies and holes. Vertices on open edges, and those where more than two
-/// triangles meet in an edge, stay. No triangles intersect each other that did not before.
+/// Vertices are taken out, and none is moved. Edges between triangles whose normals differ by more than 30
+/// degrees stay edges, and so do those between triangles that bear different values; along an edge vertices
+/// go as far as the tolerance allows, and corners stay. A mesh that is closed and a manifold stays so, with
+/// as many bodies and holes. Vertices on open edges, and those where more than two triangles meet in an edge,
+/// stay. No triangles intersect each other that did not before.
 ///
-/// O(n log n) time for n triangles whose vertices have few: some 20 microseconds a triangle, and some 300 bytes. One thread takes vertices
-/// out, and all prove.
+/// O(n log n) time for n triangles whose vertices have few: some 20 microseconds a triangle, and some 300
+/// bytes. One thread takes vertices out, and all prove.
 ///
-/// - Buffers: `options`, one struct or NULL; `report`, one struct, or NULL if it is not wanted; `simple`, one pointer.
-/// - Result: `*simple`, with the values of triangles that are left and without those of corners, whose stated deviation is that of `mesh`
-///   with what is proven here; `*report`. The same for any number of threads.
-/// - Errors: LEAFLESS_E_ARGUMENT if `tolerance_model` is not between 2^-256 and 2^256; LEAFLESS_E_CANCELLED; LEAFLESS_E_NO_MEMORY.
+/// - Buffers: `options`, one struct or NULL; `report`, one struct, or NULL if it is not wanted; `simple`, one
+///   pointer.
+/// - Result: `*simple`, with the values of triangles that are left and without those of corners, whose stated
+///   deviation is that of `mesh` with what is proven here; `*report`. The same for any number of threads.
+/// - Errors: LEAFLESS_E_ARGUMENT if `tolerance_model` is not between 2^-256 and 2^256; LEAFLESS_E_CANCELLED;
+///   LEAFLESS_E_NO_MEMORY.
 /// - Ownership: `mesh` stays as it is; give `*simple` back with leafless_mesh_free.
 /// - Threads: any; uses as many as `options` says.
 /// - Untrusted input: any mesh.

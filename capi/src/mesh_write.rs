@@ -28,10 +28,12 @@ pub struct leafless_mesh_write_options {
     /// The unit of the coordinates, which only a 3MF tells. LEAFLESS_UNIT_UNKNOWN means the
     /// millimetre. Nothing is converted.
     pub unit: Number<leafless_unit>,
-    /// 1 to write PLY and OBJ with the normals that leafless_mesh_normals tells; other formats have none. Else 0.
+    /// 1 to write PLY and OBJ with the normals that leafless_mesh_normals tells; other formats have none.
+    /// Else 0.
     pub has_normals: u32,
-    /// How far the true boundary may lie from the mesh, which a comment of PLY, OBJ and OFF and metadata of a 3MF
-    /// tell; an STL has no place for it. leafless_mesh_file_info has it when the file is read. 0 tells nothing.
+    /// How far the true boundary may lie from the mesh, which a comment of PLY, OBJ and OFF and metadata of a
+    /// 3MF tell; an STL has no place for it. leafless_mesh_file_info has it when the file is read. 0 tells
+    /// nothing.
     pub deviation_model: f64,
 }
 
@@ -83,15 +85,16 @@ fn chosen(format: Option<MeshFormat>, path: Option<&Path>) -> Result<MeshFormat,
 /// Writes a mesh file: STL, PLY, OBJ, OFF or 3MF.
 ///
 /// Vertices and triangles keep their order. PLY (little-endian, of type double), OBJ and OFF hold the
-/// coordinates exactly; a 3MF has one object, which is the build's one item, and leaves out triangles that have a
-/// vertex twice. STL rounds coordinates to 32 bits without a word: what is small and far away loses triangles, up
-/// to all of them. leafless_mesh_written_form tells before, and leafless_mesh_in_single_precision mends what can be mended. O(n) time and memory.
+/// coordinates exactly; a 3MF has one object, which is the build's one item, and leaves out triangles that
+/// have a vertex twice. STL rounds coordinates to 32 bits without a word: what is small and far away loses
+/// triangles, up to all of them. leafless_mesh_written_form tells before, and
+/// leafless_mesh_in_single_precision mends what can be mended. O(n) time and memory.
 ///
 /// - Buffers: `options`, one struct, or NULL, with a format unless the sink has a path; `sink`, one struct.
 /// - Errors: LEAFLESS_E_ARGUMENT if the format or the unit is none, if the format is LEAFLESS_MESH_FORMAT_ANY
-///   and there is no path or it has none of the extensions, for an STL of coordinates beyond the range of float,
-///   or for an OBJ without vertices; LEAFLESS_E_IO; LEAFLESS_E_CALLBACK; LEAFLESS_E_BUFFER; LEAFLESS_E_UTF8;
-///   LEAFLESS_E_NO_MEMORY.
+///   and there is no path or it has none of the extensions, for an STL of coordinates beyond the range of
+///   float, or for an OBJ without vertices; LEAFLESS_E_IO; LEAFLESS_E_CALLBACK; LEAFLESS_E_BUFFER;
+///   LEAFLESS_E_UTF8; LEAFLESS_E_NO_MEMORY.
 /// - Untrusted input: any mesh.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn leafless_mesh_write(
@@ -118,7 +121,8 @@ pub struct leafless_single_precision {
     pub reserved: u32,
     /// The farthest that rounding moves a vertex along an axis.
     pub rounding_model: f64,
-    /// No point of the given mesh is further from the other one, and none of that further from the given one: proven.
+    /// No point of the given mesh is further from the other one, and none of that further from the given one:
+    /// proven.
     pub deviation_model: f64,
     /// Triangles of which rounding made an edge or a point, and which are gone.
     pub collapsed: u64,
@@ -134,18 +138,20 @@ pub struct leafless_single_precision {
 
 output!(leafless_single_precision);
 
-/// The mesh with coordinates that are 32-bit numbers, as an STL has them, without triangles that rounding makes degenerate and without pairs
-/// that it makes intersect, as far as that can be had: leafless_mesh_write then loses nothing. Edges whose ends meet are collapsed,
-/// triangles that become lines are joined to their neighbours, and vertices of what is degenerate or intersects after that go to places next to
-/// theirs, if these are no further than `tolerance_model` from where they were given. A closed mesh stays closed. A mesh whose coordinates
-/// are 32-bit numbers already is given back as it is, and of it nothing is counted.
+/// The mesh with coordinates that are 32-bit numbers, as an STL has them, without triangles that rounding
+/// makes degenerate and without pairs that it makes intersect, as far as that can be had: leafless_mesh_write
+/// then loses nothing. Edges whose ends meet are collapsed, triangles that become lines are joined to their
+/// neighbours, and vertices of what is degenerate or intersects after that go to places next to theirs, if
+/// these are no further than `tolerance_model` from where they were given. A closed mesh stays closed. A mesh
+/// whose coordinates are 32-bit numbers already is given back as it is, and of it nothing is counted.
 ///
 /// Time is that of leafless_mesh_intersecting_pairs, a few times.
 ///
-/// - Buffers: `options`, one struct or NULL; `report`, one struct, or NULL if it is not wanted; `single`, one pointer.
+/// - Buffers: `options`, one struct or NULL; `report`, one struct, or NULL if it is not wanted; `single`, one
+///   pointer.
 /// - Result: `*single`, without attributes; `*report`.
-/// - Errors: LEAFLESS_E_ARGUMENT if the tolerance is negative or not a number, or for coordinates beyond the range of float;
-///   LEAFLESS_E_CANCELLED; LEAFLESS_E_NO_MEMORY.
+/// - Errors: LEAFLESS_E_ARGUMENT if the tolerance is negative or not a number, or for coordinates beyond the
+///   range of float; LEAFLESS_E_CANCELLED; LEAFLESS_E_NO_MEMORY.
 /// - Ownership: `mesh` stays as it is; give `*single` back with leafless_mesh_free.
 /// - Untrusted input: any mesh; the work is bounded.
 #[unsafe(no_mangle)]
@@ -178,17 +184,19 @@ pub unsafe extern "C" fn leafless_mesh_in_single_precision(
     })
 }
 
-/// Writes solids of plane faces as a file of polygons: OBJ or OFF. A face with holes, which these formats do not have, is cut into a
-/// few polygons without; all other faces are as they are given. No vertex is added, and vertices keep their order.
+/// Writes solids of plane faces as a file of polygons: OBJ or OFF. A face with holes, which these formats do
+/// not have, is cut into a few polygons without; all other faces are as they are given. No vertex is added,
+/// and vertices keep their order.
 ///
-/// The faces are checked as leafless_mesh_from_polyhedron does, whose default tolerance is the only one here. O(n log n) time.
+/// The faces are checked as leafless_mesh_from_polyhedron does, whose default tolerance is the only one here.
+/// O(n log n) time.
 ///
-/// - Buffers: `arrays`, one struct, whose `tolerance_model` is 0; what its pointers lead to must not change during the call.
-///   `options`, one struct, or NULL, of which the format and the deviation count, with a format unless the sink has a path; `sink`,
-///   one struct.
-/// - Errors: those of leafless_mesh_from_polyhedron; LEAFLESS_E_ARGUMENT if the format is neither OBJ nor OFF, or is
-///   LEAFLESS_MESH_FORMAT_ANY and there is no path or it has none of the extensions; LEAFLESS_E_IO; LEAFLESS_E_CALLBACK;
-///   LEAFLESS_E_BUFFER; LEAFLESS_E_UTF8; LEAFLESS_E_NO_MEMORY.
+/// - Buffers: `arrays`, one struct, whose `tolerance_model` is 0; what its pointers lead to must not change
+///   during the call. `options`, one struct, or NULL, of which the format and the deviation count, with a
+///   format unless the sink has a path; `sink`, one struct.
+/// - Errors: those of leafless_mesh_from_polyhedron; LEAFLESS_E_ARGUMENT if the format is neither OBJ nor
+///   OFF, or is LEAFLESS_MESH_FORMAT_ANY and there is no path or it has none of the extensions;
+///   LEAFLESS_E_IO; LEAFLESS_E_CALLBACK; LEAFLESS_E_BUFFER; LEAFLESS_E_UTF8; LEAFLESS_E_NO_MEMORY.
 /// - Ownership: the arrays are only read during the call, and may be freed after it.
 /// - Untrusted input: any values in the arrays.
 #[unsafe(no_mangle)]
@@ -213,10 +221,10 @@ pub unsafe extern "C" fn leafless_mesh_write_polygons(
     })
 }
 
-/// The mesh that a reader gets back from the file that leafless_mesh_write writes. An STL has 32-bit coordinates:
-/// vertices move, vertices that meet are one, and triangles of which two corners meet are dropped, so that the
-/// surface may be pinched, flat or gone. leafless_mesh_inspect of both meshes tells. All other formats keep
-/// vertices and triangles as they are. O(n) time and memory.
+/// The mesh that a reader gets back from the file that leafless_mesh_write writes. An STL has 32-bit
+/// coordinates: vertices move, vertices that meet are one, and triangles of which two corners meet are
+/// dropped, so that the surface may be pinched, flat or gone. leafless_mesh_inspect of both meshes tells. All
+/// other formats keep vertices and triangles as they are. O(n) time and memory.
 ///
 /// - Buffers: `options`, one struct, with a format; `kept`, one pointer.
 /// - Result: `*kept`.

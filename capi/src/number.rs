@@ -3,8 +3,8 @@
 use super::boundary::Failure;
 use core::marker::PhantomData;
 
-/// A number that a host gives for a member of an enumeration; nobody has looked at it. In the header it has the
-/// enumeration's type, so that a compiler for C++ sees when it is another one's.
+/// A number that a host gives for a member of an enumeration; nobody has looked at it. In the header it has
+/// the enumeration's type, so that a compiler for C++ sees when it is another one's.
 #[repr(transparent)]
 pub struct Number<E>(u32, PhantomData<E>);
 

@@ -111,8 +111,8 @@ pub struct leafless_octree_info {
     pub bricks: u64,
     /// Channels, 0 to 256: leafless_octree_channel_at returns each.
     pub channels: u64,
-    /// Bytes that its arrays and its channels take: in memory, or where a file is mapped. What octrees share counts for
-    /// each of them.
+    /// Bytes that its arrays and its channels take: in memory, or where a file is mapped. What octrees share
+    /// counts for each of them.
     pub bytes: u64,
     /// What the cells prove.
     pub proof: leafless_proof,
@@ -260,8 +260,9 @@ pub unsafe extern "C" fn leafless_octree_describe(
 }
 
 /// The same octree, of whose cells this is said; the arrays and the channels are shared. Octrees that other
-/// programs made prove what these know. If FULL and EMPTY are said to be proven, the cells themselves are taken
-/// for the solid: measures of a sampled octree then are those of its cells, and not of what was sampled.
+/// programs made prove what these know. If FULL and EMPTY are said to be proven, the cells themselves are
+/// taken for the solid: measures of a sampled octree then are those of its cells, and not of what was
+/// sampled.
 ///
 /// - Buffers: `octree`, a handle; `proven`, a leafless_proven; `displacement_model` as in leafless_proof;
 ///   `result`, one pointer.
@@ -340,9 +341,8 @@ pub unsafe extern "C" fn leafless_octree_check(octree: *const leafless_octree) -
     guard(|| unsafe { Ok(shared(octree, "octree")?.octree.view().check()?) })
 }
 
-/// Whether two octrees have the same cells with the same tags, and the same surfaces in them, on the same frame. Metadata does
-/// not count, nor do channels.
-/// O(n).
+/// Whether two octrees have the same cells with the same tags, and the same surfaces in them, on the same
+/// frame. Metadata does not count, nor do channels. O(n).
 ///
 /// - Buffers: `equal`, one truth value.
 /// - Result: `*equal`.
@@ -359,8 +359,8 @@ pub unsafe extern "C" fn leafless_octree_equal(
     })
 }
 
-/// The octree with one more fact in its metadata, or with another value of one; the arrays and the channels are
-/// shared. Names in use: "name", "units", "source", "rule".
+/// The octree with one more fact in its metadata, or with another value of one; the arrays and the channels
+/// are shared. Names in use: "name", "units", "source", "rule".
 ///
 /// - Buffers: `key` and `value`, `key_length` and `value_length` bytes of UTF-8; `named`, one pointer.
 /// - Result: `*named`.

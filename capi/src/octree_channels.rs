@@ -46,15 +46,16 @@ pub struct leafless_carry_rule {
     pub carry: Number<leafless_carry>,
 }
 
-/// The octree with one more channel, in the place of one of the same name, if there is one; the arrays of both are
-/// shared. A channel without a name has the empty one.
+/// The octree with one more channel, in the place of one of the same name, if there is one; the arrays of
+/// both are shared. A channel without a name has the empty one.
 ///
 /// - Buffers: `result`, one pointer.
 /// - Result: `*result`, with the metadata of `octree`.
-/// - Errors: LEAFLESS_E_FRAME if the channel lies in another cube than the octree; LEAFLESS_E_ARGUMENT if there are
-///   256 channels already; LEAFLESS_E_NO_MEMORY.
-/// - Ownership: `*result` shares the arrays of `octree` and `channel`, which may be freed: what must outlive these,
-///   such as bytes that they view, must outlive `*result` too. Give that back with leafless_octree_free.
+/// - Errors: LEAFLESS_E_FRAME if the channel lies in another cube than the octree; LEAFLESS_E_ARGUMENT if
+///   there are 256 channels already; LEAFLESS_E_NO_MEMORY.
+/// - Ownership: `*result` shares the arrays of `octree` and `channel`, which may be freed: what must outlive
+///   these, such as bytes that they view, must outlive `*result` too. Give that back with
+///   leafless_octree_free.
 /// - Untrusted input: any octree, any channel.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn leafless_octree_with_channel(
@@ -99,8 +100,8 @@ pub unsafe extern "C" fn leafless_octree_without_channel(
 /// - Buffers: `channel`, one pointer.
 /// - Result: `*channel`.
 /// - Errors: LEAFLESS_E_ARGUMENT if there is no channel `index`.
-/// - Ownership: `*channel` shares the arrays of `octree`, which may be freed: what must outlive `octree`, such as
-///   bytes that it views, must outlive `*channel` too. Give that back with leafless_channel_free.
+/// - Ownership: `*channel` shares the arrays of `octree`, which may be freed: what must outlive `octree`,
+///   such as bytes that it views, must outlive `*channel` too. Give that back with leafless_channel_free.
 /// - Untrusted input: any octree.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn leafless_octree_channel_at(
@@ -140,17 +141,19 @@ pub unsafe extern "C" fn leafless_octree_channel(
     })
 }
 
-/// An octree that was made of operands in the same cube, whatever the operation, with their channels. Channels of one
-/// name become one, in which at each point the values of those operands count that are not EMPTY there. A channel that
-/// only one operand has is shared as it is. The same bit for bit for any number of threads.
+/// An octree that was made of operands in the same cube, whatever the operation, with their channels.
+/// Channels of one name become one, in which at each point the values of those operands count that are not
+/// EMPTY there. A channel that only one operand has is shared as it is. The same bit for bit for any number
+/// of threads.
 ///
-/// - Buffers: `octree`, a handle; `operands`, `count` handles; `carry`, a leafless_carry, by which channels are joined
-///   that none of `rules` names; `rules`, `rule_count` structs, or NULL if that is 0; the first that names a channel
-///   counts. `options`, one struct or NULL, of which limits concern each channel; `result`, one pointer.
-/// - Result: `*result`: the cells and metadata of `octree`; its own channels, but those of names that operands have;
-///   each channel with the metadata of the first operand that has it.
-/// - Errors: LEAFLESS_E_ARGUMENT if channels of one name have values of two types, or there are more than 256;
-///   LEAFLESS_E_FRAME unless all lie in one cube; LEAFLESS_E_UTF8; LEAFLESS_E_DAMAGED; LEAFLESS_E_LIMIT;
+/// - Buffers: `octree`, a handle; `operands`, `count` handles; `carry`, a leafless_carry, by which channels
+///   are joined that none of `rules` names; `rules`, `rule_count` structs, or NULL if that is 0; the first
+///   that names a channel counts. `options`, one struct or NULL, of which limits concern each channel;
+///   `result`, one pointer.
+/// - Result: `*result`: the cells and metadata of `octree`; its own channels, but those of names that
+///   operands have; each channel with the metadata of the first operand that has it.
+/// - Errors: LEAFLESS_E_ARGUMENT if channels of one name have values of two types, or there are more than
+///   256; LEAFLESS_E_FRAME unless all lie in one cube; LEAFLESS_E_UTF8; LEAFLESS_E_DAMAGED; LEAFLESS_E_LIMIT;
 ///   LEAFLESS_E_CANCELLED; LEAFLESS_E_NO_MEMORY.
 /// - Ownership: as leafless_octree_with_channel.
 /// - Threads: any; uses as many as `options` says.

@@ -113,24 +113,26 @@ pub unsafe extern "C" fn leafless_octree_compact(
     })
 }
 
-/// What a set operation makes of octrees, at least one. Exact, and the same bit for bit for any number of threads. The
-/// result has no channels: leafless_octree_carry_channels gives it those of the operands.
+/// What a set operation makes of octrees, at least one. Exact, and the same bit for bit for any number of
+/// threads. The result has no channels: leafless_octree_carry_channels gives it those of the operands.
 ///
-/// Octrees without surfaces are joined two by two: limits of `options` concern each of these steps, and the result is
-/// never larger than all operands together. If an octree keeps surfaces (leafless_octree_build_extended), the result keeps
-/// surfaces. Then all operands are walked at once, and no intermediate result is copied: pass the stock and all tools in one
-/// call, not one call a tool. A cell ends as soon as three surfaces are left in it. A cell that more surfaces cross at the
-/// frame's depth is given up, and nothing is known of it. An octree without surfaces takes part as a certified octree. Surfaces that are one
-/// in two octrees are one: A less A is LEAFLESS_TAG_EMPTY where nothing was given up. The result may be larger than the
-/// operands. Curved surfaces that nearly coincide may need very many cells: set `max_bytes` of `options`.
+/// Octrees without surfaces are joined two by two: limits of `options` concern each of these steps, and the
+/// result is never larger than all operands together. If an octree keeps surfaces
+/// (leafless_octree_build_extended), the result keeps surfaces. Then all operands are walked at once, and no
+/// intermediate result is copied: pass the stock and all tools in one call, not one call a tool. A cell ends
+/// as soon as three surfaces are left in it. A cell that more surfaces cross at the frame's depth is given
+/// up, and nothing is known of it. An octree without surfaces takes part as a certified octree. Surfaces that
+/// are one in two octrees are one: A less A is LEAFLESS_TAG_EMPTY where nothing was given up. The result may
+/// be larger than the operands. Curved surfaces that nearly coincide may need very many cells: set
+/// `max_bytes` of `options`.
 ///
-/// - Buffers: `octrees`, `count` handles; `options`, one struct or NULL; `result`, one pointer. `operation` is a
-///   leafless_operation.
+/// - Buffers: `octrees`, `count` handles; `options`, one struct or NULL; `result`, one pointer. `operation`
+///   is a leafless_operation.
 /// - Result: `*result`, with those of the facts "name" and "units" that all operands have with one value, and
 ///   no other metadata.
-/// - Errors: LEAFLESS_E_FRAME if the frames differ; LEAFLESS_E_NULL, also of an element; LEAFLESS_E_ARGUMENT, also if
-///   `count` is 0; LEAFLESS_E_DAMAGED; LEAFLESS_E_LIMIT, also if the exact map of a surface's placements is too
-///   long; LEAFLESS_E_CANCELLED; LEAFLESS_E_NO_MEMORY.
+/// - Errors: LEAFLESS_E_FRAME if the frames differ; LEAFLESS_E_NULL, also of an element; LEAFLESS_E_ARGUMENT,
+///   also if `count` is 0; LEAFLESS_E_DAMAGED; LEAFLESS_E_LIMIT, also if the exact map of a surface's
+///   placements is too long; LEAFLESS_E_CANCELLED; LEAFLESS_E_NO_MEMORY.
 /// - Ownership: the operands stay as they are; give `*result` back with leafless_octree_free.
 /// - Threads: any; uses as many as `options` says.
 /// - Untrusted input: any octrees; damage in ones that were mapped unverified is an error or reads as

@@ -14,8 +14,8 @@ use leafless::render::{
     Clip, ClippedLayer, Layer, LegendBox, LegendSide, Picture, Shot, draw_colour_bar, draw_names, render,
 };
 
-/// How a picture is taken. The size and the camera must be set; all other fields but the first may be zero, which is
-/// their default.
+/// How a picture is taken. The size and the camera must be set; all other fields but the first may be zero,
+/// which is their default.
 #[derive(Clone, Copy)]
 #[repr(C)]
 pub struct leafless_shot {
@@ -98,17 +98,19 @@ pub unsafe extern "C" fn leafless_shot_line_of_sight(
     })
 }
 
-/// Takes a picture of layers. Surfaces hide what lies behind them, whichever layer it is of; of two at one depth the
-/// first layer's is seen. The same bytes for any number of threads.
+/// Takes a picture of layers. Surfaces hide what lies behind them, whichever layer it is of; of two at one
+/// depth the first layer's is seen. The same bytes for any number of threads.
 ///
-/// - Buffers: `shot`, one struct; `layers`, `layer_count` handles; `options`, one struct or NULL; `colours`, room for
-///   `colour_capacity` bytes, and `depths`, room for `depth_capacity` numbers, each NULL if it is not wanted.
-/// - Result: in `colours` 4 · width · height bytes: red, green, blue (sRGB, not multiplied by the opacity) and opacity of
-///   each pixel, row by row from the upper left corner without gaps. In `depths` width · height numbers: the distance
-///   from the plane of the eye to what is nearest and opaque, in model units; infinity where nothing is, or farther than
-///   a float tells.
-/// - Errors: LEAFLESS_E_ARGUMENT if the shot is not as it must be; LEAFLESS_E_BUFFER if a capacity is too small: nothing
-///   is written then; what solids and attributes of layers return; LEAFLESS_E_NO_MEMORY; LEAFLESS_E_CANCELLED.
+/// - Buffers: `shot`, one struct; `layers`, `layer_count` handles; `options`, one struct or NULL; `colours`,
+///   room for `colour_capacity` bytes, and `depths`, room for `depth_capacity` numbers, each NULL if it is
+///   not wanted.
+/// - Result: in `colours` 4 · width · height bytes: red, green, blue (sRGB, not multiplied by the opacity)
+///   and opacity of each pixel, row by row from the upper left corner without gaps. In `depths` width ·
+///   height numbers: the distance from the plane of the eye to what is nearest and opaque, in model units;
+///   infinity where nothing is, or farther than a float tells.
+/// - Errors: LEAFLESS_E_ARGUMENT if the shot is not as it must be; LEAFLESS_E_BUFFER if a capacity is too
+///   small: nothing is written then; what solids and attributes of layers return; LEAFLESS_E_NO_MEMORY;
+///   LEAFLESS_E_CANCELLED.
 /// - Threads: any; uses as many as `options` says.
 /// - Untrusted input: any layers, any numbers.
 #[unsafe(no_mangle)]
@@ -163,9 +165,11 @@ unsafe fn picture(colours: *const u8, width: u32, height: u32) -> Result<Picture
     Ok(Picture::of_colours([width, height], memory::copied(colours)?)?)
 }
 
-/// Writes a picture as a PNG file: without opacity if all pixels are opaque. The same picture makes the same bytes.
+/// Writes a picture as a PNG file: without opacity if all pixels are opaque. The same picture makes the same
+/// bytes.
 ///
-/// - Buffers: `colours`, 4 · `width` · `height` bytes, as leafless_picture_render writes them; `sink`, one struct.
+/// - Buffers: `colours`, 4 · `width` · `height` bytes, as leafless_picture_render writes them; `sink`, one
+///   struct.
 /// - Errors: LEAFLESS_E_ARGUMENT unless the sides are 1 to 16384 pixels; LEAFLESS_E_IO; LEAFLESS_E_CALLBACK;
 ///   LEAFLESS_E_BUFFER; LEAFLESS_E_UTF8; LEAFLESS_E_NO_MEMORY.
 /// - Untrusted input: any bytes.
@@ -233,16 +237,16 @@ unsafe fn drawn(
     }
 }
 
-/// Draws a bar of the colours of values over a transfer function's range into a picture, with a title and numbers, on a
-/// light panel. Longer titles than find room are cut.
+/// Draws a bar of the colours of values over a transfer function's range into a picture, with a title and
+/// numbers, on a light panel. Longer titles than find room are cut.
 ///
 /// - Buffers: `colours`, 4 · `width` · `height` bytes, as leafless_picture_render writes them; `title`,
 ///   `title_length` bytes of UTF-8; `transfer`, one struct; `covered`, one struct. `side` is a
 ///   leafless_legend_side.
-/// - Result: the picture with the legend; in `*covered` the box that it covers, all zero if the picture is smaller than
-///   160 x 120 pixels, which has no legend.
-/// - Errors: LEAFLESS_E_ARGUMENT unless the sides are 1 to 16384 pixels, or if the transfer function is not as it must
-///   be; LEAFLESS_E_UTF8; LEAFLESS_E_NO_MEMORY. The picture is then as it was.
+/// - Result: the picture with the legend; in `*covered` the box that it covers, all zero if the picture is
+///   smaller than 160 x 120 pixels, which has no legend.
+/// - Errors: LEAFLESS_E_ARGUMENT unless the sides are 1 to 16384 pixels, or if the transfer function is not
+///   as it must be; LEAFLESS_E_UTF8; LEAFLESS_E_NO_MEMORY. The picture is then as it was.
 /// - Untrusted input: any bytes.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn leafless_picture_draw_bar(
@@ -282,10 +286,11 @@ pub struct leafless_legend_name {
     pub reserved: u32,
 }
 
-/// Draws boxes of colours with their names into a picture, under a title, on a light panel. Names that find no room are
-/// left out, or cut.
+/// Draws boxes of colours with their names into a picture, under a title, on a light panel. Names that find
+/// no room are left out, or cut.
 ///
-/// - Buffers: `colours`, `title`, `side` and `covered` as leafless_picture_draw_bar; `names`, `name_count` structs.
+/// - Buffers: `colours`, `title`, `side` and `covered` as leafless_picture_draw_bar; `names`, `name_count`
+///   structs.
 /// - Result: as leafless_picture_draw_bar; no legend either if there is neither a title nor a name.
 /// - Errors: as leafless_picture_draw_bar.
 /// - Untrusted input: any bytes.

@@ -12,12 +12,12 @@ use leafless::layout::{Beside, Layout, Neighbour, Placed, Standing};
 use leafless::query::GapVerdict;
 use std::sync::{RwLock, RwLockReadGuard, RwLockWriteGuard, TryLockError, TryLockResult};
 
-/// A container with obstacles, items, and the places of copies of these items. Solids are prepared once, when the layout is
-/// made. Copies are numbered from 0, in the order in which they were placed.
+/// A container with obstacles, items, and the places of copies of these items. Solids are prepared once, when
+/// the layout is made. Copies are numbered from 0, in the order in which they were placed.
 ///
-/// While one call changes it, every other call returns LEAFLESS_E_BUSY, from another thread as from the host's functions
-/// that are asked about a cell. While another call reads it, changing it returns LEAFLESS_E_BUSY. Calls that read it may
-/// be made at once from any number of threads.
+/// While one call changes it, every other call returns LEAFLESS_E_BUSY, from another thread as from the
+/// host's functions that are asked about a cell. While another call reads it, changing it returns
+/// LEAFLESS_E_BUSY. Calls that read it may be made at once from any number of threads.
 pub struct leafless_layout(RwLock<Layout>);
 
 /// To read a layout, unless another call changes it.
@@ -122,16 +122,16 @@ impl From<&Neighbour> for leafless_neighbour {
 pub struct leafless_standing {
     /// sizeof(leafless_standing).
     pub struct_size: u32,
-    /// A leafless_gap_verdict. YES: the copy is proven to lie in the container, to overlap with nothing, and to be as far from
-    /// everything as it should be. NO: one of these is proven to be wrong.
+    /// A leafless_gap_verdict. YES: the copy is proven to lie in the container, to overlap with nothing, and
+    /// to be as far from everything as it should be. NO: one of these is proven to be wrong.
     pub verdict: u32,
-    /// How many neighbours are in the way, or may be: those of which YES is not proven. All are counted; no more than the first
-    /// 256 are told.
+    /// How many neighbours are in the way, or may be: those of which YES is not proven. All are counted; no
+    /// more than the first 256 are told.
     pub conflict_count: u64,
     /// Cells that were split.
     pub splits: u64,
-    /// If `has_nearest`, what is next to the copy, but for the wall: the gap holds the least of all distances. Else it is UNDECIDED
-    /// about the wall.
+    /// If `has_nearest`, what is next to the copy, but for the wall: the gap holds the least of all
+    /// distances. Else it is UNDECIDED about the wall.
     pub nearest: leafless_neighbour,
     /// Whether there is anything else in the container.
     pub has_nearest: bool,
@@ -176,14 +176,15 @@ impl From<&Standing> for leafless_placed_standing {
     }
 }
 
-/// A layout of what a bay holds, in which nothing is placed. It takes the time that its solids take to be prepared, once each.
+/// A layout of what a bay holds, in which nothing is placed. It takes the time that its solids take to be
+/// prepared, once each.
 ///
 /// - Buffers: `options`, one struct or NULL; `layout`, one pointer.
 /// - Result: `*layout`.
-/// - Errors: LEAFLESS_E_ARGUMENT if the container or an obstacle has no bounds, or no extent along an axis; LEAFLESS_E_CALLBACK;
-///   LEAFLESS_E_DAMAGED; LEAFLESS_E_CANCELLED; LEAFLESS_E_NO_MEMORY.
-/// - Ownership: the layout shares the solids. The bay may be changed and freed, which does not concern the layout. Give
-///   `*layout` back with leafless_layout_free.
+/// - Errors: LEAFLESS_E_ARGUMENT if the container or an obstacle has no bounds, or no extent along an axis;
+///   LEAFLESS_E_CALLBACK; LEAFLESS_E_DAMAGED; LEAFLESS_E_CANCELLED; LEAFLESS_E_NO_MEMORY.
+/// - Ownership: the layout shares the solids. The bay may be changed and freed, which does not concern the
+///   layout. Give `*layout` back with leafless_layout_free.
 /// - Untrusted input: any solids.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn leafless_layout_new(
@@ -210,12 +211,15 @@ pub unsafe extern "C" fn leafless_layout_free(layout: *mut leafless_layout) {
     unsafe { discard(layout) }
 }
 
-/// Places a copy of an item, wherever that is. Nothing is checked, and the count of the item is not looked at.
+/// Places a copy of an item, wherever that is. Nothing is checked, and the count of the item is not looked
+/// at.
 ///
-/// - Buffers: `matrix`, 12 numbers, the rows of [M | t], where a point p of the item goes to M p + t; `number`, one number.
+/// - Buffers: `matrix`, 12 numbers, the rows of [M | t], where a point p of the item goes to M p + t;
+///   `number`, one number.
 /// - Result: `*number`, the number of the copy, which is greater by one than that of the last.
-/// - Errors: LEAFLESS_E_ARGUMENT if there is no such item; if an entry is neither 0 nor of a magnitude between 2^-64 and 2^64; if
-///   M mirrors, or stretches lengths by more than 10^-9 of them; LEAFLESS_E_NO_MEMORY; LEAFLESS_E_BUSY.
+/// - Errors: LEAFLESS_E_ARGUMENT if there is no such item; if an entry is neither 0 nor of a magnitude
+///   between 2^-64 and 2^64; if M mirrors, or stretches lengths by more than 10^-9 of them;
+///   LEAFLESS_E_NO_MEMORY; LEAFLESS_E_BUSY.
 /// - Threads: any; LEAFLESS_E_BUSY while another call uses the layout.
 /// - Untrusted input: any numbers.
 ///
@@ -274,7 +278,8 @@ pub unsafe extern "C" fn leafless_layout_remove(
 
 /// Which copies stand where, in the order of their numbers.
 ///
-/// - Buffers: `placements`, room for `capacity` structs, or NULL to ask for their number only; `count`, one number.
+/// - Buffers: `placements`, room for `capacity` structs, or NULL to ask for their number only; `count`, one
+///   number.
 /// - Result: `*count`; `placements`.
 /// - Errors: LEAFLESS_E_BUFFER if the capacity is too small; LEAFLESS_E_BUSY.
 /// - Threads: any; LEAFLESS_E_BUSY while another call changes the layout.
@@ -318,17 +323,19 @@ pub unsafe extern "C" fn leafless_layout_placement_at(
     })
 }
 
-/// Whether a copy may stand where it does, what is in its way, and what is next to it. Only what is near is looked at: what boxes
-/// tell apart costs nothing.
+/// Whether a copy may stand where it does, what is in its way, and what is next to it. Only what is near is
+/// looked at: what boxes tell apart costs nothing.
 ///
-/// A pair of closed meshes takes some ten microseconds. Other pairs take splits. `max_splits` limits their number for each pair,
-/// which is 4 096 if that is 0; once it is spent, the answer is UNDECIDED.
+/// A pair of closed meshes takes some ten microseconds. Other pairs take splits. `max_splits` limits their
+/// number for each pair, which is 4 096 if that is 0; once it is spent, the answer is UNDECIDED.
 ///
-/// - Buffers: `options`, one struct or NULL; `conflicts`, room for `capacity` structs, or NULL; `standing`, one struct.
-/// - Result: `*standing`; in `conflicts` the first `capacity` neighbours that are in the way, or may be, and no more than 256.
-/// - Errors: LEAFLESS_E_ARGUMENT if there is no copy of this number; LEAFLESS_E_FRAME if a solid belongs to another frame;
-///   LEAFLESS_E_CALLBACK; LEAFLESS_E_DAMAGED; LEAFLESS_E_CANCELLED; LEAFLESS_E_NO_MEMORY; LEAFLESS_E_BUSY. A `capacity` that is
-///   too small is no error.
+/// - Buffers: `options`, one struct or NULL; `conflicts`, room for `capacity` structs, or NULL; `standing`,
+///   one struct.
+/// - Result: `*standing`; in `conflicts` the first `capacity` neighbours that are in the way, or may be, and
+///   no more than 256.
+/// - Errors: LEAFLESS_E_ARGUMENT if there is no copy of this number; LEAFLESS_E_FRAME if a solid belongs to
+///   another frame; LEAFLESS_E_CALLBACK; LEAFLESS_E_DAMAGED; LEAFLESS_E_CANCELLED; LEAFLESS_E_NO_MEMORY;
+///   LEAFLESS_E_BUSY. A `capacity` that is too small is no error.
 /// - Threads: any; LEAFLESS_E_BUSY while another call changes the layout.
 /// - Untrusted input: any number; the default of `max_splits` bounds the work.
 #[unsafe(no_mangle)]
@@ -352,11 +359,11 @@ pub unsafe extern "C" fn leafless_layout_check(
     })
 }
 
-/// As leafless_layout_check for all copies, in the order of their numbers, but without what is next to them. The results are the
-/// same for any number of threads.
+/// As leafless_layout_check for all copies, in the order of their numbers, but without what is next to them.
+/// The results are the same for any number of threads.
 ///
-/// - Buffers: `options`, one struct or NULL; `standings`, room for `capacity` structs, or NULL to ask for their number only, for
-///   which nothing is checked; `count`, one number.
+/// - Buffers: `options`, one struct or NULL; `standings`, room for `capacity` structs, or NULL to ask for
+///   their number only, for which nothing is checked; `count`, one number.
 /// - Result: `*count`, the number of copies; `standings`.
 /// - Errors: as leafless_layout_check, and LEAFLESS_E_BUFFER if the capacity is too small.
 /// - Threads: any; uses as many as `options` says; LEAFLESS_E_BUSY while another call changes the layout.

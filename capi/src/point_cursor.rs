@@ -89,16 +89,17 @@ pub unsafe extern "C" fn leafless_point_cursor_tag_at(
     })
 }
 
-/// Point queries by way of a table of all cells of one level, where most points are decided: about twice as fast as
-/// leafless_octree_contains for points anywhere. The table takes 4 * 8^level bytes: 1 MiB for level 6, 64 MiB for
-/// level 8. Questions do not change it: any threads may ask at once.
+/// Point queries by way of a table of all cells of one level, where most points are decided: about twice as
+/// fast as leafless_octree_contains for points anywhere. The table takes 4 * 8^level bytes: 1 MiB for level
+/// 6, 64 MiB for level 8. Questions do not change it: any threads may ask at once.
 pub struct leafless_point_table(Yoke<PointTable<'static>, Arc<leafless_octree>>);
 
 /// Makes a point table.
 ///
 /// - Buffers: `table`, one pointer; `table_level`, one.
-/// - Result: `*table`; `*table_level`: the level of the table's cells, `level` or the next coarser one that the
-///   octree's arrays lead to, which hold two levels each. Levels beyond 8, and beyond the octree's depth, count as these.
+/// - Result: `*table`; `*table_level`: the level of the table's cells, `level` or the next coarser one that
+///   the octree's arrays lead to, which hold two levels each. Levels beyond 8, and beyond the octree's depth,
+///   count as these.
 /// - Errors: LEAFLESS_E_NO_MEMORY.
 /// - Ownership: the table shares the octree, which may be freed; give `*table` back with
 ///   leafless_point_table_free.

@@ -211,9 +211,9 @@ impl leafless_polyhedron_arrays {
 ///
 /// - Buffers: `arrays`, one struct; what its pointers lead to must not change during the call.
 ///   `deviation_model`, one number, or NULL if it is not wanted; `mesh`, one pointer.
-/// - Result: `*mesh`, with the attributes `face`, `shell` and `solid` (leafless_mesh_peek_attribute_at): the numbers of
-///   the parts that each triangle belongs to; `*deviation_model`, how far a corner lies beside the plane of its face at
-///   most.
+/// - Result: `*mesh`, with the attributes `face`, `shell` and `solid` (leafless_mesh_peek_attribute_at): the
+///   numbers of the parts that each triangle belongs to; `*deviation_model`, how far a corner lies beside the
+///   plane of its face at most.
 /// - Errors: LEAFLESS_E_MESH, with the numbers of loop, face, shell or vertices in the message, if the arrays
 ///   are not such solids, if a coordinate is infinite, not a number, or beyond ±2^256, if there is no solid,
 ///   or if there are more than 2^32 - 1 of anything; LEAFLESS_E_ARGUMENT if a type, a stride, the scale or

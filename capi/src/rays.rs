@@ -12,8 +12,8 @@ use leafless::memory;
 use leafless::query::{Obstacle, RayHit, RaySpans, Sight, line_of_sight, ray_spans};
 use leafless::{Ray, cast_rays};
 
-/// A half-line or a segment: the points origin + t · direction with 0 ≤ t ≤ t_last. A coordinate is zero or has
-/// a magnitude between 2^-256 and 2^256.
+/// A half-line or a segment: the points origin + t · direction with 0 ≤ t ≤ t_last. A coordinate is zero or
+/// has a magnitude between 2^-256 and 2^256.
 #[derive(Clone, Copy)]
 #[repr(C)]
 pub struct leafless_ray {
@@ -39,18 +39,19 @@ impl TryFrom<&leafless_ray> for Ray {
 #[repr(C)]
 pub struct leafless_ray_hit {
     /// The least t at which the ray is in the solid lies in this interval: before `lower` the ray is proven
-    /// outside, at `upper` inside. `upper` is INFINITY if the ray is nowhere proven inside; then it may miss the
-    /// solid. Both are INFINITY if nothing stops the ray.
+    /// outside, at `upper` inside. `upper` is INFINITY if the ray is nowhere proven inside; then it may miss
+    /// the solid. Both are INFINITY if nothing stops the ray.
     pub t: leafless_interval,
-    /// The outward normal of the face by which the ray enters the cell, or of the surface where the solid knows
-    /// it better. Its length is 1 but for rounding; zero if the ray starts in the cell, or nothing stops it.
+    /// The outward normal of the face by which the ray enters the cell, or of the surface where the solid
+    /// knows it better. Its length is 1 but for rounding; zero if the ray starts in the cell, or nothing
+    /// stops it.
     pub normal: [f64; 3],
     /// The place of the first cell that stops the ray among those of its level, per axis.
     pub cell: [u32; 3],
     /// The cell's level; 0 is the universe.
     pub level: u32,
-    /// The number of the surface that stops the ray, if the solid answers rays itself: of a mesh, the triangle's. Else, and
-    /// where the ray meets what closes a hole of a mesh, UINT32_MAX.
+    /// The number of the surface that stops the ray, if the solid answers rays itself: of a mesh, the
+    /// triangle's. Else, and where the ray meets what closes a hole of a mesh, UINT32_MAX.
     pub surface: u32,
     /// Whether something stops the ray.
     pub is_hit: bool,
@@ -123,7 +124,8 @@ fn ray(index: usize, ray: &leafless_ray) -> Result<Ray, Failure> {
 }
 
 /// Where rays first meet an octree's cells, whatever they prove of the solid that it was made from. What lies
-/// outside of the universe does not count. At most 3 · 2^depth cells a ray are looked at, about a dozen as a rule.
+/// outside of the universe does not count. At most 3 · 2^depth cells a ray are looked at, about a dozen as a
+/// rule.
 ///
 /// - Buffers: `rays`, `count` structs; `hits`, room for `count`. Both may be NULL if `count` is 0. `on` is a
 ///   leafless_obstacle.
@@ -174,10 +176,10 @@ pub unsafe extern "C" fn leafless_octree_cast_rays(
     })
 }
 
-/// Where rays first meet a solid, without an octree, as far as cells of the frame tell, and what the solid knows
-/// of the surface in the finest of them. What lies outside of the universe does not count. A ray splits the
-/// PARTIAL cells that it passes up to the first FULL one: O(depth) cells across a surface, up to O(2^depth)
-/// along one.
+/// Where rays first meet a solid, without an octree, as far as cells of the frame tell, and what the solid
+/// knows of the surface in the finest of them. What lies outside of the universe does not count. A ray splits
+/// the PARTIAL cells that it passes up to the first FULL one: O(depth) cells across a surface, up to
+/// O(2^depth) along one.
 ///
 /// - Buffers: `frame`, one struct; `rays`, `count` structs; `options`, one struct or NULL, of which
 ///   `max_splits` counts for each ray by itself: cells that were not split count as PARTIAL; `hits`, room for
@@ -243,16 +245,16 @@ unsafe fn write_spans(
     }
 }
 
-/// Where a ray is in an octree's cells, whatever they prove of the solid that it was made from: intervals of t
-/// that ascend, of which no two of a list meet. What lies outside of the universe does not count. O(cells along
-/// the ray · depth).
+/// Where a ray is in an octree's cells, whatever they prove of the solid that it was made from: intervals of
+/// t that ascend, of which no two of a list meet. What lies outside of the universe does not count. O(cells
+/// along the ray · depth).
 ///
-/// - Buffers: `ray`, one struct; `inner` and `outer`, room for `inner_capacity` and `outer_capacity` structs, each
-///   NULL to ask for its count only; `inner_count` and `outer_count`, one number each.
+/// - Buffers: `ray`, one struct; `inner` and `outer`, room for `inner_capacity` and `outer_capacity` structs,
+///   each NULL to ask for its count only; `inner_count` and `outer_count`, one number each.
 /// - Result: `inner`, where the ray is in FULL cells, rounded inward; `outer`, where it is in FULL or PARTIAL
 ///   cells, rounded outward; their counts.
-/// - Errors: LEAFLESS_E_ARGUMENT if the ray is not as leafless_ray says; LEAFLESS_E_BUFFER if a capacity is too
-///   small: nothing is written then; LEAFLESS_E_NO_MEMORY.
+/// - Errors: LEAFLESS_E_ARGUMENT if the ray is not as leafless_ray says; LEAFLESS_E_BUFFER if a capacity is
+///   too small: nothing is written then; LEAFLESS_E_NO_MEMORY.
 /// - Untrusted input: any octree, any numbers; damage reads as PARTIAL.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn leafless_octree_ray_spans(
@@ -273,17 +275,17 @@ pub unsafe extern "C" fn leafless_octree_ray_spans(
     })
 }
 
-/// Where a ray is in a solid, without an octree, as far as cells of the frame tell: intervals of t that ascend, of
-/// which no two of a list meet. What lies outside of the universe does not count. The ray splits all PARTIAL cells
-/// that it passes: O(depth) cells where it crosses a surface, up to O(2^depth) along one. Asking for the counts
-/// costs as much as asking for the intervals.
+/// Where a ray is in a solid, without an octree, as far as cells of the frame tell: intervals of t that
+/// ascend, of which no two of a list meet. What lies outside of the universe does not count. The ray splits
+/// all PARTIAL cells that it passes: O(depth) cells where it crosses a surface, up to O(2^depth) along one.
+/// Asking for the counts costs as much as asking for the intervals.
 ///
 /// - Buffers: as leafless_octree_ray_spans; `frame`, one struct; `options`, one struct or NULL, of which
 ///   `max_splits` counts: cells that were not split count as PARTIAL.
-/// - Result: `inner`, where the ray is proven inside, rounded inward; `outer`, where it is not proven outside,
-///   rounded outward; their counts.
-/// - Errors: LEAFLESS_E_ARGUMENT if the ray is not as leafless_ray says; LEAFLESS_E_BUFFER if a capacity is too
-///   small: nothing is written then; else as leafless_solid_contains_many.
+/// - Result: `inner`, where the ray is proven inside, rounded inward; `outer`, where it is not proven
+///   outside, rounded outward; their counts.
+/// - Errors: LEAFLESS_E_ARGUMENT if the ray is not as leafless_ray says; LEAFLESS_E_BUFFER if a capacity is
+///   too small: nothing is written then; else as leafless_solid_contains_many.
 /// - Untrusted input: any solid, any numbers; set `max_splits` where the depth or the solid is not your own
 ///   choice.
 #[unsafe(no_mangle)]
@@ -308,12 +310,12 @@ pub unsafe extern "C" fn leafless_solid_ray_spans(
     })
 }
 
-/// Whether two points see each other past a solid, without an octree, as far as cells of the frame tell. If the
-/// solid may go on outside of the universe and a point lies there, the answer is not LEAFLESS_SIGHT_CLEAR. Costs
-/// as much as one ray of leafless_solid_cast_rays.
+/// Whether two points see each other past a solid, without an octree, as far as cells of the frame tell. If
+/// the solid may go on outside of the universe and a point lies there, the answer is not
+/// LEAFLESS_SIGHT_CLEAR. Costs as much as one ray of leafless_solid_cast_rays.
 ///
-/// - Buffers: `frame`, one struct; `from_model` and `to_model`, 3 numbers each; `options`, one struct or NULL,
-///   of which `max_splits` counts: cells that were not split count as PARTIAL; `sight`, one.
+/// - Buffers: `frame`, one struct; `from_model` and `to_model`, 3 numbers each; `options`, one struct or
+///   NULL, of which `max_splits` counts: cells that were not split count as PARTIAL; `sight`, one.
 /// - Result: `*sight`.
 /// - Errors: LEAFLESS_E_ARGUMENT if the points are equal, or a coordinate is not zero and not of a magnitude
 ///   between 2^-256 and 2^256; else as leafless_solid_contains_many.

@@ -20,8 +20,8 @@ use std::path::Path;
 /// polygon, and import of meshes), with these calls besides: halfspace([a, b, c, d]), which is a x + b y + c
 /// z + d ≥ 0, quadric([10 numbers]), power([A, a, n1], [B, b, n2], [C, c, n3], R), torus(major, minor),
 /// mesh("file.stl") and octree("file.lfl"). Curved shapes are exact, but for those with a $fn of 12 or less,
-/// which are the polygons, prisms and polyhedra that OpenSCAD draws; leafless_scene_options ask for others. What
-/// is not supported (hull, minkowski, text, projection and others) is refused by name.
+/// which are the polygons, prisms and polyhedra that OpenSCAD draws; leafless_scene_options ask for others.
+/// What is not supported (hull, minkowski, text, projection and others) is refused by name.
 ///
 /// Immutable: all its functions may be called at once from any number of threads, but leafless_scene_free
 /// needs the reference that it gives back for itself.
@@ -83,15 +83,15 @@ unsafe fn options<'a>(
     Ok((SceneOptions::with_facets(facets), (!given.folder.is_null()).then_some(Path::new(folder))))
 }
 
-/// Reads a scene, a text in UTF-8. Files that it names are looked for beside it, or in the folder of the options
-/// for a text in memory.
+/// Reads a scene, a text in UTF-8. Files that it names are looked for beside it, or in the folder of the
+/// options for a text in memory.
 ///
 /// - Buffers: `source`, one struct, with LEAFLESS_ACCESS_COPY; `options`, one struct, or NULL; `scene`, one
 ///   pointer.
 /// - Result: `*scene`.
 /// - Errors: LEAFLESS_E_SCENE, with line and column in the message, for whatever is wrong with the text or a
-///   file that it names, also if there is no folder; LEAFLESS_E_ARGUMENT if there are a path and a folder; LEAFLESS_E_IO if the file itself cannot be read;
-///   LEAFLESS_E_UTF8; LEAFLESS_E_NO_MEMORY.
+///   file that it names, also if there is no folder; LEAFLESS_E_ARGUMENT if there are a path and a folder;
+///   LEAFLESS_E_IO if the file itself cannot be read; LEAFLESS_E_UTF8; LEAFLESS_E_NO_MEMORY.
 /// - Ownership: give `*scene` back with leafless_scene_free.
 /// - Untrusted input: any text; nesting costs memory, not stack, and memory is linear in the text and in the
 ///   files that it names; with LEAFLESS_FACETS_POLYGON a ball may take memory for half a million half-spaces.

@@ -39,15 +39,15 @@ pub(super) fn give_any(solid: AnySolid) -> *mut leafless_solid {
 /// point is inside: a cell is FULL or EMPTY if that is proven for all of its points, and others are PARTIAL
 /// though no triangle cuts them. leafless_mesh_inspect tells whether to expect them.
 ///
-/// Rays, points, boxes and distances are told without cells: in some microseconds each. A mesh with holes looks
-/// at all edges of its holes for a question, which takes some nanoseconds an edge, and asks its cells of rays
-/// that come very near to such an edge, of distances and boxes next to a hole, and of all but points if there
-/// are more than 16384 edges. The first such question makes what that takes, and the solid keeps it: a tree over
-/// the triangles (O(t log t): 0.1 to 0.3 microseconds a triangle; 36 bytes a triangle, which leafless_solid_info
-/// tells), and for distances of a closed mesh, on which sides of its triangles the solid lies (about twice that
-/// time, and 1 byte), or the edges of holes (48 bytes an edge).
-/// So ask one question beforehand if the first is not to take longer than others. Placed solids take over the
-/// order of the tree, and make its boxes anew. Threads that ask first at the same time may each make it once.
+/// Rays, points, boxes and distances are told without cells: in some microseconds each. A mesh with holes
+/// looks at all edges of its holes for a question, which takes some nanoseconds an edge, and asks its cells
+/// of rays that come very near to such an edge, of distances and boxes next to a hole, and of all but points
+/// if there are more than 16384 edges. The first such question makes what that takes, and the solid keeps it:
+/// a tree over the triangles (O(t log t): 0.1 to 0.3 microseconds a triangle; 36 bytes a triangle, which
+/// leafless_solid_info tells), and for distances of a closed mesh, on which sides of its triangles the solid
+/// lies (about twice that time, and 1 byte), or the edges of holes (48 bytes an edge). So ask one question
+/// beforehand if the first is not to take longer than others. Placed solids take over the order of the tree,
+/// and make its boxes anew. Threads that ask first at the same time may each make it once.
 ///
 /// - Buffers: `solid`, one pointer. `fill` is a leafless_fill.
 /// - Result: `*solid`. Time is linear in the mesh (n log n in the edges of its boundary).
@@ -96,13 +96,15 @@ pub unsafe extern "C" fn leafless_solid_from_octree(
 pub struct leafless_solid_info {
     /// sizeof(leafless_solid_info).
     pub struct_size: u32,
-    /// Half-spaces that were evaluated so far, each at a point or over a box, for a solid that is made of half-spaces (see
-    /// leafless_solid_new_halfspace and what follows it) and perhaps others: by calls that have returned, and by lazy octrees
-    /// and the like that are given back. What else is made of the solid counts for itself. 0 for solids of other kinds.
+    /// Half-spaces that were evaluated so far, each at a point or over a box, for a solid that is made of
+    /// half-spaces (see leafless_solid_new_halfspace and what follows it) and perhaps others: by calls that
+    /// have returned, and by lazy octrees and the like that are given back. What else is made of the solid
+    /// counts for itself. 0 for solids of other kinds.
     pub evaluations: u64,
-    /// About how many bytes of memory (or of mapped files) the solid keeps alive: its own, those of the meshes, octrees and
-    /// samples that it shares, and those of the last frame that it was prepared for. An expression counts each of its parts
-    /// once, but two parts that share a mesh count the mesh twice. Objects of the host are not counted.
+    /// About how many bytes of memory (or of mapped files) the solid keeps alive: its own, those of the
+    /// meshes, octrees and samples that it shares, and those of the last frame that it was prepared for. An
+    /// expression counts each of its parts once, but two parts that share a mesh count the mesh twice.
+    /// Objects of the host are not counted.
     pub bytes: u64,
 }
 

@@ -17,9 +17,10 @@ use std::sync::Arc;
 
 /// The boundary of a solid: a mesh whose triangles know their surfaces, and its faces.
 ///
-/// A region is what hangs together on one surface, over edges of the mesh. On a plane it is one face: an outer loop, which runs
-/// counter-clockwise as seen from outside of the solid, and a loop around each hole, which runs the other way. On a curved surface its
-/// triangles are the faces. Two faces that meet in an edge have the same vertices there.
+/// A region is what hangs together on one surface, over edges of the mesh. On a plane it is one face: an
+/// outer loop, which runs counter-clockwise as seen from outside of the solid, and a loop around each hole,
+/// which runs the other way. On a curved surface its triangles are the faces. Two faces that meet in an edge
+/// have the same vertices there.
 ///
 /// Immutable: all its functions may be called at once from any number of threads, but leafless_boundary_free
 /// needs the reference that it gives back for itself.
@@ -44,7 +45,8 @@ pub enum leafless_surface_kind {
     LEAFLESS_SURFACE_KIND_CYLINDER = 3,
     /// The lines through `point_model` at an angle of `half_angle_radians` to `direction`.
     LEAFLESS_SURFACE_KIND_CONE = 4,
-    /// The points that are `minor_model` away from the circle of radius `radius_model` around `point_model`, across `direction`.
+    /// The points that are `minor_model` away from the circle of radius `radius_model` around `point_model`,
+    /// across `direction`.
     LEAFLESS_SURFACE_KIND_TORUS = 5,
     /// Any other surface of degree two.
     LEAFLESS_SURFACE_KIND_QUADRIC = 6,
@@ -52,8 +54,8 @@ pub enum leafless_surface_kind {
 
 /// A surface in model space. Fields that the kind does not use are 0.
 ///
-/// The numbers are those of the exact surface, rounded. A surface of degree two has the name of a ball, a cylinder or a cone if its
-/// coefficients are those of one to 10^-9 of their size.
+/// The numbers are those of the exact surface, rounded. A surface of degree two has the name of a ball, a
+/// cylinder or a cone if its coefficients are those of one to 10^-9 of their size.
 #[derive(Clone, Copy)]
 #[repr(C)]
 pub struct leafless_boundary_surface {
@@ -61,9 +63,11 @@ pub struct leafless_boundary_surface {
     pub kind: leafless_surface_kind,
     /// 0.
     pub reserved: u32,
-    /// Of a ball and a torus the centre, of a cylinder the point of the axis that is nearest to the origin, of a cone the apex.
+    /// Of a ball and a torus the centre, of a cylinder the point of the axis that is nearest to the origin,
+    /// of a cone the apex.
     pub point_model: [f64; 3],
-    /// Of a plane the normal, which points out of the half-space that it bounds; of a cylinder, a cone and a torus the axis. Of length 1.
+    /// Of a plane the normal, which points out of the half-space that it bounds; of a cylinder, a cone and a
+    /// torus the axis. Of length 1.
     pub direction: [f64; 3],
     /// Of a plane: its distance from the origin, along the normal.
     pub offset_model: f64,
@@ -73,8 +77,8 @@ pub struct leafless_boundary_surface {
     pub minor_model: f64,
     /// Of a cone: the angle between axis and surface, between 0 and π/2.
     pub half_angle_radians: f64,
-    /// Of a quadric: the factors of x², y², z², xy, yz, zx, x, y, z and 1, as leafless_solid_new_quadric takes them. The largest
-    /// one is between 1/2 and 1.
+    /// Of a quadric: the factors of x², y², z², xy, yz, zx, x, y, z and 1, as leafless_solid_new_quadric
+    /// takes them. The largest one is between 1/2 and 1.
     pub coefficients: [f64; 10],
 }
 
@@ -138,7 +142,8 @@ impl From<SurfaceShape> for leafless_boundary_surface {
 #[derive(Clone, Copy)]
 #[repr(C)]
 pub struct leafless_boundary_region {
-    /// The number of its surface among those of leafless_boundary_surfaces; UINT32_MAX where the boundary is known to a cell only.
+    /// The number of its surface among those of leafless_boundary_surfaces; UINT32_MAX where the boundary is
+    /// known to a cell only.
     pub surface: u32,
     /// Its first face. The others follow.
     pub first_face: u32,
@@ -148,8 +153,9 @@ pub struct leafless_boundary_region {
     pub triangle_count: u32,
     /// The area of these triangles.
     pub area_model: f64,
-    /// Whether the normal of the surface points into the solid: that of a plane as `direction` says, that of a ball, a cylinder, a cone
-    /// and a torus away from its centre, axis or circle. So a bore is turned, and a pin is not.
+    /// Whether the normal of the surface points into the solid: that of a plane as `direction` says, that of
+    /// a ball, a cylinder, a cone and a torus away from its centre, axis or circle. So a bore is turned, and
+    /// a pin is not.
     pub is_turned: bool,
 }
 
@@ -172,10 +178,11 @@ impl From<&BoundaryRegion> for leafless_boundary_region {
 pub struct leafless_boundary_report {
     /// sizeof(leafless_boundary_report).
     pub struct_size: u32,
-    /// No point of the mesh is further from the boundary of the solid than that, and no point of the boundary from the mesh
-    /// (model units). That is proven; infinite if nothing is.
+    /// No point of the mesh is further from the boundary of the solid than that, and no point of the boundary
+    /// from the mesh (model units). That is proven; infinite if nothing is.
     pub deviation_model: f64,
-    /// Pairs of triangles that intersect each other: 0 but where cells of the frame's depth do not tell surfaces apart.
+    /// Pairs of triangles that intersect each other: 0 but where cells of the frame's depth do not tell
+    /// surfaces apart.
     pub intersecting_pairs: u64,
     /// Cells that the boundary passes through.
     pub cells: u64,
@@ -191,25 +198,27 @@ pub struct leafless_boundary_report {
 
 output!(leafless_boundary_report);
 
-/// The boundary of a solid that knows its surfaces, as solids of half-spaces do, and octrees that keep theirs: its plane faces as they
-/// are, with triangles between their corners alone, and curved ones in chords that are no further from them than about
-/// `tolerance_model`. Edges are sharp, and corners are exact to rounding. The solid must end inside of the universe of the frame.
+/// The boundary of a solid that knows its surfaces, as solids of half-spaces do, and octrees that keep
+/// theirs: its plane faces as they are, with triangles between their corners alone, and curved ones in chords
+/// that are no further from them than about `tolerance_model`. Edges are sharp, and corners are exact to
+/// rounding. The solid must end inside of the universe of the frame.
 ///
-/// The mesh is closed, and exactly two triangles meet in each edge; where the solid touches itself, vertices lie at one place. Cells are
-/// split until at most three surfaces in each have a simple arrangement. Where more meet in a point, and where surfaces touch, they are
-/// split as far as the depth of the frame, which costs little: 12 to 16 is good for parts.
+/// The mesh is closed, and exactly two triangles meet in each edge; where the solid touches itself, vertices
+/// lie at one place. Cells are split until at most three surfaces in each have a simple arrangement. Where
+/// more meet in a point, and where surfaces touch, they are split as far as the depth of the frame, which
+/// costs little: 12 to 16 is good for parts.
 ///
-/// How far the mesh and the boundary are from each other is proven by the surfaces. Where that is more than the tolerance, cells are
-/// split, as far as the depth of the frame.
+/// How far the mesh and the boundary are from each other is proven by the surfaces. Where that is more than
+/// the tolerance, cells are split, as far as the depth of the frame.
 ///
 /// About 50 microseconds and 500 bytes a cell; threads share the proof.
 ///
 /// - Buffers: `frame`, one struct; `options`, one struct or NULL; `boundary`, one pointer.
 /// - Result: `*boundary`.
-/// - Errors: LEAFLESS_E_ARGUMENT if the solid is not known to end inside of the universe, or consists of something else than
-///   surfaces, as a mesh or a host program's function does, or `tolerance_model` is not between 2^-256 and 2^256;
-///   LEAFLESS_E_MESH if there would be more than 2^32 - 1 vertices, triangles or corners; LEAFLESS_E_DAMAGED;
-///   LEAFLESS_E_LIMIT; LEAFLESS_E_CANCELLED; LEAFLESS_E_NO_MEMORY.
+/// - Errors: LEAFLESS_E_ARGUMENT if the solid is not known to end inside of the universe, or consists of
+///   something else than surfaces, as a mesh or a host program's function does, or `tolerance_model` is not
+///   between 2^-256 and 2^256; LEAFLESS_E_MESH if there would be more than 2^32 - 1 vertices, triangles or
+///   corners; LEAFLESS_E_DAMAGED; LEAFLESS_E_LIMIT; LEAFLESS_E_CANCELLED; LEAFLESS_E_NO_MEMORY.
 /// - Ownership: `solid` stays as it is; give `*boundary` back with leafless_boundary_free.
 /// - Threads: any.
 /// - Untrusted input: any solid; set `max_nodes` where the depth or the solid is not your own choice.
@@ -249,7 +258,8 @@ pub unsafe extern "C" fn leafless_boundary_ref(
     guard(|| unsafe { refer(boundary, "boundary", reference) })
 }
 
-/// Gives back a reference to a boundary; with the last one the boundary is gone. Its mesh stays if it was asked for.
+/// Gives back a reference to a boundary; with the last one the boundary is gone. Its mesh stays if it was
+/// asked for.
 ///
 /// - Buffers: `boundary`, a handle or NULL, which does nothing.
 /// - Ownership: the reference is gone.
@@ -304,7 +314,8 @@ pub unsafe extern "C" fn leafless_boundary_mesh(
 
 /// The surfaces that a solid is made of, by their kinds and numbers. Some may bound nothing.
 ///
-/// - Buffers: `surfaces`, room for `capacity` structs, or NULL to ask for the count only; `count`, one number.
+/// - Buffers: `surfaces`, room for `capacity` structs, or NULL to ask for the count only; `count`, one
+///   number.
 /// - Result: `*count`; the surfaces.
 /// - Errors: LEAFLESS_E_BUFFER if the capacity is too small.
 #[unsafe(no_mangle)]
@@ -365,12 +376,13 @@ pub unsafe extern "C" fn leafless_boundary_triangle_regions(
     })
 }
 
-/// The faces of a boundary where they lie, without a copy, as leafless_mesh_write_polygons and leafless_mesh_from_polyhedron take them:
-/// vertices of type double, which are those of the mesh, and indices of 32 bits.
+/// The faces of a boundary where they lie, without a copy, as leafless_mesh_write_polygons and
+/// leafless_mesh_from_polyhedron take them: vertices of type double, which are those of the mesh, and indices
+/// of 32 bits.
 ///
-/// A plane region is triangles, too, if its loops touch each other along edges, as they do where the solid touches itself, or if its
-/// corners lie further beside one plane than 10^-9 of the solid's extent. A shell around a void belongs to the smallest solid
-/// in which it lies.
+/// A plane region is triangles, too, if its loops touch each other along edges, as they do where the solid
+/// touches itself, or if its corners lie further beside one plane than 10^-9 of the solid's extent. A shell
+/// around a void belongs to the smallest solid in which it lies.
 ///
 /// - Buffers: `arrays`, one struct.
 /// - Result: `*arrays`.

@@ -11,21 +11,21 @@ use std::borrow::Cow;
 use std::io::{self, Write};
 use std::path::Path;
 
-/// How a source is used. Octrees, tri-dexel models and samples in memory can be used where they lie; everything else is
-/// read with LEAFLESS_ACCESS_COPY.
+/// How a source is used. Octrees, tri-dexel models and samples in memory can be used where they lie;
+/// everything else is read with LEAFLESS_ACCESS_COPY.
 #[derive(Clone, Copy, PartialEq)]
 #[repr(u32)]
 pub enum leafless_access {
-    /// It is read into memory, and all of it is verified: the plain way, and the one for files that may not be
-    /// trusted. Later changes of the file or of the bytes do not matter. Bytes may lie on any address.
+    /// It is read into memory, and all of it is verified: the plain way, and the one for files that may not
+    /// be trusted. Later changes of the file or of the bytes do not matter. Bytes may lie on any address.
     LEAFLESS_ACCESS_COPY = 0,
-    /// It is used where it lies: a file is mapped into memory, bytes are viewed. Only its header, section table,
-    /// bounds, level table or windows, and metadata are checked: some microseconds for any length. What queries
-    /// touch is read when they do. Of what is damaged elsewhere queries answer undecided or wrong, but stay in
-    /// bounds and end.
+    /// It is used where it lies: a file is mapped into memory, bytes are viewed. Only its header, section
+    /// table, bounds, level table or windows, and metadata are checked: some microseconds for any length.
+    /// What queries touch is read when they do. Of what is damaged elsewhere queries answer undecided or
+    /// wrong, but stay in bounds and end.
     LEAFLESS_ACCESS_MAP = 1,
-    /// As LEAFLESS_ACCESS_MAP, but all of it is verified first, in one scan. Who writes to it afterwards undoes
-    /// that.
+    /// As LEAFLESS_ACCESS_MAP, but all of it is verified first, in one scan. Who writes to it afterwards
+    /// undoes that.
     LEAFLESS_ACCESS_MAP_VERIFIED = 2,
 }
 
@@ -51,9 +51,9 @@ enumeration! {
 /// it and shares them: cursors, solids, channels, models with other metadata, and all that was made of these.
 /// They are for files that are part of a program, or that the host maps itself.
 ///
-/// Untrusted input: with LEAFLESS_ACCESS_COPY any file and any bytes, and memory is at most a small multiple of
-/// their length, unless the function says more. With the other two any content too, but only where nobody else
-/// can change it.
+/// Untrusted input: with LEAFLESS_ACCESS_COPY any file and any bytes, and memory is at most a small multiple
+/// of their length, unless the function says more. With the other two any content too, but only where nobody
+/// else can change it.
 #[derive(Clone, Copy)]
 #[repr(C)]
 pub struct leafless_source {
@@ -88,12 +88,13 @@ pub type leafless_write_fn =
 /// complete; after LEAFLESS_OK the new one is on the disk. The bytes go to a temporary file in the same
 /// directory, which is synchronised with the disk and then renamed over the old file. On Linux the temporary
 /// file has no name until it is complete, so that nothing is left of it when the process is killed, where the
-/// file system has such files. Elsewhere a file `.leafless-….tmp` may stay behind. A file that is replaced keeps
-/// its permissions, its other hard links keep the old contents. A symbolic link is followed. What is no regular
-/// file, such as a pipe, is written to directly; a pipe that nobody reads raises SIGPIPE, and a file beyond the
-/// process's limit SIGXFSZ, if the host has not ignored them. A pipe that nobody has opened for reading is
-/// waited for, also if signal handlers run meanwhile. After an error, LEAFLESS_E_IO or another, the old file is
-/// as it was; only if the very last step fails, synchronising the directory, the new one is in place.
+/// file system has such files. Elsewhere a file `.leafless-….tmp` may stay behind. A file that is replaced
+/// keeps its permissions, its other hard links keep the old contents. A symbolic link is followed. What is no
+/// regular file, such as a pipe, is written to directly; a pipe that nobody reads raises SIGPIPE, and a file
+/// beyond the process's limit SIGXFSZ, if the host has not ignored them. A pipe that nobody has opened for
+/// reading is waited for, also if signal handlers run meanwhile. After an error, LEAFLESS_E_IO or another,
+/// the old file is as it was; only if the very last step fails, synchronising the directory, the new one is
+/// in place.
 ///
 /// A function. It is called with a few large pieces, from the first byte to the last. LEAFLESS_E_CALLBACK has
 /// what it returned in the message. Other errors come before anything is written.
@@ -149,8 +150,8 @@ impl<'a> Source<'a> {
 }
 
 /// # Safety
-/// `source` is NULL or misaligned, or a struct as it is declared, of which path and bytes stay and do not change
-/// as long as the result is used.
+/// `source` is NULL or misaligned, or a struct as it is declared, of which path and bytes stay and do not
+/// change as long as the result is used.
 unsafe fn named<'a>(
     source: *const leafless_source,
     names: [&'static str; 4],

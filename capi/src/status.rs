@@ -49,7 +49,8 @@ pub enum leafless_status {
     LEAFLESS_E_SOURCE = 18,
     /// A scene cannot be read.
     LEAFLESS_E_SCENE = 19,
-    /// A lazy octree or an editor is in use by another call, in another thread or around this one. Nothing was done.
+    /// A lazy octree or an editor is in use by another call, in another thread or around this one. Nothing
+    /// was done.
     LEAFLESS_E_BUSY = 20,
     /// A volume file cannot be read.
     LEAFLESS_E_VOLUME_FILE = 21,
@@ -164,8 +165,8 @@ pub extern "C" fn leafless_last_status() -> leafless_status {
     LAST.with_borrow(|last| last.status)
 }
 
-/// What a function of the host returned that ended the work, if that was the last failure in the calling thread
-/// (LEAFLESS_E_CALLBACK); else 0. So the host knows which of its functions it was, and why.
+/// What a function of the host returned that ended the work, if that was the last failure in the calling
+/// thread (LEAFLESS_E_CALLBACK); else 0. So the host knows which of its functions it was, and why.
 ///
 /// - Result: the number.
 /// - Threads: any; every thread has its own number.

@@ -28,19 +28,20 @@ pub enum leafless_surface_method {
     /// Simple marching cubes: all vertices are samples, all normals have one of 13 directions up to sign. The
     /// mesh is closed, but where its sheets touch, more than two triangles meet on an edge.
     LEAFLESS_SURFACE_METHOD_SIMPLE_MARCHING_CUBES = 1,
-    /// Coplanar shrink: the surface of simple marching cubes with far fewer triangles where it has plane parts.
-    /// All that lies in one plane becomes one region with straight edges. There are no cracks; triangles may be
-    /// long and thin.
+    /// Coplanar shrink: the surface of simple marching cubes with far fewer triangles where it has plane
+    /// parts. All that lies in one plane becomes one region with straight edges. There are no cracks;
+    /// triangles may be long and thin.
     LEAFLESS_SURFACE_METHOD_SHRINK = 2,
     /// Coplanar shrink in its published form, to compare with. It has cracks, so that the mesh is open where
     /// merged cells of several sizes meet.
     LEAFLESS_SURFACE_METHOD_SHRINK_PUBLISHED = 3,
-    /// Dual contouring, of solids alone: edges and corners stay sharp. Samples are the centres of cells. It is
-    /// leafless_tridexel_surface of a tri-dexel model with normals, which is made and dropped; that function also reports
-    /// what the mesh does not show.
+    /// Dual contouring, of solids alone: edges and corners stay sharp. Samples are the centres of cells. It
+    /// is leafless_tridexel_surface of a tri-dexel model with normals, which is made and dropped; that
+    /// function also reports what the mesh does not show.
     LEAFLESS_SURFACE_METHOD_DUAL_CONTOURING = 4,
-    /// Surface nets, of octrees alone: a vertex in each cube between samples that do not all lie on one side, in the middle of
-    /// where the surface crosses it. Steps of the cells are smoothed; exactly two triangles meet on every edge.
+    /// Surface nets, of octrees alone: a vertex in each cube between samples that do not all lie on one side,
+    /// in the middle of where the surface crosses it. Steps of the cells are smoothed; exactly two triangles
+    /// meet on every edge.
     LEAFLESS_SURFACE_METHOD_SURFACE_NETS = 5,
 }
 
@@ -55,8 +56,8 @@ enumeration! {
     }
 }
 
-/// To which end of an edge between an inside and an outside sample simple marching cubes and coplanar shrink move the
-/// vertex.
+/// To which end of an edge between an inside and an outside sample simple marching cubes and coplanar shrink
+/// move the vertex.
 #[derive(Clone, Copy)]
 #[repr(u32)]
 pub enum leafless_snap {
@@ -126,12 +127,13 @@ pub struct leafless_surface_options {
     pub struct_size: u32,
     /// A leafless_surface_method.
     pub method: Number<leafless_surface_method>,
-    /// Of LEAFLESS_SURFACE_METHOD_SIMPLE_MARCHING_CUBES and of both kinds of LEAFLESS_SURFACE_METHOD_SHRINK: a leafless_snap.
+    /// Of LEAFLESS_SURFACE_METHOD_SIMPLE_MARCHING_CUBES and of both kinds of LEAFLESS_SURFACE_METHOD_SHRINK:
+    /// a leafless_snap.
     pub snap: Number<leafless_snap>,
     /// Of octrees: a leafless_resolve. Solids decide all samples themselves.
     pub resolve: Number<leafless_resolve>,
-    /// Of LEAFLESS_SURFACE_METHOD_MARCHING_CUBES of solids: a leafless_vertex_placement. Octrees do not know where
-    /// their solid's surface is.
+    /// Of LEAFLESS_SURFACE_METHOD_MARCHING_CUBES of solids: a leafless_vertex_placement. Octrees do not know
+    /// where their solid's surface is.
     pub placement: Number<leafless_vertex_placement>,
     /// 0.
     pub reserved: u32,
@@ -205,11 +207,12 @@ impl leafless_surface_options {
 /// lie outside. Everything around the universe counts as outside, so that the mesh is closed there, too.
 ///
 /// Every edge is run along as often in one direction as in the other, but for
-/// LEAFLESS_SURFACE_METHOD_SHRINK_PUBLISHED. Triangles turn counter-clockwise as seen from outside; no two vertices
-/// are equal, and no triangle has a vertex twice. The order of vertices and triangles is always the same:
-/// that of the cells in Morton order, or for coplanar shrink that of places and planes. leafless_mesh_describe
-/// and leafless_mesh_copy hand the arrays out, leafless_mesh_inspect and leafless_mesh_area tell about them,
-/// leafless_mesh_intersecting_pairs finds triangles that meet, and leafless_mesh_write writes them.
+/// LEAFLESS_SURFACE_METHOD_SHRINK_PUBLISHED. Triangles turn counter-clockwise as seen from outside; no two
+/// vertices are equal, and no triangle has a vertex twice. The order of vertices and triangles is always the
+/// same: that of the cells in Morton order, or for coplanar shrink that of places and planes.
+/// leafless_mesh_describe and leafless_mesh_copy hand the arrays out, leafless_mesh_inspect and
+/// leafless_mesh_area tell about them, leafless_mesh_intersecting_pairs finds triangles that meet, and
+/// leafless_mesh_write writes them.
 ///
 /// Time is linear in the octree's array elements and the mesh: it grows with the surface, not with the
 /// volume. (Coplanar shrink takes O(n log n + n w) for n cells at the surface of which at most w lie along a
@@ -258,14 +261,14 @@ pub unsafe extern "C" fn leafless_octree_surface(
     })
 }
 
-/// The surface of a solid, which is sampled at the corners of the cells of a frame: 2^depth + 1 to an axis. Dual
-/// contouring samples at the centres.
-/// Else as leafless_octree_surface. What the solid has outside of the universe is cut off.
+/// The surface of a solid, which is sampled at the corners of the cells of a frame: 2^depth + 1 to an axis.
+/// Dual contouring samples at the centres. Else as leafless_octree_surface. What the solid has outside of the
+/// universe is cut off.
 ///
 /// Time is that of leafless_octree_build with LEAFLESS_RULE_SAMPLED on as many cells as there are corners,
-/// and for LEAFLESS_VERTEX_PLACEMENT_CROSSING a few questions to the solid for each vertex; memory as well. With
-/// crossings, vertices that lie at one place are one, and triangles without area are dropped. Where the solid
-/// has no thickness at a sample, more than two triangles may then meet on an edge.
+/// and for LEAFLESS_VERTEX_PLACEMENT_CROSSING a few questions to the solid for each vertex; memory as well.
+/// With crossings, vertices that lie at one place are one, and triangles without area are dropped. Where the
+/// solid has no thickness at a sample, more than two triangles may then meet on an edge.
 ///
 /// - Buffers: `frame`, one struct; `surface`, one struct or NULL, whose `resolve` and `source` are 0;
 ///   `options`, one struct or NULL; `mesh`, one pointer.
@@ -326,12 +329,12 @@ pub unsafe extern "C" fn leafless_solid_surface(
 /// Else as leafless_octree_surface; vertices that lie at one place are one, and there more than two triangles
 /// may meet on an edge. Time is linear in the samples, and in the surface.
 ///
-/// - Buffers: `band`, one struct, or NULL, as for leafless_solid_from_volume; `options`, one struct or NULL, of
-///   which limits do not matter; `mesh`, one pointer.
+/// - Buffers: `band`, one struct, or NULL, as for leafless_solid_from_volume; `options`, one struct or NULL,
+///   of which limits do not matter; `mesh`, one pointer.
 /// - Result: `*mesh`, the same for any number of threads, where the file says that the volume lies.
-/// - Errors: those of leafless_solid_from_volume; LEAFLESS_E_ARGUMENT if the volume lies so far from the origin
-///   that doubles cannot tell its voxels apart; LEAFLESS_E_MESH if there would be more than 2^32 - 1 vertices
-///   or triangles.
+/// - Errors: those of leafless_solid_from_volume; LEAFLESS_E_ARGUMENT if the volume lies so far from the
+///   origin that doubles cannot tell its voxels apart; LEAFLESS_E_MESH if there would be more than 2^32 - 1
+///   vertices or triangles.
 /// - Ownership: `volume` stays as it is; give `*mesh` back with leafless_mesh_free.
 /// - Threads: any; uses as many as `options` says.
 /// - Untrusted input: any volume.

@@ -20,9 +20,9 @@ use leafless_dexel_normals::*;
 
 /// A solid as intervals along the rays of a lattice, in one to three directions: a tri-dexel model.
 ///
-/// Rays run through the centres of the finest cells of a frame. Each has the sorted, disjoint intervals in which it
-/// runs inside of the solid. An interval holds its start and not its end, so that set algebra is exact. All directions
-/// agree about the centres of cells.
+/// Rays run through the centres of the finest cells of a frame. Each has the sorted, disjoint intervals in
+/// which it runs inside of the solid. An interval holds its start and not its end, so that set algebra is
+/// exact. All directions agree about the centres of cells.
 ///
 /// Immutable: all its functions may be called at once from any number of threads, but leafless_tridexel_free
 /// needs the reference that it gives back for itself. A leafless_tridexel_editor changes a copy in place.
@@ -47,8 +47,8 @@ pub enum leafless_axes {
 #[derive(Clone, Copy)]
 #[repr(u32)]
 pub enum leafless_dexel_ends {
-    /// Start and length in units of 2^-31 edges of the universe, 8 bytes an interval. An end is off by at most one
-    /// unit.
+    /// Start and length in units of 2^-31 edges of the universe, 8 bytes an interval. An end is off by at
+    /// most one unit.
     LEAFLESS_DEXEL_ENDS_FIXED = 0,
     /// Start and end as doubles, 16 bytes an interval.
     LEAFLESS_DEXEL_ENDS_DOUBLE = 1,
@@ -90,15 +90,15 @@ pub(super) fn axes(directions: [bool; 3]) -> u32 {
     (0..3).map(|axis| u32::from(directions[axis]) << axis).sum()
 }
 
-/// What a tri-dexel model stores. NULL means the defaults. All fields but the first may be zero, which is their
-/// default.
+/// What a tri-dexel model stores. NULL means the defaults. All fields but the first may be zero, which is
+/// their default.
 #[derive(Clone, Copy)]
 #[repr(C)]
 pub struct leafless_tridexel_format {
     /// sizeof(leafless_tridexel_format).
     pub struct_size: u32,
-    /// The axes that rays run along, a sum of leafless_axes; 0 means those of the operand if there is one, else
-    /// LEAFLESS_AXES_ALL.
+    /// The axes that rays run along, a sum of leafless_axes; 0 means those of the operand if there is one,
+    /// else LEAFLESS_AXES_ALL.
     pub directions: u32,
     /// A leafless_dexel_ends.
     pub ends: u32,
@@ -177,24 +177,25 @@ pub(super) fn give(model: TriDexel) -> *mut leafless_tridexel {
     handle(leafless_tridexel { model })
 }
 
-/// Makes the tri-dexel model of a solid on the lattice of a frame. O(rays + crossings). The result is the same bit for
-/// bit for any number of threads.
+/// Makes the tri-dexel model of a solid on the lattice of a frame. O(rays + crossings). The result is the
+/// same bit for bit for any number of threads.
 ///
-/// Under LEAFLESS_RULE_SAMPLED intervals are those of the solid on each ray. An end says of the centres of cells beside
-/// it just what the solid does; apart from that it is off by at most 2^-31 of the universe's edge, or 2^-36 with
-/// LEAFLESS_DEXEL_ENDS_DOUBLE. So it is with closed meshes, with half-spaces and expressions of them, and with octrees.
-/// Solids of other kinds, and open meshes around their holes, are sampled: an end between centres on different sides is
-/// narrowed down by cells to a depth of 20, and a wall between two neighbouring centres is missed. Under
-/// LEAFLESS_RULE_INNER and LEAFLESS_RULE_OUTER intervals are those of the solid's FULL cells, and of all that are not
-/// EMPTY.
+/// Under LEAFLESS_RULE_SAMPLED intervals are those of the solid on each ray. An end says of the centres of
+/// cells beside it just what the solid does; apart from that it is off by at most 2^-31 of the universe's
+/// edge, or 2^-36 with LEAFLESS_DEXEL_ENDS_DOUBLE. So it is with closed meshes, with half-spaces and
+/// expressions of them, and with octrees. Solids of other kinds, and open meshes around their holes, are
+/// sampled: an end between centres on different sides is narrowed down by cells to a depth of 20, and a wall
+/// between two neighbouring centres is missed. Under LEAFLESS_RULE_INNER and LEAFLESS_RULE_OUTER intervals
+/// are those of the solid's FULL cells, and of all that are not EMPTY.
 ///
-/// - Buffers: `frame`, one struct; `format`, one struct or NULL; `options`, one struct or NULL; `tridexel`, one
-///   pointer. `rule` is a leafless_rule.
+/// - Buffers: `frame`, one struct; `format`, one struct or NULL; `options`, one struct or NULL; `tridexel`,
+///   one pointer. `rule` is a leafless_rule.
 /// - Result: `*tridexel`.
-/// - Errors: LEAFLESS_E_ARGUMENT also for LEAFLESS_RULE_CERTIFIED, because an interval cannot be undecided, and if a
-///   field of `format` is wrong; LEAFLESS_E_FRAME if the solid belongs to another frame; LEAFLESS_E_NOT_SAMPLED if
-///   LEAFLESS_RULE_SAMPLED is asked of a solid that cannot decide points; LEAFLESS_E_CALLBACK; LEAFLESS_E_DAMAGED;
-///   LEAFLESS_E_LIMIT, also for 2^32 rays or intervals along one axis; LEAFLESS_E_CANCELLED; LEAFLESS_E_NO_MEMORY.
+/// - Errors: LEAFLESS_E_ARGUMENT also for LEAFLESS_RULE_CERTIFIED, because an interval cannot be undecided,
+///   and if a field of `format` is wrong; LEAFLESS_E_FRAME if the solid belongs to another frame;
+///   LEAFLESS_E_NOT_SAMPLED if LEAFLESS_RULE_SAMPLED is asked of a solid that cannot decide points;
+///   LEAFLESS_E_CALLBACK; LEAFLESS_E_DAMAGED; LEAFLESS_E_LIMIT, also for 2^32 rays or intervals along one
+///   axis; LEAFLESS_E_CANCELLED; LEAFLESS_E_NO_MEMORY.
 /// - Ownership: nothing is kept of the solid; give `*tridexel` back with leafless_tridexel_free.
 /// - Threads: any; uses as many as `options` says.
 /// - Untrusted input: any solid; set `max_bytes` where the depth or the solid is not your own choice.
@@ -232,8 +233,8 @@ pub unsafe extern "C" fn leafless_tridexel_ref(
     guard(|| unsafe { refer(tridexel, "tridexel", reference) })
 }
 
-/// Gives back a reference to a tri-dexel model. With the last one the model is gone, and with it the mapping of its file,
-/// unless a model with other metadata still shares its arrays.
+/// Gives back a reference to a tri-dexel model. With the last one the model is gone, and with it the mapping
+/// of its file, unless a model with other metadata still shares its arrays.
 ///
 /// - Buffers: `tridexel`, a handle or NULL, which does nothing.
 /// - Ownership: the reference is gone.
@@ -283,9 +284,9 @@ pub(super) fn described(
     }
 }
 
-/// Checks that a tri-dexel model is well-formed: intervals are in order, disjoint and inside of the universe. O(n).
-/// Whether the directions agree is not checked. Models that the library makes,
-/// opens or maps verified are well-formed.
+/// Checks that a tri-dexel model is well-formed: intervals are in order, disjoint and inside of the universe.
+/// O(n). Whether the directions agree is not checked. Models that the library makes, opens or maps verified
+/// are well-formed.
 ///
 /// - Result: LEAFLESS_OK if it is.
 /// - Errors: LEAFLESS_E_DAMAGED, with the first damage in the message.
@@ -295,7 +296,8 @@ pub unsafe extern "C" fn leafless_tridexel_check(tridexel: *const leafless_tride
     guard(|| unsafe { Ok(shared(tridexel, "tridexel")?.model.view().check()?) })
 }
 
-/// Whether two tri-dexel models store the same, bit for bit, on the same frame. Metadata does not count. O(n).
+/// Whether two tri-dexel models store the same, bit for bit, on the same frame. Metadata does not count.
+/// O(n).
 ///
 /// - Buffers: `equal`, one truth value.
 /// - Result: `*equal`.
@@ -312,15 +314,16 @@ pub unsafe extern "C" fn leafless_tridexel_equal(
     })
 }
 
-/// The tri-dexel model with one more fact in its metadata, or with another value of one; the arrays are shared. Names in
-/// use: "name", "units".
+/// The tri-dexel model with one more fact in its metadata, or with another value of one; the arrays are
+/// shared. Names in use: "name", "units".
 ///
 /// - Buffers: `key` and `value`, `key_length` and `value_length` bytes of UTF-8; `named`, one pointer.
 /// - Result: `*named`.
 /// - Errors: LEAFLESS_E_UTF8; LEAFLESS_E_ARGUMENT if all facts would take more than 1 MiB in a file, 8 bytes
 ///   and the two texts each; LEAFLESS_E_NO_MEMORY.
-/// - Ownership: the texts are copied. `*named` shares the arrays of `tridexel`, which may be freed: what must outlive
-///   `tridexel`, such as bytes that it views, must outlive `*named` too. Give that back with leafless_tridexel_free.
+/// - Ownership: the texts are copied. `*named` shares the arrays of `tridexel`, which may be freed: what must
+///   outlive `tridexel`, such as bytes that it views, must outlive `*named` too. Give that back with
+///   leafless_tridexel_free.
 /// - Untrusted input: any texts.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn leafless_tridexel_with_metadata(

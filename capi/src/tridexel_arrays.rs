@@ -23,23 +23,24 @@ pub struct leafless_tridexel_arrays {
     pub first: [u32; 2],
     /// The first beyond those of the last ray. Rays outside of the rectangle are empty.
     pub end: [u32; 2],
-    /// The intervals of ray i are those from `offsets[i]` to before `offsets[i + 1]`: one number more than rays, in
-    /// ascending order. The ray at steps (u, v) from the first is i = v · width + u.
+    /// The intervals of ray i are those from `offsets[i]` to before `offsets[i + 1]`: one number more than
+    /// rays, in ascending order. The ray at steps (u, v) from the first is i = v · width + u.
     pub offsets: *const u64,
     /// How many intervals there are, which is the last offset.
     pub interval_count: u64,
     /// Two coordinates for each interval, its start and its end. NULL if `ends_cells` says where they lie.
     pub ends_model: *const f64,
-    /// Six numbers for each interval: the outward normals at its start and at its end, of any length; three zeros where none
-    /// is known. NULL if none is known at all.
+    /// Six numbers for each interval: the outward normals at its start and at its end, of any length; three
+    /// zeros where none is known. NULL if none is known at all.
     pub normals: *const f64,
-    /// Two numbers for each interval: on which surfaces its start and its end lie; UINT32_MAX where it is not known. NULL if
-    /// none is known at all.
+    /// Two numbers for each interval: on which surfaces its start and its end lie; UINT32_MAX where it is not
+    /// known. NULL if none is known at all.
     pub surfaces: *const u32,
-    /// A number for each interval, what it is made of; 0 where nothing is said. NULL if nothing is said at all.
+    /// A number for each interval, what it is made of; 0 where nothing is said. NULL if nothing is said at
+    /// all.
     pub materials: *const u32,
-    /// Two numbers for each interval: its start and its end in finest cells from the universe's lower face, as
-    /// leafless_tridexel_copy_cells hands them out; the centre of cell k lies at k + 1/2. An end counts by
+    /// Two numbers for each interval: its start and its end in finest cells from the universe's lower face,
+    /// as leafless_tridexel_copy_cells hands them out; the centre of cell k lies at k + 1/2. An end counts by
     /// this number if its coordinate in `ends_model` is the one that leafless_tridexel_copy would hand out
     /// for it, else by the coordinate. If `ends_model` is NULL it counts always. NULL if coordinates alone
     /// count.
@@ -141,22 +142,24 @@ impl Arrays<'_> {
     }
 }
 
-/// Makes a tri-dexel model of intervals that another program or a machine has. O(rays of the universe + intervals).
+/// Makes a tri-dexel model of intervals that another program or a machine has. O(rays of the universe +
+/// intervals).
 ///
-/// The intervals of a ray ascend and are disjoint. What reaches beyond the universe is cut off; what `format` does not
-/// store is left out. Ends are rounded as `format` says, and keep their side of every centre of a cell, which is the real
-/// number origin + (k + 1/2) edge / 2^depth; that is decided exactly. Intervals that are empty after rounding
-/// are left out; those that touch are joined, unless both have materials and these differ. The directions are
-/// not compared with each other. All that leafless_tridexel_copy and leafless_tridexel_copy_cells hand out of
-/// a model makes an equal one on the same frame.
+/// The intervals of a ray ascend and are disjoint. What reaches beyond the universe is cut off; what `format`
+/// does not store is left out. Ends are rounded as `format` says, and keep their side of every centre of a
+/// cell, which is the real number origin + (k + 1/2) edge / 2^depth; that is decided exactly. Intervals that
+/// are empty after rounding are left out; those that touch are joined, unless both have materials and these
+/// differ. The directions are not compared with each other. All that leafless_tridexel_copy and
+/// leafless_tridexel_copy_cells hand out of a model makes an equal one on the same frame.
 ///
-/// - Buffers: `frame`, one struct; `format`, one struct or NULL, whose `directions` are 0 or the axes of `rays`; `rays`,
-///   `count` structs, 1 to 3, each for another axis; `options`, one struct or NULL; `tridexel`, one pointer.
+/// - Buffers: `frame`, one struct; `format`, one struct or NULL, whose `directions` are 0 or the axes of
+///   `rays`; `rays`, `count` structs, 1 to 3, each for another axis; `options`, one struct or NULL;
+///   `tridexel`, one pointer.
 /// - Result: `*tridexel`.
-/// - Errors: LEAFLESS_E_ARGUMENT also if offsets do not ascend, if an end of an interval is not a number or not behind its
-///   start, if an end in cells does not lie in the universe, or if an interval begins before the one before
-///   it ends; LEAFLESS_E_LIMIT for 2^32 rays or intervals along one axis, which is a depth of 16;
-///   LEAFLESS_E_CANCELLED; LEAFLESS_E_NO_MEMORY.
+/// - Errors: LEAFLESS_E_ARGUMENT also if offsets do not ascend, if an end of an interval is not a number or
+///   not behind its start, if an end in cells does not lie in the universe, or if an interval begins before
+///   the one before it ends; LEAFLESS_E_LIMIT for 2^32 rays or intervals along one axis, which is a depth of
+///   16; LEAFLESS_E_CANCELLED; LEAFLESS_E_NO_MEMORY.
 /// - Ownership: the arrays are not kept; give `*tridexel` back with leafless_tridexel_free.
 /// - Untrusted input: any numbers.
 #[unsafe(no_mangle)]

@@ -12,12 +12,12 @@ use leafless::Error;
 use leafless::dexel::{DexelChange, DexelEditor};
 use std::sync::{RwLock, RwLockReadGuard, RwLockWriteGuard, TryLockError, TryLockResult};
 
-/// A copy of a tri-dexel model that is changed in place, in time proportional to what the second operand's rays touch: for
-/// machining. It takes 12 bytes for each ray of the lattice beside the intervals.
+/// A copy of a tri-dexel model that is changed in place, in time proportional to what the second operand's
+/// rays touch: for machining. It takes 12 bytes for each ray of the lattice beside the intervals.
 ///
-/// While one call changes it, every other call returns LEAFLESS_E_BUSY, from another thread as from the host's functions
-/// that are asked about a cell. While another call reads it, changing it returns LEAFLESS_E_BUSY. Calls that read it may
-/// be made at once from any number of threads.
+/// While one call changes it, every other call returns LEAFLESS_E_BUSY, from another thread as from the
+/// host's functions that are asked about a cell. While another call reads it, changing it returns
+/// LEAFLESS_E_BUSY. Calls that read it may be made at once from any number of threads.
 pub struct leafless_tridexel_editor(RwLock<DexelEditor>);
 
 /// To read the model, unless another call changes it.
@@ -53,8 +53,8 @@ fn unlocked<G>(held: TryLockResult<G>) -> Result<G, Failure> {
 
 /// What a change of an editor did to its rays.
 ///
-/// Volumes are sums of the lengths along the rays of one axis, each times the area of a cell's face. So they are
-/// estimates, not bounds, and differ from axis to axis by what rays beside each other do not see.
+/// Volumes are sums of the lengths along the rays of one axis, each times the area of a cell's face. So they
+/// are estimates, not bounds, and differ from axis to axis by what rays beside each other do not see.
 #[derive(Clone, Copy)]
 #[repr(C)]
 pub struct leafless_dexel_change {
@@ -107,8 +107,8 @@ unsafe fn changed(
 ///
 /// - Buffers: `editor`, one pointer.
 /// - Result: `*editor`, which stores what `tridexel` does.
-/// - Errors: LEAFLESS_E_DAMAGED if the model was mapped unverified and is damaged; LEAFLESS_E_LIMIT for 2^32 rays along
-///   one axis, which is a depth of 16; LEAFLESS_E_NO_MEMORY.
+/// - Errors: LEAFLESS_E_DAMAGED if the model was mapped unverified and is damaged; LEAFLESS_E_LIMIT for 2^32
+///   rays along one axis, which is a depth of 16; LEAFLESS_E_NO_MEMORY.
 /// - Ownership: nothing is kept of `tridexel`; give `*editor` back with leafless_tridexel_editor_free.
 /// - Untrusted input: any model; memory is needed for each ray of its universe.
 #[unsafe(no_mangle)]
@@ -154,17 +154,18 @@ pub unsafe extern "C" fn leafless_tridexel_editor_describe(
     })
 }
 
-/// Makes the editor what a set operation makes of it and of a tri-dexel model: LEAFLESS_OPERATION_DIFFERENCE takes the
-/// model away. O(rays of the model's window + intervals there), for LEAFLESS_OPERATION_INTERSECTION O(rays of the
-/// universe). What the model stores beyond what the editor does is left out.
+/// Makes the editor what a set operation makes of it and of a tri-dexel model: LEAFLESS_OPERATION_DIFFERENCE
+/// takes the model away. O(rays of the model's window + intervals there), for LEAFLESS_OPERATION_INTERSECTION
+/// O(rays of the universe). What the model stores beyond what the editor does is left out.
 ///
-/// - Buffers: `options`, one struct or NULL; `change`, one struct or NULL. `operation` is a leafless_operation.
+/// - Buffers: `options`, one struct or NULL; `change`, one struct or NULL. `operation` is a
+///   leafless_operation.
 /// - Result: the editor is changed; `*change`, what was removed and added.
-/// - Errors: LEAFLESS_E_FRAME if the frames differ; LEAFLESS_E_ARGUMENT also if the model has rays along other axes;
-///   LEAFLESS_E_DAMAGED if the model was mapped unverified and is damaged; LEAFLESS_E_LIMIT for 2^32 intervals along one
-///   axis; LEAFLESS_E_CANCELLED; LEAFLESS_E_NO_MEMORY; LEAFLESS_E_BUSY.
-///   After LEAFLESS_E_LIMIT, LEAFLESS_E_CANCELLED and LEAFLESS_E_NO_MEMORY some rays may be changed and others not; the
-///   same call can be made again, but for LEAFLESS_OPERATION_XOR.
+/// - Errors: LEAFLESS_E_FRAME if the frames differ; LEAFLESS_E_ARGUMENT also if the model has rays along
+///   other axes; LEAFLESS_E_DAMAGED if the model was mapped unverified and is damaged; LEAFLESS_E_LIMIT for
+///   2^32 intervals along one axis; LEAFLESS_E_CANCELLED; LEAFLESS_E_NO_MEMORY; LEAFLESS_E_BUSY. After
+///   LEAFLESS_E_LIMIT, LEAFLESS_E_CANCELLED and LEAFLESS_E_NO_MEMORY some rays may be changed and others not;
+///   the same call can be made again, but for LEAFLESS_OPERATION_XOR.
 /// - Ownership: nothing is kept of `tridexel`.
 /// - Threads: any; LEAFLESS_E_BUSY while another call uses the editor; uses the calling thread alone.
 /// - Untrusted input: any model.
@@ -189,11 +190,12 @@ pub unsafe extern "C" fn leafless_tridexel_editor_combine(
     })
 }
 
-/// As leafless_tridexel_editor_combine, with a solid: LEAFLESS_OPERATION_DIFFERENCE is one step of a tool. The
-/// solid's intervals are those of leafless_tridexel_build under LEAFLESS_RULE_SAMPLED, in the directions and with the
-/// contents of the editor. Only rays through the solid's bounding box are looked at.
+/// As leafless_tridexel_editor_combine, with a solid: LEAFLESS_OPERATION_DIFFERENCE is one step of a tool.
+/// The solid's intervals are those of leafless_tridexel_build under LEAFLESS_RULE_SAMPLED, in the directions
+/// and with the contents of the editor. Only rays through the solid's bounding box are looked at.
 ///
-/// - Buffers: `options`, one struct or NULL; `change`, one struct or NULL. `operation` is a leafless_operation.
+/// - Buffers: `options`, one struct or NULL; `change`, one struct or NULL. `operation` is a
+///   leafless_operation.
 /// - Result: the editor is changed; `*change`, what was removed and added.
 /// - Errors: as leafless_tridexel_build, and nothing is changed; as leafless_tridexel_editor_combine.
 /// - Ownership: nothing is kept of the solid.

@@ -7,17 +7,17 @@ use super::status::leafless_status;
 use super::tridexel::{give, leafless_tridexel};
 use leafless::file::{self, dexels};
 
-/// Reads a tri-dexel model, with its metadata. Of a file that is damaged where LEAFLESS_ACCESS_MAP does not look,
-/// intervals are read as they stand there, in bounds; set algebra, editors and writing check all of it first and
-/// return LEAFLESS_E_DAMAGED.
+/// Reads a tri-dexel model, with its metadata. Of a file that is damaged where LEAFLESS_ACCESS_MAP does not
+/// look, intervals are read as they stand there, in bounds; set algebra, editors and writing check all of it
+/// first and return LEAFLESS_E_DAMAGED.
 ///
 /// - Buffers: `source`, one struct; `tridexel`, one pointer.
 /// - Result: `*tridexel`.
-/// - Errors: LEAFLESS_E_FORMAT; LEAFLESS_E_VERSION; LEAFLESS_E_DAMAGED; LEAFLESS_E_ARGUMENT if the file holds an
-///   octree, if there is no regular file that could be mapped, or if bytes that shall be viewed are misaligned;
-///   LEAFLESS_E_IO; LEAFLESS_E_UTF8; LEAFLESS_E_NO_MEMORY.
-/// - Ownership: how long a file or bytes must stay as they are, leafless_source tells. Give `*tridexel` back with
-///   leafless_tridexel_free.
+/// - Errors: LEAFLESS_E_FORMAT; LEAFLESS_E_VERSION; LEAFLESS_E_DAMAGED; LEAFLESS_E_ARGUMENT if the file holds
+///   an octree, if there is no regular file that could be mapped, or if bytes that shall be viewed are
+///   misaligned; LEAFLESS_E_IO; LEAFLESS_E_UTF8; LEAFLESS_E_NO_MEMORY.
+/// - Ownership: how long a file or bytes must stay as they are, leafless_source tells. Give `*tridexel` back
+///   with leafless_tridexel_free.
 /// - Untrusted input: as leafless_source tells.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn leafless_tridexel_read(
@@ -44,8 +44,8 @@ pub unsafe extern "C" fn leafless_tridexel_read(
     })
 }
 
-/// Writes a tri-dexel model's file. Equal models with equal metadata give equal bytes. Only for a buffer is the
-/// file in memory as a whole.
+/// Writes a tri-dexel model's file. Equal models with equal metadata give equal bytes. Only for a buffer is
+/// the file in memory as a whole.
 ///
 /// - Buffers: `sink`, one struct.
 /// - Errors: LEAFLESS_E_DAMAGED if the model was mapped unverified and is damaged; LEAFLESS_E_IO;

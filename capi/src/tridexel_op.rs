@@ -8,20 +8,20 @@ use super::status::leafless_status;
 use super::tridexel::{give, leafless_tridexel, leafless_tridexel_format};
 use leafless::{Metadata, TriDexel, memory};
 
-/// What a set operation makes of tri-dexel models, at least one. Exact: all laws of sets hold. O(rays + intervals · log
-/// models), and the same bit for bit for any number of threads. The result stores what any operand does; ends are doubles if
-/// those of one operand are. An end keeps its surface and its normal, turned about where a subtraction shows its other side.
-/// Where several operands hold a place, the material of the first one counts. Operands are joined two by two: limits of
-/// `options` concern each of these steps.
+/// What a set operation makes of tri-dexel models, at least one. Exact: all laws of sets hold. O(rays +
+/// intervals · log models), and the same bit for bit for any number of threads. The result stores what any
+/// operand does; ends are doubles if those of one operand are. An end keeps its surface and its normal,
+/// turned about where a subtraction shows its other side. Where several operands hold a place, the material
+/// of the first one counts. Operands are joined two by two: limits of `options` concern each of these steps.
 ///
-/// - Buffers: `tridexels`, `count` handles; `options`, one struct or NULL; `result`, one pointer. `operation` is a
-///   leafless_operation.
+/// - Buffers: `tridexels`, `count` handles; `options`, one struct or NULL; `result`, one pointer. `operation`
+///   is a leafless_operation.
 /// - Result: `*result`, with those of the facts "name" and "units" that all operands have with one value, and
 ///   no other metadata.
-/// - Errors: LEAFLESS_E_FRAME if the frames differ; LEAFLESS_E_NULL, also of an element; LEAFLESS_E_ARGUMENT, also if
-///   `count` is 0 or the operands have rays along different axes; LEAFLESS_E_DAMAGED if an operand was mapped unverified
-///   and is damaged; LEAFLESS_E_LIMIT, also for 2^32 intervals along one axis; LEAFLESS_E_CANCELLED;
-///   LEAFLESS_E_NO_MEMORY.
+/// - Errors: LEAFLESS_E_FRAME if the frames differ; LEAFLESS_E_NULL, also of an element; LEAFLESS_E_ARGUMENT,
+///   also if `count` is 0 or the operands have rays along different axes; LEAFLESS_E_DAMAGED if an operand
+///   was mapped unverified and is damaged; LEAFLESS_E_LIMIT, also for 2^32 intervals along one axis;
+///   LEAFLESS_E_CANCELLED; LEAFLESS_E_NO_MEMORY.
 /// - Ownership: the operands stay as they are; give `*result` back with leafless_tridexel_free.
 /// - Threads: any; uses as many as `options` says.
 /// - Untrusted input: any models.
@@ -72,13 +72,14 @@ pub unsafe extern "C" fn leafless_tridexel_complement(
     })
 }
 
-/// The same tri-dexel model with other things stored. What `tridexel` does not store is unknown in the result: no surface,
-/// no normal, material 0. Doubles become fixed-point numbers and back; an interval that this makes empty is left out.
+/// The same tri-dexel model with other things stored. What `tridexel` does not store is unknown in the
+/// result: no surface, no normal, material 0. Doubles become fixed-point numbers and back; an interval that
+/// this makes empty is left out.
 ///
 /// - Buffers: `format`, one struct or NULL; `options`, one struct or NULL; `result`, one pointer.
 /// - Result: `*result`, with the metadata of `tridexel`.
-/// - Errors: LEAFLESS_E_ARGUMENT if a field of `format` is wrong, or `directions` are neither 0 nor those of `tridexel`;
-///   LEAFLESS_E_DAMAGED; LEAFLESS_E_LIMIT; LEAFLESS_E_CANCELLED; LEAFLESS_E_NO_MEMORY.
+/// - Errors: LEAFLESS_E_ARGUMENT if a field of `format` is wrong, or `directions` are neither 0 nor those of
+///   `tridexel`; LEAFLESS_E_DAMAGED; LEAFLESS_E_LIMIT; LEAFLESS_E_CANCELLED; LEAFLESS_E_NO_MEMORY.
 /// - Ownership: `tridexel` stays as it is; give `*result` back with leafless_tridexel_free.
 /// - Threads: any; uses as many as `options` says.
 /// - Untrusted input: any model.

@@ -19,8 +19,8 @@ pub struct leafless_dexel_end {
     pub at_cells: f64,
     /// The outward unit normal of the surface there; three zeros if it is not known.
     pub normal: [f64; 3],
-    /// On which of the source's surfaces it lies: a triangle of a mesh, a half-space in the order of the expression
-    /// written out. UINT32_MAX if it is not known.
+    /// On which of the source's surfaces it lies: a triangle of a mesh, a half-space in the order of the
+    /// expression written out. UINT32_MAX if it is not known.
     pub surface: u32,
 }
 
@@ -65,8 +65,8 @@ pub struct leafless_dexel_statistics {
     pub intervals: u64,
     /// Bytes of the arrays.
     pub bytes: u64,
-    /// The lengths of all intervals, each times the area of a cell's face: an estimate of the volume in cubic model
-    /// units, no bound.
+    /// The lengths of all intervals, each times the area of a cell's face: an estimate of the volume in cubic
+    /// model units, no bound.
     pub volume_model: f64,
     /// The least coordinates of what the rays cross; INFINITY if they cross nothing.
     pub min_model: [f64; 3],
@@ -123,8 +123,8 @@ pub unsafe extern "C" fn leafless_tridexel_statistics(
 /// Whether the centre of a finest cell lies inside. O(log intervals of a ray).
 ///
 /// - Buffers: `cell`, 3 numbers; `inside`, one truth value.
-/// - Result: `*inside`; false if a coordinate is not below 2^depth. Where the directions differ, as those of arrays from
-///   elsewhere may, the highest axis decides.
+/// - Result: `*inside`; false if a coordinate is not below 2^depth. Where the directions differ, as those of
+///   arrays from elsewhere may, the highest axis decides.
 /// - Untrusted input: any model, any numbers.
 ///
 /// cbindgen:ptrs-as-arrays=[[cell; 3]]
@@ -145,8 +145,8 @@ pub unsafe extern "C" fn leafless_tridexel_contains_cell(
 
 /// The smallest rectangle of rays along an axis that holds all rays that cross the solid.
 ///
-/// - Buffers: `first` and `end`, 2 numbers each: the indices of the first ray's cells on the other two axes in the order
-///   x, y, z, and the first beyond the last one's. `axis` is 0 for x, 1 for y, 2 for z.
+/// - Buffers: `first` and `end`, 2 numbers each: the indices of the first ray's cells on the other two axes
+///   in the order x, y, z, and the first beyond the last one's. `axis` is 0 for x, 1 for y, 2 for z.
 /// - Result: `first` and `end`; equal to each other if no ray crosses the solid.
 /// - Errors: LEAFLESS_E_ARGUMENT if the model has no rays along `axis`.
 /// - Untrusted input: any model, any number.
@@ -169,11 +169,12 @@ pub unsafe extern "C" fn leafless_tridexel_window(
 
 /// The intervals of one ray, in ascending order.
 ///
-/// - Buffers: `ray`, 2 numbers, the indices of the ray's cells on the other two axes in the order x, y, z; `dexels`,
-///   room for `capacity` structs, or NULL to ask for the count only; `count`, one number. `axis` is 0 for x, 1 for y, 2
-///   for z.
+/// - Buffers: `ray`, 2 numbers, the indices of the ray's cells on the other two axes in the order x, y, z;
+///   `dexels`, room for `capacity` structs, or NULL to ask for the count only; `count`, one number. `axis` is
+///   0 for x, 1 for y, 2 for z.
 /// - Result: `*count`; the intervals. A ray outside of the universe has none.
-/// - Errors: LEAFLESS_E_ARGUMENT if the model has no rays along `axis`; LEAFLESS_E_BUFFER if the capacity is too small.
+/// - Errors: LEAFLESS_E_ARGUMENT if the model has no rays along `axis`; LEAFLESS_E_BUFFER if the capacity is
+///   too small.
 /// - Untrusted input: any model, any numbers.
 ///
 /// cbindgen:ptrs-as-arrays=[[ray; 2]]
@@ -256,21 +257,23 @@ impl Arrays {
     }
 }
 
-/// The intervals of many rays along one axis, in compressed rows: those of ray i are the elements `offsets[i]` to before
-/// `offsets[i + 1]` of each array. The ray at steps (u, v) from the first is i = v · width + u, of a rectangle that is
-/// `width` rays wide along the first of the other two axes. O(rays + intervals).
+/// The intervals of many rays along one axis, in compressed rows: those of ray i are the elements
+/// `offsets[i]` to before `offsets[i + 1]` of each array. The ray at steps (u, v) from the first is i = v ·
+/// width + u, of a rectangle that is `width` rays wide along the first of the other two axes. O(rays +
+/// intervals).
 ///
-/// - Buffers: `first` and `end`, 2 numbers each, or NULL both for the rectangle of leafless_tridexel_window: the indices
-///   of the first ray's cells on the other two axes in the order x, y, z, and the first beyond the last one's.
-///   `offsets`, room for `offset_capacity` numbers; for each of `interval_capacity` intervals `ends_model` has room for 2
-///   numbers, `normals` for 6, `surfaces` for 2, `materials` for 1. Each of the five may be NULL, if it is not wanted.
-///   `offset_count` and `interval_count`, one number each. `axis` is 0 for x, 1 for y, 2 for z.
-/// - Result: `offsets`, one more than rays. For each interval: the coordinates of its start and its end, on the sides of
-///   centres that are stored, as far as there are doubles between two centres; the outward unit normals
-///   there, three zeros where none is known; the surfaces there, UINT32_MAX where none is known; the
+/// - Buffers: `first` and `end`, 2 numbers each, or NULL both for the rectangle of leafless_tridexel_window:
+///   the indices of the first ray's cells on the other two axes in the order x, y, z, and the first beyond
+///   the last one's. `offsets`, room for `offset_capacity` numbers; for each of `interval_capacity` intervals
+///   `ends_model` has room for 2 numbers, `normals` for 6, `surfaces` for 2, `materials` for 1. Each of the
+///   five may be NULL, if it is not wanted. `offset_count` and `interval_count`, one number each. `axis` is 0
+///   for x, 1 for y, 2 for z.
+/// - Result: `offsets`, one more than rays. For each interval: the coordinates of its start and its end, on
+///   the sides of centres that are stored, as far as there are doubles between two centres; the outward unit
+///   normals there, three zeros where none is known; the surfaces there, UINT32_MAX where none is known; the
 ///   material, 0 where nothing was said. The counts of offsets and intervals.
-/// - Errors: LEAFLESS_E_ARGUMENT if the model has no rays along `axis`, `first` lies beyond `end`, or the rays reach beyond
-///   the universe; LEAFLESS_E_BUFFER if a capacity is too small: nothing is written then.
+/// - Errors: LEAFLESS_E_ARGUMENT if the model has no rays along `axis`, `first` lies beyond `end`, or the
+///   rays reach beyond the universe; LEAFLESS_E_BUFFER if a capacity is too small: nothing is written then.
 /// - Untrusted input: any model, any numbers.
 ///
 /// cbindgen:ptrs-as-arrays=[[first; 2], [end; 2]]
@@ -328,13 +331,13 @@ pub unsafe extern "C" fn leafless_tridexel_copy(
     })
 }
 
-/// Where the intervals of many rays along one axis start and end, exactly as it is stored: in finest cells from the
-/// universe's lower face, of which the centre of cell k lies at k + 1/2. The intervals are those of
+/// Where the intervals of many rays along one axis start and end, exactly as it is stored: in finest cells
+/// from the universe's lower face, of which the centre of cell k lies at k + 1/2. The intervals are those of
 /// leafless_tridexel_copy, in the same order. O(rays + intervals).
 ///
-/// - Buffers: `first` and `end`, 2 numbers each, or NULL both, as leafless_tridexel_copy has them; `ends_cells`, room for 2
-///   numbers for each of `interval_capacity` intervals, or NULL to ask for the count only; `interval_count`, one number.
-///   `axis` is 0 for x, 1 for y, 2 for z.
+/// - Buffers: `first` and `end`, 2 numbers each, or NULL both, as leafless_tridexel_copy has them;
+///   `ends_cells`, room for 2 numbers for each of `interval_capacity` intervals, or NULL to ask for the count
+///   only; `interval_count`, one number. `axis` is 0 for x, 1 for y, 2 for z.
 /// - Result: `ends_cells`, 0 to 2^depth; `*interval_count`.
 /// - Errors: as leafless_tridexel_copy.
 /// - Untrusted input: any model, any numbers.

@@ -20,11 +20,11 @@ use leafless_dexel_surface_method::*;
 #[derive(Clone, Copy)]
 #[repr(u32)]
 pub enum leafless_dexel_surface_method {
-    /// Marching cubes: a vertex where a ray crosses the surface between two neighbouring centres of cells. Edges and
-    /// corners of the solid are cut off by up to a cell.
+    /// Marching cubes: a vertex where a ray crosses the surface between two neighbouring centres of cells.
+    /// Edges and corners of the solid are cut off by up to a cell.
     LEAFLESS_DEXEL_SURFACE_METHOD_MARCHING_CUBES = 0,
-    /// Dual contouring: a vertex for each sheet of the surface in a cube between eight centres, where the planes at its
-    /// crossings fit best. Edges and corners of the solid stay, if the model stores normals.
+    /// Dual contouring: a vertex for each sheet of the surface in a cube between eight centres, where the
+    /// planes at its crossings fit best. Edges and corners of the solid stay, if the model stores normals.
     LEAFLESS_DEXEL_SURFACE_METHOD_DUAL_CONTOURING = 1,
 }
 
@@ -41,25 +41,29 @@ enumeration! {
 pub struct leafless_dexel_surface_report {
     /// sizeof(leafless_dexel_surface_report).
     pub struct_size: u32,
-    /// Edges between neighbouring centres of cells of which one lies inside: places where a ray crosses the surface.
+    /// Edges between neighbouring centres of cells of which one lies inside: places where a ray crosses the
+    /// surface.
     pub crossings: u64,
     /// Crossings on edges that the ray crosses more than once: what is thinner than a cell is lost there.
     pub several: u64,
     /// Crossings that were put in the middle of their edges, because the model has no rays along these.
     pub without_rays: u64,
-    /// Crossings that were put in the middle of their edges, because the directions of the model disagree there.
+    /// Crossings that were put in the middle of their edges, because the directions of the model disagree
+    /// there.
     pub disagreeing: u64,
     /// Crossings of which no normal is known. (By dual contouring alone.)
     pub without_normals: u64,
-    /// Vertices with no normal at any of their crossings, which are the mean of these. (By dual contouring alone.)
+    /// Vertices with no normal at any of their crossings, which are the mean of these. (By dual contouring
+    /// alone.)
     pub means: u64,
     /// Vertices that would fit their planes better outside of their cells. (By dual contouring alone.)
     pub clamped: u64,
-    /// Bodies that the mesh does not show at all: sets of centres of cells that lie inside and hang together along axes,
-    /// none of whose crossings has a triangle, because the surface lies nearer to them than doubles can tell.
+    /// Bodies that the mesh does not show at all: sets of centres of cells that lie inside and hang together
+    /// along axes, none of whose crossings has a triangle, because the surface lies nearer to them than
+    /// doubles can tell.
     pub vanished: u64,
-    /// Intervals in all directions that hold no centre of a cell, those that touch counted as one: what is thinner than the
-    /// lattice there is not in the mesh.
+    /// Intervals in all directions that hold no centre of a cell, those that touch counted as one: what is
+    /// thinner than the lattice there is not in the mesh.
     pub without_centres: u64,
 }
 
@@ -86,8 +90,8 @@ impl From<DexelSurfaceReport> for leafless_dexel_surface_report {
 #[derive(Clone, Copy)]
 #[repr(C)]
 pub struct leafless_long_voxel {
-    /// Its first voxel. The voxel (x, y, z) lies between the centres of the cells x - 1 and x, and likewise on the other
-    /// axes: its indices go from 0 to the cells of an axis, that number included.
+    /// Its first voxel. The voxel (x, y, z) lies between the centres of the cells x - 1 and x, and likewise
+    /// on the other axes: its indices go from 0 to the cells of an axis, that number included.
     pub first: [u32; 3],
     /// How many voxels it consists of.
     pub length: u32,
@@ -114,22 +118,23 @@ impl From<&LongVoxel> for leafless_long_voxel {
     }
 }
 
-/// The surface of a tri-dexel model: a closed mesh. Samples are the centres of cells; everything outside of the universe
-/// is outside.
+/// The surface of a tri-dexel model: a closed mesh. Samples are the centres of cells; everything outside of
+/// the universe is outside.
 ///
-/// Triangles turn counter-clockwise as seen from outside. Every edge belongs to exactly two triangles, but where vertices
-/// lie at one place: these are one vertex, and triangles without area are dropped. Where a ray does not tell a crossing,
-/// because the model has no rays along an axis or its directions disagree, the crossing lies half-way between the two
-/// centres; the report counts such places.
+/// Triangles turn counter-clockwise as seen from outside. Every edge belongs to exactly two triangles, but
+/// where vertices lie at one place: these are one vertex, and triangles without area are dropped. Where a ray
+/// does not tell a crossing, because the model has no rays along an axis or its directions disagree, the
+/// crossing lies half-way between the two centres; the report counts such places.
 ///
 /// O(rays + intervals + octree + mesh), with the octree of leafless_octree_from_tridexel.
 ///
-/// - Buffers: `options`, one struct or NULL; `report`, one struct, or NULL if it is not wanted; `mesh`, one pointer.
-///   `method` is a leafless_dexel_surface_method.
-/// - Result: `*mesh`, the same for any number of threads; it has no triangles if no centre lies inside, or if all bodies
-///   vanish. `*report`.
-/// - Errors: LEAFLESS_E_ARGUMENT also if the frame lies so far from the origin that doubles cannot tell its cells apart;
-///   LEAFLESS_E_MESH if there would be more than 2^32 - 1 vertices or triangles; LEAFLESS_E_CANCELLED; LEAFLESS_E_NO_MEMORY.
+/// - Buffers: `options`, one struct or NULL; `report`, one struct, or NULL if it is not wanted; `mesh`, one
+///   pointer. `method` is a leafless_dexel_surface_method.
+/// - Result: `*mesh`, the same for any number of threads; it has no triangles if no centre lies inside, or if
+///   all bodies vanish. `*report`.
+/// - Errors: LEAFLESS_E_ARGUMENT also if the frame lies so far from the origin that doubles cannot tell its
+///   cells apart; LEAFLESS_E_MESH if there would be more than 2^32 - 1 vertices or triangles;
+///   LEAFLESS_E_CANCELLED; LEAFLESS_E_NO_MEMORY.
 /// - Ownership: `tridexel` stays as it is; give `*mesh` back with leafless_mesh_free.
 /// - Threads: any; uses as many as `options` says.
 /// - Untrusted input: any model; a damaged one is refused (LEAFLESS_E_DAMAGED).
@@ -157,11 +162,13 @@ pub unsafe extern "C" fn leafless_tridexel_surface(
     })
 }
 
-/// The octree of a tri-dexel model: a finest cell is FULL if its centre lies inside, else EMPTY. It proves nothing.
+/// The octree of a tri-dexel model: a finest cell is FULL if its centre lies inside, else EMPTY. It proves
+/// nothing.
 ///
 /// - Buffers: `options`, one struct or NULL; `octree`, one pointer.
-/// - Result: `*octree`, with the model's facts "name" and "units" and no others, and, if the model stores materials, a channel
-///   "material" with the number of the material at the centre of each cell (U32); the same for any number of threads.
+/// - Result: `*octree`, with the model's facts "name" and "units" and no others, and, if the model stores
+///   materials, a channel "material" with the number of the material at the centre of each cell (U32); the
+///   same for any number of threads.
 /// - Errors: LEAFLESS_E_LIMIT; LEAFLESS_E_CANCELLED; LEAFLESS_E_NO_MEMORY.
 /// - Ownership: `tridexel` stays as it is; give `*octree` back with leafless_octree_free.
 /// - Threads: any; uses as many as `options` says.
@@ -183,12 +190,13 @@ pub unsafe extern "C" fn leafless_octree_from_tridexel(
     })
 }
 
-/// The octree of a tri-dexel model by the ends of its intervals: a finest cell is FULL if all rays through it are inside all the
-/// way, EMPTY if all are outside all the way, and PARTIAL if an end lies in it or the directions disagree.
+/// The octree of a tri-dexel model by the ends of its intervals: a finest cell is FULL if all rays through it
+/// are inside all the way, EMPTY if all are outside all the way, and PARTIAL if an end lies in it or the
+/// directions disagree.
 ///
-/// A decided cell agrees with every ray through it; what is thinner than a cell is undecided where a ray meets it, and not lost.
-/// Between the rays nothing is known: the cells prove nothing of the solid that the rays came from, and the volumes of FULL and
-/// of PARTIAL cells are no proven bounds.
+/// A decided cell agrees with every ray through it; what is thinner than a cell is undecided where a ray
+/// meets it, and not lost. Between the rays nothing is known: the cells prove nothing of the solid that the
+/// rays came from, and the volumes of FULL and of PARTIAL cells are no proven bounds.
 ///
 /// - Buffers: `options`, one struct or NULL; `octree`, one pointer.
 /// - Result: `*octree`, with facts and a channel as from leafless_octree_from_tridexel.
@@ -224,8 +232,9 @@ fn with_materials(octree: Octree, model: &TriDexel, control: &Control<'_>) -> Re
 
 /// A tri-dexel model as a solid on any frame: the inside of its surface by marching cubes.
 ///
-/// That surface is near the one that the model was made from, not on it. So what is built of the solid proves nothing,
-/// and measures of it are not bounded; with `is_truth` the surface is taken for the truth, and both are as of any mesh.
+/// That surface is near the one that the model was made from, not on it. So what is built of the solid proves
+/// nothing, and measures of it are not bounded; with `is_truth` the surface is taken for the truth, and both
+/// are as of any mesh.
 ///
 /// - Buffers: `options`, one struct or NULL; `solid`, one pointer.
 /// - Result: `*solid`.
@@ -248,16 +257,18 @@ pub unsafe extern "C" fn leafless_solid_from_tridexel(
     })
 }
 
-/// The voxels of a tri-dexel model, whose corners are the centres of cells: a voxel lies inside if all of its eight
-/// corners do, outside if none does, and else on the boundary. Those that do not lie outside are merged along y, as far as
-/// kind and material are the same. A voxel has the material at its first corner that lies inside, x running fastest and z
-/// slowest, and the colour that `colours` has at the place of the material's number; materials beyond are grey (128, 128,
-/// 128, 255). Call it once for the count, and then with a buffer.
+/// The voxels of a tri-dexel model, whose corners are the centres of cells: a voxel lies inside if all of its
+/// eight corners do, outside if none does, and else on the boundary. Those that do not lie outside are merged
+/// along y, as far as kind and material are the same. A voxel has the material at its first corner that lies
+/// inside, x running fastest and z slowest, and the colour that `colours` has at the place of the material's
+/// number; materials beyond are grey (128, 128, 128, 255). Call it once for the count, and then with a
+/// buffer.
 ///
 /// O(rays of the window + blocks + rows), for blocks of 64 x 64 x 64 cells in which centres lie inside.
 ///
-/// - Buffers: `options`, one struct or NULL; `colours`, `colour_count` colours of four bytes (red, green, blue, opacity), or
-///   NULL for none; `voxels`, room for `capacity` structs, or NULL to ask for the count only; `count`, one number.
+/// - Buffers: `options`, one struct or NULL; `colours`, `colour_count` colours of four bytes (red, green,
+///   blue, opacity), or NULL for none; `voxels`, room for `capacity` structs, or NULL to ask for the count
+///   only; `count`, one number.
 /// - Result: `*count`; the rows of voxels by z, then by x, then by y.
 /// - Errors: LEAFLESS_E_BUFFER if the capacity is too small; LEAFLESS_E_CANCELLED; LEAFLESS_E_NO_MEMORY.
 /// - Untrusted input: any model; a damaged one is refused (LEAFLESS_E_DAMAGED).

@@ -169,21 +169,24 @@ impl Layout {
 
 /// Makes a volume of an array of samples without a header, in memory or in a file.
 ///
-/// With LEAFLESS_ACCESS_COPY the samples are copied: O(n); bytes may lie on any address. With LEAFLESS_ACCESS_MAP, which
-/// is for bytes only, they are used where they lie: O(1). The layout's type is then LEAFLESS_SAMPLE_TYPE_U8, _U16, _I16, _F32
-/// or _BITS, its byte order is this machine's, it has nothing to skip, and the bytes are aligned for their type.
-/// LEAFLESS_ACCESS_MAP_VERIFIED is the same: any samples are a volume.
+/// With LEAFLESS_ACCESS_COPY the samples are copied: O(n); bytes may lie on any address. With
+/// LEAFLESS_ACCESS_MAP, which is for bytes only, they are used where they lie: O(1). The layout's type is
+/// then LEAFLESS_SAMPLE_TYPE_U8, _U16, _I16, _F32 or _BITS, its byte order is this machine's, it has nothing
+/// to skip, and the bytes are aligned for their type. LEAFLESS_ACCESS_MAP_VERIFIED is the same: any samples
+/// are a volume.
 ///
 /// - Buffers: `layout`, one struct; `source`, one struct; `volume`, one pointer.
 /// - Result: `*volume`.
-/// - Errors: LEAFLESS_E_ARGUMENT if the type, the byte order, an extent, the corner or the spacing is none, if the layout
-///   or the source is not as the access demands, or if the number of bytes is not that of the samples and those to skip;
-///   LEAFLESS_E_VOLUME_FILE if that is so of a file; LEAFLESS_E_IO; LEAFLESS_E_UTF8; LEAFLESS_E_NO_MEMORY.
-/// - Ownership: samples that are copied may be freed after the call. Others stay the host's. They must stay, unchanged,
-///   until the last reference is given back to the volume, to every solid that is made of it, and to what is made of
-///   these, but for octrees and meshes, which have all of their own. Give `*volume` back with leafless_volume_free.
-/// - Untrusted input: any layout, any bytes, any file; memory is at most the file's length and as much again for the
-///   samples, twice as much for int8_t.
+/// - Errors: LEAFLESS_E_ARGUMENT if the type, the byte order, an extent, the corner or the spacing is none,
+///   if the layout or the source is not as the access demands, or if the number of bytes is not that of the
+///   samples and those to skip; LEAFLESS_E_VOLUME_FILE if that is so of a file; LEAFLESS_E_IO;
+///   LEAFLESS_E_UTF8; LEAFLESS_E_NO_MEMORY.
+/// - Ownership: samples that are copied may be freed after the call. Others stay the host's. They must stay,
+///   unchanged, until the last reference is given back to the volume, to every solid that is made of it, and
+///   to what is made of these, but for octrees and meshes, which have all of their own. Give `*volume` back
+///   with leafless_volume_free.
+/// - Untrusted input: any layout, any bytes, any file; memory is at most the file's length and as much again
+///   for the samples, twice as much for int8_t.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn leafless_volume_new(
     layout: *const leafless_volume_layout,

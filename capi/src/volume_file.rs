@@ -52,13 +52,14 @@ impl leafless_volume {
 /// compressed. All types of single numbers, both byte orders. What is neither 8 nor 16 bits wide becomes
 /// float, and int8_t becomes int16_t. O(n); the samples are copied once.
 ///
-/// Samples in another file must lie in the header's folder or below it, by their real path: links are followed
-/// before that is judged. The header's folder is the one that the path names and, if the header is a link, also
-/// the one in which the header really lies, which is searched second. For bytes no file is looked for.
+/// Samples in another file must lie in the header's folder or below it, by their real path: links are
+/// followed before that is judged. The header's folder is the one that the path names and, if the header is a
+/// link, also the one in which the header really lies, which is searched second. For bytes no file is looked
+/// for.
 ///
-/// - Buffers: `source`, one struct, with LEAFLESS_ACCESS_COPY. `data`, one struct of the same kind: the file of
-///   the samples, which is then not looked for; else NULL, and of bytes that need one LEAFLESS_E_VOLUME_FILE.
-///   leafless_volume_data_file tells its name. `volume`, one pointer.
+/// - Buffers: `source`, one struct, with LEAFLESS_ACCESS_COPY. `data`, one struct of the same kind: the file
+///   of the samples, which is then not looked for; else NULL, and of bytes that need one
+///   LEAFLESS_E_VOLUME_FILE. leafless_volume_data_file tells its name. `volume`, one pointer.
 /// - Result: `*volume`; leafless_volume_describe tells what the file says.
 /// - Errors: LEAFLESS_E_VOLUME_FILE, with what is wrong where in the message, if the file is neither, is
 ///   damaged, or uses something that cannot be read; LEAFLESS_E_IO; LEAFLESS_E_UTF8; LEAFLESS_E_NO_MEMORY.
@@ -113,9 +114,9 @@ pub unsafe extern "C" fn leafless_volume_data_file(
 /// Writes a volume file.
 ///
 /// The byte of the lowest weight comes first, and bits become bytes 0 and 1. A NRRD holds the place of the
-/// first sample, corner + spacing / 2, rounded so that the same corner is read again; where no double does that,
-/// near a power of two, the volume lies half a last place beside. It holds no unit. A raw file holds no place at all.
-/// O(n) time and memory.
+/// first sample, corner + spacing / 2, rounded so that the same corner is read again; where no double does
+/// that, near a power of two, the volume lies half a last place beside. It holds no unit. A raw file holds no
+/// place at all. O(n) time and memory.
 ///
 /// - Buffers: `sink`, one struct.
 /// - Errors: LEAFLESS_E_ARGUMENT if `format` is none that can be written, or if the volume has other axes

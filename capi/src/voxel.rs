@@ -53,8 +53,8 @@ pub enum leafless_voxel_lists {
     LEAFLESS_VOXEL_LISTS_REFINED = 2,
 }
 
-/// Which voxels of an octree are listed, and how large they are. All fields but the first may be zero, which is
-/// their default.
+/// Which voxels of an octree are listed, and how large they are. All fields but the first may be zero, which
+/// is their default.
 #[derive(Clone, Copy)]
 #[repr(C)]
 pub struct leafless_voxel_options {
@@ -70,12 +70,13 @@ pub struct leafless_voxel_options {
     pub coarse_model: f64,
     /// Inside voxels of this edge are not split, with a criterion; 0: the coarse edge.
     pub fine_model: f64,
-    /// How much the attribute may change in an inside voxel that is longer than the fine edge, with a criterion.
+    /// How much the attribute may change in an inside voxel that is longer than the fine edge, with a
+    /// criterion.
     pub tolerance: f64,
     /// The attribute that inside voxels follow, and whose values are listed; optional.
     pub attribute: *const leafless_attribute,
-    /// A leafless_criterion: what makes an inside voxel fine enough that is longer than the fine edge and no longer
-    /// than the coarse one. Without one, all inside voxels have the coarse edge or less.
+    /// A leafless_criterion: what makes an inside voxel fine enough that is longer than the fine edge and no
+    /// longer than the coarse one. Without one, all inside voxels have the coarse edge or less.
     pub criterion: Number<leafless_criterion>,
     /// Zero.
     pub reserved: u32,
@@ -116,21 +117,21 @@ impl leafless_voxel_options {
     }
 }
 
-/// Lists the voxels of an octree: inside and boundary voxels, and others that `voxel_options` asks for, sorted by
-/// linear octree code, of two with one code the larger one first. The code of a voxel is the Morton code of its
-/// minimum corner on the lattice `*lattice`: an octal digit for each level of it from the root on, of which as many
-/// count as the voxel's level says. Call it once for the count, and then with buffers.
+/// Lists the voxels of an octree: inside and boundary voxels, and others that `voxel_options` asks for,
+/// sorted by linear octree code, of two with one code the larger one first. The code of a voxel is the Morton
+/// code of its minimum corner on the lattice `*lattice`: an octal digit for each level of it from the root
+/// on, of which as many count as the voxel's level says. Call it once for the count, and then with buffers.
 ///
-/// - Buffers: `voxel_options`, one struct or NULL; `options`, one struct or NULL, of which `max_bytes` counts;
-///   `lattice`, one struct; `codes`, `levels`, `kinds`, `corners_model` (3 numbers a record) and `values` (as many
-///   numbers a record as values have components), room for `capacity` records each, each of them NULL if it is not
-///   wanted; `count`, one number.
-/// - Result: `*lattice`, the octree's universe with the depth of the finest voxel that there may be; the arrays;
-///   `*count`, how many records there are. `kinds` are leafless_voxel_kind. Corners are rounded down where they are
-///   no doubles. Values are those at the centres of voxels, NaN where there is none.
-/// - Errors: LEAFLESS_E_ARGUMENT if an option is out of its range, or the universe would take more than 20 levels to
-///   the fine edge; LEAFLESS_E_BUFFER if `capacity` is too small: nothing is written then; LEAFLESS_E_CALLBACK;
-///   LEAFLESS_E_DAMAGED; LEAFLESS_E_LIMIT; LEAFLESS_E_NO_MEMORY; LEAFLESS_E_CANCELLED.
+/// - Buffers: `voxel_options`, one struct or NULL; `options`, one struct or NULL, of which `max_bytes`
+///   counts; `lattice`, one struct; `codes`, `levels`, `kinds`, `corners_model` (3 numbers a record) and
+///   `values` (as many numbers a record as values have components), room for `capacity` records each, each of
+///   them NULL if it is not wanted; `count`, one number.
+/// - Result: `*lattice`, the octree's universe with the depth of the finest voxel that there may be; the
+///   arrays; `*count`, how many records there are. `kinds` are leafless_voxel_kind. Corners are rounded down
+///   where they are no doubles. Values are those at the centres of voxels, NaN where there is none.
+/// - Errors: LEAFLESS_E_ARGUMENT if an option is out of its range, or the universe would take more than 20
+///   levels to the fine edge; LEAFLESS_E_BUFFER if `capacity` is too small: nothing is written then;
+///   LEAFLESS_E_CALLBACK; LEAFLESS_E_DAMAGED; LEAFLESS_E_LIMIT; LEAFLESS_E_NO_MEMORY; LEAFLESS_E_CANCELLED.
 /// - Untrusted input: any octree: damage reads as boundary voxels.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn leafless_octree_voxels(
@@ -222,8 +223,9 @@ pub(super) unsafe fn records<'a>(
 
 /// The record, not of a refined voxel, that contains a cell. O(log count).
 ///
-/// - Buffers: `lattice`, one struct; `codes`, `levels` and `kinds`, `count` elements each, as leafless_octree_voxels
-///   writes them; `cell`, 3 numbers: the cell's place among those of its level; `index`, one number.
+/// - Buffers: `lattice`, one struct; `codes`, `levels` and `kinds`, `count` elements each, as
+///   leafless_octree_voxels writes them; `cell`, 3 numbers: the cell's place among those of its level;
+///   `index`, one number.
 /// - Result: `*index`, the index of the record, or UINT64_MAX if there is none.
 /// - Errors: LEAFLESS_E_ARGUMENT as leafless_frame_check.
 /// - Untrusted input: any numbers; the answer means something if the records are sorted.
@@ -254,16 +256,17 @@ pub unsafe extern "C" fn leafless_voxels_find(
     })
 }
 
-/// The indices of the records from front to back: a voxel comes before every other one of which it hides a part.
-/// Refined voxels are left out. No two records are compared; exact.
+/// The indices of the records from front to back: a voxel comes before every other one of which it hides a
+/// part. Refined voxels are left out. No two records are compared; exact.
 ///
-/// - Buffers: `lattice`, `codes`, `levels` and `kinds` as leafless_voxels_find; `from`, 3 numbers: the direction of
-///   sight, or if `is_eye` the point (model units) from which voxels are seen; `options`, one struct or NULL; `order`,
-///   room for `capacity` numbers, or NULL to ask for their count; `order_count`, one number.
+/// - Buffers: `lattice`, `codes`, `levels` and `kinds` as leafless_voxels_find; `from`, 3 numbers: the
+///   direction of sight, or if `is_eye` the point (model units) from which voxels are seen; `options`, one
+///   struct or NULL; `order`, room for `capacity` numbers, or NULL to ask for their count; `order_count`, one
+///   number.
 /// - Result: `order`; `*order_count`, the number of records that are not refined.
-/// - Errors: LEAFLESS_E_ARGUMENT if the arrays are no records, the direction is zero, or a number is not finite (of an
-///   eye also one beyond ±2^256 or, but zero, below 2^-256); LEAFLESS_E_BUFFER if `capacity` is too small: nothing is
-///   written then; LEAFLESS_E_NO_MEMORY; LEAFLESS_E_CANCELLED.
+/// - Errors: LEAFLESS_E_ARGUMENT if the arrays are no records, the direction is zero, or a number is not
+///   finite (of an eye also one beyond ±2^256 or, but zero, below 2^-256); LEAFLESS_E_BUFFER if `capacity` is
+///   too small: nothing is written then; LEAFLESS_E_NO_MEMORY; LEAFLESS_E_CANCELLED.
 /// - Untrusted input: any numbers.
 ///
 /// cbindgen:ptrs-as-arrays=[[from; 3]]
@@ -292,22 +295,24 @@ pub unsafe extern "C" fn leafless_voxels_order(
     })
 }
 
-/// The records under one of the 48 symmetries of the universe about its centre, and then an offset of whole finest cells
-/// of the lattice. Exact: the octree of the result is the octree of the records under the same map. Call it once for the
-/// count, and then with buffers.
+/// The records under one of the 48 symmetries of the universe about its centre, and then an offset of whole
+/// finest cells of the lattice. Exact: the octree of the result is the octree of the records under the same
+/// map. Call it once for the count, and then with buffers.
 ///
-/// A record whose image is no cell becomes the largest cells that make its image up. What is moved out of the universe is
-/// cut off; no record speaks of what comes in. A refined voxel is left out if its image is no cell of the universe.
+/// A record whose image is no cell becomes the largest cells that make its image up. What is moved out of the
+/// universe is cut off; no record speaks of what comes in. A refined voxel is left out if its image is no
+/// cell of the universe.
 ///
-/// - Buffers: `lattice`, `codes`, `levels` and `kinds` as leafless_voxels_find; `axes` and `offset_cells`, 3 numbers
-///   each; `options`, one struct or NULL, of which `max_bytes` counts; `moved_codes`, `moved_levels`, `moved_kinds` and
-///   `sources`, room for `capacity` elements each, each of them NULL if it is not wanted; `moved_count`, one number.
-///   `axes[i]` says which old axis becomes the new axis i: 1 for x, 2 for y, 3 for z, negative if it is turned round;
-///   1, 2, 3 moves nothing.
-/// - Result: the arrays, sorted as those of leafless_octree_voxels; `sources`, the index of the record that each comes
-///   from; `*moved_count`, how many there are.
-/// - Errors: LEAFLESS_E_ARGUMENT if the arrays are no records, or `axes` are not three different ones; LEAFLESS_E_BUFFER
-///   if `capacity` is too small: nothing is written then; LEAFLESS_E_LIMIT; LEAFLESS_E_NO_MEMORY; LEAFLESS_E_CANCELLED.
+/// - Buffers: `lattice`, `codes`, `levels` and `kinds` as leafless_voxels_find; `axes` and `offset_cells`, 3
+///   numbers each; `options`, one struct or NULL, of which `max_bytes` counts; `moved_codes`, `moved_levels`,
+///   `moved_kinds` and `sources`, room for `capacity` elements each, each of them NULL if it is not wanted;
+///   `moved_count`, one number. `axes[i]` says which old axis becomes the new axis i: 1 for x, 2 for y, 3 for
+///   z, negative if it is turned round; 1, 2, 3 moves nothing.
+/// - Result: the arrays, sorted as those of leafless_octree_voxels; `sources`, the index of the record that
+///   each comes from; `*moved_count`, how many there are.
+/// - Errors: LEAFLESS_E_ARGUMENT if the arrays are no records, or `axes` are not three different ones;
+///   LEAFLESS_E_BUFFER if `capacity` is too small: nothing is written then; LEAFLESS_E_LIMIT;
+///   LEAFLESS_E_NO_MEMORY; LEAFLESS_E_CANCELLED.
 /// - Untrusted input: any numbers.
 ///
 /// cbindgen:ptrs-as-arrays=[[axes; 3], [offset_cells; 3]]
@@ -374,15 +379,16 @@ pub unsafe extern "C" fn leafless_voxels_moved(
 }
 
 /// For each boundary voxel the triangles of a mesh that meet it, in compressed rows: those of record i are
-/// `triangles[offsets[i]]` to before `triangles[offsets[i + 1]]`, and ascend. A triangle that only touches a voxel
-/// meets it. Exact.
+/// `triangles[offsets[i]]` to before `triangles[offsets[i + 1]]`, and ascend. A triangle that only touches a
+/// voxel meets it. Exact.
 ///
-/// - Buffers: `lattice`, `codes`, `levels` and `kinds` as leafless_voxels_find; `options`, one struct or NULL, of which
-///   `max_bytes` counts; `offsets`, room for `offset_capacity` numbers, and `triangles`, room for `triangle_capacity`,
-///   each NULL to ask for its count only; `offset_count` and `triangle_count`, one number each.
+/// - Buffers: `lattice`, `codes`, `levels` and `kinds` as leafless_voxels_find; `options`, one struct or
+///   NULL, of which `max_bytes` counts; `offsets`, room for `offset_capacity` numbers, and `triangles`, room
+///   for `triangle_capacity`, each NULL to ask for its count only; `offset_count` and `triangle_count`, one
+///   number each.
 /// - Result: `offsets`, one more than records; `triangles`, indices into the mesh; their counts.
-/// - Errors: LEAFLESS_E_ARGUMENT if the arrays are no records; LEAFLESS_E_BUFFER if a capacity is too small: nothing is
-///   written then; LEAFLESS_E_LIMIT; LEAFLESS_E_NO_MEMORY; LEAFLESS_E_CANCELLED.
+/// - Errors: LEAFLESS_E_ARGUMENT if the arrays are no records; LEAFLESS_E_BUFFER if a capacity is too small:
+///   nothing is written then; LEAFLESS_E_LIMIT; LEAFLESS_E_NO_MEMORY; LEAFLESS_E_CANCELLED.
 /// - Untrusted input: any numbers, any mesh.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn leafless_voxels_triangles(
@@ -419,15 +425,15 @@ pub unsafe extern "C" fn leafless_voxels_triangles(
     })
 }
 
-/// The octree that records speak of, to the depth of their lattice: inside voxels are FULL, outside voxels and what no
-/// record speaks of EMPTY. Nothing is known of the space outside, and nothing is proven.
+/// The octree that records speak of, to the depth of their lattice: inside voxels are FULL, outside voxels
+/// and what no record speaks of EMPTY. Nothing is known of the space outside, and nothing is proven.
 ///
-/// - Buffers: `lattice`, `codes`, `levels` and `kinds` as leafless_voxels_find; `options`, one struct or NULL; `octree`,
-///   one pointer. `boundary` is the tag of boundary voxels: LEAFLESS_TAG_EMPTY, LEAFLESS_TAG_PARTIAL or
-///   LEAFLESS_TAG_FULL.
+/// - Buffers: `lattice`, `codes`, `levels` and `kinds` as leafless_voxels_find; `options`, one struct or
+///   NULL; `octree`, one pointer. `boundary` is the tag of boundary voxels: LEAFLESS_TAG_EMPTY,
+///   LEAFLESS_TAG_PARTIAL or LEAFLESS_TAG_FULL.
 /// - Result: `*octree`.
-/// - Errors: LEAFLESS_E_ARGUMENT if the arrays are no records, or `boundary` is another tag; LEAFLESS_E_LIMIT;
-///   LEAFLESS_E_NO_MEMORY; LEAFLESS_E_CANCELLED.
+/// - Errors: LEAFLESS_E_ARGUMENT if the arrays are no records, or `boundary` is another tag;
+///   LEAFLESS_E_LIMIT; LEAFLESS_E_NO_MEMORY; LEAFLESS_E_CANCELLED.
 /// - Ownership: give `*octree` back with leafless_octree_free.
 /// - Threads: any; uses as many as `options` says.
 /// - Untrusted input: any numbers.
