@@ -156,7 +156,7 @@ pub(super) unsafe fn sample(
 /// - Buffers: `value`, `components` numbers; `attribute`, one pointer.
 /// - Result: `*attribute`.
 /// - Errors: LEAFLESS_E_ARGUMENT unless `components` is 1 to 4, and no number NaN.
-/// - Ownership: give `*attribute` back with leafless_attribute_free.
+/// - Ownership: release `*attribute` with leafless_attribute_free.
 /// - Untrusted input: any numbers.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn leafless_attribute_new_constant(
@@ -191,7 +191,7 @@ pub(super) fn components(components: u32, name: &'static str) -> Result<usize, F
 /// - Result: `*attribute`.
 /// - Errors: LEAFLESS_E_ARGUMENT if an entry is neither 0 nor of a magnitude between 2^-64 and 2^64, M is
 ///   singular, or an entry of the inverse is beyond 2^64.
-/// - Ownership: the operand is shared and may be freed; give `*attribute` back with leafless_attribute_free.
+/// - Ownership: the operand is shared and may be freed; release `*attribute` with leafless_attribute_free.
 /// - Untrusted input: any attribute and numbers.
 ///
 /// cbindgen:ptrs-as-arrays=[[matrix; 12]]
@@ -303,11 +303,11 @@ pub unsafe extern "C" fn leafless_attribute_ref(
     guard(|| unsafe { refer(attribute, "attribute", reference) })
 }
 
-/// Gives back a reference to an attribute; with the last one the attribute is gone. Channels that were filled
+/// Releases a reference to an attribute; with the last one the attribute is gone. Channels that were filled
 /// from it stay.
 ///
 /// - Buffers: `attribute`, a handle or NULL, which does nothing.
-/// - Ownership: the reference is gone.
+/// - Ownership: the reference is invalid afterwards.
 /// - Threads: any; no other call may use this reference.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn leafless_attribute_free(attribute: *mut leafless_attribute) {

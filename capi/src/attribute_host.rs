@@ -22,7 +22,7 @@ pub type leafless_attribute_value_fn =
     Option<unsafe extern "C" fn(ctx: *mut c_void, point: *const f64, value: *mut f64) -> i32>;
 
 /// The values at `count` points (3 numbers each) at once, for hosts that do that faster than one by one: the
-/// numbers of the first, then those of the second, and so on. Else as leafless_attribute_value_fn.
+/// numbers of the first, then those of the second, and so on. Otherwise as leafless_attribute_value_fn.
 pub type leafless_attribute_values_fn =
     Option<unsafe extern "C" fn(ctx: *mut c_void, points: *const f64, count: u64, values: *mut f64) -> i32>;
 
@@ -30,7 +30,7 @@ pub type leafless_attribute_values_fn =
 /// units): sets `kind` and the intervals of `*range`, of which the kind is LEAFLESS_RANGE_KIND_UNKNOWN and
 /// all numbers are NaN before. The answer must be proven: a wrong range hides details that nobody looks for
 /// any more. An interval that contains a NaN, or of which lower > upper, says nothing; a `kind` that is none
-/// ends the operation with LEAFLESS_E_CALLBACK. Else as leafless_attribute_value_fn.
+/// ends the operation with LEAFLESS_E_CALLBACK. Otherwise as leafless_attribute_value_fn.
 pub type leafless_attribute_range_fn = Option<
     unsafe extern "C" fn(
         ctx: *mut c_void,
@@ -140,7 +140,7 @@ impl Attribute for HostAttribute {
 /// - Result: `*attribute`.
 /// - Errors: LEAFLESS_E_NULL if `value` and `values` are NULL; LEAFLESS_E_ARGUMENT unless `components` is 1
 ///   to 4. After an error `destroy` is not called.
-/// - Ownership: `ctx` must live until `destroy` is called with it; give `*attribute` back with
+/// - Ownership: `ctx` must live until `destroy` is called with it; release `*attribute` with
 ///   leafless_attribute_free.
 /// - Threads: any; in which the functions are called, leafless_attribute_value_fn says.
 /// - Untrusted input: any answers.

@@ -107,12 +107,11 @@ fn distance(value: f64, name: &'static str) -> Result<f64, Failure> {
 /// A bay with a container, without obstacles and items. The container is any solid that ends.
 ///
 /// - Buffers: `bay`, one pointer. `clearance_model` is the least distance between two items, and between an
-///   item and an obstacle; `wall_clearance_model` that between an item and what lies outside of the
-///   container.
+///   item and an obstacle; `wall_clearance_model` that between an item and what lies outside the container.
 /// - Result: `*bay`.
 /// - Errors: LEAFLESS_E_ARGUMENT if a distance is not between 0 and 2^64; if the container has no bounds, or
 ///   no extent along an axis.
-/// - Ownership: the bay shares the container, which may be freed; give `*bay` back with leafless_bay_free.
+/// - Ownership: the bay shares the container, which may be freed; release `*bay` with leafless_bay_free.
 /// - Untrusted input: any solid and numbers.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn leafless_bay_new(
@@ -131,10 +130,10 @@ pub unsafe extern "C" fn leafless_bay_new(
     })
 }
 
-/// Gives back a bay. Layouts that were made of it stay.
+/// Releases a bay. Layouts that were made of it stay.
 ///
 /// - Buffers: `bay`, a handle or NULL, which does nothing.
-/// - Ownership: the handle is gone.
+/// - Ownership: the handle is invalid afterwards.
 /// - Threads: no other call may use the handle.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn leafless_bay_free(bay: *mut leafless_bay) {

@@ -17,13 +17,13 @@ use super::status::leafless_status;
 ///
 /// - Buffers: `min_cell` and `max_cell`, 3 numbers each: the first cell of the box, and the first one beyond
 ///   it on each axis, in cells of `level`, which is 0 for the universe and the frame's depth for the finest;
-///   `options`, one struct or NULL, of which limits do not matter; `inner` and `outer`, room for `capacity`
-///   words each. `inner` is NULL to ask for the count only; `outer` may be NULL if it is not wanted. `count`,
-///   one number.
-/// - Result: `*count`, the words of a bitmap, w ny nz; the words, the same for any number of threads.
-/// - Errors: LEAFLESS_E_ARGUMENT if there is no such level, or the box is none or lies outside of the
-///   universe; LEAFLESS_E_BUFFER if the capacity is too small; LEAFLESS_E_CANCELLED; LEAFLESS_E_NO_MEMORY.
-/// - Threads: any; uses as many as `options` says.
+///   `options`, one struct or NULL (its limits are ignored); `inner` and `outer`, room for `capacity` words
+///   each. `inner` is NULL to get only the count; `outer` may be NULL if it is not wanted. `count`, one
+///   number.
+/// - Result: `*count`, the words of a bitmap, w ny nz; the words, identical for any number of threads.
+/// - Errors: LEAFLESS_E_ARGUMENT if there is no such level, or the box is none or lies outside the universe;
+///   LEAFLESS_E_BUFFER if the capacity is too small; LEAFLESS_E_CANCELLED; LEAFLESS_E_NO_MEMORY.
+/// - Threads: any; runs on as many threads as `options` says.
 /// - Untrusted input: any octree, any numbers; damage reads as PARTIAL.
 ///
 /// cbindgen:ptrs-as-arrays=[[min_cell; 3], [max_cell; 3]]

@@ -626,7 +626,7 @@ pub(super) unsafe fn refer<T>(
     }
 }
 
-/// Gives back one reference.
+/// Releases one reference.
 ///
 /// # Safety
 /// The handle is NULL, or alive and came from [`handle`]; the reference is the caller's.
@@ -637,7 +637,7 @@ pub(super) unsafe fn release<T>(handle: *mut T) {
     }
 }
 
-/// Gives back a handle that nothing shares.
+/// Releases a handle that nothing shares.
 ///
 /// # Safety
 /// The handle is NULL, or alive and came from `Box::into_raw`; no other call uses it.

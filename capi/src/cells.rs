@@ -238,7 +238,7 @@ pub unsafe extern "C" fn leafless_cursor_neighbour(
 /// smaller ones at its face, edge or vertex, in Morton order.
 ///
 /// - Buffers: `direction`, 3 numbers of -1, 0 and 1: the steps along x, y and z; `cells`, room for `capacity`
-///   structs, or NULL to ask for the count only; `count`, one number.
+///   structs, or NULL to get only the count; `count`, one number.
 /// - Result: `*count`, 0 if the side lies on the boundary of the universe; the cells.
 /// - Errors: LEAFLESS_E_ARGUMENT if `direction` is none; LEAFLESS_E_BUFFER if the capacity is too small.
 /// - Threads: any, while nobody moves the cursor.
@@ -270,15 +270,15 @@ pub unsafe extern "C" fn leafless_cursor_neighbours(
 }
 
 /// Cells of an octree one after another, in Morton order: those of some tags, on some levels, in a box. A
-/// cell that is split comes before the cells in it. It reads no parts of the octree outside of the box or
-/// below the levels.
+/// cell that is split comes before the cells in it. It reads no parts of the octree outside the box or below
+/// the levels.
 ///
 /// - Buffers: `min_cell` and `max_cell`, 3 numbers each, or NULL both for the whole universe: the first
 ///   finest cell of the box on each axis, and the first beyond it; `cells`, one pointer. `tags` are
 ///   leafless_tags. `min_level` and `max_level` may be greater than the depth.
 /// - Result: `*cells`, which stands before the first such cell.
 /// - Errors: LEAFLESS_E_ARGUMENT if `tags` are none.
-/// - Ownership: `*cells` shares the octree, which may be freed; give it back with leafless_cells_free.
+/// - Ownership: `*cells` shares the octree, which may be freed; release it with leafless_cells_free.
 /// - Untrusted input: any octree, any numbers.
 ///
 /// cbindgen:ptrs-as-arrays=[[min_cell; 3], [max_cell; 3]]
@@ -304,7 +304,7 @@ pub unsafe extern "C" fn leafless_cells_new(
 /// Gives back what leafless_cells_new made.
 ///
 /// - Buffers: `cells`, a handle or NULL, which does nothing.
-/// - Ownership: the handle is gone.
+/// - Ownership: the handle is invalid afterwards.
 /// - Threads: no other call may use the handle.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn leafless_cells_free(cells: *mut leafless_cells) {
@@ -377,14 +377,14 @@ unsafe fn room<T>(buffer: *mut T, capacity: u64) -> Result<usize, Failure> {
 /// Boundary faces of an octree one after another: those between cells of some tags and cells of others, which
 /// are both not split. With FULL, the boundary of what is surely solid; with FULL and PARTIAL, of what is
 /// possibly solid. Where cells of different sizes meet there is one face for each of the smaller ones. What
-/// is outside of the universe has the exterior's tag. They come in Morton order of the inner cells, for each
-/// of these in the order -z, -y, -x, +x, +y, +z, and for each side in the Morton order of the outer cells.
+/// is outside the universe has the exterior's tag. They come in Morton order of the inner cells, for each of
+/// these in the order -z, -y, -x, +x, +y, +z, and for each side in the Morton order of the outer cells.
 ///
 /// - Buffers: as leafless_cells_new; levels and box are those of the inner cells; `faces`, one pointer.
 ///   BRANCH among the tags does nothing.
 /// - Result: `*faces`, which stands before the first face.
 /// - Errors: LEAFLESS_E_ARGUMENT if `tags` are none.
-/// - Ownership: `*faces` shares the octree, which may be freed; give it back with leafless_faces_free.
+/// - Ownership: `*faces` shares the octree, which may be freed; release it with leafless_faces_free.
 /// - Untrusted input: any octree, any numbers.
 ///
 /// cbindgen:ptrs-as-arrays=[[min_cell; 3], [max_cell; 3]]
@@ -411,7 +411,7 @@ pub unsafe extern "C" fn leafless_faces_new(
 /// Gives back what leafless_faces_new made.
 ///
 /// - Buffers: `faces`, a handle or NULL, which does nothing.
-/// - Ownership: the handle is gone.
+/// - Ownership: the handle is invalid afterwards.
 /// - Threads: no other call may use the handle.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn leafless_faces_free(faces: *mut leafless_faces) {

@@ -96,11 +96,11 @@ pub unsafe extern "C" fn leafless_channel_ref(
     guard(|| unsafe { refer(channel, "channel", reference) })
 }
 
-/// Gives back a reference to a channel. With the last one the channel is gone, and with it the mapping of its
+/// Releases a reference to a channel. With the last one the channel is gone, and with it the mapping of its
 /// file, unless an octree, an attribute, or a channel with other metadata still shares it.
 ///
 /// - Buffers: `channel`, a handle or NULL, which does nothing.
-/// - Ownership: the reference is gone.
+/// - Ownership: the reference is invalid afterwards.
 /// - Threads: any; no other call may use this reference.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn leafless_channel_free(channel: *mut leafless_channel) {
@@ -165,13 +165,13 @@ pub unsafe extern "C" fn leafless_channel_equal(
 }
 
 /// The values of a channel as an attribute, which may be placed, or fill a channel on another frame. It has
-/// no values outside of the channel's cube.
+/// no values outside the channel's cube.
 ///
 /// - Buffers: `attribute`, one pointer.
 /// - Result: `*attribute`.
 /// - Errors: only the general ones; asking for its values returns LEAFLESS_E_DAMAGED if the channel was
 ///   mapped unverified and its links are damaged.
-/// - Ownership: the attribute shares the channel, which may be freed; give `*attribute` back with
+/// - Ownership: the attribute shares the channel, which may be freed; release `*attribute` with
 ///   leafless_attribute_free.
 /// - Untrusted input: any channel.
 #[unsafe(no_mangle)]
@@ -195,7 +195,7 @@ pub unsafe extern "C" fn leafless_attribute_from_channel(
 /// - Errors: LEAFLESS_E_UTF8; LEAFLESS_E_ARGUMENT if all facts would take more than 64 KiB in a file, 8 bytes
 ///   and the two texts each; LEAFLESS_E_NO_MEMORY.
 /// - Ownership: the texts are copied. `*named` shares the arrays of `channel`, which may be freed: what must
-///   outlive `channel`, such as bytes that it views, must outlive `*named` too. Give that back with
+///   outlive `channel`, such as bytes that it views, must outlive `*named` too. Release that with
 ///   leafless_channel_free.
 /// - Untrusted input: any texts.
 #[unsafe(no_mangle)]
@@ -261,7 +261,7 @@ pub unsafe extern "C" fn leafless_channel_peek_metadata(
 /// A fact of a channel's metadata by its place among all, which stand by ascending key.
 ///
 /// - Buffers: `count`, one number; `key`, `key_length`, `value`, `value_length`, one each, all four NULL to
-///   ask for the count only.
+///   get only the count.
 /// - Result: `*count`, the number of all facts; key and value, not NUL-terminated, with their lengths in
 ///   bytes.
 /// - Errors: LEAFLESS_E_ARGUMENT if there is no fact `index`, unless only the count is asked for.

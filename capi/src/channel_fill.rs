@@ -36,8 +36,7 @@ enumeration! {
     }
 }
 
-/// How a channel is filled. NULL means the defaults. All fields but the first may be zero, which is their
-/// default.
+/// How a channel is filled. NULL means the defaults. Zero is the default of every field but the first.
 #[derive(Clone, Copy)]
 #[repr(C)]
 pub struct leafless_channel_fill_options {
@@ -113,9 +112,9 @@ impl leafless_channel_fill_options {
 ///   the range of the type, infinite, or partly NaN; LEAFLESS_E_FRAME if the solid lies in another cube than
 ///   the frame; LEAFLESS_E_NULL if both are missing; LEAFLESS_E_UTF8; LEAFLESS_E_CALLBACK;
 ///   LEAFLESS_E_DAMAGED; LEAFLESS_E_LIMIT; LEAFLESS_E_CANCELLED; LEAFLESS_E_NO_MEMORY.
-/// - Ownership: nothing is kept of the attribute, the solid and the name; give `*channel` back with
+/// - Ownership: nothing is kept of the attribute, the solid and the name; release `*channel` with
 ///   leafless_channel_free.
-/// - Threads: any; uses as many as `options` says.
+/// - Threads: any; runs on as many threads as `options` says.
 /// - Untrusted input: any attribute, any octree; set `max_bytes` where the depth or the attribute is not your
 ///   own choice.
 #[unsafe(no_mangle)]
@@ -162,8 +161,8 @@ pub unsafe extern "C" fn leafless_channel_fill(
 ///
 /// - Buffers: `points_model`, `count` points of 3 numbers; `values`, room for `count` values of as many
 ///   numbers as `components` of leafless_channel_describe. Both may be NULL if `count` is 0.
-/// - Result: the value at point i from `values[components * i]` on; NaN where there is none, and outside of
-///   the channel's cube.
+/// - Result: the value at point i from `values[components * i]` on; NaN where there is none, and outside the
+///   channel's cube.
 /// - Errors: LEAFLESS_E_DAMAGED.
 /// - Untrusted input: any channel, any numbers; damage reads as no value.
 #[unsafe(no_mangle)]
@@ -238,8 +237,8 @@ pub unsafe extern "C" fn leafless_channel_value_at(
 /// - Errors: LEAFLESS_E_ARGUMENT if the value is beyond the type's range, or not finite; LEAFLESS_E_FRAME
 ///   unless both lie in one cube; LEAFLESS_E_DAMAGED; LEAFLESS_E_LIMIT; LEAFLESS_E_CANCELLED;
 ///   LEAFLESS_E_NO_MEMORY.
-/// - Ownership: `channel` stays as it is; give `*changed` back with leafless_channel_free.
-/// - Threads: any; uses as many as `options` says.
+/// - Ownership: `channel` is unchanged; release `*changed` with leafless_channel_free.
+/// - Threads: any; runs on as many threads as `options` says.
 /// - Untrusted input: any channel, any octree, any numbers.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn leafless_channel_with_value_in(

@@ -105,8 +105,8 @@ impl From<&MaterialProperties> for leafless_material {
 /// faces may lie anywhere. O(cells that the box meets).
 ///
 /// - Buffers: `solid`, a handle, or NULL for all space; `min_model` and `max_model`, 3 numbers each, which
-///   may be infinite, or both NULL for all of the channel's cube; `options`, one struct or NULL, of which
-///   limits do not matter; `summary`, one struct.
+///   may be infinite, or both NULL for all of the channel's cube; `options`, one struct or NULL (its limits
+///   are ignored); `summary`, one struct.
 /// - Result: `*summary`.
 /// - Errors: LEAFLESS_E_ARGUMENT if a coordinate is not a number, or min > max; LEAFLESS_E_FRAME if the solid
 ///   lies in another cube; LEAFLESS_E_DAMAGED; LEAFLESS_E_CANCELLED.
@@ -149,8 +149,8 @@ pub unsafe extern "C" fn leafless_channel_summarise(
 /// - Result: `*octree`.
 /// - Errors: LEAFLESS_E_ARGUMENT if a bound is not a number; LEAFLESS_E_DAMAGED; LEAFLESS_E_LIMIT;
 ///   LEAFLESS_E_CANCELLED; LEAFLESS_E_NO_MEMORY.
-/// - Ownership: give `*octree` back with leafless_octree_free.
-/// - Threads: any; uses as many as `options` says.
+/// - Ownership: release `*octree` with leafless_octree_free.
+/// - Threads: any; runs on as many threads as `options` says.
 /// - Untrusted input: any channel, any numbers.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn leafless_channel_region(
@@ -180,13 +180,13 @@ pub unsafe extern "C" fn leafless_channel_region(
 /// is taken as it is; its cells decide what is which material. To ask for the count alone takes as long.
 ///
 /// - Buffers: `frame`, one struct: where the solid is split, in the channel's cube; `options`, one struct or
-///   NULL; `measured`, room for `capacity` structs, or NULL to ask for the count only; `count`, one number.
+///   NULL; `measured`, room for `capacity` structs, or NULL to get only the count; `count`, one number.
 ///   `relative` and `absolute_model` are those of leafless_solid_measure.
 /// - Result: `*count`; the materials.
 /// - Errors: LEAFLESS_E_LIMIT if the channel has more than 4096 different values; LEAFLESS_E_FRAME unless
-///   `frame` is of the channel's cube; LEAFLESS_E_BUFFER if the capacity is too small; else as
+///   `frame` is of the channel's cube; LEAFLESS_E_BUFFER if the capacity is too small; otherwise as
 ///   leafless_solid_measure.
-/// - Threads: any; uses as many as `options` says.
+/// - Threads: any; runs on as many threads as `options` says.
 /// - Untrusted input: any solid, any channel; the default of `max_splits` bounds the work for each value.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn leafless_solid_materials(
@@ -215,17 +215,17 @@ pub unsafe extern "C" fn leafless_solid_materials(
 }
 
 /// The samples of a volume as an attribute of one number, where the file says that they lie. There is no
-/// value outside of the voxels, nor where a sample that counts is not a number. The first solid, range or
+/// value outside the voxels, nor where a sample that counts is not a number. The first solid, range or
 /// attribute of a volume reads all samples, in O(n).
 ///
-/// - Buffers: `interpolation`, a leafless_interpolation; `options`, one struct or NULL, of which limits do
-///   not matter; `attribute`, one pointer.
+/// - Buffers: `interpolation`, a leafless_interpolation; `options`, one struct or NULL (its limits are
+///   ignored); `attribute`, one pointer.
 /// - Result: `*attribute`.
 /// - Errors: LEAFLESS_E_ARGUMENT if the map that places the volume has no inverse that a map can have;
 ///   LEAFLESS_E_CANCELLED; LEAFLESS_E_NO_MEMORY.
-/// - Ownership: the attribute shares the samples, and `volume` may be freed; give `*attribute` back with
+/// - Ownership: the attribute shares the samples, and `volume` may be freed; release `*attribute` with
 ///   leafless_attribute_free.
-/// - Threads: any; uses as many as `options` says.
+/// - Threads: any; runs on as many threads as `options` says.
 /// - Untrusted input: any volume.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn leafless_attribute_from_volume(

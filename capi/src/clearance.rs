@@ -19,7 +19,7 @@ pub enum leafless_gap_verdict {
     LEAFLESS_GAP_VERDICT_YES = 0,
     /// Proven: two points are nearer.
     LEAFLESS_GAP_VERDICT_NO = 1,
-    /// Not decided at the frame's depth, or before the splits were spent; or a solid may go on outside of the
+    /// Not decided at the frame's depth, or before the splits were spent; or a solid may go on outside the
     /// universe.
     LEAFLESS_GAP_VERDICT_UNDECIDED = 2,
 }
@@ -57,7 +57,7 @@ pub struct leafless_gap {
     pub measured: leafless_stop_reason,
     /// Whether the upper bound is finite.
     pub has_points: bool,
-    /// Whether one of the solids may go on outside of the universe, of which nothing is said.
+    /// Whether one of the solids may go on outside the universe, of which nothing is said.
     pub is_clipped: bool,
 }
 
@@ -102,7 +102,7 @@ pub struct leafless_placed_gap {
     pub measured: leafless_stop_reason,
     /// Whether the upper bound is finite.
     pub has_points: bool,
-    /// Whether one of the solids may go on outside of the universe, of which nothing is said.
+    /// Whether one of the solids may go on outside the universe, of which nothing is said.
     pub is_clipped: bool,
 }
 
@@ -143,7 +143,7 @@ pub struct leafless_placed_clearance {
     pub measured: leafless_stop_reason,
     /// Whether the upper bound is finite.
     pub has_points: bool,
-    /// Whether one of the solids may go on outside of the universe, of which nothing is said.
+    /// Whether one of the solids may go on outside the universe, of which nothing is said.
     pub is_clipped: bool,
 }
 
@@ -192,16 +192,15 @@ pub unsafe extern "C" fn leafless_solid_gap_at_least(
     })
 }
 
-/// As leafless_solid_clearance of `a` with `b` under each of many affine maps, as
-/// leafless_solid_transformed makes them. `max_splits` concerns each of them. The results are the same for
-/// any number of threads.
+/// As leafless_solid_clearance of `a` with `b` under each of many affine maps, as leafless_solid_transformed
+/// makes them. `max_splits` concerns each of them. The results are identical for any number of threads.
 ///
 /// - Buffers: `own`, one struct, the frame of `b`; `matrices`, `count` times 12 numbers; `frame`, one struct,
 ///   that of `a`; `options`, one struct or NULL; `clearances`, room for `count`. `matrices` and
 ///   `clearances` may be NULL if `count` is 0.
 /// - Result: `clearances[i]` for map i.
 /// - Errors: as leafless_solid_interfere and leafless_solid_transformed; nothing is then written.
-/// - Threads: any; uses as many as `options` says.
+/// - Threads: any; runs on as many threads as `options` says.
 /// - Untrusted input: as leafless_solid_clearance, and any numbers.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn leafless_solid_clearance_many(
@@ -233,7 +232,7 @@ pub unsafe extern "C" fn leafless_solid_clearance_many(
 }
 
 /// As leafless_solid_gap_at_least of `a` with `b` under each of many affine maps, as
-/// leafless_solid_transformed makes them. `max_splits` concerns each of them. The results are the same for
+/// leafless_solid_transformed makes them. `max_splits` concerns each of them. The results are identical for
 /// any number of threads.
 ///
 /// - Buffers: `own`, one struct, the frame of `b`; `matrices`, `count` times 12 numbers; `frame`, one struct,
@@ -241,7 +240,7 @@ pub unsafe extern "C" fn leafless_solid_clearance_many(
 ///   if `count` is 0.
 /// - Result: `gaps[i]` for map i.
 /// - Errors: as leafless_solid_gap_at_least and leafless_solid_transformed; nothing is then written.
-/// - Threads: any; uses as many as `options` says.
+/// - Threads: any; runs on as many threads as `options` says.
 /// - Untrusted input: as leafless_solid_gap_at_least, and any numbers.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn leafless_solid_gap_at_least_many(

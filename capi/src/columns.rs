@@ -78,7 +78,7 @@ enumeration! {
 /// - Result: `*columns`, to be read with leafless_columns_copy.
 /// - Errors: LEAFLESS_E_ARGUMENT if `axis` is greater than 2, `first` lies beyond `end`, or the columns reach
 ///   beyond the universe; LEAFLESS_E_NO_MEMORY.
-/// - Ownership: give `*columns` back with leafless_columns_free.
+/// - Ownership: release `*columns` with leafless_columns_free.
 /// - Untrusted input: any octree, any numbers; damage reads as PARTIAL, and no array element is met twice.
 ///
 /// cbindgen:ptrs-as-arrays=[[first; 2], [end; 2]]
@@ -101,13 +101,13 @@ pub unsafe extern "C" fn leafless_octree_columns(
 /// Which cells of a frame are solid in a rectangle of columns, without an octree: all PARTIAL cells in the
 /// columns are split down to the frame's depth.
 ///
-/// - Buffers: as leafless_octree_columns; `frame`, one struct; `options`, one struct or NULL, of which
-///   `max_bytes` counts and `max_splits` does not.
-/// - Result: `*columns`, to be read with leafless_columns_copy; the same for any number of threads.
+/// - Buffers: as leafless_octree_columns; `frame`, one struct; `options`, one struct or NULL (only its limit
+///   `max_bytes` applies) and `max_splits` does not.
+/// - Result: `*columns`, to be read with leafless_columns_copy; identical for any number of threads.
 /// - Errors: LEAFLESS_E_ARGUMENT as leafless_octree_columns; LEAFLESS_E_LIMIT if the result takes more than
-///   `max_bytes`; else as leafless_solid_contains_many.
-/// - Ownership: give `*columns` back with leafless_columns_free.
-/// - Threads: any; uses as many as `options` says.
+///   `max_bytes`; otherwise as leafless_solid_contains_many.
+/// - Ownership: release `*columns` with leafless_columns_free.
+/// - Threads: any; runs on as many threads as `options` says.
 /// - Untrusted input: any solid, any numbers; choose the depth and the rectangle yourself.
 ///
 /// cbindgen:ptrs-as-arrays=[[first; 2], [end; 2]]
@@ -173,7 +173,7 @@ pub unsafe extern "C" fn leafless_columns_copy(
 /// Gives back what leafless_octree_columns or leafless_solid_columns made.
 ///
 /// - Buffers: `columns`, a handle or NULL, which does nothing.
-/// - Ownership: the handle is gone.
+/// - Ownership: the handle is invalid afterwards.
 /// - Threads: no other call may use the handle.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn leafless_columns_free(columns: *mut leafless_columns) {
@@ -213,7 +213,7 @@ unsafe fn write_heights(
 /// was made from: a height map. Costs as leafless_octree_columns.
 ///
 /// - Buffers: `first` and `end` as leafless_octree_columns; `heights_model`, room for `capacity` structs, or
-///   NULL to ask for the count only; `count`, one number. `side` is a leafless_side.
+///   NULL to get only the count; `count`, one number. `side` is a leafless_side.
 /// - Result: `*count`, that of the columns; for each column, in the order of leafless_columns_copy, an
 ///   interval in which the greatest coordinate of the solid's points in the column lies, or from below the
 ///   least one. The end that needs a proof is infinite if no cell of the column is FULL. Both are -INFINITY
@@ -246,12 +246,12 @@ pub unsafe extern "C" fn leafless_octree_heights(
 /// How far a solid reaches in a rectangle of columns, without an octree, as far as cells of the frame tell: a
 /// height map. PARTIAL cells in the columns are split down to the frame's depth, unless FULL ones hide them.
 ///
-/// - Buffers: as leafless_octree_heights; `frame`, one struct; `options`, one struct or NULL, of which
-///   `max_bytes` counts and `max_splits` does not.
-/// - Result: as leafless_octree_heights; the same for any number of threads.
+/// - Buffers: as leafless_octree_heights; `frame`, one struct; `options`, one struct or NULL (only its limit
+///   `max_bytes` applies) and `max_splits` does not.
+/// - Result: as leafless_octree_heights; identical for any number of threads.
 /// - Errors: LEAFLESS_E_ARGUMENT as leafless_octree_heights; LEAFLESS_E_BUFFER if the capacity is too small;
-///   LEAFLESS_E_LIMIT if the result takes more than `max_bytes`; else as leafless_solid_contains_many.
-/// - Threads: any; uses as many as `options` says.
+///   LEAFLESS_E_LIMIT if the result takes more than `max_bytes`; otherwise as leafless_solid_contains_many.
+/// - Threads: any; runs on as many threads as `options` says.
 /// - Untrusted input: any solid, any numbers; choose the depth and the rectangle yourself.
 ///
 /// cbindgen:ptrs-as-arrays=[[first; 2], [end; 2]]

@@ -18,7 +18,7 @@ pub enum leafless_membership {
     LEAFLESS_MEMBERSHIP_OUTSIDE = 0,
     /// Proven inside.
     LEAFLESS_MEMBERSHIP_INSIDE = 1,
-    /// In a PARTIAL cell, outside of the universe, or not a number.
+    /// In a PARTIAL cell, outside the universe, or not a number.
     LEAFLESS_MEMBERSHIP_UNDECIDED = 2,
 }
 
@@ -85,7 +85,7 @@ impl From<Region> for leafless_region {
 }
 
 /// Whether the solid contains a point. A point on the boundary may be answered either way; one that is
-/// outside of the universe or not a number is undecided. At most ⌈depth/2⌉ array elements are read.
+/// outside the universe or not a number is undecided. At most ⌈depth/2⌉ array elements are read.
 ///
 /// - Buffers: `point_model`, 3 numbers; `membership`, one.
 /// - Result: `*membership`.
@@ -150,7 +150,7 @@ pub unsafe extern "C" fn leafless_octree_tag_at(
     })
 }
 
-/// How a box lies to the solid; what of it lies outside of the universe is undecided.
+/// How a box lies to the solid; what of it lies outside the universe is undecided.
 ///
 /// - Buffers: `min_model` and `max_model`, 3 numbers each; `region`, one.
 /// - Result: `*region`.
@@ -174,18 +174,18 @@ pub unsafe extern "C" fn leafless_octree_classify_box(
 }
 
 /// Whether a solid contains points, without an octree: a point in a cell of the frame that is undecided at
-/// the frame's depth, outside of the universe, or not a number is undecided. A point on the boundary may be
+/// the frame's depth, outside the universe, or not a number is undecided. A point on the boundary may be
 /// answered either way. The host's own `contains` is asked first, where there is one; for others at most one
 /// cell a level is split a point, and points near each other share the way.
 ///
-/// - Buffers: `frame`, one struct; `points_model`, `count` points of 3 numbers; `options`, one struct or
-///   NULL, of which limits do not matter; `memberships`, room for `count`. `points_model` and `memberships`
-///   may be NULL if `count` is 0.
-/// - Result: `memberships[i]` for point i; the same for any number of threads.
+/// - Buffers: `frame`, one struct; `points_model`, `count` points of 3 numbers; `options`, one struct or NULL
+///   (its limits are ignored); `memberships`, room for `count`. `points_model` and `memberships` may be NULL
+///   if `count` is 0.
+/// - Result: `memberships[i]` for point i; identical for any number of threads.
 /// - Errors: LEAFLESS_E_FRAME if the solid belongs to another frame; LEAFLESS_E_ARGUMENT as
 ///   leafless_frame_check; LEAFLESS_E_CALLBACK; LEAFLESS_E_DAMAGED; LEAFLESS_E_CANCELLED;
 ///   LEAFLESS_E_NO_MEMORY.
-/// - Threads: any; uses as many as `options` says.
+/// - Threads: any; runs on as many threads as `options` says.
 /// - Untrusted input: any solid, any numbers.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn leafless_solid_contains_many(
@@ -209,16 +209,15 @@ pub unsafe extern "C" fn leafless_solid_contains_many(
 }
 
 /// How a box lies to a solid, without an octree, as far as cells of the frame tell; what of the box lies
-/// outside of the universe is undecided. The work ends as soon as the answer is known, or once `max_splits`
+/// outside the universe is undecided. The work ends as soon as the answer is known, or once `max_splits`
 /// cells are split.
 ///
 /// - Buffers: `frame`, one struct; `min_model` and `max_model`, 3 numbers each; `options`, one struct or
 ///   NULL; `region`, one.
 /// - Result: `*region`.
-/// - Errors: LEAFLESS_E_ARGUMENT if min > max on an axis, or a coordinate is not a number; else as
+/// - Errors: LEAFLESS_E_ARGUMENT if min > max on an axis, or a coordinate is not a number; otherwise as
 ///   leafless_solid_contains_many.
-/// - Untrusted input: any solid, any numbers; set `max_splits` where the depth or the solid is not your own
-///   choice.
+/// - Untrusted input: any solid, any numbers; set `max_splits` if the depth or the solid is untrusted.
 ///
 /// cbindgen:ptrs-as-arrays=[[min_model; 3], [max_model; 3]]
 #[unsafe(no_mangle)]

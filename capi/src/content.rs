@@ -38,7 +38,7 @@ impl From<CellsIn> for leafless_cells_in {
 /// - Buffers: `min_cell` and `max_cell`, 3 numbers each: the first finest cell, and the first one beyond the
 ///   box on each axis; `least` and `most`, one number each.
 /// - Result: `*least` and `*most`.
-/// - Errors: LEAFLESS_E_ARGUMENT if the box is none, or lies outside of the universe.
+/// - Errors: LEAFLESS_E_ARGUMENT if the box is none, or lies outside the universe.
 /// - Untrusted input: any octree, any numbers; no array element is read twice; damage reads as PARTIAL.
 ///
 /// cbindgen:ptrs-as-arrays=[[min_cell; 3], [max_cell; 3]]
@@ -62,7 +62,7 @@ pub unsafe extern "C" fn leafless_octree_cells_in_box(
 
 /// The volume that the solid has in common with a box whose faces may lie anywhere, as an octree's cells tell
 /// it: FULL ones bound it from below, FULL and PARTIAL ones from above. Cells that the box cuts count with
-/// the part in the box, rounded outward. What lies outside of the universe does not count.
+/// the part in the box, rounded outward. What lies outside the universe does not count.
 ///
 /// - Buffers: `min_model` and `max_model`, 3 numbers each; `volume_model`, one struct.
 /// - Result: `*volume_model`, in cubic model units.
@@ -97,7 +97,7 @@ pub unsafe extern "C" fn leafless_octree_volume_in_box(
 /// - Errors: LEAFLESS_E_FRAME if solid or region belong to another frame; LEAFLESS_E_ARGUMENT as
 ///   leafless_frame_check; LEAFLESS_E_CALLBACK; LEAFLESS_E_DAMAGED; LEAFLESS_E_CANCELLED;
 ///   LEAFLESS_E_NO_MEMORY.
-/// - Untrusted input: any solids; set `max_splits` where the depth or the solids are not your own choice.
+/// - Untrusted input: any solids; set `max_splits` if the depth or the solids are untrusted.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn leafless_solid_classify_in(
     solid: *const leafless_solid,
@@ -117,7 +117,7 @@ pub unsafe extern "C" fn leafless_solid_classify_in(
 
 /// How many finest cells of an octree lie in a region, which is a ball or any other solid. The octree's cells
 /// are taken as they are, whatever they prove; what is not proven of the region counts as PARTIAL. What lies
-/// outside of the universe does not count.
+/// outside the universe does not count.
 ///
 /// Where the region is FULL, whole subtrees are counted, 64 cells at a time; where it is EMPTY, nothing is
 /// read; where it is undecided and the octree is not EMPTY, it is split, down to the octree's depth. Once
@@ -146,7 +146,7 @@ pub unsafe extern "C" fn leafless_octree_cells_in(
 
 /// The volume that an octree and a region have in common, as the octree's cells tell it: FULL ones bound it
 /// from below, FULL and PARTIAL ones from above. In a finest cell that the region cuts, its volume is known
-/// as well as the region knows it there: that of a ball to the third order. What lies outside of the universe
+/// as well as the region knows it there: that of a ball to the third order. What lies outside the universe
 /// does not count. The work is that of leafless_octree_cells_in, with a microsecond or two more for each cell
 /// that is cut.
 ///
@@ -170,17 +170,17 @@ pub unsafe extern "C" fn leafless_octree_volume_in(
 }
 
 /// How many finest cells of a frame lie in a solid and in a region, which is a ball or any other solid. What
-/// is not proven of either counts as PARTIAL, and what lies outside of the universe does not count. No octree
-/// is made: the time is about that of splitting the region's boundary inside of the solid and the solid's
-/// boundary inside of the region, and the memory is proportional to the depth. Once `max_splits` cells of
-/// both are split, the others count as undecided.
+/// is not proven of either counts as PARTIAL, and what lies outside the universe does not count. No octree is
+/// made: the time is about that of splitting the region's boundary inside the solid and the solid's boundary
+/// inside the region, and the memory is proportional to the depth. Once `max_splits` cells of both are split,
+/// the others count as undecided.
 ///
 /// - Buffers: `frame`, one struct; `options`, one struct or NULL; `cells`, one struct.
 /// - Result: `*cells`.
 /// - Errors: LEAFLESS_E_FRAME if solid or region belong to another frame; LEAFLESS_E_ARGUMENT as
 ///   leafless_frame_check; LEAFLESS_E_CALLBACK; LEAFLESS_E_DAMAGED; LEAFLESS_E_CANCELLED;
 ///   LEAFLESS_E_NO_MEMORY.
-/// - Untrusted input: any solids; set `max_splits` where the depth or the solids are not your own choice.
+/// - Untrusted input: any solids; set `max_splits` if the depth or the solids are untrusted.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn leafless_solid_cells_in(
     solid: *const leafless_solid,
@@ -197,10 +197,10 @@ pub unsafe extern "C" fn leafless_solid_cells_in(
     })
 }
 
-/// The volume that a solid and a region have in common inside of a frame's universe: an interval that
-/// contains the truth. In a cell of the finest level it is known as well as solid and region know it there.
-/// The work is that of leafless_solid_cells_in, with a microsecond or two more for each cell that is cut. (To
-/// split until a volume is known to a tolerance, use leafless_solid_measure on the intersection.)
+/// The volume that a solid and a region have in common inside a frame's universe: an interval that contains
+/// the truth. In a cell of the finest level it is known as well as solid and region know it there. The work
+/// is that of leafless_solid_cells_in, with a microsecond or two more for each cell that is cut. (To split
+/// until a volume is known to a tolerance, use leafless_solid_measure on the intersection.)
 ///
 /// - Buffers: `frame`, one struct; `options`, one struct or NULL; `volume_model`, one struct.
 /// - Result: `*volume_model`, in cubic model units.

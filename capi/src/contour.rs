@@ -32,8 +32,8 @@ output!(leafless_contour_report);
 
 /// A closed mesh of any solid, with few triangles where it is flat and small ones where it is not: of meshes,
 /// expressions with meshes in them, volumes, octrees, tri-dexel models, and functions of the host. The solid
-/// must end inside of the universe of the frame. (leafless_solid_boundary is sharper for solids that know
-/// their surfaces.)
+/// must end inside the universe of the frame. (leafless_solid_boundary is sharper for solids that know their
+/// surfaces.)
 ///
 /// Cells are split until the surface in each is one piece that a single vertex can stand for: where planes of
 /// the surface meet, so that edges and corners are sharp. The mesh is then about as near to the solid as
@@ -47,13 +47,13 @@ output!(leafless_contour_report);
 /// - Buffers: `frame`, one struct; `options`, one struct or NULL, of which `max_nodes` bounds the splits, and
 ///   with `max_splits` spent cells stay as they are; `report`, one struct or NULL; `mesh`, one pointer.
 /// - Result: `*mesh`; `*report`.
-/// - Errors: LEAFLESS_E_ARGUMENT if the solid is not known to end inside of the universe, or
-///   `tolerance_model` is not between 2^-256 and 2^256; LEAFLESS_E_MESH if there would be more than 2^32 - 1
-///   vertices or triangles; LEAFLESS_E_CALLBACK; LEAFLESS_E_DAMAGED; LEAFLESS_E_LIMIT; LEAFLESS_E_CANCELLED;
+/// - Errors: LEAFLESS_E_ARGUMENT if the solid is not known to end inside the universe, or `tolerance_model`
+///   is not between 2^-256 and 2^256; LEAFLESS_E_MESH if there would be more than 2^32 - 1 vertices or
+///   triangles; LEAFLESS_E_CALLBACK; LEAFLESS_E_DAMAGED; LEAFLESS_E_LIMIT; LEAFLESS_E_CANCELLED;
 ///   LEAFLESS_E_NO_MEMORY.
-/// - Ownership: give `*mesh` back with leafless_mesh_free.
+/// - Ownership: release `*mesh` with leafless_mesh_free.
 /// - Threads: any.
-/// - Untrusted input: any solid; set `max_nodes` where the depth or the solid is not your own choice.
+/// - Untrusted input: any solid; set `max_nodes` if the depth or the solid is untrusted.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn leafless_solid_contour(
     solid: *const leafless_solid,

@@ -25,9 +25,8 @@ pub struct leafless_control {
 /// this library.
 pub type leafless_progress_fn = Option<unsafe extern "C" fn(ctx: *mut c_void, fraction: f64) -> i32>;
 
-/// How a long operation may proceed. Where a function takes options, NULL means the defaults. All fields but
-/// the first may be zero, which is their default. No option but
-/// `max_splits` changes a result.
+/// How a long operation may proceed. Where a function takes options, NULL means the defaults. Zero is the
+/// default of every field but the first. No option but `max_splits` changes a result.
 #[derive(Clone, Copy)]
 #[repr(C)]
 pub struct leafless_options {
@@ -130,7 +129,7 @@ pub unsafe extern "C" fn leafless_init(value: *mut c_void, struct_size: usize) -
 ///
 /// - Buffers: `control`, one pointer.
 /// - Result: `*control`, not cancelled.
-/// - Ownership: give `*control` back with leafless_control_free, not before the operations that use it are
+/// - Ownership: release `*control` with leafless_control_free, not before the operations that use it are
 ///   done.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn leafless_control_new(control: *mut *mut leafless_control) -> leafless_status {
@@ -141,10 +140,10 @@ pub unsafe extern "C" fn leafless_control_new(control: *mut *mut leafless_contro
     })
 }
 
-/// Gives back a control.
+/// Releases a control.
 ///
 /// - Buffers: `control`, a handle or NULL, which does nothing.
-/// - Ownership: the handle is gone.
+/// - Ownership: the handle is invalid afterwards.
 /// - Threads: no other call may use the handle.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn leafless_control_free(control: *mut leafless_control) {

@@ -64,7 +64,7 @@ unsafe fn moved(solid: Csg, matrix: *const f64) -> Result<Csg, Failure> {
 /// - Result: `*solid`.
 /// - Errors: LEAFLESS_E_ARGUMENT if the radius is not between 2^-256 and 2^256, or a coordinate neither 0 nor
 ///   of such a magnitude.
-/// - Ownership: give `*solid` back with leafless_solid_free.
+/// - Ownership: release `*solid` with leafless_solid_free.
 /// - Untrusted input: any numbers.
 ///
 /// cbindgen:ptrs-as-arrays=[[centre_model; 3]]
@@ -88,7 +88,7 @@ pub unsafe extern "C" fn leafless_solid_new_ball(
 /// - Result: `*solid`.
 /// - Errors: LEAFLESS_E_ARGUMENT if min ≥ max on an axis, or a coordinate is neither 0 nor of a magnitude
 ///   between 2^-256 and 2^256.
-/// - Ownership: give `*solid` back with leafless_solid_free.
+/// - Ownership: release `*solid` with leafless_solid_free.
 /// - Untrusted input: any numbers.
 ///
 /// cbindgen:ptrs-as-arrays=[[min_model; 3], [max_model; 3]]
@@ -111,7 +111,7 @@ pub unsafe extern "C" fn leafless_solid_new_box(
 /// - Result: `*solid`.
 /// - Errors: LEAFLESS_E_ARGUMENT if the normal is zero, or a coefficient neither 0 nor of a magnitude between
 ///   2^-256 and 2^256.
-/// - Ownership: give `*solid` back with leafless_solid_free.
+/// - Ownership: release `*solid` with leafless_solid_free.
 /// - Untrusted input: any numbers.
 ///
 /// cbindgen:ptrs-as-arrays=[[normal; 3]]
@@ -135,7 +135,7 @@ pub unsafe extern "C" fn leafless_solid_new_halfspace(
 /// - Result: `*solid`.
 /// - Errors: LEAFLESS_E_ARGUMENT if all coefficients but the last are 0, or one is neither 0 nor of a
 ///   magnitude between 2^-256 and 2^256.
-/// - Ownership: give `*solid` back with leafless_solid_free.
+/// - Ownership: release `*solid` with leafless_solid_free.
 /// - Untrusted input: any numbers.
 ///
 /// cbindgen:ptrs-as-arrays=[[coefficients; 10]]
@@ -159,7 +159,7 @@ pub unsafe extern "C" fn leafless_solid_new_quadric(
 /// - Result: `*solid`.
 /// - Errors: LEAFLESS_E_ARGUMENT if a radius is not between 2^-256 and 2^256, or a coordinate neither 0 nor
 ///   of such a magnitude; for `matrix` as leafless_solid_placed.
-/// - Ownership: give `*solid` back with leafless_solid_free.
+/// - Ownership: release `*solid` with leafless_solid_free.
 /// - Untrusted input: any numbers.
 ///
 /// cbindgen:ptrs-as-arrays=[[centre_model; 3], [radii_model; 3], [matrix; 12]]
@@ -185,7 +185,7 @@ pub unsafe extern "C" fn leafless_solid_new_ellipsoid(
 /// - Result: `*solid`.
 /// - Errors: LEAFLESS_E_ARGUMENT if the points are equal, the radius is not between 2^-256 and 2^256, or a
 ///   coordinate neither 0 nor of such a magnitude.
-/// - Ownership: give `*solid` back with leafless_solid_free.
+/// - Ownership: release `*solid` with leafless_solid_free.
 /// - Untrusted input: any numbers.
 ///
 /// cbindgen:ptrs-as-arrays=[[from_model; 3], [to_model; 3]]
@@ -211,7 +211,7 @@ pub unsafe extern "C" fn leafless_solid_new_cylinder(
 /// - Result: `*solid`.
 /// - Errors: LEAFLESS_E_ARGUMENT if the points are equal, if both radii are 0 or one is not between 2^-256
 ///   and 2^256, or a coordinate neither 0 nor of such a magnitude.
-/// - Ownership: give `*solid` back with leafless_solid_free.
+/// - Ownership: release `*solid` with leafless_solid_free.
 /// - Untrusted input: any numbers.
 ///
 /// cbindgen:ptrs-as-arrays=[[from_model; 3], [to_model; 3]]
@@ -237,7 +237,7 @@ pub unsafe extern "C" fn leafless_solid_new_frustum(
 /// - Result: `*solid`.
 /// - Errors: LEAFLESS_E_ARGUMENT if all coefficients are 0, an exponent is not 1 to 64, or a number neither 0
 ///   nor of a magnitude between 2^-256 and 2^256.
-/// - Ownership: give `*solid` back with leafless_solid_free.
+/// - Ownership: release `*solid` with leafless_solid_free.
 /// - Untrusted input: any numbers.
 ///
 /// cbindgen:ptrs-as-arrays=[[coefficients; 3], [centre_model; 3], [exponents; 3]]
@@ -268,7 +268,7 @@ pub unsafe extern "C" fn leafless_solid_new_power(
 /// - Result: `*solid`.
 /// - Errors: LEAFLESS_E_ARGUMENT if the axis is zero, a radius is not between 2^-256 and 2^256, or a
 ///   coordinate neither 0 nor of such a magnitude; `major` may be 0, which makes a ball.
-/// - Ownership: give `*solid` back with leafless_solid_free.
+/// - Ownership: release `*solid` with leafless_solid_free.
 /// - Untrusted input: any numbers.
 ///
 /// cbindgen:ptrs-as-arrays=[[centre_model; 3], [axis; 3]]
@@ -296,7 +296,7 @@ pub unsafe extern "C" fn leafless_solid_new_torus(
 /// - Result: `*solid`.
 /// - Errors: LEAFLESS_E_ARGUMENT if a size, or `top` unless it is 0, is not between 2^-256 and 2^256; for
 ///   `matrix` as leafless_solid_placed.
-/// - Ownership: give `*solid` back with leafless_solid_free.
+/// - Ownership: release `*solid` with leafless_solid_free.
 /// - Untrusted input: any numbers.
 ///
 /// cbindgen:ptrs-as-arrays=[[size_model; 3], [matrix; 12]]
@@ -324,7 +324,7 @@ pub unsafe extern "C" fn leafless_solid_new_wedge(
 /// - Errors: LEAFLESS_E_ARGUMENT if the outline touches or crosses itself or encloses nothing, a coordinate
 ///   is neither 0 nor of a magnitude between 2^-256 and 2^256, or `low` not less than `high`; for `matrix` as
 ///   leafless_solid_placed; LEAFLESS_E_NO_MEMORY.
-/// - Ownership: give `*solid` back with leafless_solid_free.
+/// - Ownership: release `*solid` with leafless_solid_free.
 /// - Untrusted input: any numbers.
 ///
 /// cbindgen:ptrs-as-arrays=[[matrix; 12]]
@@ -352,7 +352,7 @@ pub unsafe extern "C" fn leafless_solid_new_prism(
 /// - Result: `*solid`.
 /// - Errors: LEAFLESS_E_ARGUMENT if there is no plane, a normal is zero, or a number neither 0 nor of a
 ///   magnitude between 2^-256 and 2^256; LEAFLESS_E_NO_MEMORY.
-/// - Ownership: give `*solid` back with leafless_solid_free.
+/// - Ownership: release `*solid` with leafless_solid_free.
 /// - Untrusted input: any numbers.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn leafless_solid_new_convex(
@@ -377,7 +377,7 @@ pub unsafe extern "C" fn leafless_solid_new_convex(
 /// - Result: `*result`.
 /// - Errors: LEAFLESS_E_NULL, also of an element; LEAFLESS_E_ARGUMENT, also if `count` is 0 for a difference;
 ///   LEAFLESS_E_NO_MEMORY.
-/// - Ownership: the operands are shared and may be freed; give `*result` back with leafless_solid_free.
+/// - Ownership: the operands are shared and may be freed; release `*result` with leafless_solid_free.
 /// - Untrusted input: any solids.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn leafless_solid_combine(
@@ -408,7 +408,7 @@ pub unsafe extern "C" fn leafless_solid_combine(
 /// - Buffers: `solid`, one pointer.
 /// - Result: `*solid`.
 /// - Errors: LEAFLESS_E_NULL.
-/// - Ownership: the operand is shared and may be freed; give `*solid` back with leafless_solid_free.
+/// - Ownership: the operand is shared and may be freed; release `*solid` with leafless_solid_free.
 /// - Untrusted input: any solids.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn leafless_solid_complement(
@@ -457,7 +457,7 @@ impl From<Motion> for leafless_motion {
 /// - Errors: LEAFLESS_E_ARGUMENT if an entry is neither 0 nor of a magnitude between 2^-64 and 2^64, or M is
 ///   singular; LEAFLESS_E_MESH if a mesh is moved beyond the numbers that meshes may have;
 ///   LEAFLESS_E_NO_MEMORY.
-/// - Ownership: the operand is shared and may be freed; give `*solid` back with leafless_solid_free.
+/// - Ownership: the operand is shared and may be freed; release `*solid` with leafless_solid_free.
 /// - Untrusted input: any solids and numbers.
 ///
 /// cbindgen:ptrs-as-arrays=[[matrix; 12]]
@@ -512,7 +512,7 @@ pub unsafe extern "C" fn leafless_solid_adaptive(
 /// - Buffers: `solid`, one pointer. `touch` is a leafless_touch.
 /// - Result: `*solid`.
 /// - Errors: LEAFLESS_E_NULL; LEAFLESS_E_ARGUMENT if `touch` is no leafless_touch.
-/// - Ownership: the operand is shared and may be freed; give `*solid` back with leafless_solid_free.
+/// - Ownership: the operand is shared and may be freed; release `*solid` with leafless_solid_free.
 /// - Untrusted input: any solids.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn leafless_solid_with_touch(

@@ -36,7 +36,7 @@ output!(leafless_cursor_info);
 ///
 /// - Buffers: `cursor`, one pointer.
 /// - Result: `*cursor`.
-/// - Ownership: the cursor shares the octree, which may be freed; give `*cursor` back with
+/// - Ownership: the cursor shares the octree, which may be freed; release `*cursor` with
 ///   leafless_cursor_free.
 /// - Untrusted input: any octree.
 #[unsafe(no_mangle)]
@@ -52,10 +52,10 @@ pub unsafe extern "C" fn leafless_cursor_new(
     })
 }
 
-/// Gives back a cursor.
+/// Releases a cursor.
 ///
 /// - Buffers: `cursor`, a handle or NULL, which does nothing.
-/// - Ownership: the handle is gone.
+/// - Ownership: the handle is invalid afterwards.
 /// - Threads: no other call may use the handle.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn leafless_cursor_free(cursor: *mut leafless_cursor) {

@@ -91,7 +91,7 @@ pub struct leafless_deviation {
     pub verdict: u32,
     /// Why the search ended.
     pub measured: leafless_stop_reason,
-    /// Whether the first solid may go on outside of the universe, of which nothing is said.
+    /// Whether the first solid may go on outside the universe, of which nothing is said.
     pub is_clipped_a: bool,
     /// Whether the second solid may.
     pub is_clipped_b: bool,
@@ -138,7 +138,7 @@ impl leafless_deviation {
 /// - Buffers: `frame`, one struct; `options`, one struct or NULL; `deviation`, one struct.
 /// - Result: `*deviation`.
 /// - Errors: as leafless_solid_interfere.
-/// - Threads: any; uses as many as `options` says.
+/// - Threads: any; runs on as many threads as `options` says.
 /// - Untrusted input: any solids; the default of `max_splits` bounds the work.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn leafless_solid_deviation(

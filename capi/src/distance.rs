@@ -20,7 +20,7 @@ pub enum leafless_distance_to {
     LEAFLESS_DISTANCE_TO_SOLID = 0,
     /// To what is not solid: 0 for points outside.
     LEAFLESS_DISTANCE_TO_COMPLEMENT = 1,
-    /// To the boundary, with a sign: positive outside of the solid, negative inside.
+    /// To the boundary, with a sign: positive outside the solid, negative inside.
     LEAFLESS_DISTANCE_TO_BOUNDARY = 2,
 }
 
@@ -93,15 +93,15 @@ impl From<&NearCell> for leafless_near_cell {
 
 /// The distances of points from a solid, its complement or its boundary, as an octree's cells and its
 /// exterior tell them. FULL cells bound a distance from the solid from above, FULL and PARTIAL ones from
-/// below. Points may lie outside of the universe. Some dozen array elements are read a point as a rule.
+/// below. Points may lie outside the universe. Some dozen array elements are read a point as a rule.
 ///
-/// - Buffers: `points_model`, `count` points of 3 numbers; `options`, one struct or NULL, of which limits do
-///   not matter; `distances_model`, room for `count`. `points_model` and `distances_model` may be NULL if
+/// - Buffers: `points_model`, `count` points of 3 numbers; `options`, one struct or NULL (its limits are
+///   ignored); `distances_model`, room for `count`. `points_model` and `distances_model` may be NULL if
 ///   `count` is 0. `to` is a leafless_distance_to.
-/// - Result: `distances_model[i]` for point i, the same for any number of threads: 0 to infinity if a
+/// - Result: `distances_model[i]` for point i, identical for any number of threads: 0 to infinity if a
 ///   coordinate is not a finite number, and all numbers for LEAFLESS_DISTANCE_TO_BOUNDARY.
 /// - Errors: LEAFLESS_E_CANCELLED; LEAFLESS_E_NO_MEMORY.
-/// - Threads: any; uses as many as `options` says.
+/// - Threads: any; runs on as many threads as `options` says.
 /// - Untrusted input: any octree, any numbers; damage reads as PARTIAL, and for each point no more array
 ///   elements are read than twice those that there are.
 #[unsafe(no_mangle)]
@@ -128,7 +128,7 @@ pub unsafe extern "C" fn leafless_octree_distances(
 }
 
 /// The distances of points from a solid, its complement or its boundary, without an octree. Points may lie
-/// outside of the universe of the frame. The cells that may be nearest are split first.
+/// outside the universe of the frame. The cells that may be nearest are split first.
 ///
 /// `measured` of a result says why the search for the point ended. With LEAFLESS_STOP_REASON_TOLERANCE the
 /// interval is no wider than `tolerance_model` (model units), or both ends are infinite. With
@@ -140,11 +140,11 @@ pub unsafe extern "C" fn leafless_octree_distances(
 /// - Buffers: `frame`, one struct; `points_model`, `count` points of 3 numbers; `options`, one struct or
 ///   NULL; `distances`, room for `count`. `points_model` and `distances` may be NULL if `count` is 0. `to` is
 ///   a leafless_distance_to.
-/// - Result: `distances[i]` for point i, the same for any number of threads.
+/// - Result: `distances[i]` for point i, identical for any number of threads.
 /// - Errors: LEAFLESS_E_FRAME if the solid belongs to another frame; LEAFLESS_E_ARGUMENT as
 ///   leafless_frame_check, or if the tolerance is negative or not a number; LEAFLESS_E_CALLBACK;
 ///   LEAFLESS_E_DAMAGED; LEAFLESS_E_CANCELLED; LEAFLESS_E_NO_MEMORY.
-/// - Threads: any; uses as many as `options` says.
+/// - Threads: any; runs on as many threads as `options` says.
 /// - Untrusted input: any solid, any numbers; the default of `max_splits` bounds the work.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn leafless_solid_distances(
@@ -176,8 +176,8 @@ pub unsafe extern "C" fn leafless_solid_distances(
 /// The cells of an octree that are nearest to a point, of those whose tag is among `tags`: the nearest first,
 /// and of equally near ones the first in Morton order. A cell is closed, as large as the octree has it, and
 /// no BRANCH. With LEAFLESS_TAGS_FULL and a capacity of 1 this is the nearest cell that is proven solid. The
-/// point may lie outside of the universe. It is rounded to 2^-56 of the universe's edge, or further out to
-/// 2^-57 of its distance, before cells are compared.
+/// point may lie outside the universe. It is rounded to 2^-56 of the universe's edge, or further out to 2^-57
+/// of its distance, before cells are compared.
 ///
 /// - Buffers: `point_model`, 3 numbers; `cells`, room for `capacity` structs, which may be NULL if `capacity`
 ///   is 0; `count`, one number. `tags` is one or several leafless_tags.
@@ -217,7 +217,7 @@ pub unsafe extern "C" fn leafless_octree_nearest_cells(
 ///
 /// The interval between the two (model units) contains the signed distance of the cell's centre from the
 /// boundary of any solid that the octree's cells and its exterior describe: positive outside, negative
-/// inside. The field is that of the whole solid, also of what lies outside of the box. The ends are exact
+/// inside. The field is that of the whole solid, also of what lies outside the box. The ends are exact
 /// distances from the nearest closed cells, but for one rounding, outward; they are infinite where there is
 /// no such cell.
 ///
@@ -227,12 +227,12 @@ pub unsafe extern "C" fn leafless_octree_nearest_cells(
 /// its cells.
 ///
 /// - Buffers: `min_cell` and `max_cell`, 3 numbers each: the first finest cell, and the first one beyond the
-///   box on each axis; `options`, one struct or NULL, of which limits do not matter; `field`, `capacity`
-///   numbers, two for each cell, which may be NULL if there are none.
-/// - Result: the field, the same for any number of threads.
-/// - Errors: LEAFLESS_E_ARGUMENT if the box is none or lies outside of the universe, or if `capacity` is not
+///   box on each axis; `options`, one struct or NULL (its limits are ignored); `field`, `capacity` numbers,
+///   two for each cell, which may be NULL if there are none.
+/// - Result: the field, identical for any number of threads.
+/// - Errors: LEAFLESS_E_ARGUMENT if the box is none or lies outside the universe, or if `capacity` is not
 ///   twice the number of its cells; LEAFLESS_E_CANCELLED; LEAFLESS_E_NO_MEMORY.
-/// - Threads: any; uses as many as `options` says.
+/// - Threads: any; runs on as many threads as `options` says.
 /// - Untrusted input: any octree, any numbers; damage reads as PARTIAL.
 ///
 /// cbindgen:ptrs-as-arrays=[[min_cell; 3], [max_cell; 3]]

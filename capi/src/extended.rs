@@ -131,9 +131,9 @@ pub struct leafless_cell_function {
 /// - Errors: as leafless_octree_build under LEAFLESS_RULE_CERTIFIED; LEAFLESS_E_ARGUMENT if the tolerance is
 ///   negative or no number; LEAFLESS_E_LIMIT also if an exact number of a surface is the sum of more than
 ///   seven doubles.
-/// - Ownership: give `*octree` back with leafless_octree_free.
-/// - Threads: any; uses as many as `options` says.
-/// - Untrusted input: any solid; set `max_bytes` where the depth or the solid is not your own choice.
+/// - Ownership: release `*octree` with leafless_octree_free.
+/// - Threads: any; runs on as many threads as `options` says.
+/// - Untrusted input: any solid; set `max_bytes` if the depth or the solid is untrusted.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn leafless_octree_build_extended(
     solid: *const leafless_solid,
@@ -158,8 +158,8 @@ pub unsafe extern "C" fn leafless_octree_build_extended(
 /// - Buffers: `options`, one struct or NULL; `plain`, one pointer. `rule` is a leafless_rule.
 /// - Result: `*plain`, with the octree's metadata and channels.
 /// - Errors: as leafless_octree_build; LEAFLESS_E_ARGUMENT if `depth` is not 1 to 20.
-/// - Ownership: `octree` stays as it is; give `*plain` back with leafless_octree_free.
-/// - Threads: any; uses as many as `options` says.
+/// - Ownership: `octree` is unchanged; release `*plain` with leafless_octree_free.
+/// - Threads: any; runs on as many threads as `options` says.
 /// - Untrusted input: any octree; set `max_bytes` where the depth is not your own choice.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn leafless_octree_plain(

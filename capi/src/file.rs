@@ -68,7 +68,7 @@ pub struct leafless_file_info {
     pub proof: leafless_proof,
     /// The tag of the whole universe; BRANCH if it is cut; EMPTY for a tri-dexel model.
     pub root: leafless_tag,
-    /// What is known of the space outside of the universe; never BRANCH; EMPTY for a tri-dexel model.
+    /// What is known of the space outside the universe; never BRANCH; EMPTY for a tri-dexel model.
     pub exterior: leafless_tag,
     /// Whether nothing is undecided.
     pub is_binary: bool,
@@ -231,8 +231,8 @@ pub unsafe extern "C" fn leafless_file_verify(source: *const leafless_source) ->
 ///   level table contradicts the header; LEAFLESS_E_ARGUMENT if the file holds a tri-dexel model, if there is
 ///   no regular file that could be mapped, or if bytes that shall be viewed are misaligned; LEAFLESS_E_IO;
 ///   LEAFLESS_E_UTF8; LEAFLESS_E_NO_MEMORY.
-/// - Ownership: how long a file or bytes must stay as they are, leafless_source tells. Give `*octree` back
-///   with leafless_octree_free.
+/// - Ownership: how long a file or bytes must stay as they are, leafless_source tells. Release `*octree` with
+///   leafless_octree_free.
 /// - Untrusted input: as leafless_source tells.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn leafless_octree_read(

@@ -245,8 +245,8 @@ pub unsafe extern "C" fn leafless_frame_cell_size(
 ///
 /// - Buffers: `frame`, one struct; `point_model`, 3 numbers; `cell`, room for 3.
 /// - Result: `cell`, each below 2^depth.
-/// - Errors: LEAFLESS_E_ARGUMENT as leafless_frame_check, and if the point is outside of the universe or not
-///   a number.
+/// - Errors: LEAFLESS_E_ARGUMENT as leafless_frame_check, and if the point is outside the universe or not a
+///   number.
 /// - Untrusted input: any values.
 ///
 /// cbindgen:ptrs-as-arrays=[[point_model; 3], [cell; 3]]

@@ -15,15 +15,15 @@ use leafless::solid::{Fingerprint, GradientRange, HalfSpace, TangentBalls};
 use leafless::{Bounds, Callback, Csg, Verdict};
 use std::sync::Arc;
 
-/// What a host promises of its shape outside of the universe that it is asked about.
+/// What a host promises of its shape outside the universe that it is asked about.
 #[derive(Clone, Copy)]
 #[repr(u32)]
 pub enum leafless_exterior {
     /// Nothing: the shape counts as clipped by the universe.
     LEAFLESS_EXTERIOR_UNKNOWN = 0,
-    /// The shape ends inside of the universe.
+    /// The shape ends inside the universe.
     LEAFLESS_EXTERIOR_EMPTY = 1,
-    /// Everything outside of the universe belongs to the shape.
+    /// Everything outside the universe belongs to the shape.
     LEAFLESS_EXTERIOR_FULL = 2,
 }
 enumeration! {
@@ -46,24 +46,24 @@ pub type leafless_classify_fn =
     Option<unsafe extern "C" fn(ctx: *mut c_void, min: *const f64, max: *const f64) -> i32>;
 
 /// Decides a point (3 numbers, model units) for the host's own shape: 1 inside, 0 outside; anything else ends
-/// the operation with LEAFLESS_E_CALLBACK. Else as leafless_classify_fn.
+/// the operation with LEAFLESS_E_CALLBACK. Otherwise as leafless_classify_fn.
 pub type leafless_contains_fn = Option<unsafe extern "C" fn(ctx: *mut c_void, point: *const f64) -> i32>;
 
 /// Classifies `count` boxes (6 numbers each: min, then max) at once, for hosts that do that faster than one
 /// by one: sets `tags` to what leafless_classify_fn would answer. 0, or the number of the host's own error,
-/// which ends the operation with LEAFLESS_E_CALLBACK. Else as leafless_classify_fn.
+/// which ends the operation with LEAFLESS_E_CALLBACK. Otherwise as leafless_classify_fn.
 pub type leafless_classify_many_fn =
     Option<unsafe extern "C" fn(ctx: *mut c_void, boxes: *const f64, count: u64, tags: *mut i32) -> i32>;
 
 /// Decides `count` points (3 numbers each) at once: sets each of `inside` to 1 or 0. 0, or the number of the
-/// host's own error. Else as leafless_contains_fn.
+/// host's own error. Otherwise as leafless_contains_fn.
 pub type leafless_contains_many_fn =
     Option<unsafe extern "C" fn(ctx: *mut c_void, points: *const f64, count: u64, inside: *mut i32) -> i32>;
 
 /// Bounds the distances of `count` points (3 numbers each, model units) from the surface of the host's own
 /// shape: sets each of `distances_model` to a number whose magnitude is at most that distance, negative
 /// inside and positive outside; 0, or what is no number, says nothing. 0, or the number of the host's own
-/// error. Else as leafless_classify_fn.
+/// error. Otherwise as leafless_classify_fn.
 pub type leafless_distance_many_fn = Option<
     unsafe extern "C" fn(ctx: *mut c_void, points: *const f64, count: u64, distances_model: *mut f64) -> i32,
 >;
@@ -82,7 +82,7 @@ pub struct leafless_gradient {
 
 /// Bounds the host's function f over the box [min, max] (3 numbers each, model units), of which `middle` is
 /// the middle (3 numbers): sets `*gradient`, all of which is NaN before. 0, or the number of the host's own
-/// error. Else as leafless_classify_fn.
+/// error. Otherwise as leafless_classify_fn.
 pub type leafless_gradient_fn = Option<
     unsafe extern "C" fn(
         ctx: *mut c_void,
@@ -98,7 +98,7 @@ pub type leafless_gradient_fn = Option<
 /// Let d = y - `point` for a point y of the box, and n = `normal` divided by its length. Each y of the box
 /// with n . d < -(inner_curvature / 2 |d|^2 + error) must lie in the shape, and no y with n . d >
 /// outer_curvature / 2 |d|^2 + error may. So without an error the balls have the radii 1 / `inner_curvature`
-/// and 1 / `outer_curvature`; 0 stands for a half-space, a negative curvature for all that lies outside of a
+/// and 1 / `outer_curvature`; 0 stands for a half-space, a negative curvature for all that lies outside a
 /// ball, and infinity for nothing. The reciprocal of the surface's reach does for both: it is no less than
 /// any curvature, nor than 2 over the width of any wall or gap. NaN, or a negative error, says nothing of the
 /// box.
@@ -118,7 +118,7 @@ pub struct leafless_tangent {
 }
 
 /// Tells where the surface of the host's own shape runs next to the middle of a box, and how it bends: sets
-/// `*tangent`, all of which is NaN before. Else as leafless_gradient_fn.
+/// `*tangent`, all of which is NaN before. Otherwise as leafless_gradient_fn.
 pub type leafless_tangent_fn = Option<
     unsafe extern "C" fn(
         ctx: *mut c_void,
@@ -139,7 +139,7 @@ pub type leafless_destroy_fn = Option<unsafe extern "C" fn(ctx: *mut c_void)>;
 pub struct leafless_solid_callbacks {
     /// sizeof(leafless_solid_callbacks).
     pub struct_size: u32,
-    /// What is known of the space outside of the universe.
+    /// What is known of the space outside the universe.
     pub exterior: Number<leafless_exterior>,
     /// Classifies boxes.
     pub classify: leafless_classify_fn,
@@ -310,8 +310,7 @@ fn fingerprint(given: [u64; 2]) -> Option<Fingerprint> {
 /// - Errors: LEAFLESS_E_NULL if `classify` is NULL, unless `distance_many` is set and `classify_many` is not;
 ///   LEAFLESS_E_ARGUMENT if `exterior` is no leafless_exterior, or `bounds` is no box.
 ///   After an error `destroy` is not called.
-/// - Ownership: `ctx` must live until `destroy` is called with it; give `*solid` back with
-///   leafless_solid_free.
+/// - Ownership: `ctx` must live until `destroy` is called with it; release `*solid` with leafless_solid_free.
 /// - Threads: any; in which the functions are called, leafless_classify_fn says.
 /// - Untrusted input: any answers.
 #[unsafe(no_mangle)]
@@ -389,12 +388,13 @@ pub unsafe extern "C" fn leafless_solid_new_callbacks(
 }
 
 /// The value of the host's function at a point (3 numbers, model units): sets `*value`. 0, or the number of
-/// the host's own error, which ends the operation with LEAFLESS_E_CALLBACK. Else as leafless_classify_fn.
+/// the host's own error, which ends the operation with LEAFLESS_E_CALLBACK. Otherwise as
+/// leafless_classify_fn.
 pub type leafless_value_fn =
     Option<unsafe extern "C" fn(ctx: *mut c_void, point: *const f64, value: *mut f64) -> i32>;
 
 /// An interval that contains all values of the host's function over the box [min, max] (3 numbers each, model
-/// units): sets `*range`. Else as leafless_value_fn.
+/// units): sets `*range`. Otherwise as leafless_value_fn.
 pub type leafless_range_fn = Option<
     unsafe extern "C" fn(
         ctx: *mut c_void,
@@ -471,8 +471,7 @@ impl HostFunction {
 /// - Result: `*solid`.
 /// - Errors: LEAFLESS_E_NULL if `value` or `range` is NULL; LEAFLESS_E_ARGUMENT. After an error `destroy` is
 ///   not called.
-/// - Ownership: `ctx` must live until `destroy` is called with it; give `*solid` back with
-///   leafless_solid_free.
+/// - Ownership: `ctx` must live until `destroy` is called with it; release `*solid` with leafless_solid_free.
 /// - Threads: any; in which the functions are called, leafless_classify_fn says.
 /// - Untrusted input: any answers.
 #[unsafe(no_mangle)]

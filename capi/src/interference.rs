@@ -23,7 +23,7 @@ pub enum leafless_overlap {
     LEAFLESS_OVERLAP_DISJOINT = 0,
     /// Proven: a ball lies in both.
     LEAFLESS_OVERLAP_OVERLAPPING = 1,
-    /// Not decided at the frame's depth, or before the splits were spent; or both solids go on outside of the
+    /// Not decided at the frame's depth, or before the splits were spent; or both solids go on outside the
     /// universe, where they may overlap.
     LEAFLESS_OVERLAP_UNDECIDED = 2,
 }
@@ -38,7 +38,7 @@ impl From<Overlap> for leafless_overlap {
     }
 }
 
-/// What is known of two solids inside of the universe of a frame.
+/// What is known of two solids inside the universe of a frame.
 #[derive(Clone, Copy)]
 #[repr(C)]
 pub struct leafless_interference {
@@ -68,7 +68,7 @@ pub struct leafless_interference {
     pub witness: [u32; 3],
     /// The level of that cell.
     pub witness_level: u32,
-    /// Whether both solids may go on outside of the universe. Then they are not proven to be disjoint.
+    /// Whether both solids may go on outside the universe. Then they are not proven to be disjoint.
     pub is_clipped: bool,
 }
 
@@ -93,7 +93,7 @@ impl From<&Interference> for leafless_interference {
     }
 }
 
-/// What is known of the distance between two solids inside of the universe of a frame.
+/// What is known of the distance between two solids inside the universe of a frame.
 #[derive(Clone, Copy)]
 #[repr(C)]
 pub struct leafless_clearance {
@@ -137,7 +137,7 @@ pub struct leafless_clearance {
     pub measured: leafless_stop_reason,
     /// Whether the upper bound is finite.
     pub has_nearest: bool,
-    /// Whether one of the solids may go on outside of the universe, of which nothing is said.
+    /// Whether one of the solids may go on outside the universe, of which nothing is said.
     pub is_clipped: bool,
 }
 
@@ -186,7 +186,7 @@ impl From<&Clearance> for leafless_clearance {
 /// - Errors: LEAFLESS_E_ARGUMENT as leafless_frame_check, or if an entry is neither 0 nor of a magnitude
 ///   between 2^-64 and 2^64, or M is singular; LEAFLESS_E_LIMIT if too many transforms lie within each other.
 ///   Asking the result returns LEAFLESS_E_FRAME if `operand` belongs to another frame than `own`.
-/// - Ownership: the operand is shared and may be freed; give `*solid` back with leafless_solid_free.
+/// - Ownership: the operand is shared and may be freed; release `*solid` with leafless_solid_free.
 /// - Untrusted input: any solid and numbers.
 ///
 /// cbindgen:ptrs-as-arrays=[[matrix; 12]]
@@ -232,7 +232,7 @@ unsafe fn transformed(
 /// - Errors: as leafless_solid_transformed. An octree by LEAFLESS_RULE_SAMPLED is refused with
 ///   LEAFLESS_E_NOT_SAMPLED only if a centre comes from a cell that is itself undecided:
 ///   leafless_octree_resolve decides those before.
-/// - Ownership: the operand is shared and may be freed; give `*solid` back with leafless_solid_free.
+/// - Ownership: the operand is shared and may be freed; release `*solid` with leafless_solid_free.
 /// - Untrusted input: any solid and numbers.
 ///
 /// cbindgen:ptrs-as-arrays=[[matrix; 12]]
@@ -265,7 +265,7 @@ pub unsafe extern "C" fn leafless_solid_resampled(
 /// - Errors: LEAFLESS_E_FRAME if a solid belongs to another frame; LEAFLESS_E_ARGUMENT as
 ///   leafless_frame_check, or if the tolerance is negative or not a number; LEAFLESS_E_CALLBACK;
 ///   LEAFLESS_E_DAMAGED; LEAFLESS_E_CANCELLED; LEAFLESS_E_NO_MEMORY.
-/// - Untrusted input: any solids; set `max_splits` where the depth or the solids are not your own choice.
+/// - Untrusted input: any solids; set `max_splits` if the depth or the solids are untrusted.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn leafless_solid_interfere(
     a: *const leafless_solid,
@@ -285,16 +285,15 @@ pub unsafe extern "C" fn leafless_solid_interfere(
     })
 }
 
-/// As leafless_solid_interfere of `a` with `b` under each of many affine maps, as
-/// leafless_solid_transformed makes them. `max_splits` concerns each of them. The results are the same for
-/// any number of threads.
+/// As leafless_solid_interfere of `a` with `b` under each of many affine maps, as leafless_solid_transformed
+/// makes them. `max_splits` concerns each of them. The results are identical for any number of threads.
 ///
 /// - Buffers: `own`, one struct, the frame of `b`; `matrices`, `count` times 12 numbers; `frame`, one struct,
 ///   that of `a`; `options`, one struct or NULL; `interferences`, room for `count`. `matrices` and
 ///   `interferences` may be NULL if `count` is 0.
 /// - Result: `interferences[i]` for map i.
 /// - Errors: as leafless_solid_interfere and leafless_solid_transformed; nothing is then written.
-/// - Threads: any; uses as many as `options` says.
+/// - Threads: any; runs on as many threads as `options` says.
 /// - Untrusted input: as leafless_solid_interfere, and any numbers.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn leafless_solid_interfere_many(
@@ -333,7 +332,7 @@ pub unsafe extern "C" fn leafless_solid_interfere_many(
 /// `measured` of the result says why the search ended. With LEAFLESS_STOP_REASON_TOLERANCE the interval is no
 /// wider than `tolerance_model` (model units). With LEAFLESS_STOP_REASON_EXHAUSTED the cells of the frame's
 /// depth cannot raise the lower bound, and the interval is no wider than twice their diagonal, which is what
-/// cells can tell of most solids; or no pair of cells is left; or a solid may go on outside of the universe,
+/// cells can tell of most solids; or no pair of cells is left; or a solid may go on outside the universe,
 /// which keeps the lower bound at 0. With LEAFLESS_STOP_REASON_BUDGET `max_splits` steps were taken, or 1 048
 /// 576 if that is 0. A step looks at the children of one cell. A cell whose children are looked at again,
 /// next to another cell, counts once more.

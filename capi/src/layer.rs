@@ -225,7 +225,7 @@ pub(super) unsafe fn clip(
 /// - Result: `*clipped`.
 /// - Errors: LEAFLESS_E_ARGUMENT if a number is not zero and not between 2^-256 and 2^256 in magnitude, a, b
 ///   and c are zero, or the box is none; LEAFLESS_E_NO_MEMORY.
-/// - Ownership: the layer is shared and may be freed; give `*clipped` back with leafless_layer_free.
+/// - Ownership: the layer is shared and may be freed; release `*clipped` with leafless_layer_free.
 /// - Untrusted input: any numbers.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn leafless_layer_clipped(
@@ -275,11 +275,11 @@ pub unsafe extern "C" fn leafless_layer_ref(
     guard(|| unsafe { refer(layer, "layer", reference) })
 }
 
-/// Gives back a reference to a layer; with the last one the layer is gone. What it shows stays, as far as
+/// Releases a reference to a layer; with the last one the layer is gone. What it shows stays, as far as
 /// others have references to it.
 ///
 /// - Buffers: `layer`, a handle or NULL, which does nothing.
-/// - Ownership: the reference is gone.
+/// - Ownership: the reference is invalid afterwards.
 /// - Threads: any; no other call may use this reference.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn leafless_layer_free(layer: *mut leafless_layer) {

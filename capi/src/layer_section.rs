@@ -16,9 +16,9 @@ use leafless::voxel::VoxelRecords;
 use leafless::{Frame, Solid};
 use std::sync::Arc;
 
-/// What a plane section looks like. NULL means the defaults. All fields but the first may be zero, which is
-/// their default. Colours are red, green and blue (sRGB) and opacity, 0 to 255; what is to be invisible is
-/// {255, 255, 255, 0}.
+/// What a plane section looks like. NULL means the defaults. Zero is the default of every field but the
+/// first. Colours are red, green and blue (sRGB) and opacity, 0 to 255; what is to be invisible is {255, 255,
+/// 255, 0}.
 #[derive(Clone, Copy)]
 #[repr(C)]
 pub struct leafless_slice_look {
@@ -111,7 +111,7 @@ unsafe fn section(
 /// - Result: `*layer`.
 /// - Errors: LEAFLESS_E_ARGUMENT if a number is not zero and not between 2^-256 and 2^256 in magnitude, a, b
 ///   and c are zero, or the look is not as it must be.
-/// - Ownership: the layer shares the octree and the attribute, which may be freed; give `*layer` back with
+/// - Ownership: the layer shares the octree and the attribute, which may be freed; release `*layer` with
 ///   leafless_layer_free.
 /// - Untrusted input: any octree, any numbers.
 ///
@@ -133,7 +133,7 @@ pub unsafe extern "C" fn leafless_layer_from_octree_slice(
 /// - Result: `*layer`.
 /// - Errors: as leafless_layer_from_octree_slice; LEAFLESS_E_ARGUMENT as leafless_frame_check. Taking a
 ///   picture also returns what leafless_octree_build does.
-/// - Ownership: the layer shares the solid and the attribute, which may be freed; give `*layer` back with
+/// - Ownership: the layer shares the solid and the attribute, which may be freed; release `*layer` with
 ///   leafless_layer_free.
 /// - Untrusted input: any solid, any numbers.
 ///
@@ -243,7 +243,7 @@ impl Shown for OfVoxels {
 /// - Result: `*layer`.
 /// - Errors: LEAFLESS_E_ARGUMENT if the arrays are no records, a weight is not 0 to 1, the transfer function
 ///   not as it must be, or the unit below 0 or not finite; LEAFLESS_E_NO_MEMORY.
-/// - Ownership: the layer copies the arrays; give `*layer` back with leafless_layer_free.
+/// - Ownership: the layer copies the arrays; release `*layer` with leafless_layer_free.
 /// - Untrusted input: any numbers.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn leafless_layer_new_voxels(

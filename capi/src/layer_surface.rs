@@ -38,9 +38,8 @@ enumeration! {
     }
 }
 
-/// What a surface looks like. NULL means the defaults. All fields but the first may be zero, which is their
-/// default. A field that a shape does not use must be zero. Colours are red, green and blue (sRGB) and
-/// opacity, 0 to 255.
+/// What a surface looks like. NULL means the defaults. Zero is the default of every field but the first. A
+/// field that a shape does not use must be zero. Colours are red, green and blue (sRGB) and opacity, 0 to 255.
 #[derive(Clone, Copy)]
 #[repr(C)]
 pub struct leafless_look {
@@ -154,7 +153,7 @@ impl Shown for OfOctree {
 /// - Result: `*layer`.
 /// - Errors: LEAFLESS_E_ARGUMENT if the look is not as it must be. Of an octree that keeps surfaces, taking a
 ///   picture also returns what leafless_octree_build does.
-/// - Ownership: the layer shares the octree and the attribute, which may be freed; give `*layer` back with
+/// - Ownership: the layer shares the octree and the attribute, which may be freed; release `*layer` with
 ///   leafless_layer_free.
 /// - Untrusted input: any octree.
 #[unsafe(no_mangle)]
@@ -202,7 +201,7 @@ impl Shown for OfSolid {
 /// - Result: `*layer`.
 /// - Errors: LEAFLESS_E_ARGUMENT if the look or the frame is not as it must be; taking a picture also returns
 ///   what leafless_octree_build does.
-/// - Ownership: the layer shares the solid and the attribute, which may be freed; give `*layer` back with
+/// - Ownership: the layer shares the solid and the attribute, which may be freed; release `*layer` with
 ///   leafless_layer_free.
 /// - Untrusted input: any solid.
 #[unsafe(no_mangle)]
@@ -270,8 +269,8 @@ impl Shown for OfMesh {
 /// - Errors: LEAFLESS_E_ARGUMENT if the look is not as it must be, or there are colours of triangles and not
 ///   one for each; LEAFLESS_E_NO_MEMORY. Taking a picture returns LEAFLESS_E_ARGUMENT if the width or the
 ///   crease angle is out of range.
-/// - Ownership: the layer shares the mesh, which may be freed, and copies the colours; give `*layer` back
-///   with leafless_layer_free.
+/// - Ownership: the layer shares the mesh, which may be freed, and copies the colours; release `*layer` with
+///   leafless_layer_free.
 /// - Untrusted input: any mesh.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn leafless_layer_from_mesh(
@@ -349,7 +348,7 @@ unsafe fn colour_at(colour: *const u8) -> Result<Option<[u8; 4]>, Failure> {
 /// - Result: `*layer`.
 /// - Errors: LEAFLESS_E_NO_MEMORY. Taking a picture returns LEAFLESS_E_ARGUMENT if the width is out of range,
 ///   or a coordinate not zero and not between 2^-256 and 2^256 in magnitude.
-/// - Ownership: the layer copies the lines; give `*layer` back with leafless_layer_free.
+/// - Ownership: the layer copies the lines; release `*layer` with leafless_layer_free.
 /// - Untrusted input: any numbers.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn leafless_layer_new_lines(
@@ -385,7 +384,7 @@ const _: () = assert!(size_of::<Untagged>() == size_of::<leafless_cell>());
 /// - Result: `*layer`.
 /// - Errors: LEAFLESS_E_ARGUMENT as leafless_frame_check, and as leafless_layer_new_lines;
 ///   LEAFLESS_E_NO_MEMORY.
-/// - Ownership: give `*layer` back with leafless_layer_free.
+/// - Ownership: release `*layer` with leafless_layer_free.
 /// - Untrusted input: any numbers.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn leafless_layer_new_cells(

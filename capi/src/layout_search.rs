@@ -247,7 +247,8 @@ impl From<LayoutMeasures> for leafless_layout_measures {
 ///   enumeration, or if `target_model` is not finite, or is set though it is not used; LEAFLESS_E_FRAME if a
 ///   solid belongs to another frame; LEAFLESS_E_CALLBACK; LEAFLESS_E_DAMAGED; LEAFLESS_E_NO_MEMORY;
 ///   LEAFLESS_E_BUSY. Then the layout is as it was.
-/// - Threads: any; uses as many as `options` says; LEAFLESS_E_BUSY while another call uses the layout.
+/// - Threads: any; runs on as many threads as `options` says; LEAFLESS_E_BUSY while another call uses the
+///   layout.
 /// - Untrusted input: any numbers; set `max_tests` and `max_splits` where the solids are not your own choice.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn leafless_layout_search(
@@ -271,7 +272,8 @@ pub unsafe extern "C" fn leafless_layout_search(
 /// - Result: `*measures`.
 /// - Errors: LEAFLESS_E_ARGUMENT if `relative` is negative or not a number; LEAFLESS_E_CALLBACK;
 ///   LEAFLESS_E_DAMAGED; LEAFLESS_E_CANCELLED; LEAFLESS_E_NO_MEMORY; LEAFLESS_E_BUSY.
-/// - Threads: any; uses as many as `options` says; LEAFLESS_E_BUSY while another call changes the layout.
+/// - Threads: any; runs on as many threads as `options` says; LEAFLESS_E_BUSY while another call changes the
+///   layout.
 /// - Untrusted input: any number; the default of `max_splits`, that of leafless_solid_measure, bounds the
 ///   work.
 #[unsafe(no_mangle)]

@@ -98,7 +98,7 @@ fn new(lazy: LazyOctree<Prepared>) -> *mut leafless_lazy {
 /// - Result: `*lazy`.
 /// - Errors: LEAFLESS_E_FRAME if the solid belongs to another frame; LEAFLESS_E_CALLBACK; LEAFLESS_E_DAMAGED;
 ///   LEAFLESS_E_ARGUMENT; LEAFLESS_E_NO_MEMORY.
-/// - Ownership: the octree shares the solid, which may be freed; give `*lazy` back with leafless_lazy_free.
+/// - Ownership: the octree shares the solid, which may be freed; release `*lazy` with leafless_lazy_free.
 /// - Untrusted input: any solid.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn leafless_lazy_new(
@@ -124,7 +124,7 @@ pub unsafe extern "C" fn leafless_lazy_new(
 ///   the solid has none, or the octree is deeper than the frame; LEAFLESS_E_FRAME if it lies on another
 ///   universe, or the solid belongs to another frame; LEAFLESS_E_DAMAGED; LEAFLESS_E_CALLBACK;
 ///   LEAFLESS_E_LIMIT; LEAFLESS_E_CANCELLED; LEAFLESS_E_NO_MEMORY.
-/// - Ownership: `octree` stays as it is; `*lazy` shares the solid, which may be freed; give it back with
+/// - Ownership: `octree` is unchanged; `*lazy` shares the solid, which may be freed; release it with
 ///   leafless_lazy_free.
 /// - Untrusted input: any octree; set `max_bytes` where it is not your own.
 #[unsafe(no_mangle)]
@@ -144,10 +144,10 @@ pub unsafe extern "C" fn leafless_lazy_resume(
     })
 }
 
-/// Gives back a lazy octree.
+/// Releases a lazy octree.
 ///
 /// - Buffers: `lazy`, a handle or NULL, which does nothing.
-/// - Ownership: the handle is gone.
+/// - Ownership: the handle is invalid afterwards.
 /// - Threads: no other call may use the handle.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn leafless_lazy_free(lazy: *mut leafless_lazy) {
@@ -350,7 +350,7 @@ pub unsafe extern "C" fn leafless_lazy_describe(
 /// Counts of each level, and the certified volumes of the octree cut there. Entry 0 is the universe, entry
 /// `depth` the finest cells.
 ///
-/// - Buffers: `levels`, room for `capacity` structs, or NULL to ask for the count only; `count`, one number.
+/// - Buffers: `levels`, room for `capacity` structs, or NULL to get only the count; `count`, one number.
 /// - Result: `*count`, depth + 1; the levels.
 /// - Errors: LEAFLESS_E_BUFFER if the capacity is too small.
 /// - Threads: any; LEAFLESS_E_BUSY while another call changes the octree.
@@ -373,7 +373,7 @@ pub unsafe extern "C" fn leafless_lazy_levels(
 
 /// How many cells of each level were split, as it happened. Entry 0 is the universe.
 ///
-/// - Buffers: `splits`, room for `capacity` numbers, or NULL to ask for the count only; `count`, one number.
+/// - Buffers: `splits`, room for `capacity` numbers, or NULL to get only the count; `count`, one number.
 /// - Result: `*count`, the frame's depth; the numbers.
 /// - Errors: LEAFLESS_E_BUFFER if the capacity is too small.
 /// - Threads: any; LEAFLESS_E_BUSY while another call changes the octree.
@@ -400,7 +400,7 @@ pub unsafe extern "C" fn leafless_lazy_splits(
 /// - Buffers: `options`, one struct or NULL; `octree`, one pointer.
 /// - Result: `*octree`.
 /// - Errors: LEAFLESS_E_LIMIT; LEAFLESS_E_CANCELLED; LEAFLESS_E_NO_MEMORY.
-/// - Ownership: give `*octree` back with leafless_octree_free.
+/// - Ownership: release `*octree` with leafless_octree_free.
 /// - Threads: any; LEAFLESS_E_BUSY while another call changes the octree; uses as many as `options` says.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn leafless_lazy_freeze(

@@ -67,9 +67,8 @@ unsafe fn sum_of(pointer: *const leafless_mass_sum, name: &'static str) -> Resul
 ///   matter; `sum`, one struct. `code` is that of a cell of level `level`, as in leafless_shard.
 /// - Result: `*sum`.
 /// - Errors: as leafless_solid_measure; LEAFLESS_E_ARGUMENT also if the frame does not have the cell.
-/// - Threads: any; uses as many as `options` says.
-/// - Untrusted input: any solid, any numbers; set `max_splits` where the depth or the solid is not your own
-///   choice.
+/// - Threads: any; runs on as many threads as `options` says.
+/// - Untrusted input: any solid, any numbers; set `max_splits` if the depth or the solid is untrusted.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn leafless_solid_measure_cell(
     solid: *const leafless_solid,

@@ -37,7 +37,7 @@ impl From<StopReason> for leafless_stop_reason {
 }
 
 /// Mass properties of a solid of density 1. All intervals contain the truth. All of it concerns the part
-/// inside of the universe; unless `is_clipped` says otherwise, that is the whole solid.
+/// inside the universe; unless `is_clipped` says otherwise, that is the whole solid.
 #[derive(Clone, Copy)]
 #[repr(C)]
 pub struct leafless_measures {
@@ -63,7 +63,7 @@ pub struct leafless_measures {
     pub measured: leafless_stop_reason,
     /// Whether a cell is proven full: else the solid may be empty, and nothing is known of a centroid.
     pub has_centroid: bool,
-    /// Whether the solid may go on outside of the universe, or does.
+    /// Whether the solid may go on outside the universe, or does.
     pub is_clipped: bool,
     /// Whether the solid was not split because it knows its own moments, up to rounding: a mesh does that is
     /// closed and whose triangles do not intersect.
@@ -86,7 +86,7 @@ pub struct leafless_surface_area {
     pub level: u32,
     /// Why it ended.
     pub measured: leafless_stop_reason,
-    /// Whether the solid may go on outside of the universe, or does: then it is the boundary inside of it.
+    /// Whether the solid may go on outside the universe, or does: then it is the boundary inside of it.
     pub is_clipped: bool,
 }
 
@@ -119,7 +119,7 @@ pub struct leafless_section_area {
     pub splits: u64,
     /// Why it ended.
     pub measured: leafless_stop_reason,
-    /// Whether the solid may go on outside of the universe, or does: then it is the section inside of it.
+    /// Whether the solid may go on outside the universe, or does: then it is the section inside of it.
     pub is_clipped: bool,
 }
 
@@ -138,7 +138,7 @@ impl From<SectionArea> for leafless_section_area {
     }
 }
 
-/// What is proven of a solid's bounding box inside of the universe.
+/// What is proven of a solid's bounding box inside the universe.
 #[derive(Clone, Copy)]
 #[repr(C)]
 pub struct leafless_extent {
@@ -158,7 +158,7 @@ pub struct leafless_extent {
     pub is_empty: bool,
     /// Whether it is proven not to be. If neither is proven, the corners are those of what the solid may be.
     pub is_occupied: bool,
-    /// Whether the solid may go on outside of the universe, or does.
+    /// Whether the solid may go on outside the universe, or does.
     pub is_clipped: bool,
 }
 
@@ -216,8 +216,8 @@ impl From<Extent> for leafless_extent {
 /// - Errors: LEAFLESS_E_ARGUMENT, also if a tolerance is negative or not a number; LEAFLESS_E_FRAME if the
 ///   solid belongs to another frame; LEAFLESS_E_CALLBACK; LEAFLESS_E_DAMAGED; LEAFLESS_E_CANCELLED;
 ///   LEAFLESS_E_NO_MEMORY.
-/// - Threads: any; uses as many as `options` says.
-/// - Untrusted input: any solid; set `max_splits` where the depth or the solid is not your own choice.
+/// - Threads: any; runs on as many threads as `options` says.
+/// - Untrusted input: any solid; set `max_splits` if the depth or the solid is untrusted.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn leafless_solid_measure(
     solid: *const leafless_solid,
@@ -240,14 +240,14 @@ pub unsafe extern "C" fn leafless_solid_measure(
 /// `relative` and `absolute_model` (square model units) say how wide the interval may be, and without
 /// `max_splits` of the options it ends after 2^23 splits. With N splits the width goes down with 1/N on
 /// curved surfaces; plane faces are exact. Where faces lie in planes of the frame's lattice, and the solid
-/// ends inside of the universe, another lattice is taken. Of an octree that keeps surfaces, of one without
+/// ends inside the universe, another lattice is taken. Of an octree that keeps surfaces, of one without
 /// undecided cells, and of an expression that is clipped, faces between cells are counted as they are.
 /// Nothing is known of other octrees, of a host program's functions, and of a clipped mesh with such faces.
 ///
 /// - Buffers: as leafless_solid_measure; `surface`, one struct.
 /// - Result: `*surface`.
 /// - Errors: as leafless_solid_measure.
-/// - Threads: any; uses as many as `options` says.
+/// - Threads: any; runs on as many threads as `options` says.
 /// - Untrusted input: any solid; the default of `max_splits` bounds the work.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn leafless_solid_surface_area(

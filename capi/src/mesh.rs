@@ -225,10 +225,10 @@ pub unsafe extern "C" fn leafless_mesh_ref(
     guard(|| unsafe { refer(mesh, "mesh", reference) })
 }
 
-/// Gives back a reference to a mesh; with the last one the mesh is gone. Solids made of it stay.
+/// Releases a reference to a mesh; with the last one the mesh is gone. Solids made of it stay.
 ///
 /// - Buffers: `mesh`, a handle or NULL, which does nothing.
-/// - Ownership: the reference is gone.
+/// - Ownership: the reference is invalid afterwards.
 /// - Threads: any; no other call may use this reference.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn leafless_mesh_free(mesh: *mut leafless_mesh) {
@@ -468,7 +468,7 @@ pub unsafe extern "C" fn leafless_mesh_check_closed(
 /// - Buffers: `sewn`, one pointer.
 /// - Result: `*sewn`; leafless_mesh_inspect tells how many vertices moved and how far.
 /// - Errors: LEAFLESS_E_NO_MEMORY.
-/// - Ownership: `mesh` stays as it is; give `*sewn` back with leafless_mesh_free.
+/// - Ownership: `mesh` is unchanged; release `*sewn` with leafless_mesh_free.
 /// - Untrusted input: any mesh.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn leafless_mesh_sewn(
@@ -499,7 +499,7 @@ pub unsafe extern "C" fn leafless_mesh_sewn(
 ///   refused with LEAFLESS_E_MESH otherwise.
 /// - Errors: LEAFLESS_E_ARGUMENT unless `deviation_model` is finite, not negative, and at most 2^256;
 ///   LEAFLESS_E_NO_MEMORY.
-/// - Ownership: `mesh` stays as it is; give `*stated` back with leafless_mesh_free.
+/// - Ownership: `mesh` is unchanged; release `*stated` with leafless_mesh_free.
 /// - Untrusted input: any number.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn leafless_mesh_with_deviation(
@@ -522,7 +522,7 @@ pub unsafe extern "C" fn leafless_mesh_with_deviation(
 /// - Result: `*moved`, welded as by leafless_mesh_new.
 /// - Errors: LEAFLESS_E_ARGUMENT if a number of the matrix is not finite; LEAFLESS_E_MESH if a vertex leaves
 ///   ±2^256; LEAFLESS_E_NO_MEMORY.
-/// - Ownership: `mesh` stays as it is; give `*moved` back with leafless_mesh_free.
+/// - Ownership: `mesh` is unchanged; release `*moved` with leafless_mesh_free.
 /// - Untrusted input: any numbers.
 ///
 /// cbindgen:ptrs-as-arrays=[[matrix; 12]]
@@ -549,7 +549,7 @@ pub unsafe extern "C" fn leafless_mesh_transformed(
 /// - Result: `*moved`.
 /// - Errors: LEAFLESS_E_ARGUMENT if a number of the offset is not finite; LEAFLESS_E_MESH if a vertex leaves
 ///   ±2^256; LEAFLESS_E_NO_MEMORY.
-/// - Ownership: `mesh` stays as it is; give `*moved` back with leafless_mesh_free.
+/// - Ownership: `mesh` is unchanged; release `*moved` with leafless_mesh_free.
 /// - Untrusted input: any numbers.
 ///
 /// cbindgen:ptrs-as-arrays=[[offset_model; 3]]

@@ -51,8 +51,8 @@ pub enum leafless_index_type {
 }
 
 /// The arrays that a mesh is made of: vertices of three coordinates, and triangles of three indices. They
-/// need not be aligned, and may lie among other data, such as normals, which are not read. All fields but the
-/// first may be zero, which is their default.
+/// need not be aligned, and may lie among other data, such as normals, which are not read. Zero is the
+/// default of every field but the first.
 #[derive(Clone, Copy)]
 #[repr(C)]
 pub struct leafless_mesh_arrays {
@@ -261,7 +261,7 @@ impl leafless_mesh_arrays {
 }
 
 /// Makes a mesh of arrays. Equal vertices are welded, triangles with two corners at one place dropped and
-/// counted; coordinates below 2^-256 count as zero. Seen from outside of the solid the corners turn
+/// counted; coordinates below 2^-256 count as zero. Seen from outside the solid the corners turn
 /// counter-clockwise.
 ///
 /// - Buffers: `arrays`, one struct; what its pointers lead to must not change during the call. `mesh`, one
@@ -272,7 +272,7 @@ impl leafless_mesh_arrays {
 ///   1 vertices or triangles; LEAFLESS_E_ARGUMENT if a type, a stride or the scale is none, or `indices` NULL
 ///   though there are triangles and not three vertices for each; LEAFLESS_E_NO_MEMORY.
 /// - Ownership: the arrays are only read during the call, once and in their order, and may be freed after it:
-///   the mesh has its own. Give `*mesh` back with leafless_mesh_free.
+///   the mesh has its own. Release `*mesh` with leafless_mesh_free.
 /// - Untrusted input: any values in the arrays.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn leafless_mesh_new(

@@ -22,7 +22,7 @@ fn at(mesh: &TriangleMesh, index: u64) -> Result<&MeshAttribute, Failure> {
 /// that a triangle belongs to.
 ///
 /// - Buffers: `count`, one number; `name`, `name_length`, `components` and `per_corner`, one each, all NULL
-///   to ask for the count only.
+///   to get only the count.
 /// - Result: `*count`, the number of all attributes; the name in UTF-8, not NUL-terminated, with its length
 ///   in bytes; `*components`, how many numbers a value has, 1 to 4; `*per_corner`, whether each corner of a
 ///   triangle has a value, or each triangle one.
@@ -59,7 +59,7 @@ pub unsafe extern "C" fn leafless_mesh_peek_attribute_at(
 
 /// What the value `value` of an attribute of a mesh is called: the name of a material or of an object.
 ///
-/// - Buffers: `count`, one number; `name` and `name_length`, one each, both NULL to ask for the count only.
+/// - Buffers: `count`, one number; `name` and `name_length`, one each, both NULL to get only the count.
 /// - Result: `*count`, how many values from 0 on have names; the name in UTF-8, not NUL-terminated, with its
 ///   length in bytes.
 /// - Errors: LEAFLESS_E_ARGUMENT if there is no attribute `index`, or the value has no name, unless only the
@@ -93,7 +93,7 @@ pub unsafe extern "C" fn leafless_mesh_peek_attribute_name_at(
 
 /// The values of an attribute of a mesh at the corners of all triangles.
 ///
-/// - Buffers: `values`, room for `capacity` numbers, or NULL to ask for the count only; `count`, one number.
+/// - Buffers: `values`, room for `capacity` numbers, or NULL to get only the count; `count`, one number.
 /// - Result: `*count`, 3 · components · triangles; in `values` the numbers at the three corners of the first
 ///   triangle, then of the second: NaN where there is no value.
 /// - Errors: LEAFLESS_E_ARGUMENT if there is no attribute `index`; LEAFLESS_E_BUFFER if the capacity is too
@@ -127,7 +127,7 @@ pub unsafe extern "C" fn leafless_mesh_attribute_values(
 /// are numbered from 0 by their first triangles. Shells that touch only in single vertices, or lie within
 /// each other, are different bodies.
 ///
-/// - Buffers: `bodies`, room for `capacity` numbers, or NULL to ask for the count only; `count`, one number.
+/// - Buffers: `bodies`, room for `capacity` numbers, or NULL to get only the count; `count`, one number.
 /// - Result: `*count`, the number of triangles; in `bodies` one number for each.
 /// - Errors: LEAFLESS_E_BUFFER if the capacity is too small; LEAFLESS_E_NO_MEMORY.
 /// - Untrusted input: any mesh.
@@ -158,11 +158,11 @@ pub unsafe extern "C" fn leafless_mesh_bodies(
 /// O(t) questions. An attribute that the mesh bears under the name is replaced.
 ///
 /// - Buffers: `name`, `name_length` bytes of UTF-8; `options`, one struct or NULL; `bearing`, one pointer.
-/// - Result: `*bearing`, the same for any number of threads.
+/// - Result: `*bearing`, identical for any number of threads.
 /// - Errors: LEAFLESS_E_ARGUMENT unless the depth is finite and not negative; LEAFLESS_E_UTF8;
 ///   LEAFLESS_E_CALLBACK; LEAFLESS_E_DAMAGED; LEAFLESS_E_CANCELLED; LEAFLESS_E_NO_MEMORY.
-/// - Ownership: `mesh` and `attribute` stay as they are; give `*bearing` back with leafless_mesh_free.
-/// - Threads: any; uses as many as `options` says.
+/// - Ownership: `mesh` and `attribute` stay as they are; release `*bearing` with leafless_mesh_free.
+/// - Threads: any; runs on as many threads as `options` says.
 /// - Untrusted input: any mesh, any attribute, any text.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn leafless_mesh_with_values(
@@ -200,7 +200,7 @@ pub unsafe extern "C" fn leafless_mesh_with_values(
 ///   pointer.
 /// - Result: `*attribute`.
 /// - Errors: LEAFLESS_E_UTF8; LEAFLESS_E_ARGUMENT if the mesh has no such attribute; LEAFLESS_E_NO_MEMORY.
-/// - Ownership: the mesh is shared and may be freed; give `*attribute` back with leafless_attribute_free.
+/// - Ownership: the mesh is shared and may be freed; release `*attribute` with leafless_attribute_free.
 /// - Untrusted input: any mesh, any text.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn leafless_attribute_from_mesh(
@@ -225,7 +225,7 @@ pub unsafe extern "C" fn leafless_attribute_from_mesh(
 /// - Result: `*attribute`. A value with a number that is not finite counts as none.
 /// - Errors: LEAFLESS_E_ARGUMENT unless `components` is 1 to 4, and there are values for all triangles;
 ///   LEAFLESS_E_NO_MEMORY.
-/// - Ownership: the values are copied, the mesh is shared and may be freed; give `*attribute` back with
+/// - Ownership: the values are copied, the mesh is shared and may be freed; release `*attribute` with
 ///   leafless_attribute_free.
 /// - Untrusted input: any mesh, any numbers.
 #[unsafe(no_mangle)]

@@ -88,8 +88,7 @@ pub(super) fn unit_of(unit: Option<LengthUnit>) -> leafless_unit {
     }
 }
 
-/// How a mesh file is to be taken. NULL means the defaults. All fields but the first may be zero, which is
-/// their default.
+/// How a mesh file is to be taken. NULL means the defaults. Zero is the default of every field but the first.
 #[derive(Clone, Copy)]
 #[repr(C)]
 pub struct leafless_mesh_options {
@@ -188,7 +187,7 @@ fn give(file: MeshFile) -> Result<*mut leafless_mesh, Failure> {
 ///   LEAFLESS_E_MESH, with the vertex, if a coordinate is beyond ±2^256 once it is scaled;
 ///   LEAFLESS_E_ARGUMENT if the format or a unit is none, or the scale out of range; LEAFLESS_E_IO;
 ///   LEAFLESS_E_UTF8; LEAFLESS_E_NO_MEMORY.
-/// - Ownership: give `*mesh` back with leafless_mesh_free.
+/// - Ownership: release `*mesh` with leafless_mesh_free.
 /// - Untrusted input: any file. Memory is at most a small multiple of its length; of a 3MF, which is
 ///   compressed, of 64 times its length and 16 MiB, and its instances may come to 2^25 vertices and 2^25
 ///   triangles, or to as many as the file has.
@@ -219,8 +218,7 @@ pub unsafe extern "C" fn leafless_mesh_read(
 /// departure, by its place among all. A mesh that was not read from a file, or was made from another mesh,
 /// has none.
 ///
-/// - Buffers: `count`, one number; `warning`, `warning_length`, one each, both NULL to ask for the count
-///   only.
+/// - Buffers: `count`, one number; `warning`, `warning_length`, one each, both NULL to get only the count.
 /// - Result: `*count`, the number of all warnings; the text, not NUL-terminated, with its length in bytes.
 /// - Errors: LEAFLESS_E_ARGUMENT if there is no warning `index`, unless only the count is asked for.
 /// - Ownership: the text belongs to the mesh and lives as long as the reference `mesh`.

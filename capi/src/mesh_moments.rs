@@ -114,8 +114,8 @@ impl From<&IntersectingPair> for leafless_intersecting_pair {
 /// digits. They are known if the mesh is closed and no two triangles intersect. leafless_solid_measure of a
 /// solid of such a mesh tells the same.
 ///
-/// - Buffers: `options`, one struct or NULL, of which the limits do not matter; `moments`, one struct. `fill`
-///   is a leafless_fill.
+/// - Buffers: `options`, one struct or NULL (its limits are ignored); `moments`, one struct. `fill` is a
+///   leafless_fill.
 /// - Result: `*moments`, whether they are known or not.
 /// - Errors: LEAFLESS_E_ARGUMENT if `fill` is no leafless_fill; LEAFLESS_E_CANCELLED; LEAFLESS_E_NO_MEMORY.
 /// - Threads: any; works in the calling thread. Each call analyses the mesh.
@@ -138,8 +138,8 @@ pub unsafe extern "C" fn leafless_mesh_measure(
 /// The pairs of triangles that intersect: they cross, touch, or fold onto each other. Decided exactly.
 /// Triangles without area are left out.
 ///
-/// - Buffers: `options`, one struct or NULL, of which the limits do not matter; `pairs`, room for `capacity`
-///   of them, or NULL to ask for their number only; `count`, one number; `is_complete`, one number.
+/// - Buffers: `options`, one struct or NULL (its limits are ignored); `pairs`, room for `capacity` of them,
+///   or NULL to ask for their number only; `count`, one number; `is_complete`, one number.
 /// - Result: `*count`, how many were found; the first `capacity` of them in `pairs`, in ascending order of
 ///   triangles; `*is_complete`, whether these are all: else the search was ended, because too many triangles
 ///   lie close to each other.

@@ -40,8 +40,8 @@ output!(leafless_simplified);
 ///   deviation is that of `mesh` with what is proven here; `*report`. The same for any number of threads.
 /// - Errors: LEAFLESS_E_ARGUMENT if `tolerance_model` is not between 2^-256 and 2^256; LEAFLESS_E_CANCELLED;
 ///   LEAFLESS_E_NO_MEMORY.
-/// - Ownership: `mesh` stays as it is; give `*simple` back with leafless_mesh_free.
-/// - Threads: any; uses as many as `options` says.
+/// - Ownership: `mesh` is unchanged; release `*simple` with leafless_mesh_free.
+/// - Threads: any; runs on as many threads as `options` says.
 /// - Untrusted input: any mesh.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn leafless_mesh_simplify(

@@ -12,8 +12,7 @@ use leafless::exchange::{MeshFormat, WriteOptions, write_mesh, write_polygons, w
 use std::borrow::Cow;
 use std::path::Path;
 
-/// How a mesh file is written. NULL means the defaults. All fields but the first may be zero, which is their
-/// default.
+/// How a mesh file is written. NULL means the defaults. Zero is the default of every field but the first.
 #[derive(Clone, Copy)]
 #[repr(C)]
 pub struct leafless_mesh_write_options {
@@ -152,7 +151,7 @@ output!(leafless_single_precision);
 /// - Result: `*single`, without attributes; `*report`.
 /// - Errors: LEAFLESS_E_ARGUMENT if the tolerance is negative or not a number, or for coordinates beyond the
 ///   range of float; LEAFLESS_E_CANCELLED; LEAFLESS_E_NO_MEMORY.
-/// - Ownership: `mesh` stays as it is; give `*single` back with leafless_mesh_free.
+/// - Ownership: `mesh` is unchanged; release `*single` with leafless_mesh_free.
 /// - Untrusted input: any mesh; the work is bounded.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn leafless_mesh_in_single_precision(
@@ -229,7 +228,7 @@ pub unsafe extern "C" fn leafless_mesh_write_polygons(
 /// - Buffers: `options`, one struct, with a format; `kept`, one pointer.
 /// - Result: `*kept`.
 /// - Errors: LEAFLESS_E_ARGUMENT as leafless_mesh_write without a path; LEAFLESS_E_NO_MEMORY.
-/// - Ownership: `mesh` stays as it is; give `*kept` back with leafless_mesh_free.
+/// - Ownership: `mesh` is unchanged; release `*kept` with leafless_mesh_free.
 /// - Untrusted input: any mesh.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn leafless_mesh_written_form(

@@ -22,7 +22,7 @@ pub struct leafless_octree {
 #[derive(Clone, Copy)]
 #[repr(u8)]
 pub enum leafless_tag {
-    /// Proven outside of the solid.
+    /// Proven outside the solid.
     LEAFLESS_TAG_EMPTY = 0,
     /// Cut and split: the cell has a node.
     LEAFLESS_TAG_BRANCH = 1,
@@ -65,7 +65,7 @@ pub struct leafless_proof {
     pub displacement_model: f64,
     /// A FULL cell is proven to lie in the solid.
     pub full: bool,
-    /// An EMPTY cell is proven to lie outside of it.
+    /// An EMPTY cell is proven to lie outside it.
     pub empty: bool,
 }
 
@@ -118,17 +118,17 @@ pub struct leafless_octree_info {
     pub proof: leafless_proof,
     /// The tag of the whole universe; BRANCH if it is cut.
     pub root: leafless_tag,
-    /// What is known of the space outside of the universe; never BRANCH.
+    /// What is known of the space outside the universe; never BRANCH.
     pub exterior: leafless_tag,
     /// Whether nothing is undecided.
     pub is_binary: bool,
-    /// Whether the solid is not known to end inside of the universe: volumes then concern the part inside.
+    /// Whether the solid is not known to end inside the universe: volumes then concern the part inside.
     pub is_clipped: bool,
 }
 
 output!(leafless_octree_info);
 
-/// Counts and certified volumes. The volume is that of the part inside of the universe.
+/// Counts and certified volumes. The volume is that of the part inside the universe.
 #[derive(Clone, Copy)]
 #[repr(C)]
 pub struct leafless_statistics {
@@ -187,7 +187,7 @@ pub(super) fn give(octree: Octree) -> *mut leafless_octree {
 ///   what is known of the universe, and of the space around it.
 /// - Result: `*octree`.
 /// - Errors: LEAFLESS_E_ARGUMENT.
-/// - Ownership: give `*octree` back with leafless_octree_free.
+/// - Ownership: release `*octree` with leafless_octree_free.
 /// - Untrusted input: any numbers.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn leafless_octree_new_uniform(
@@ -218,11 +218,11 @@ pub unsafe extern "C" fn leafless_octree_ref(
     guard(|| unsafe { refer(octree, "octree", reference) })
 }
 
-/// Gives back a reference to an octree. With the last one the octree is gone, and with it the mapping of its
+/// Releases a reference to an octree. With the last one the octree is gone, and with it the mapping of its
 /// file, unless a cursor, a solid, or an octree with other metadata still shares it.
 ///
 /// - Buffers: `octree`, a handle or NULL, which does nothing.
-/// - Ownership: the reference is gone.
+/// - Ownership: the reference is invalid afterwards.
 /// - Threads: any; no other call may use this reference.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn leafless_octree_free(octree: *mut leafless_octree) {
@@ -268,7 +268,7 @@ pub unsafe extern "C" fn leafless_octree_describe(
 ///   `result`, one pointer.
 /// - Result: `*result`.
 /// - Errors: LEAFLESS_E_ARGUMENT unless `proven` is one, and the displacement finite and not negative.
-/// - Ownership: give `*result` back with leafless_octree_free.
+/// - Ownership: release `*result` with leafless_octree_free.
 /// - Untrusted input: any octree, any numbers.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn leafless_octree_with_proof(
@@ -308,7 +308,7 @@ pub unsafe extern "C" fn leafless_octree_statistics(
 /// Counts of each level, and the certified volumes of the tree cut there. Entry 0 is the universe, entry
 /// `depth` the finest cells.
 ///
-/// - Buffers: `levels`, room for `capacity` structs, or NULL to ask for the count only; `count`, one number.
+/// - Buffers: `levels`, room for `capacity` structs, or NULL to get only the count; `count`, one number.
 /// - Result: `*count`, depth + 1; the levels.
 /// - Errors: LEAFLESS_E_BUFFER if the capacity is too small.
 /// - Untrusted input: any octree; of one that was mapped unverified the numbers may be wrong.
@@ -367,7 +367,7 @@ pub unsafe extern "C" fn leafless_octree_equal(
 /// - Errors: LEAFLESS_E_UTF8; LEAFLESS_E_ARGUMENT if all facts would take more than 1 MiB in a file, 8 bytes
 ///   and the two texts each; LEAFLESS_E_NO_MEMORY.
 /// - Ownership: the texts are copied. `*named` shares the arrays of `octree`, which may be freed: what must
-///   outlive `octree`, such as bytes that it views, must outlive `*named` too. Give that back with
+///   outlive `octree`, such as bytes that it views, must outlive `*named` too. Release that with
 ///   leafless_octree_free.
 /// - Untrusted input: any texts.
 #[unsafe(no_mangle)]
@@ -433,7 +433,7 @@ pub unsafe extern "C" fn leafless_octree_peek_metadata(
 /// A fact of an octree's metadata by its place among all, which stand by ascending key.
 ///
 /// - Buffers: `count`, one number; `key`, `key_length`, `value`, `value_length`, one each, all four NULL to
-///   ask for the count only.
+///   get only the count.
 /// - Result: `*count`, the number of all facts; key and value, not NUL-terminated, with their lengths in
 ///   bytes.
 /// - Errors: LEAFLESS_E_ARGUMENT if there is no fact `index`, unless only the count is asked for.

@@ -54,8 +54,7 @@ pub struct leafless_carry_rule {
 /// - Errors: LEAFLESS_E_FRAME if the channel lies in another cube than the octree; LEAFLESS_E_ARGUMENT if
 ///   there are 256 channels already; LEAFLESS_E_NO_MEMORY.
 /// - Ownership: `*result` shares the arrays of `octree` and `channel`, which may be freed: what must outlive
-///   these, such as bytes that they view, must outlive `*result` too. Give that back with
-///   leafless_octree_free.
+///   these, such as bytes that they view, must outlive `*result` too. Release that with leafless_octree_free.
 /// - Untrusted input: any octree, any channel.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn leafless_octree_with_channel(
@@ -101,7 +100,7 @@ pub unsafe extern "C" fn leafless_octree_without_channel(
 /// - Result: `*channel`.
 /// - Errors: LEAFLESS_E_ARGUMENT if there is no channel `index`.
 /// - Ownership: `*channel` shares the arrays of `octree`, which may be freed: what must outlive `octree`,
-///   such as bytes that it views, must outlive `*channel` too. Give that back with leafless_channel_free.
+///   such as bytes that it views, must outlive `*channel` too. Release that with leafless_channel_free.
 /// - Untrusted input: any octree.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn leafless_octree_channel_at(
@@ -156,7 +155,7 @@ pub unsafe extern "C" fn leafless_octree_channel(
 ///   256; LEAFLESS_E_FRAME unless all lie in one cube; LEAFLESS_E_UTF8; LEAFLESS_E_DAMAGED; LEAFLESS_E_LIMIT;
 ///   LEAFLESS_E_CANCELLED; LEAFLESS_E_NO_MEMORY.
 /// - Ownership: as leafless_octree_with_channel.
-/// - Threads: any; uses as many as `options` says.
+/// - Threads: any; runs on as many threads as `options` says.
 /// - Untrusted input: any octrees, any texts.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn leafless_octree_carry_channels(

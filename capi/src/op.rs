@@ -43,9 +43,9 @@ enumeration! {
 /// - Errors: LEAFLESS_E_FRAME if the solid belongs to another frame; LEAFLESS_E_NOT_SAMPLED if
 ///   LEAFLESS_RULE_SAMPLED is asked of a solid that cannot decide points; LEAFLESS_E_CALLBACK;
 ///   LEAFLESS_E_DAMAGED; LEAFLESS_E_ARGUMENT; LEAFLESS_E_LIMIT; LEAFLESS_E_CANCELLED; LEAFLESS_E_NO_MEMORY.
-/// - Ownership: give `*octree` back with leafless_octree_free.
-/// - Threads: any; uses as many as `options` says.
-/// - Untrusted input: any solid; set `max_bytes` where the depth or the solid is not your own choice.
+/// - Ownership: release `*octree` with leafless_octree_free.
+/// - Threads: any; runs on as many threads as `options` says.
+/// - Untrusted input: any solid; set `max_bytes` if the depth or the solid is untrusted.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn leafless_octree_build(
     solid: *const leafless_solid,
@@ -72,8 +72,8 @@ pub unsafe extern "C" fn leafless_octree_build(
 /// - Errors: LEAFLESS_E_NOT_SAMPLED under LEAFLESS_RULE_SAMPLED if a cell is PARTIAL, because a stored octree
 ///   knows no more about it; LEAFLESS_E_ARGUMENT, also if the octree keeps surfaces; LEAFLESS_E_DAMAGED;
 ///   LEAFLESS_E_LIMIT; LEAFLESS_E_CANCELLED; LEAFLESS_E_NO_MEMORY.
-/// - Ownership: `octree` stays as it is; give `*resolved` back with leafless_octree_free.
-/// - Threads: any; uses as many as `options` says.
+/// - Ownership: `octree` is unchanged; release `*resolved` with leafless_octree_free.
+/// - Threads: any; runs on as many threads as `options` says.
 /// - Untrusted input: any octree.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn leafless_octree_resolve(
@@ -98,7 +98,7 @@ pub unsafe extern "C" fn leafless_octree_resolve(
 /// - Buffers: `compacted`, one pointer.
 /// - Result: `*compacted`, with the same metadata and channels.
 /// - Errors: LEAFLESS_E_DAMAGED if a brick cannot be read; LEAFLESS_E_NO_MEMORY.
-/// - Ownership: `octree` stays as it is; give `*compacted` back with leafless_octree_free.
+/// - Ownership: `octree` is unchanged; release `*compacted` with leafless_octree_free.
 /// - Untrusted input: any octree.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn leafless_octree_compact(
@@ -133,8 +133,8 @@ pub unsafe extern "C" fn leafless_octree_compact(
 /// - Errors: LEAFLESS_E_FRAME if the frames differ; LEAFLESS_E_NULL, also of an element; LEAFLESS_E_ARGUMENT,
 ///   also if `count` is 0; LEAFLESS_E_DAMAGED; LEAFLESS_E_LIMIT, also if the exact map of a surface's
 ///   placements is too long; LEAFLESS_E_CANCELLED; LEAFLESS_E_NO_MEMORY.
-/// - Ownership: the operands stay as they are; give `*result` back with leafless_octree_free.
-/// - Threads: any; uses as many as `options` says.
+/// - Ownership: the operands stay as they are; release `*result` with leafless_octree_free.
+/// - Threads: any; runs on as many threads as `options` says.
 /// - Untrusted input: any octrees; damage in ones that were mapped unverified is an error or reads as
 ///   PARTIAL. Set `max_bytes` if an octree keeps surfaces and is not your own choice.
 #[unsafe(no_mangle)]
@@ -167,7 +167,7 @@ pub unsafe extern "C" fn leafless_octree_combine(
 /// - Result: as leafless_octree_combine.
 /// - Errors: LEAFLESS_E_DAMAGED; LEAFLESS_E_LIMIT; LEAFLESS_E_CANCELLED; LEAFLESS_E_NO_MEMORY.
 /// - Ownership: as leafless_octree_combine.
-/// - Threads: any; uses as many as `options` says.
+/// - Threads: any; runs on as many threads as `options` says.
 /// - Untrusted input: as leafless_octree_combine.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn leafless_octree_complement(

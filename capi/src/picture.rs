@@ -111,7 +111,7 @@ pub unsafe extern "C" fn leafless_shot_line_of_sight(
 /// - Errors: LEAFLESS_E_ARGUMENT if the shot is not as it must be; LEAFLESS_E_BUFFER if a capacity is too
 ///   small: nothing is written then; what solids and attributes of layers return; LEAFLESS_E_NO_MEMORY;
 ///   LEAFLESS_E_CANCELLED.
-/// - Threads: any; uses as many as `options` says.
+/// - Threads: any; runs on as many threads as `options` says.
 /// - Untrusted input: any layers, any numbers.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn leafless_picture_render(

@@ -77,7 +77,7 @@ impl From<&Placed> for leafless_placement {
 #[derive(Clone, Copy)]
 #[repr(u32)]
 pub enum leafless_beside {
-    /// What lies outside of the container.
+    /// What lies outside the container.
     LEAFLESS_BESIDE_WALL = 0,
     /// An obstacle.
     LEAFLESS_BESIDE_OBSTACLE = 1,
@@ -184,7 +184,7 @@ impl From<&Standing> for leafless_placed_standing {
 /// - Errors: LEAFLESS_E_ARGUMENT if the container or an obstacle has no bounds, or no extent along an axis;
 ///   LEAFLESS_E_CALLBACK; LEAFLESS_E_DAMAGED; LEAFLESS_E_CANCELLED; LEAFLESS_E_NO_MEMORY.
 /// - Ownership: the layout shares the solids. The bay may be changed and freed, which does not concern the
-///   layout. Give `*layout` back with leafless_layout_free.
+///   layout. Release `*layout` with leafless_layout_free.
 /// - Untrusted input: any solids.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn leafless_layout_new(
@@ -200,10 +200,10 @@ pub unsafe extern "C" fn leafless_layout_new(
     })
 }
 
-/// Gives back a layout.
+/// Releases a layout.
 ///
 /// - Buffers: `layout`, a handle or NULL, which does nothing.
-/// - Ownership: the handle is gone.
+/// - Ownership: the handle is invalid afterwards.
 /// - Threads: no other call may use the handle.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn leafless_layout_free(layout: *mut leafless_layout) {
@@ -360,13 +360,14 @@ pub unsafe extern "C" fn leafless_layout_check(
 }
 
 /// As leafless_layout_check for all copies, in the order of their numbers, but without what is next to them.
-/// The results are the same for any number of threads.
+/// The results are identical for any number of threads.
 ///
 /// - Buffers: `options`, one struct or NULL; `standings`, room for `capacity` structs, or NULL to ask for
 ///   their number only, for which nothing is checked; `count`, one number.
 /// - Result: `*count`, the number of copies; `standings`.
 /// - Errors: as leafless_layout_check, and LEAFLESS_E_BUFFER if the capacity is too small.
-/// - Threads: any; uses as many as `options` says; LEAFLESS_E_BUSY while another call changes the layout.
+/// - Threads: any; runs on as many threads as `options` says; LEAFLESS_E_BUSY while another call changes the
+///   layout.
 /// - Untrusted input: none but the solids; the default of `max_splits` bounds the work for each pair.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn leafless_layout_check_all(

@@ -18,7 +18,7 @@ pub struct leafless_point_cursor(Yoke<PointCursor<'static>, Arc<leafless_octree>
 ///
 /// - Buffers: `cursor`, one pointer.
 /// - Result: `*cursor`.
-/// - Ownership: the cursor shares the octree, which may be freed; give `*cursor` back with
+/// - Ownership: the cursor shares the octree, which may be freed; release `*cursor` with
 ///   leafless_point_cursor_free.
 /// - Untrusted input: any octree.
 #[unsafe(no_mangle)]
@@ -34,10 +34,10 @@ pub unsafe extern "C" fn leafless_point_cursor_new(
     })
 }
 
-/// Gives back a point cursor.
+/// Releases a point cursor.
 ///
 /// - Buffers: `cursor`, a handle or NULL, which does nothing.
-/// - Ownership: the handle is gone.
+/// - Ownership: the handle is invalid afterwards.
 /// - Threads: no other call may use the handle.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn leafless_point_cursor_free(cursor: *mut leafless_point_cursor) {
@@ -101,7 +101,7 @@ pub struct leafless_point_table(Yoke<PointTable<'static>, Arc<leafless_octree>>)
 ///   the octree's arrays lead to, which hold two levels each. Levels beyond 8, and beyond the octree's depth,
 ///   count as these.
 /// - Errors: LEAFLESS_E_NO_MEMORY.
-/// - Ownership: the table shares the octree, which may be freed; give `*table` back with
+/// - Ownership: the table shares the octree, which may be freed; release `*table` with
 ///   leafless_point_table_free.
 /// - Untrusted input: any octree; work is bounded by 8^level.
 #[unsafe(no_mangle)]
@@ -121,10 +121,10 @@ pub unsafe extern "C" fn leafless_point_table_new(
     })
 }
 
-/// Gives back a point table.
+/// Releases a point table.
 ///
 /// - Buffers: `table`, a handle or NULL, which does nothing.
-/// - Ownership: the handle is gone.
+/// - Ownership: the handle is invalid afterwards.
 /// - Threads: no other call may use the handle.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn leafless_point_table_free(table: *mut leafless_point_table) {

@@ -16,9 +16,9 @@ use std::borrow::Cow;
 ///
 /// Each level is an array of offsets into the level below, one more than there are parts: part k goes from
 /// offset k up to, but not including, offset k + 1. So each array begins with 0, rises, and ends at the
-/// number of parts below. Loops turn counter-clockwise as seen from outside of the solid's material, and
-/// holes of a face against its outer loop. Corners and offsets are of one type, without gaps, and need not be
-/// aligned. All fields but the first may be zero, which is their default.
+/// number of parts below. Loops turn counter-clockwise as seen from outside the solid's material, and holes
+/// of a face against its outer loop. Corners and offsets are of one type, without gaps, and need not be
+/// aligned. Zero is the default of every field but the first.
 #[derive(Clone, Copy)]
 #[repr(C)]
 pub struct leafless_polyhedron_arrays {
@@ -218,7 +218,7 @@ impl leafless_polyhedron_arrays {
 ///   are not such solids, if a coordinate is infinite, not a number, or beyond ±2^256, if there is no solid,
 ///   or if there are more than 2^32 - 1 of anything; LEAFLESS_E_ARGUMENT if a type, a stride, the scale or
 ///   the tolerance is none; LEAFLESS_E_NO_MEMORY.
-/// - Ownership: the arrays are only read during the call, and may be freed after it; give `*mesh` back with
+/// - Ownership: the arrays are only read during the call, and may be freed after it; release `*mesh` with
 ///   leafless_mesh_free.
 /// - Untrusted input: any values in the arrays.
 #[unsafe(no_mangle)]

@@ -124,7 +124,7 @@ fn ray(index: usize, ray: &leafless_ray) -> Result<Ray, Failure> {
 }
 
 /// Where rays first meet an octree's cells, whatever they prove of the solid that it was made from. What lies
-/// outside of the universe does not count. At most 3 · 2^depth cells a ray are looked at, about a dozen as a
+/// outside the universe does not count. At most 3 · 2^depth cells a ray are looked at, about a dozen as a
 /// rule.
 ///
 /// - Buffers: `rays`, `count` structs; `hits`, room for `count`. Both may be NULL if `count` is 0. `on` is a
@@ -177,19 +177,18 @@ pub unsafe extern "C" fn leafless_octree_cast_rays(
 }
 
 /// Where rays first meet a solid, without an octree, as far as cells of the frame tell, and what the solid
-/// knows of the surface in the finest of them. What lies outside of the universe does not count. A ray splits
+/// knows of the surface in the finest of them. What lies outside the universe does not count. A ray splits
 /// the PARTIAL cells that it passes up to the first FULL one: O(depth) cells across a surface, up to
 /// O(2^depth) along one.
 ///
 /// - Buffers: `frame`, one struct; `rays`, `count` structs; `options`, one struct or NULL, of which
 ///   `max_splits` counts for each ray by itself: cells that were not split count as PARTIAL; `hits`, room for
 ///   `count`. `rays` and `hits` may be NULL if `count` is 0. `on` is a leafless_obstacle.
-/// - Result: `hits[i]` for ray i; the same for any number of threads.
-/// - Errors: LEAFLESS_E_ARGUMENT if `on` is none, or a ray is not as leafless_ray says; else as
+/// - Result: `hits[i]` for ray i; identical for any number of threads.
+/// - Errors: LEAFLESS_E_ARGUMENT if `on` is none, or a ray is not as leafless_ray says; otherwise as
 ///   leafless_solid_contains_many.
-/// - Threads: any; uses as many as `options` says.
-/// - Untrusted input: any solid, any numbers; set `max_splits` where the depth or the solid is not your own
-///   choice.
+/// - Threads: any; runs on as many threads as `options` says.
+/// - Untrusted input: any solid, any numbers; set `max_splits` if the depth or the solid is untrusted.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn leafless_solid_cast_rays(
     solid: *const leafless_solid,
@@ -246,7 +245,7 @@ unsafe fn write_spans(
 }
 
 /// Where a ray is in an octree's cells, whatever they prove of the solid that it was made from: intervals of
-/// t that ascend, of which no two of a list meet. What lies outside of the universe does not count. O(cells
+/// t that ascend, of which no two of a list meet. What lies outside the universe does not count. O(cells
 /// along the ray · depth).
 ///
 /// - Buffers: `ray`, one struct; `inner` and `outer`, room for `inner_capacity` and `outer_capacity` structs,
@@ -276,8 +275,8 @@ pub unsafe extern "C" fn leafless_octree_ray_spans(
 }
 
 /// Where a ray is in a solid, without an octree, as far as cells of the frame tell: intervals of t that
-/// ascend, of which no two of a list meet. What lies outside of the universe does not count. The ray splits
-/// all PARTIAL cells that it passes: O(depth) cells where it crosses a surface, up to O(2^depth) along one.
+/// ascend, of which no two of a list meet. What lies outside the universe does not count. The ray splits all
+/// PARTIAL cells that it passes: O(depth) cells where it crosses a surface, up to O(2^depth) along one.
 /// Asking for the counts costs as much as asking for the intervals.
 ///
 /// - Buffers: as leafless_octree_ray_spans; `frame`, one struct; `options`, one struct or NULL, of which
@@ -285,9 +284,8 @@ pub unsafe extern "C" fn leafless_octree_ray_spans(
 /// - Result: `inner`, where the ray is proven inside, rounded inward; `outer`, where it is not proven
 ///   outside, rounded outward; their counts.
 /// - Errors: LEAFLESS_E_ARGUMENT if the ray is not as leafless_ray says; LEAFLESS_E_BUFFER if a capacity is
-///   too small: nothing is written then; else as leafless_solid_contains_many.
-/// - Untrusted input: any solid, any numbers; set `max_splits` where the depth or the solid is not your own
-///   choice.
+///   too small: nothing is written then; otherwise as leafless_solid_contains_many.
+/// - Untrusted input: any solid, any numbers; set `max_splits` if the depth or the solid is untrusted.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn leafless_solid_ray_spans(
     solid: *const leafless_solid,
@@ -311,16 +309,15 @@ pub unsafe extern "C" fn leafless_solid_ray_spans(
 }
 
 /// Whether two points see each other past a solid, without an octree, as far as cells of the frame tell. If
-/// the solid may go on outside of the universe and a point lies there, the answer is not
-/// LEAFLESS_SIGHT_CLEAR. Costs as much as one ray of leafless_solid_cast_rays.
+/// the solid may go on outside the universe and a point lies there, the answer is not LEAFLESS_SIGHT_CLEAR.
+/// Costs as much as one ray of leafless_solid_cast_rays.
 ///
 /// - Buffers: `frame`, one struct; `from_model` and `to_model`, 3 numbers each; `options`, one struct or
 ///   NULL, of which `max_splits` counts: cells that were not split count as PARTIAL; `sight`, one.
 /// - Result: `*sight`.
 /// - Errors: LEAFLESS_E_ARGUMENT if the points are equal, or a coordinate is not zero and not of a magnitude
-///   between 2^-256 and 2^256; else as leafless_solid_contains_many.
-/// - Untrusted input: any solid, any numbers; set `max_splits` where the depth or the solid is not your own
-///   choice.
+///   between 2^-256 and 2^256; otherwise as leafless_solid_contains_many.
+/// - Untrusted input: any solid, any numbers; set `max_splits` if the depth or the solid is untrusted.
 ///
 /// cbindgen:ptrs-as-arrays=[[from_model; 3], [to_model; 3]]
 #[unsafe(no_mangle)]

@@ -49,8 +49,7 @@ enumeration! {
     }
 }
 
-/// How a scene is to be read. NULL means the defaults. All fields but the first may be zero, which is their
-/// default.
+/// How a scene is to be read. NULL means the defaults. Zero is the default of every field but the first.
 #[derive(Clone, Copy)]
 #[repr(C)]
 pub struct leafless_scene_options {
@@ -92,7 +91,7 @@ unsafe fn options<'a>(
 /// - Errors: LEAFLESS_E_SCENE, with line and column in the message, for whatever is wrong with the text or a
 ///   file that it names, also if there is no folder; LEAFLESS_E_ARGUMENT if there are a path and a folder;
 ///   LEAFLESS_E_IO if the file itself cannot be read; LEAFLESS_E_UTF8; LEAFLESS_E_NO_MEMORY.
-/// - Ownership: give `*scene` back with leafless_scene_free.
+/// - Ownership: release `*scene` with leafless_scene_free.
 /// - Untrusted input: any text; nesting costs memory, not stack, and memory is linear in the text and in the
 ///   files that it names; with LEAFLESS_FACETS_POLYGON a ball may take memory for half a million half-spaces.
 ///   It may name any file, by absolute paths too, which is then read as a mesh or an octree.
@@ -252,10 +251,10 @@ pub unsafe extern "C" fn leafless_scene_ref(
     guard(|| unsafe { refer(scene, "scene", reference) })
 }
 
-/// Gives back a reference to a scene; with the last one the scene is gone. Solids made of it stay.
+/// Releases a reference to a scene; with the last one the scene is gone. Solids made of it stay.
 ///
 /// - Buffers: `scene`, a handle or NULL, which does nothing.
-/// - Ownership: the reference is gone.
+/// - Ownership: the reference is invalid afterwards.
 /// - Threads: any; no other call may use this reference.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn leafless_scene_free(scene: *mut leafless_scene) {
@@ -297,7 +296,7 @@ pub unsafe extern "C" fn leafless_scene_bounds(
 /// - Result: `*solid`.
 /// - Errors: LEAFLESS_E_ARGUMENT as leafless_frame_check; LEAFLESS_E_LIMIT if a mesh or octree is within more
 ///   than 256 matrices; LEAFLESS_E_NO_MEMORY.
-/// - Ownership: give `*solid` back with leafless_solid_free.
+/// - Ownership: release `*solid` with leafless_solid_free.
 /// - Untrusted input: any scene.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn leafless_solid_from_scene(

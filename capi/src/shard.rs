@@ -111,10 +111,9 @@ unsafe fn shard_of(frame: &Frame, pointer: *const leafless_shard) -> Result<Shar
 /// - Result: `*octree`.
 /// - Errors: as leafless_octree_build; LEAFLESS_E_ARGUMENT also if the frame does not have the cells of the
 ///   shard.
-/// - Ownership: give `*octree` back with leafless_octree_free.
-/// - Threads: any; uses as many as `options` says.
-/// - Untrusted input: any solid, any numbers; set `max_bytes` where the depth or the solid is not your own
-///   choice.
+/// - Ownership: release `*octree` with leafless_octree_free.
+/// - Threads: any; runs on as many threads as `options` says.
+/// - Untrusted input: any solid, any numbers; set `max_bytes` if the depth or the solid is untrusted.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn leafless_octree_build_shard(
     solid: *const leafless_solid,
@@ -142,10 +141,9 @@ pub unsafe extern "C" fn leafless_octree_build_shard(
 /// - Result: `*octree`.
 /// - Errors: as leafless_octree_build_extended; LEAFLESS_E_ARGUMENT also if the frame does not have the cells
 ///   of the shard.
-/// - Ownership: give `*octree` back with leafless_octree_free.
-/// - Threads: any; uses as many as `options` says.
-/// - Untrusted input: any solid, any numbers; set `max_bytes` where the depth or the solid is not your own
-///   choice.
+/// - Ownership: release `*octree` with leafless_octree_free.
+/// - Threads: any; runs on as many threads as `options` says.
+/// - Untrusted input: any solid, any numbers; set `max_bytes` if the depth or the solid is untrusted.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn leafless_octree_build_extended_shard(
     solid: *const leafless_solid,
@@ -174,8 +172,8 @@ pub unsafe extern "C" fn leafless_octree_build_extended_shard(
 /// - Result: `*result`, without metadata and channels.
 /// - Errors: LEAFLESS_E_ARGUMENT if the octree's frame does not have the cells of the shard;
 ///   LEAFLESS_E_DAMAGED; LEAFLESS_E_LIMIT; LEAFLESS_E_CANCELLED; LEAFLESS_E_NO_MEMORY.
-/// - Ownership: `octree` stays as it is; give `*result` back with leafless_octree_free.
-/// - Threads: any; uses as many as `options` says.
+/// - Ownership: `octree` is unchanged; release `*result` with leafless_octree_free.
+/// - Threads: any; runs on as many threads as `options` says.
 /// - Untrusted input: any octree, any numbers; damage in an octree that was mapped unverified is an error or
 ///   reads as PARTIAL.
 #[unsafe(no_mangle)]
@@ -209,8 +207,8 @@ pub unsafe extern "C" fn leafless_octree_shard(
 /// - Errors: LEAFLESS_E_FRAME if the frames differ; LEAFLESS_E_NULL, also of an element; LEAFLESS_E_ARGUMENT
 ///   if `count` is 0, or if one octree says FULL where another one says EMPTY: they are not of one solid;
 ///   LEAFLESS_E_DAMAGED; LEAFLESS_E_LIMIT; LEAFLESS_E_CANCELLED; LEAFLESS_E_NO_MEMORY.
-/// - Ownership: the octrees stay as they are; give `*result` back with leafless_octree_free.
-/// - Threads: any; uses as many as `options` says.
+/// - Ownership: the octrees stay as they are; release `*result` with leafless_octree_free.
+/// - Threads: any; runs on as many threads as `options` says.
 /// - Untrusted input: any octrees; damage in ones that were mapped unverified is an error or reads as
 ///   PARTIAL.
 #[unsafe(no_mangle)]
@@ -233,7 +231,7 @@ pub unsafe extern "C" fn leafless_octree_join(
 /// PARTIAL cell, and no surfaces are kept there. If the octree is a top of that level, each of these cells
 /// needs a shard. O(cells of the levels above, and of the result).
 ///
-/// - Buffers: `codes`, room for `capacity` numbers, or NULL to ask for the count only; `count`, one number.
+/// - Buffers: `codes`, room for `capacity` numbers, or NULL to get only the count; `count`, one number.
 /// - Result: `codes`, ascending, as in leafless_shard; `*count`.
 /// - Errors: LEAFLESS_E_ARGUMENT if `level` is greater than the octree's depth; LEAFLESS_E_BUFFER if the
 ///   capacity is too small; LEAFLESS_E_LIMIT if there are more than 2^24 cells; LEAFLESS_E_DAMAGED;
@@ -269,8 +267,8 @@ pub unsafe extern "C" fn leafless_octree_open_cells(
 ///
 /// - Buffers: `codes`, `code_count` numbers as in leafless_shard, which ascend: the cells of the shards, all
 ///   of level `level`; `levels`, `level_count` structs: depth + 1 of the first shard, from the universe on,
-///   then those of the second one, and so on; `joined`, room for `capacity` structs, or NULL to ask for the
-///   count only; `count`, one number.
+///   then those of the second one, and so on; `joined`, room for `capacity` structs, or NULL to get only the
+///   count; `count`, one number.
 /// - Result: `*count`, depth + 1; `joined`, the levels of the whole as leafless_octree_levels gives them. The
 ///   last one has the volume.
 /// - Errors: LEAFLESS_E_ARGUMENT if `level` is not less than the depth, a code is not less than 8^level, the
@@ -334,8 +332,7 @@ pub unsafe extern "C" fn leafless_octree_statistics_with(
 ///   if `level` is greater than the depth, a code is not less than 8^level, or two shards have one cell;
 ///   LEAFLESS_E_NO_MEMORY. Asking the solid returns LEAFLESS_E_DAMAGED if an octree was mapped unverified and
 ///   its links are damaged.
-/// - Ownership: the solid shares the octrees, which may be freed; give `*solid` back with
-///   leafless_solid_free.
+/// - Ownership: the solid shares the octrees, which may be freed; release `*solid` with leafless_solid_free.
 /// - Untrusted input: any octrees, any numbers.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn leafless_solid_from_shards(

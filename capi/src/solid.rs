@@ -53,7 +53,7 @@ pub(super) fn give_any(solid: AnySolid) -> *mut leafless_solid {
 /// - Result: `*solid`. Time is linear in the mesh (n log n in the edges of its boundary).
 /// - Errors: LEAFLESS_E_MESH if the mesh is empty, or (LEAFLESS_FILL_EVEN_ODD) an odd number of triangles
 ///   meet on an edge; LEAFLESS_E_ARGUMENT if `fill` is no leafless_fill; LEAFLESS_E_NO_MEMORY.
-/// - Ownership: the solid shares the mesh, which may be freed; give `*solid` back with leafless_solid_free.
+/// - Ownership: the solid shares the mesh, which may be freed; release `*solid` with leafless_solid_free.
 /// - Untrusted input: any mesh.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn leafless_solid_from_mesh(
@@ -76,7 +76,7 @@ pub unsafe extern "C" fn leafless_solid_from_mesh(
 /// - Result: `*solid`.
 /// - Errors: only the general ones; building it returns LEAFLESS_E_DAMAGED if the octree was mapped
 ///   unverified and its links are damaged.
-/// - Ownership: the solid shares the octree, which may be freed; give `*solid` back with leafless_solid_free.
+/// - Ownership: the solid shares the octree, which may be freed; release `*solid` with leafless_solid_free.
 /// - Untrusted input: any octree.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn leafless_solid_from_octree(
@@ -143,10 +143,10 @@ pub unsafe extern "C" fn leafless_solid_ref(
     guard(|| unsafe { refer(solid, "solid", reference) })
 }
 
-/// Gives back a reference to a solid; with the last one the solid is gone. Octrees built from it stay.
+/// Releases a reference to a solid; with the last one the solid is gone. Octrees built from it stay.
 ///
 /// - Buffers: `solid`, a handle or NULL, which does nothing.
-/// - Ownership: the reference is gone.
+/// - Ownership: the reference is invalid afterwards.
 /// - Threads: any; no other call may use this reference.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn leafless_solid_free(solid: *mut leafless_solid) {

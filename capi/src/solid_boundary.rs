@@ -18,7 +18,7 @@ use std::sync::Arc;
 /// The boundary of a solid: a mesh whose triangles know their surfaces, and its faces.
 ///
 /// A region is what hangs together on one surface, over edges of the mesh. On a plane it is one face: an
-/// outer loop, which runs counter-clockwise as seen from outside of the solid, and a loop around each hole,
+/// outer loop, which runs counter-clockwise as seen from outside the solid, and a loop around each hole,
 /// which runs the other way. On a curved surface its triangles are the faces. Two faces that meet in an edge
 /// have the same vertices there.
 ///
@@ -201,7 +201,7 @@ output!(leafless_boundary_report);
 /// The boundary of a solid that knows its surfaces, as solids of half-spaces do, and octrees that keep
 /// theirs: its plane faces as they are, with triangles between their corners alone, and curved ones in chords
 /// that are no further from them than about `tolerance_model`. Edges are sharp, and corners are exact to
-/// rounding. The solid must end inside of the universe of the frame.
+/// rounding. The solid must end inside the universe of the frame.
 ///
 /// The mesh is closed, and exactly two triangles meet in each edge; where the solid touches itself, vertices
 /// lie at one place. Cells are split until at most three surfaces in each have a simple arrangement. Where
@@ -215,13 +215,13 @@ output!(leafless_boundary_report);
 ///
 /// - Buffers: `frame`, one struct; `options`, one struct or NULL; `boundary`, one pointer.
 /// - Result: `*boundary`.
-/// - Errors: LEAFLESS_E_ARGUMENT if the solid is not known to end inside of the universe, or consists of
+/// - Errors: LEAFLESS_E_ARGUMENT if the solid is not known to end inside the universe, or consists of
 ///   something else than surfaces, as a mesh or a host program's function does, or `tolerance_model` is not
 ///   between 2^-256 and 2^256; LEAFLESS_E_MESH if there would be more than 2^32 - 1 vertices, triangles or
 ///   corners; LEAFLESS_E_DAMAGED; LEAFLESS_E_LIMIT; LEAFLESS_E_CANCELLED; LEAFLESS_E_NO_MEMORY.
-/// - Ownership: `solid` stays as it is; give `*boundary` back with leafless_boundary_free.
+/// - Ownership: `solid` is unchanged; release `*boundary` with leafless_boundary_free.
 /// - Threads: any.
-/// - Untrusted input: any solid; set `max_nodes` where the depth or the solid is not your own choice.
+/// - Untrusted input: any solid; set `max_nodes` if the depth or the solid is untrusted.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn leafless_solid_boundary(
     solid: *const leafless_solid,
@@ -258,11 +258,11 @@ pub unsafe extern "C" fn leafless_boundary_ref(
     guard(|| unsafe { refer(boundary, "boundary", reference) })
 }
 
-/// Gives back a reference to a boundary; with the last one the boundary is gone. Its mesh stays if it was
-/// asked for.
+/// Releases a reference to a boundary; with the last one the boundary is gone. Its mesh stays if it was asked
+/// for.
 ///
 /// - Buffers: `boundary`, a handle or NULL, which does nothing.
-/// - Ownership: the reference is gone.
+/// - Ownership: the reference is invalid afterwards.
 /// - Threads: any; no other call may use this reference.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn leafless_boundary_free(boundary: *mut leafless_boundary) {
@@ -299,7 +299,7 @@ pub unsafe extern "C" fn leafless_boundary_describe(
 ///
 /// - Buffers: `mesh`, one pointer.
 /// - Result: `*mesh`.
-/// - Ownership: the mesh is shared, and `boundary` may be freed; give `*mesh` back with leafless_mesh_free.
+/// - Ownership: the mesh is shared, and `boundary` may be freed; release `*mesh` with leafless_mesh_free.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn leafless_boundary_mesh(
     boundary: *const leafless_boundary,
@@ -314,8 +314,7 @@ pub unsafe extern "C" fn leafless_boundary_mesh(
 
 /// The surfaces that a solid is made of, by their kinds and numbers. Some may bound nothing.
 ///
-/// - Buffers: `surfaces`, room for `capacity` structs, or NULL to ask for the count only; `count`, one
-///   number.
+/// - Buffers: `surfaces`, room for `capacity` structs, or NULL to get only the count; `count`, one number.
 /// - Result: `*count`; the surfaces.
 /// - Errors: LEAFLESS_E_BUFFER if the capacity is too small.
 #[unsafe(no_mangle)]
@@ -336,7 +335,7 @@ pub unsafe extern "C" fn leafless_boundary_surfaces(
 
 /// The regions of a boundary, in the order of their faces.
 ///
-/// - Buffers: `regions`, room for `capacity` structs, or NULL to ask for the count only; `count`, one number.
+/// - Buffers: `regions`, room for `capacity` structs, or NULL to get only the count; `count`, one number.
 /// - Result: `*count`; the regions.
 /// - Errors: LEAFLESS_E_BUFFER if the capacity is too small.
 #[unsafe(no_mangle)]
@@ -357,7 +356,7 @@ pub unsafe extern "C" fn leafless_boundary_regions(
 
 /// The region of each triangle of the mesh of a boundary.
 ///
-/// - Buffers: `regions`, room for `capacity` numbers, or NULL to ask for the count only; `count`, one number.
+/// - Buffers: `regions`, room for `capacity` numbers, or NULL to get only the count; `count`, one number.
 /// - Result: `*count`, the number of triangles; in `regions` the number of the region of each.
 /// - Errors: LEAFLESS_E_BUFFER if the capacity is too small.
 #[unsafe(no_mangle)]

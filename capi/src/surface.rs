@@ -118,8 +118,8 @@ enumeration! {
     }
 }
 
-/// How a surface is extracted. NULL means the defaults. All fields but the first may be zero, which is their
-/// default. A field that the method does not use must be zero.
+/// How a surface is extracted. NULL means the defaults. Zero is the default of every field but the first. A
+/// field that the method does not use must be zero.
 #[derive(Clone, Copy)]
 #[repr(C)]
 pub struct leafless_surface_options {
@@ -221,15 +221,15 @@ impl leafless_surface_options {
 ///
 /// - Buffers: `surface`, one struct or NULL; `options`, one struct or NULL, of which `max_nodes` and
 ///   `max_bytes` count for LEAFLESS_RESOLVE_SOURCE only; `mesh`, one pointer.
-/// - Result: `*mesh`, the same for any number of threads; it has no triangles if nothing is inside.
+/// - Result: `*mesh`, identical for any number of threads; it has no triangles if nothing is inside.
 /// - Errors: LEAFLESS_E_ARGUMENT if the octree has PARTIAL cells and `resolve` does not say what they count
 ///   as, if a field of `surface` is none of its enum, or is set though the method does not use it, or if the
 ///   frame lies so far from the origin that doubles cannot tell its cells apart; LEAFLESS_E_NULL if
 ///   LEAFLESS_RESOLVE_SOURCE has no `source`; LEAFLESS_E_MESH if there would be more than 2^32 - 1 vertices
 ///   or triangles; LEAFLESS_E_DAMAGED; LEAFLESS_E_CANCELLED; LEAFLESS_E_NO_MEMORY; and those of
 ///   leafless_octree_build for the source.
-/// - Ownership: `octree` stays as it is; give `*mesh` back with leafless_mesh_free.
-/// - Threads: any; uses as many as `options` says.
+/// - Ownership: `octree` is unchanged; release `*mesh` with leafless_mesh_free.
+/// - Threads: any; runs on as many threads as `options` says.
 /// - Untrusted input: any octree; damage is LEAFLESS_E_DAMAGED or another surface.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn leafless_octree_surface(
@@ -262,8 +262,8 @@ pub unsafe extern "C" fn leafless_octree_surface(
 }
 
 /// The surface of a solid, which is sampled at the corners of the cells of a frame: 2^depth + 1 to an axis.
-/// Dual contouring samples at the centres. Else as leafless_octree_surface. What the solid has outside of the
-/// universe is cut off.
+/// Dual contouring samples at the centres. Otherwise as leafless_octree_surface. What the solid has outside
+/// the universe is cut off.
 ///
 /// Time is that of leafless_octree_build with LEAFLESS_RULE_SAMPLED on as many cells as there are corners,
 /// and for LEAFLESS_VERTEX_PLACEMENT_CROSSING a few questions to the solid for each vertex; memory as well.
@@ -272,7 +272,7 @@ pub unsafe extern "C" fn leafless_octree_surface(
 ///
 /// - Buffers: `frame`, one struct; `surface`, one struct or NULL, whose `resolve` and `source` are 0;
 ///   `options`, one struct or NULL; `mesh`, one pointer.
-/// - Result: `*mesh`, the same for any number of threads; it has no triangles if nothing is inside.
+/// - Result: `*mesh`, identical for any number of threads; it has no triangles if nothing is inside.
 /// - Errors: LEAFLESS_E_ARGUMENT if the depth is 20, which leaves no level for corners, if a field of
 ///   `surface` is none of its enum, or is set though it is not used, or if the frame lies so far from the
 ///   origin that doubles cannot tell its corners apart; LEAFLESS_E_NOT_SAMPLED if the solid cannot decide
@@ -280,9 +280,9 @@ pub unsafe extern "C" fn leafless_octree_surface(
 ///   for others that belong to another frame; LEAFLESS_E_MESH if there would be more than 2^32 - 1 vertices
 ///   or triangles; LEAFLESS_E_CALLBACK; LEAFLESS_E_DAMAGED; LEAFLESS_E_LIMIT; LEAFLESS_E_CANCELLED;
 ///   LEAFLESS_E_NO_MEMORY.
-/// - Ownership: give `*mesh` back with leafless_mesh_free.
-/// - Threads: any; uses as many as `options` says.
-/// - Untrusted input: any solid; set `max_bytes` where the depth or the solid is not your own choice.
+/// - Ownership: release `*mesh` with leafless_mesh_free.
+/// - Threads: any; runs on as many threads as `options` says.
+/// - Untrusted input: any solid; set `max_bytes` if the depth or the solid is untrusted.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn leafless_solid_surface(
     solid: *const leafless_solid,
@@ -326,17 +326,17 @@ pub unsafe extern "C" fn leafless_solid_surface(
 /// smooth function that is on the surface to second order in the spacing. Between bits, and beside a sample
 /// that is infinite or not a number, they lie half-way.
 ///
-/// Else as leafless_octree_surface; vertices that lie at one place are one, and there more than two triangles
-/// may meet on an edge. Time is linear in the samples, and in the surface.
+/// Otherwise as leafless_octree_surface; vertices that lie at one place are one, and there more than two
+/// triangles may meet on an edge. Time is linear in the samples, and in the surface.
 ///
-/// - Buffers: `band`, one struct, or NULL, as for leafless_solid_from_volume; `options`, one struct or NULL,
-///   of which limits do not matter; `mesh`, one pointer.
-/// - Result: `*mesh`, the same for any number of threads, where the file says that the volume lies.
+/// - Buffers: `band`, one struct, or NULL, as for leafless_solid_from_volume; `options`, one struct or NULL
+///   (its limits are ignored); `mesh`, one pointer.
+/// - Result: `*mesh`, identical for any number of threads, where the file says that the volume lies.
 /// - Errors: those of leafless_solid_from_volume; LEAFLESS_E_ARGUMENT if the volume lies so far from the
 ///   origin that doubles cannot tell its voxels apart; LEAFLESS_E_MESH if there would be more than 2^32 - 1
 ///   vertices or triangles.
-/// - Ownership: `volume` stays as it is; give `*mesh` back with leafless_mesh_free.
-/// - Threads: any; uses as many as `options` says.
+/// - Ownership: `volume` is unchanged; release `*mesh` with leafless_mesh_free.
+/// - Threads: any; runs on as many threads as `options` says.
 /// - Untrusted input: any volume.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn leafless_volume_surface(

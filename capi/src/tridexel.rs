@@ -21,8 +21,8 @@ use leafless_dexel_normals::*;
 /// A solid as intervals along the rays of a lattice, in one to three directions: a tri-dexel model.
 ///
 /// Rays run through the centres of the finest cells of a frame. Each has the sorted, disjoint intervals in
-/// which it runs inside of the solid. An interval holds its start and not its end, so that set algebra is
-/// exact. All directions agree about the centres of cells.
+/// which it runs inside the solid. An interval holds its start and not its end, so that set algebra is exact.
+/// All directions agree about the centres of cells.
 ///
 /// Immutable: all its functions may be called at once from any number of threads, but leafless_tridexel_free
 /// needs the reference that it gives back for itself. A leafless_tridexel_editor changes a copy in place.
@@ -90,8 +90,7 @@ pub(super) fn axes(directions: [bool; 3]) -> u32 {
     (0..3).map(|axis| u32::from(directions[axis]) << axis).sum()
 }
 
-/// What a tri-dexel model stores. NULL means the defaults. All fields but the first may be zero, which is
-/// their default.
+/// What a tri-dexel model stores. NULL means the defaults. Zero is the default of every field but the first.
 #[derive(Clone, Copy)]
 #[repr(C)]
 pub struct leafless_tridexel_format {
@@ -196,9 +195,9 @@ pub(super) fn give(model: TriDexel) -> *mut leafless_tridexel {
 ///   LEAFLESS_E_NOT_SAMPLED if LEAFLESS_RULE_SAMPLED is asked of a solid that cannot decide points;
 ///   LEAFLESS_E_CALLBACK; LEAFLESS_E_DAMAGED; LEAFLESS_E_LIMIT, also for 2^32 rays or intervals along one
 ///   axis; LEAFLESS_E_CANCELLED; LEAFLESS_E_NO_MEMORY.
-/// - Ownership: nothing is kept of the solid; give `*tridexel` back with leafless_tridexel_free.
-/// - Threads: any; uses as many as `options` says.
-/// - Untrusted input: any solid; set `max_bytes` where the depth or the solid is not your own choice.
+/// - Ownership: nothing is kept of the solid; release `*tridexel` with leafless_tridexel_free.
+/// - Threads: any; runs on as many threads as `options` says.
+/// - Untrusted input: any solid; set `max_bytes` if the depth or the solid is untrusted.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn leafless_tridexel_build(
     solid: *const leafless_solid,
@@ -233,11 +232,11 @@ pub unsafe extern "C" fn leafless_tridexel_ref(
     guard(|| unsafe { refer(tridexel, "tridexel", reference) })
 }
 
-/// Gives back a reference to a tri-dexel model. With the last one the model is gone, and with it the mapping
-/// of its file, unless a model with other metadata still shares its arrays.
+/// Releases a reference to a tri-dexel model. With the last one the model is gone, and with it the mapping of
+/// its file, unless a model with other metadata still shares its arrays.
 ///
 /// - Buffers: `tridexel`, a handle or NULL, which does nothing.
-/// - Ownership: the reference is gone.
+/// - Ownership: the reference is invalid afterwards.
 /// - Threads: any; no other call may use this reference.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn leafless_tridexel_free(tridexel: *mut leafless_tridexel) {
@@ -284,7 +283,7 @@ pub(super) fn described(
     }
 }
 
-/// Checks that a tri-dexel model is well-formed: intervals are in order, disjoint and inside of the universe.
+/// Checks that a tri-dexel model is well-formed: intervals are in order, disjoint and inside the universe.
 /// O(n). Whether the directions agree is not checked. Models that the library makes, opens or maps verified
 /// are well-formed.
 ///
@@ -322,7 +321,7 @@ pub unsafe extern "C" fn leafless_tridexel_equal(
 /// - Errors: LEAFLESS_E_UTF8; LEAFLESS_E_ARGUMENT if all facts would take more than 1 MiB in a file, 8 bytes
 ///   and the two texts each; LEAFLESS_E_NO_MEMORY.
 /// - Ownership: the texts are copied. `*named` shares the arrays of `tridexel`, which may be freed: what must
-///   outlive `tridexel`, such as bytes that it views, must outlive `*named` too. Give that back with
+///   outlive `tridexel`, such as bytes that it views, must outlive `*named` too. Release that with
 ///   leafless_tridexel_free.
 /// - Untrusted input: any texts.
 #[unsafe(no_mangle)]
@@ -388,7 +387,7 @@ pub unsafe extern "C" fn leafless_tridexel_peek_metadata(
 /// A fact of a tri-dexel model's metadata by its place among all, which stand by ascending key.
 ///
 /// - Buffers: `count`, one number; `key`, `key_length`, `value`, `value_length`, one each, all four NULL to
-///   ask for the count only.
+///   get only the count.
 /// - Result: `*count`, the number of all facts; key and value, not NUL-terminated, with their lengths in
 ///   bytes.
 /// - Errors: LEAFLESS_E_ARGUMENT if there is no fact `index`, unless only the count is asked for.

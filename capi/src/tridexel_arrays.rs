@@ -21,7 +21,7 @@ pub struct leafless_tridexel_arrays {
     pub reserved: u32,
     /// The indices of the first ray's cells on the other two axes in the order x, y, z.
     pub first: [u32; 2],
-    /// The first beyond those of the last ray. Rays outside of the rectangle are empty.
+    /// The first beyond those of the last ray. Rays outside the rectangle are empty.
     pub end: [u32; 2],
     /// The intervals of ray i are those from `offsets[i]` to before `offsets[i + 1]`: one number more than
     /// rays, in ascending order. The ray at steps (u, v) from the first is i = v · width + u.
@@ -160,7 +160,7 @@ impl Arrays<'_> {
 ///   not behind its start, if an end in cells does not lie in the universe, or if an interval begins before
 ///   the one before it ends; LEAFLESS_E_LIMIT for 2^32 rays or intervals along one axis, which is a depth of
 ///   16; LEAFLESS_E_CANCELLED; LEAFLESS_E_NO_MEMORY.
-/// - Ownership: the arrays are not kept; give `*tridexel` back with leafless_tridexel_free.
+/// - Ownership: the arrays are not kept; release `*tridexel` with leafless_tridexel_free.
 /// - Untrusted input: any numbers.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn leafless_tridexel_new(

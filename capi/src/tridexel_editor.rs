@@ -109,7 +109,7 @@ unsafe fn changed(
 /// - Result: `*editor`, which stores what `tridexel` does.
 /// - Errors: LEAFLESS_E_DAMAGED if the model was mapped unverified and is damaged; LEAFLESS_E_LIMIT for 2^32
 ///   rays along one axis, which is a depth of 16; LEAFLESS_E_NO_MEMORY.
-/// - Ownership: nothing is kept of `tridexel`; give `*editor` back with leafless_tridexel_editor_free.
+/// - Ownership: nothing is kept of `tridexel`; release `*editor` with leafless_tridexel_editor_free.
 /// - Untrusted input: any model; memory is needed for each ray of its universe.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn leafless_tridexel_editor_new(
@@ -127,7 +127,7 @@ pub unsafe extern "C" fn leafless_tridexel_editor_new(
 /// Gives back an editor. Tri-dexel models that it froze stay.
 ///
 /// - Buffers: `editor`, a handle or NULL, which does nothing.
-/// - Ownership: the handle is gone.
+/// - Ownership: the handle is invalid afterwards.
 /// - Threads: no other call may use the handle.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn leafless_tridexel_editor_free(editor: *mut leafless_tridexel_editor) {
@@ -227,7 +227,7 @@ pub unsafe extern "C" fn leafless_tridexel_editor_combine_solid(
 /// - Buffers: `options`, one struct or NULL; `tridexel`, one pointer.
 /// - Result: `*tridexel`, without metadata.
 /// - Errors: LEAFLESS_E_CANCELLED; LEAFLESS_E_NO_MEMORY; LEAFLESS_E_BUSY.
-/// - Ownership: the editor stays as it is; give `*tridexel` back with leafless_tridexel_free.
+/// - Ownership: the editor is unchanged; release `*tridexel` with leafless_tridexel_free.
 /// - Threads: any; LEAFLESS_E_BUSY while another call changes the editor; uses the calling thread alone.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn leafless_tridexel_editor_freeze(

@@ -16,7 +16,7 @@ use leafless::file::{self, dexels};
 /// - Errors: LEAFLESS_E_FORMAT; LEAFLESS_E_VERSION; LEAFLESS_E_DAMAGED; LEAFLESS_E_ARGUMENT if the file holds
 ///   an octree, if there is no regular file that could be mapped, or if bytes that shall be viewed are
 ///   misaligned; LEAFLESS_E_IO; LEAFLESS_E_UTF8; LEAFLESS_E_NO_MEMORY.
-/// - Ownership: how long a file or bytes must stay as they are, leafless_source tells. Give `*tridexel` back
+/// - Ownership: how long a file or bytes must stay as they are, leafless_source tells. Release `*tridexel`
 ///   with leafless_tridexel_free.
 /// - Untrusted input: as leafless_source tells.
 #[unsafe(no_mangle)]

@@ -22,8 +22,8 @@ use leafless::{Metadata, TriDexel, memory};
 ///   also if `count` is 0 or the operands have rays along different axes; LEAFLESS_E_DAMAGED if an operand
 ///   was mapped unverified and is damaged; LEAFLESS_E_LIMIT, also for 2^32 intervals along one axis;
 ///   LEAFLESS_E_CANCELLED; LEAFLESS_E_NO_MEMORY.
-/// - Ownership: the operands stay as they are; give `*result` back with leafless_tridexel_free.
-/// - Threads: any; uses as many as `options` says.
+/// - Ownership: the operands stay as they are; release `*result` with leafless_tridexel_free.
+/// - Threads: any; runs on as many threads as `options` says.
 /// - Untrusted input: any models.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn leafless_tridexel_combine(
@@ -56,8 +56,8 @@ pub unsafe extern "C" fn leafless_tridexel_combine(
 /// - Errors: LEAFLESS_E_DAMAGED; LEAFLESS_E_LIMIT, also for 2^32 rays along one axis; LEAFLESS_E_CANCELLED;
 ///   LEAFLESS_E_NO_MEMORY.
 /// - Ownership: as leafless_tridexel_combine.
-/// - Threads: any; uses as many as `options` says.
-/// - Untrusted input: any model; set `max_bytes` where its depth is not your own choice.
+/// - Threads: any; runs on as many threads as `options` says.
+/// - Untrusted input: any model; set `max_bytes` if its depth is untrusted.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn leafless_tridexel_complement(
     tridexel: *const leafless_tridexel,
@@ -80,8 +80,8 @@ pub unsafe extern "C" fn leafless_tridexel_complement(
 /// - Result: `*result`, with the metadata of `tridexel`.
 /// - Errors: LEAFLESS_E_ARGUMENT if a field of `format` is wrong, or `directions` are neither 0 nor those of
 ///   `tridexel`; LEAFLESS_E_DAMAGED; LEAFLESS_E_LIMIT; LEAFLESS_E_CANCELLED; LEAFLESS_E_NO_MEMORY.
-/// - Ownership: `tridexel` stays as it is; give `*result` back with leafless_tridexel_free.
-/// - Threads: any; uses as many as `options` says.
+/// - Ownership: `tridexel` is unchanged; release `*result` with leafless_tridexel_free.
+/// - Threads: any; runs on as many threads as `options` says.
 /// - Untrusted input: any model.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn leafless_tridexel_with_format(
@@ -108,8 +108,8 @@ pub unsafe extern "C" fn leafless_tridexel_with_format(
 /// - Buffers: `options`, one struct or NULL; `result`, one pointer. `material` is any number.
 /// - Result: `*result`, which stores materials, with the metadata of `tridexel`.
 /// - Errors: LEAFLESS_E_DAMAGED; LEAFLESS_E_LIMIT; LEAFLESS_E_CANCELLED; LEAFLESS_E_NO_MEMORY.
-/// - Ownership: `tridexel` stays as it is; give `*result` back with leafless_tridexel_free.
-/// - Threads: any; uses as many as `options` says.
+/// - Ownership: `tridexel` is unchanged; release `*result` with leafless_tridexel_free.
+/// - Threads: any; runs on as many threads as `options` says.
 /// - Untrusted input: any model, any number.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn leafless_tridexel_with_material(

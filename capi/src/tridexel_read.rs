@@ -24,7 +24,7 @@ pub struct leafless_dexel_end {
     pub surface: u32,
 }
 
-/// An interval of a ray that lies inside of the solid.
+/// An interval of a ray that lies inside the solid.
 #[derive(Clone, Copy)]
 #[repr(C)]
 pub struct leafless_dexel {
@@ -170,9 +170,9 @@ pub unsafe extern "C" fn leafless_tridexel_window(
 /// The intervals of one ray, in ascending order.
 ///
 /// - Buffers: `ray`, 2 numbers, the indices of the ray's cells on the other two axes in the order x, y, z;
-///   `dexels`, room for `capacity` structs, or NULL to ask for the count only; `count`, one number. `axis` is
-///   0 for x, 1 for y, 2 for z.
-/// - Result: `*count`; the intervals. A ray outside of the universe has none.
+///   `dexels`, room for `capacity` structs, or NULL to get only the count; `count`, one number. `axis` is 0
+///   for x, 1 for y, 2 for z.
+/// - Result: `*count`; the intervals. A ray outside the universe has none.
 /// - Errors: LEAFLESS_E_ARGUMENT if the model has no rays along `axis`; LEAFLESS_E_BUFFER if the capacity is
 ///   too small.
 /// - Untrusted input: any model, any numbers.
@@ -336,8 +336,8 @@ pub unsafe extern "C" fn leafless_tridexel_copy(
 /// leafless_tridexel_copy, in the same order. O(rays + intervals).
 ///
 /// - Buffers: `first` and `end`, 2 numbers each, or NULL both, as leafless_tridexel_copy has them;
-///   `ends_cells`, room for 2 numbers for each of `interval_capacity` intervals, or NULL to ask for the count
-///   only; `interval_count`, one number. `axis` is 0 for x, 1 for y, 2 for z.
+///   `ends_cells`, room for 2 numbers for each of `interval_capacity` intervals, or NULL to get only the
+///   count; `interval_count`, one number. `axis` is 0 for x, 1 for y, 2 for z.
 /// - Result: `ends_cells`, 0 to 2^depth; `*interval_count`.
 /// - Errors: as leafless_tridexel_copy.
 /// - Untrusted input: any model, any numbers.

@@ -56,7 +56,7 @@ pub struct leafless_dexel_surface_report {
     /// Vertices with no normal at any of their crossings, which are the mean of these. (By dual contouring
     /// alone.)
     pub means: u64,
-    /// Vertices that would fit their planes better outside of their cells. (By dual contouring alone.)
+    /// Vertices that would fit their planes better outside their cells. (By dual contouring alone.)
     pub clamped: u64,
     /// Bodies that the mesh does not show at all: sets of centres of cells that lie inside and hang together
     /// along axes, none of whose crossings has a triangle, because the surface lies nearer to them than
@@ -118,8 +118,8 @@ impl From<&LongVoxel> for leafless_long_voxel {
     }
 }
 
-/// The surface of a tri-dexel model: a closed mesh. Samples are the centres of cells; everything outside of
-/// the universe is outside.
+/// The surface of a tri-dexel model: a closed mesh. Samples are the centres of cells; everything outside the
+/// universe is outside.
 ///
 /// Triangles turn counter-clockwise as seen from outside. Every edge belongs to exactly two triangles, but
 /// where vertices lie at one place: these are one vertex, and triangles without area are dropped. Where a ray
@@ -130,13 +130,13 @@ impl From<&LongVoxel> for leafless_long_voxel {
 ///
 /// - Buffers: `options`, one struct or NULL; `report`, one struct, or NULL if it is not wanted; `mesh`, one
 ///   pointer. `method` is a leafless_dexel_surface_method.
-/// - Result: `*mesh`, the same for any number of threads; it has no triangles if no centre lies inside, or if
-///   all bodies vanish. `*report`.
+/// - Result: `*mesh`, identical for any number of threads; it has no triangles if no centre lies inside, or
+///   if all bodies vanish. `*report`.
 /// - Errors: LEAFLESS_E_ARGUMENT also if the frame lies so far from the origin that doubles cannot tell its
 ///   cells apart; LEAFLESS_E_MESH if there would be more than 2^32 - 1 vertices or triangles;
 ///   LEAFLESS_E_CANCELLED; LEAFLESS_E_NO_MEMORY.
-/// - Ownership: `tridexel` stays as it is; give `*mesh` back with leafless_mesh_free.
-/// - Threads: any; uses as many as `options` says.
+/// - Ownership: `tridexel` is unchanged; release `*mesh` with leafless_mesh_free.
+/// - Threads: any; runs on as many threads as `options` says.
 /// - Untrusted input: any model; a damaged one is refused (LEAFLESS_E_DAMAGED).
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn leafless_tridexel_surface(
@@ -167,13 +167,13 @@ pub unsafe extern "C" fn leafless_tridexel_surface(
 ///
 /// - Buffers: `options`, one struct or NULL; `octree`, one pointer.
 /// - Result: `*octree`, with the model's facts "name" and "units" and no others, and, if the model stores
-///   materials, a channel "material" with the number of the material at the centre of each cell (U32); the
-///   same for any number of threads.
+///   materials, a channel "material" with the number of the material at the centre of each cell (U32);
+///   identical for any number of threads.
 /// - Errors: LEAFLESS_E_LIMIT; LEAFLESS_E_CANCELLED; LEAFLESS_E_NO_MEMORY.
-/// - Ownership: `tridexel` stays as it is; give `*octree` back with leafless_octree_free.
-/// - Threads: any; uses as many as `options` says.
-/// - Untrusted input: any model, of which a damaged one is refused (LEAFLESS_E_DAMAGED); set `max_bytes`
-///   where its depth is not your own choice.
+/// - Ownership: `tridexel` is unchanged; release `*octree` with leafless_octree_free.
+/// - Threads: any; runs on as many threads as `options` says.
+/// - Untrusted input: any model, of which a damaged one is refused (LEAFLESS_E_DAMAGED); set `max_bytes` if
+///   its depth is untrusted.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn leafless_octree_from_tridexel(
     tridexel: *const leafless_tridexel,
@@ -201,10 +201,10 @@ pub unsafe extern "C" fn leafless_octree_from_tridexel(
 /// - Buffers: `options`, one struct or NULL; `octree`, one pointer.
 /// - Result: `*octree`, with facts and a channel as from leafless_octree_from_tridexel.
 /// - Errors: LEAFLESS_E_LIMIT; LEAFLESS_E_CANCELLED; LEAFLESS_E_NO_MEMORY.
-/// - Ownership: `tridexel` stays as it is; give `*octree` back with leafless_octree_free.
-/// - Threads: any; uses as many as `options` says.
-/// - Untrusted input: any model, of which a damaged one is refused (LEAFLESS_E_DAMAGED); set `max_bytes`
-///   where its depth is not your own choice.
+/// - Ownership: `tridexel` is unchanged; release `*octree` with leafless_octree_free.
+/// - Threads: any; runs on as many threads as `options` says.
+/// - Untrusted input: any model, of which a damaged one is refused (LEAFLESS_E_DAMAGED); set `max_bytes` if
+///   its depth is untrusted.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn leafless_octree_from_tridexel_ends(
     tridexel: *const leafless_tridexel,
@@ -239,8 +239,8 @@ fn with_materials(octree: Octree, model: &TriDexel, control: &Control<'_>) -> Re
 /// - Buffers: `options`, one struct or NULL; `solid`, one pointer.
 /// - Result: `*solid`.
 /// - Errors: as leafless_tridexel_surface, and LEAFLESS_E_MESH if no centre of a cell lies inside.
-/// - Ownership: nothing is kept of `tridexel`; give `*solid` back with leafless_solid_free.
-/// - Threads: any; uses as many as `options` says.
+/// - Ownership: nothing is kept of `tridexel`; release `*solid` with leafless_solid_free.
+/// - Threads: any; runs on as many threads as `options` says.
 /// - Untrusted input: any model; a damaged one is refused (LEAFLESS_E_DAMAGED).
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn leafless_solid_from_tridexel(
@@ -267,8 +267,8 @@ pub unsafe extern "C" fn leafless_solid_from_tridexel(
 /// O(rays of the window + blocks + rows), for blocks of 64 x 64 x 64 cells in which centres lie inside.
 ///
 /// - Buffers: `options`, one struct or NULL; `colours`, `colour_count` colours of four bytes (red, green,
-///   blue, opacity), or NULL for none; `voxels`, room for `capacity` structs, or NULL to ask for the count
-///   only; `count`, one number.
+///   blue, opacity), or NULL for none; `voxels`, room for `capacity` structs, or NULL to get only the count;
+///   `count`, one number.
 /// - Result: `*count`; the rows of voxels by z, then by x, then by y.
 /// - Errors: LEAFLESS_E_BUFFER if the capacity is too small; LEAFLESS_E_CANCELLED; LEAFLESS_E_NO_MEMORY.
 /// - Untrusted input: any model; a damaged one is refused (LEAFLESS_E_DAMAGED).

@@ -210,11 +210,11 @@ pub unsafe extern "C" fn leafless_volume_ref(
     guard(|| unsafe { refer(volume, "volume", reference) })
 }
 
-/// Gives back a reference to a volume; with the last one the volume is gone. Solids made of it stay, and keep
+/// Releases a reference to a volume; with the last one the volume is gone. Solids made of it stay, and keep
 /// its samples.
 ///
 /// - Buffers: `volume`, a handle or NULL, which does nothing.
-/// - Ownership: the reference is gone.
+/// - Ownership: the reference is invalid afterwards.
 /// - Threads: any; no other call may use this reference.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn leafless_volume_free(volume: *mut leafless_volume) {
@@ -339,10 +339,10 @@ pub unsafe extern "C" fn leafless_volume_bounds(
 
 /// The least and the greatest sample of a volume. O(n), and O(n / 64) once a solid or a range was asked for.
 ///
-/// - Buffers: `options`, one struct or NULL, of which limits do not matter; `range`, one struct.
+/// - Buffers: `options`, one struct or NULL (its limits are ignored); `range`, one struct.
 /// - Result: `*range`: of bits 0 to 1, and all numbers if a sample is not a number.
 /// - Errors: LEAFLESS_E_CANCELLED; LEAFLESS_E_NO_MEMORY.
-/// - Threads: any; uses as many as `options` says.
+/// - Threads: any; runs on as many threads as `options` says.
 /// - Untrusted input: any volume.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn leafless_volume_range(
@@ -379,13 +379,13 @@ pub unsafe extern "C" fn leafless_volume_range(
 ///
 /// - Buffers: `band`, one struct: the least and the greatest value that are inside, which may be infinite; or
 ///   NULL, which means all values from the `default_threshold` of leafless_volume_describe on. `options`, one
-///   struct or NULL, of which limits do not matter; `solid`, one pointer.
+///   struct or NULL (its limits are ignored); `solid`, one pointer.
 /// - Result: `*solid`.
 /// - Errors: LEAFLESS_E_ARGUMENT if an end of the band is not a number, or the lower above the upper one;
 ///   LEAFLESS_E_CANCELLED; LEAFLESS_E_NO_MEMORY.
-/// - Ownership: the solid shares the samples, and `volume` may be freed; give `*solid` back with
+/// - Ownership: the solid shares the samples, and `volume` may be freed; release `*solid` with
 ///   leafless_solid_free.
-/// - Threads: any; uses as many as `options` says.
+/// - Threads: any; runs on as many threads as `options` says.
 /// - Untrusted input: any volume.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn leafless_solid_from_volume(

@@ -183,7 +183,7 @@ impl Layout {
 ///   LEAFLESS_E_UTF8; LEAFLESS_E_NO_MEMORY.
 /// - Ownership: samples that are copied may be freed after the call. Others stay the host's. They must stay,
 ///   unchanged, until the last reference is given back to the volume, to every solid that is made of it, and
-///   to what is made of these, but for octrees and meshes, which have all of their own. Give `*volume` back
+///   to what is made of these, but for octrees and meshes, which have all of their own. Release `*volume`
 ///   with leafless_volume_free.
 /// - Untrusted input: any layout, any bytes, any file; memory is at most the file's length and as much again
 ///   for the samples, twice as much for int8_t.

@@ -63,7 +63,7 @@ impl leafless_volume {
 /// - Result: `*volume`; leafless_volume_describe tells what the file says.
 /// - Errors: LEAFLESS_E_VOLUME_FILE, with what is wrong where in the message, if the file is neither, is
 ///   damaged, or uses something that cannot be read; LEAFLESS_E_IO; LEAFLESS_E_UTF8; LEAFLESS_E_NO_MEMORY.
-/// - Ownership: give `*volume` back with leafless_volume_free.
+/// - Ownership: release `*volume` with leafless_volume_free.
 /// - Untrusted input: any file. A header that asks for more samples than its data can hold is refused before
 ///   anything is allocated; compressed samples become at most 1032 times as long as the file.
 #[unsafe(no_mangle)]

@@ -18,7 +18,7 @@ use leafless::{Cell, Frame, memory};
 #[derive(Clone, Copy)]
 #[repr(u8)]
 pub enum leafless_voxel_kind {
-    /// It lies outside of the solid.
+    /// It lies outside the solid.
     LEAFLESS_VOXEL_KIND_OUTSIDE = 0,
     /// It lies inside.
     LEAFLESS_VOXEL_KIND_INSIDE = 1,
@@ -53,8 +53,8 @@ pub enum leafless_voxel_lists {
     LEAFLESS_VOXEL_LISTS_REFINED = 2,
 }
 
-/// Which voxels of an octree are listed, and how large they are. All fields but the first may be zero, which
-/// is their default.
+/// Which voxels of an octree are listed, and how large they are. Zero is the default of every field but the
+/// first.
 #[derive(Clone, Copy)]
 #[repr(C)]
 pub struct leafless_voxel_options {
@@ -122,8 +122,8 @@ impl leafless_voxel_options {
 /// code of its minimum corner on the lattice `*lattice`: an octal digit for each level of it from the root
 /// on, of which as many count as the voxel's level says. Call it once for the count, and then with buffers.
 ///
-/// - Buffers: `voxel_options`, one struct or NULL; `options`, one struct or NULL, of which `max_bytes`
-///   counts; `lattice`, one struct; `codes`, `levels`, `kinds`, `corners_model` (3 numbers a record) and
+/// - Buffers: `voxel_options`, one struct or NULL; `options`, one struct or NULL (only its limit `max_bytes`
+///   applies); `lattice`, one struct; `codes`, `levels`, `kinds`, `corners_model` (3 numbers a record) and
 ///   `values` (as many numbers a record as values have components), room for `capacity` records each, each of
 ///   them NULL if it is not wanted; `count`, one number.
 /// - Result: `*lattice`, the octree's universe with the depth of the finest voxel that there may be; the
@@ -304,10 +304,10 @@ pub unsafe extern "C" fn leafless_voxels_order(
 /// cell of the universe.
 ///
 /// - Buffers: `lattice`, `codes`, `levels` and `kinds` as leafless_voxels_find; `axes` and `offset_cells`, 3
-///   numbers each; `options`, one struct or NULL, of which `max_bytes` counts; `moved_codes`, `moved_levels`,
-///   `moved_kinds` and `sources`, room for `capacity` elements each, each of them NULL if it is not wanted;
-///   `moved_count`, one number. `axes[i]` says which old axis becomes the new axis i: 1 for x, 2 for y, 3 for
-///   z, negative if it is turned round; 1, 2, 3 moves nothing.
+///   numbers each; `options`, one struct or NULL (only its limit `max_bytes` applies); `moved_codes`,
+///   `moved_levels`, `moved_kinds` and `sources`, room for `capacity` elements each, each of them NULL if it
+///   is not wanted; `moved_count`, one number. `axes[i]` says which old axis becomes the new axis i: 1 for x,
+///   2 for y, 3 for z, negative if it is turned round; 1, 2, 3 moves nothing.
 /// - Result: the arrays, sorted as those of leafless_octree_voxels; `sources`, the index of the record that
 ///   each comes from; `*moved_count`, how many there are.
 /// - Errors: LEAFLESS_E_ARGUMENT if the arrays are no records, or `axes` are not three different ones;
@@ -382,10 +382,10 @@ pub unsafe extern "C" fn leafless_voxels_moved(
 /// `triangles[offsets[i]]` to before `triangles[offsets[i + 1]]`, and ascend. A triangle that only touches a
 /// voxel meets it. Exact.
 ///
-/// - Buffers: `lattice`, `codes`, `levels` and `kinds` as leafless_voxels_find; `options`, one struct or
-///   NULL, of which `max_bytes` counts; `offsets`, room for `offset_capacity` numbers, and `triangles`, room
-///   for `triangle_capacity`, each NULL to ask for its count only; `offset_count` and `triangle_count`, one
-///   number each.
+/// - Buffers: `lattice`, `codes`, `levels` and `kinds` as leafless_voxels_find; `options`, one struct or NULL
+///   (only its limit `max_bytes` applies); `offsets`, room for `offset_capacity` numbers, and `triangles`,
+///   room for `triangle_capacity`, each NULL to ask for its count only; `offset_count` and `triangle_count`,
+///   one number each.
 /// - Result: `offsets`, one more than records; `triangles`, indices into the mesh; their counts.
 /// - Errors: LEAFLESS_E_ARGUMENT if the arrays are no records; LEAFLESS_E_BUFFER if a capacity is too small:
 ///   nothing is written then; LEAFLESS_E_LIMIT; LEAFLESS_E_NO_MEMORY; LEAFLESS_E_CANCELLED.
@@ -434,8 +434,8 @@ pub unsafe extern "C" fn leafless_voxels_triangles(
 /// - Result: `*octree`.
 /// - Errors: LEAFLESS_E_ARGUMENT if the arrays are no records, or `boundary` is another tag;
 ///   LEAFLESS_E_LIMIT; LEAFLESS_E_NO_MEMORY; LEAFLESS_E_CANCELLED.
-/// - Ownership: give `*octree` back with leafless_octree_free.
-/// - Threads: any; uses as many as `options` says.
+/// - Ownership: release `*octree` with leafless_octree_free.
+/// - Threads: any; runs on as many threads as `options` says.
 /// - Untrusted input: any numbers.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn leafless_octree_from_voxels(
