@@ -16,8 +16,8 @@ use std::sync::Arc;
 /// the values of a channel, any of them in another place. A value has one to four numbers, as many at all
 /// points of an attribute. Where a value is written and there is none, its numbers are NaN.
 ///
-/// Immutable: all its functions may be called at once from any number of threads, but leafless_attribute_free
-/// needs the reference that it gives back for itself.
+/// Immutable: all its functions may be called at once from any number of threads, but no other call may use
+/// the reference that leafless_attribute_free releases.
 pub struct leafless_attribute {
     pub(super) attribute: AnyAttribute,
 }
@@ -209,7 +209,7 @@ pub unsafe extern "C" fn leafless_attribute_placed(
     })
 }
 
-/// What can be said of an attribute at once.
+/// Basic facts about an attribute.
 #[derive(Clone, Copy)]
 #[repr(C)]
 pub struct leafless_attribute_info {
@@ -224,7 +224,7 @@ pub struct leafless_attribute_info {
 
 output!(leafless_attribute_info);
 
-/// What can be said of an attribute at once. O(1).
+/// Returns basic facts about an attribute. O(1).
 ///
 /// - Buffers: `info`, one struct.
 /// - Result: `*info`.
@@ -290,11 +290,11 @@ pub unsafe extern "C" fn leafless_attribute_range(
     })
 }
 
-/// One more reference to an attribute.
+/// Returns one more reference to an attribute.
 ///
 /// - Buffers: `attribute`, a handle; `reference`, one pointer.
 /// - Result: `*reference`, equal to `attribute`.
-/// - Ownership: give each reference back with leafless_attribute_free.
+/// - Ownership: release each reference with leafless_attribute_free.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn leafless_attribute_ref(
     attribute: *const leafless_attribute,

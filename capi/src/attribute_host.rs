@@ -12,8 +12,8 @@ use leafless::memory;
 
 /// The value of the host's attribute at a point (3 numbers, model units): sets the numbers of `value`, as
 /// many as the attribute has components. All are NaN before; they stay so where there is no value, and a
-/// value whose first number is NaN is none. 0, or the number of the host's own error, which ends the
-/// operation with LEAFLESS_E_CALLBACK and the number in the message.
+/// value whose first number is NaN is none. Returns 0, or the host's own error code, which ends the operation
+/// with LEAFLESS_E_CALLBACK and the number in the message.
 ///
 /// It is called from several threads at once, which may all be the library's own, unless the operation's
 /// options say `threads` = 1; and it must give the same answer to the same point. It must return: no
@@ -56,9 +56,9 @@ pub struct leafless_attribute_callbacks {
     /// Bounds the values in a box; optional. With it channels that hardly change are filled without asking at
     /// every cell, and LEAFLESS_CRITERION_RANGE misses no detail.
     pub range: leafless_attribute_range_fn,
-    /// Called when `ctx` is not needed any more; optional.
+    /// Called when the library no longer needs `ctx`; optional.
     pub destroy: leafless_destroy_fn,
-    /// What the functions are called with.
+    /// The context that the functions are called with.
     pub ctx: *mut c_void,
 }
 

@@ -15,8 +15,8 @@ use leafless_scalar_type::*;
 /// some. leafless_octree_with_channel attaches it to a solid, in whose file it then travels. The tree may be
 /// finer or coarser than the solid's.
 ///
-/// Immutable: all its functions may be called at once from any number of threads, but leafless_channel_free
-/// needs the reference that it gives back for itself.
+/// Immutable: all its functions may be called at once from any number of threads, but no other call may use
+/// the reference that leafless_channel_free releases.
 pub struct leafless_channel {
     pub(super) channel: Channel,
 }
@@ -56,7 +56,7 @@ impl From<ScalarType> for leafless_scalar_type {
     }
 }
 
-/// What can be said of a channel at once.
+/// Basic facts about a channel.
 #[derive(Clone, Copy)]
 #[repr(C)]
 pub struct leafless_channel_info {
@@ -83,11 +83,11 @@ pub(super) fn give(channel: Channel) -> *mut leafless_channel {
     handle(leafless_channel { channel })
 }
 
-/// One more reference to a channel.
+/// Returns one more reference to a channel.
 ///
 /// - Buffers: `channel`, a handle; `reference`, one pointer.
 /// - Result: `*reference`, equal to `channel`.
-/// - Ownership: give each reference back with leafless_channel_free.
+/// - Ownership: release each reference with leafless_channel_free.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn leafless_channel_ref(
     channel: *const leafless_channel,
@@ -108,7 +108,7 @@ pub unsafe extern "C" fn leafless_channel_free(channel: *mut leafless_channel) {
     unsafe { release(channel) }
 }
 
-/// What can be said of a channel at once. O(1), but for a channel of a file that was mapped unverified: when
+/// Returns basic facts about a channel. O(1), but for a channel of a file that was mapped unverified: when
 /// such a channel is first read, by whichever function, its links are checked in one pass.
 ///
 /// - Buffers: `info`, one struct.

@@ -49,7 +49,7 @@ pub struct leafless_options {
     pub max_splits: u64,
     /// Hears of the progress; optional.
     pub progress: leafless_progress_fn,
-    /// What `progress` is called with.
+    /// The context that `progress` is called with.
     pub progress_ctx: *mut c_void,
     /// Ends the operation when it is cancelled, and can be asked for the progress; optional. Give operations
     /// that run at once a control each, or their progress is mixed up.

@@ -511,7 +511,7 @@ pub unsafe extern "C" fn leafless_solid_adaptive(
 ///
 /// - Buffers: `solid`, one pointer. `touch` is a leafless_touch.
 /// - Result: `*solid`.
-/// - Errors: LEAFLESS_E_NULL; LEAFLESS_E_ARGUMENT if `touch` is no leafless_touch.
+/// - Errors: LEAFLESS_E_NULL; LEAFLESS_E_ARGUMENT if `touch` is not a leafless_touch.
 /// - Ownership: the operand is shared and may be freed; release `*solid` with leafless_solid_free.
 /// - Untrusted input: any solids.
 #[unsafe(no_mangle)]

@@ -50,20 +50,20 @@ pub type leafless_classify_fn =
 pub type leafless_contains_fn = Option<unsafe extern "C" fn(ctx: *mut c_void, point: *const f64) -> i32>;
 
 /// Classifies `count` boxes (6 numbers each: min, then max) at once, for hosts that do that faster than one
-/// by one: sets `tags` to what leafless_classify_fn would answer. 0, or the number of the host's own error,
+/// by one: sets `tags` to what leafless_classify_fn would answer. Returns 0, or the host's own error code,
 /// which ends the operation with LEAFLESS_E_CALLBACK. Otherwise as leafless_classify_fn.
 pub type leafless_classify_many_fn =
     Option<unsafe extern "C" fn(ctx: *mut c_void, boxes: *const f64, count: u64, tags: *mut i32) -> i32>;
 
-/// Decides `count` points (3 numbers each) at once: sets each of `inside` to 1 or 0. 0, or the number of the
-/// host's own error. Otherwise as leafless_contains_fn.
+/// Decides `count` points (3 numbers each) at once: sets each of `inside` to 1 or 0. Returns 0, or the host's
+/// own error code. Otherwise as leafless_contains_fn.
 pub type leafless_contains_many_fn =
     Option<unsafe extern "C" fn(ctx: *mut c_void, points: *const f64, count: u64, inside: *mut i32) -> i32>;
 
 /// Bounds the distances of `count` points (3 numbers each, model units) from the surface of the host's own
 /// shape: sets each of `distances_model` to a number whose magnitude is at most that distance, negative
-/// inside and positive outside; 0, or what is no number, says nothing. 0, or the number of the host's own
-/// error. Otherwise as leafless_classify_fn.
+/// inside and positive outside; 0, or what is no number, says nothing. Returns 0, or the host's own error
+/// code. Otherwise as leafless_classify_fn.
 pub type leafless_distance_many_fn = Option<
     unsafe extern "C" fn(ctx: *mut c_void, points: *const f64, count: u64, distances_model: *mut f64) -> i32,
 >;
@@ -81,8 +81,8 @@ pub struct leafless_gradient {
 }
 
 /// Bounds the host's function f over the box [min, max] (3 numbers each, model units), of which `middle` is
-/// the middle (3 numbers): sets `*gradient`, all of which is NaN before. 0, or the number of the host's own
-/// error. Otherwise as leafless_classify_fn.
+/// the middle (3 numbers): sets `*gradient`, all of which is NaN before. Returns 0, or the host's own error
+/// code. Otherwise as leafless_classify_fn.
 pub type leafless_gradient_fn = Option<
     unsafe extern "C" fn(
         ctx: *mut c_void,
@@ -145,9 +145,9 @@ pub struct leafless_solid_callbacks {
     pub classify: leafless_classify_fn,
     /// Decides points: LEAFLESS_RULE_SAMPLED needs it; optional.
     pub contains: leafless_contains_fn,
-    /// Called when `ctx` is not needed any more; optional.
+    /// Called when the library no longer needs `ctx`; optional.
     pub destroy: leafless_destroy_fn,
-    /// What the functions are called with.
+    /// The context that the functions are called with.
     pub ctx: *mut c_void,
     /// Any number but 0, of 128 bits, that tells the shape from others, such as a hash of what it is made of:
     /// octrees that leafless_lazy_freeze makes remember it, and are taken up again by no other shape.
@@ -308,8 +308,8 @@ fn fingerprint(given: [u64; 2]) -> Option<Fingerprint> {
 /// - Buffers: `callbacks`, one struct, which is copied; `solid`, one pointer.
 /// - Result: `*solid`.
 /// - Errors: LEAFLESS_E_NULL if `classify` is NULL, unless `distance_many` is set and `classify_many` is not;
-///   LEAFLESS_E_ARGUMENT if `exterior` is no leafless_exterior, or `bounds` is no box.
-///   After an error `destroy` is not called.
+///   LEAFLESS_E_ARGUMENT if `exterior` is not a leafless_exterior, or `bounds` is no box. After an error
+///   `destroy` is not called.
 /// - Ownership: `ctx` must live until `destroy` is called with it; release `*solid` with leafless_solid_free.
 /// - Threads: any; in which the functions are called, leafless_classify_fn says.
 /// - Untrusted input: any answers.
@@ -387,8 +387,8 @@ pub unsafe extern "C" fn leafless_solid_new_callbacks(
     })
 }
 
-/// The value of the host's function at a point (3 numbers, model units): sets `*value`. 0, or the number of
-/// the host's own error, which ends the operation with LEAFLESS_E_CALLBACK. Otherwise as
+/// The value of the host's function at a point (3 numbers, model units): sets `*value`. Returns 0, or the
+/// host's own error code, which ends the operation with LEAFLESS_E_CALLBACK. Otherwise as
 /// leafless_classify_fn.
 pub type leafless_value_fn =
     Option<unsafe extern "C" fn(ctx: *mut c_void, point: *const f64, value: *mut f64) -> i32>;
@@ -417,9 +417,9 @@ pub struct leafless_solid_function {
     /// Its range over a box. It alone proves that a cell lies inside or outside. A NaN, or lower > upper,
     /// proves nothing.
     pub range: leafless_range_fn,
-    /// Called when `ctx` is not needed any more; optional.
+    /// Called when the library no longer needs `ctx`; optional.
     pub destroy: leafless_destroy_fn,
-    /// What the functions are called with.
+    /// The context that the functions are called with.
     pub ctx: *mut c_void,
     /// As in leafless_solid_callbacks.
     pub fingerprint: [u64; 2],

@@ -15,8 +15,8 @@ use std::sync::Arc;
 /// A layer shares or copies what it shows, which may be freed. It knows nothing of cameras: it may be part of
 /// any number of pictures.
 ///
-/// Immutable: all its functions may be called at once from any number of threads, but leafless_layer_free
-/// needs the reference that it gives back for itself.
+/// Immutable: all its functions may be called at once from any number of threads, but no other call may use
+/// the reference that leafless_layer_free releases.
 pub struct leafless_layer {
     shape: Arc<dyn Shown>,
     clip: Option<Clip>,
@@ -262,11 +262,11 @@ pub unsafe extern "C" fn leafless_layer_bytes(
     })
 }
 
-/// One more reference to a layer.
+/// Returns one more reference to a layer.
 ///
 /// - Buffers: `layer`, a handle; `reference`, one pointer.
 /// - Result: `*reference`, equal to `layer`.
-/// - Ownership: give each reference back with leafless_layer_free.
+/// - Ownership: release each reference with leafless_layer_free.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn leafless_layer_ref(
     layer: *const leafless_layer,

@@ -52,7 +52,7 @@ fn unlocked<G>(held: TryLockResult<G>) -> Result<G, Failure> {
     }
 }
 
-/// What can be said of a lazy octree at once.
+/// Basic facts about a lazy octree.
 #[derive(Clone, Copy)]
 #[repr(C)]
 pub struct leafless_lazy_info {

@@ -10,8 +10,8 @@ use std::sync::Arc;
 /// A surface of triangles with shared vertices. Vertices at equal places are welded; whether the mesh is
 /// closed is not implied, and need not be.
 ///
-/// Immutable: all its functions may be called at once from any number of threads, but leafless_mesh_free
-/// needs the reference that it gives back for itself.
+/// Immutable: all its functions may be called at once from any number of threads, but no other call may use
+/// the reference that leafless_mesh_free releases.
 pub struct leafless_mesh {
     pub(super) mesh: Arc<TriangleMesh>,
     /// About the file that it was read from.
@@ -212,11 +212,11 @@ pub(super) fn give(mesh: TriangleMesh) -> *mut leafless_mesh {
     handle(leafless_mesh { mesh: Arc::new(mesh), warnings: Vec::new() })
 }
 
-/// One more reference to a mesh.
+/// Returns one more reference to a mesh.
 ///
 /// - Buffers: `mesh`, a handle; `reference`, one pointer.
 /// - Result: `*reference`, equal to `mesh`.
-/// - Ownership: give each reference back with leafless_mesh_free.
+/// - Ownership: release each reference with leafless_mesh_free.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn leafless_mesh_ref(
     mesh: *const leafless_mesh,
@@ -236,7 +236,7 @@ pub unsafe extern "C" fn leafless_mesh_free(mesh: *mut leafless_mesh) {
     unsafe { release(mesh) }
 }
 
-/// What can be said of a mesh at once.
+/// Basic facts about a mesh.
 #[derive(Clone, Copy)]
 #[repr(C)]
 pub struct leafless_mesh_info {
@@ -260,7 +260,7 @@ pub struct leafless_mesh_info {
 
 output!(leafless_mesh_info);
 
-/// What can be said of a mesh at once. O(1), but for the names of attributes.
+/// Returns basic facts about a mesh. O(1), but for the names of attributes.
 ///
 /// - Buffers: `info`, one struct.
 /// - Result: `*info`.
@@ -312,8 +312,8 @@ pub unsafe extern "C" fn leafless_mesh_copy(
 /// on how plane parts are cut into triangles. Where the mean is zero, as at a vertex without triangles, so is
 /// the normal. O(t + v).
 ///
-/// - Buffers: `normals`, room for `capacity` normals of 3 numbers, or NULL to ask for their number only;
-///   `count`, one number.
+/// - Buffers: `normals`, room for `capacity` normals of 3 numbers, or NULL to get only their number; `count`,
+///   one number.
 /// - Result: `*count`, that of the vertices; the normals, in the order of the vertices.
 /// - Errors: LEAFLESS_E_BUFFER if the capacity is too small; LEAFLESS_E_NO_MEMORY.
 /// - Threads: any. Each call computes them.
@@ -417,7 +417,7 @@ pub unsafe extern "C" fn leafless_mesh_inspect(
 /// Where a mesh is not as it should be, the worst first: in the order of leafless_defect, and those of one
 /// kind by the longest side of their boxes, then by count, then by position.
 ///
-/// - Buffers: `defects`, room for `capacity` of them, or NULL to ask for their number only.
+/// - Buffers: `defects`, room for `capacity` of them, or NULL to get only their number.
 /// - Result: `*count`, how many there are, but not more than `limit`; the worst ones in `defects`.
 /// - Errors: LEAFLESS_E_BUFFER if the capacity is too small; LEAFLESS_E_NO_MEMORY.
 /// - Threads: any. Each call analyses the mesh.
@@ -448,7 +448,7 @@ pub unsafe extern "C" fn leafless_mesh_defects(
 /// - Buffers: none. `fill` is a leafless_fill.
 /// - Result: LEAFLESS_OK if it is so.
 /// - Errors: LEAFLESS_E_MESH if the mesh is empty, not closed, or (but for LEAFLESS_FILL_EVEN_ODD) not
-///   consistently oriented; LEAFLESS_E_ARGUMENT if `fill` is no leafless_fill; LEAFLESS_E_NO_MEMORY.
+///   consistently oriented; LEAFLESS_E_ARGUMENT if `fill` is not a leafless_fill; LEAFLESS_E_NO_MEMORY.
 /// - Untrusted input: any mesh.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn leafless_mesh_check_closed(
@@ -466,7 +466,7 @@ pub unsafe extern "C" fn leafless_mesh_check_closed(
 /// together by common vertices.) Verdicts about solids made of it stay proven: the distance is added outward.
 ///
 /// - Buffers: `sewn`, one pointer.
-/// - Result: `*sewn`; leafless_mesh_inspect tells how many vertices moved and how far.
+/// - Result: `*sewn`; leafless_mesh_inspect reports how many vertices moved and how far.
 /// - Errors: LEAFLESS_E_NO_MEMORY.
 /// - Ownership: `mesh` is unchanged; release `*sewn` with leafless_mesh_free.
 /// - Untrusted input: any mesh.

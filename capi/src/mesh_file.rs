@@ -175,7 +175,7 @@ fn give(file: MeshFile) -> Result<*mut leafless_mesh, Failure> {
 
 /// Reads a mesh file. Everything in it becomes one mesh, welded as by leafless_mesh_new; polygons become
 /// triangles. Hair cracks, which files have because their numbers are rounded, are closed as by
-/// leafless_mesh_sewn; leafless_mesh_inspect tells how many vertices moved and how far. Of bytes no name is
+/// leafless_mesh_sewn; leafless_mesh_inspect reports how many vertices moved and how far. Of bytes no name is
 /// known that could tell the format.
 ///
 /// - Buffers: `source`, one struct, with LEAFLESS_ACCESS_COPY; `options`, one struct, or NULL; `found`, one

@@ -117,7 +117,8 @@ impl From<&IntersectingPair> for leafless_intersecting_pair {
 /// - Buffers: `options`, one struct or NULL (its limits are ignored); `moments`, one struct. `fill` is a
 ///   leafless_fill.
 /// - Result: `*moments`, whether they are known or not.
-/// - Errors: LEAFLESS_E_ARGUMENT if `fill` is no leafless_fill; LEAFLESS_E_CANCELLED; LEAFLESS_E_NO_MEMORY.
+/// - Errors: LEAFLESS_E_ARGUMENT if `fill` is not a leafless_fill; LEAFLESS_E_CANCELLED;
+///   LEAFLESS_E_NO_MEMORY.
 /// - Threads: any; works in the calling thread. Each call analyses the mesh.
 /// - Untrusted input: any mesh; the work is limited.
 #[unsafe(no_mangle)]
@@ -139,7 +140,7 @@ pub unsafe extern "C" fn leafless_mesh_measure(
 /// Triangles without area are left out.
 ///
 /// - Buffers: `options`, one struct or NULL (its limits are ignored); `pairs`, room for `capacity` of them,
-///   or NULL to ask for their number only; `count`, one number; `is_complete`, one number.
+///   or NULL to get only their number; `count`, one number; `is_complete`, one number.
 /// - Result: `*count`, how many were found; the first `capacity` of them in `pairs`, in ascending order of
 ///   triangles; `*is_complete`, whether these are all: else the search was ended, because too many triangles
 ///   lie close to each other.

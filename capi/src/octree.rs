@@ -12,8 +12,8 @@ use leafless::{Octree, Proof, Tag};
 
 /// A leaf-free octree, in memory or mapped from a file.
 ///
-/// Immutable: all its functions may be called at once from any number of threads, but leafless_octree_free
-/// needs the reference that it gives back for itself.
+/// Immutable: all its functions may be called at once from any number of threads, but no other call may use
+/// the reference that leafless_octree_free releases.
 pub struct leafless_octree {
     pub(super) octree: Octree,
 }
@@ -97,7 +97,7 @@ enumeration! {
     }
 }
 
-/// What can be said of an octree at once.
+/// Basic facts about an octree.
 #[derive(Clone, Copy)]
 #[repr(C)]
 pub struct leafless_octree_info {
@@ -205,11 +205,11 @@ pub unsafe extern "C" fn leafless_octree_new_uniform(
     })
 }
 
-/// One more reference to an octree.
+/// Returns one more reference to an octree.
 ///
 /// - Buffers: `octree`, a handle; `reference`, one pointer.
 /// - Result: `*reference`, equal to `octree`.
-/// - Ownership: give each reference back with leafless_octree_free.
+/// - Ownership: release each reference with leafless_octree_free.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn leafless_octree_ref(
     octree: *const leafless_octree,
@@ -230,7 +230,7 @@ pub unsafe extern "C" fn leafless_octree_free(octree: *mut leafless_octree) {
     unsafe { release(octree) }
 }
 
-/// What can be said of an octree at once. O(1).
+/// Returns basic facts about an octree. O(1).
 ///
 /// - Buffers: `info`, one struct.
 /// - Result: `*info`.

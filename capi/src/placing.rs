@@ -278,7 +278,7 @@ pub unsafe extern "C" fn leafless_layout_remove(
 
 /// Which copies stand where, in the order of their numbers.
 ///
-/// - Buffers: `placements`, room for `capacity` structs, or NULL to ask for their number only; `count`, one
+/// - Buffers: `placements`, room for `capacity` structs, or NULL to get only their number; `count`, one
 ///   number.
 /// - Result: `*count`; `placements`.
 /// - Errors: LEAFLESS_E_BUFFER if the capacity is too small; LEAFLESS_E_BUSY.
@@ -362,8 +362,8 @@ pub unsafe extern "C" fn leafless_layout_check(
 /// As leafless_layout_check for all copies, in the order of their numbers, but without what is next to them.
 /// The results are identical for any number of threads.
 ///
-/// - Buffers: `options`, one struct or NULL; `standings`, room for `capacity` structs, or NULL to ask for
-///   their number only, for which nothing is checked; `count`, one number.
+/// - Buffers: `options`, one struct or NULL; `standings`, room for `capacity` structs, or NULL to get only
+///   their number, for which nothing is checked; `count`, one number.
 /// - Result: `*count`, the number of copies; `standings`.
 /// - Errors: as leafless_layout_check, and LEAFLESS_E_BUFFER if the capacity is too small.
 /// - Threads: any; runs on as many threads as `options` says; LEAFLESS_E_BUSY while another call changes the

@@ -23,8 +23,8 @@ use std::path::Path;
 /// which are the polygons, prisms and polyhedra that OpenSCAD draws; leafless_scene_options ask for others.
 /// What is not supported (hull, minkowski, text, projection and others) is refused by name.
 ///
-/// Immutable: all its functions may be called at once from any number of threads, but leafless_scene_free
-/// needs the reference that it gives back for itself.
+/// Immutable: all its functions may be called at once from any number of threads, but no other call may use
+/// the reference that leafless_scene_free releases.
 pub struct leafless_scene {
     scene: Scene,
 }
@@ -217,7 +217,7 @@ pub unsafe extern "C" fn leafless_scene_describe_mesh_at(
 /// The file of a mesh in a scene, as the text names it, in UTF-8 and not terminated by NUL; nothing for a
 /// polyhedron.
 ///
-/// - Buffers: `bytes`, room for `capacity` bytes, or NULL to ask for the length only; `length`, one number.
+/// - Buffers: `bytes`, room for `capacity` bytes, or NULL to get only the length; `length`, one number.
 ///   `index`, in the order of the text, is less than `meshes` of leafless_scene_info.
 /// - Result: `*length`, the length of the name in bytes; the name in `bytes`.
 /// - Errors: LEAFLESS_E_BUFFER if the capacity is too small; LEAFLESS_E_ARGUMENT if there is no such mesh.
@@ -238,11 +238,11 @@ pub unsafe extern "C" fn leafless_scene_mesh_file_at(
     })
 }
 
-/// One more reference to a scene.
+/// Returns one more reference to a scene.
 ///
 /// - Buffers: `scene`, a handle; `reference`, one pointer.
 /// - Result: `*reference`, equal to `scene`.
-/// - Ownership: give each reference back with leafless_scene_free.
+/// - Ownership: release each reference with leafless_scene_free.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn leafless_scene_ref(
     scene: *const leafless_scene,

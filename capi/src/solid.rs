@@ -16,9 +16,9 @@ use leafless::{AnySolid, Csg, MeshSolid, Solid};
 /// that; another frame takes its place. (It keeps the last frame of its own only: what is made of it prepares
 /// it anew.)
 ///
-/// Immutable otherwise: all its functions may be called at once from any number of threads, but
-/// leafless_solid_free needs the reference that it gives back for itself. Threads that ask on different
-/// frames at the same time prepare it again and again: give each a solid of its own.
+/// Immutable otherwise: all its functions may be called at once from any number of threads, but no other call
+/// may use the reference that leafless_solid_free releases. Threads that ask on different frames at the same
+/// time prepare it again and again: give each a solid of its own.
 pub struct leafless_solid {
     pub(super) solid: Prepared,
 }
@@ -52,7 +52,7 @@ pub(super) fn give_any(solid: AnySolid) -> *mut leafless_solid {
 /// - Buffers: `solid`, one pointer. `fill` is a leafless_fill.
 /// - Result: `*solid`. Time is linear in the mesh (n log n in the edges of its boundary).
 /// - Errors: LEAFLESS_E_MESH if the mesh is empty, or (LEAFLESS_FILL_EVEN_ODD) an odd number of triangles
-///   meet on an edge; LEAFLESS_E_ARGUMENT if `fill` is no leafless_fill; LEAFLESS_E_NO_MEMORY.
+///   meet on an edge; LEAFLESS_E_ARGUMENT if `fill` is not a leafless_fill; LEAFLESS_E_NO_MEMORY.
 /// - Ownership: the solid shares the mesh, which may be freed; release `*solid` with leafless_solid_free.
 /// - Untrusted input: any mesh.
 #[unsafe(no_mangle)]
@@ -90,7 +90,7 @@ pub unsafe extern "C" fn leafless_solid_from_octree(
     })
 }
 
-/// What can be said of a solid at once.
+/// Basic facts about a solid.
 #[derive(Clone, Copy)]
 #[repr(C)]
 pub struct leafless_solid_info {
@@ -110,7 +110,7 @@ pub struct leafless_solid_info {
 
 output!(leafless_solid_info);
 
-/// What can be said of a solid at once. O(1), but O(n) in the parts of an expression.
+/// Returns basic facts about a solid. O(1), but O(n) in the parts of an expression.
 ///
 /// - Buffers: `info`, one struct.
 /// - Result: `*info`.
@@ -130,11 +130,11 @@ pub unsafe extern "C" fn leafless_solid_describe(
     })
 }
 
-/// One more reference to a solid.
+/// Returns one more reference to a solid.
 ///
 /// - Buffers: `solid`, a handle; `reference`, one pointer.
 /// - Result: `*reference`, equal to `solid`.
-/// - Ownership: give each reference back with leafless_solid_free.
+/// - Ownership: release each reference with leafless_solid_free.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn leafless_solid_ref(
     solid: *const leafless_solid,

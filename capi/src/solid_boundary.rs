@@ -22,8 +22,8 @@ use std::sync::Arc;
 /// which runs the other way. On a curved surface its triangles are the faces. Two faces that meet in an edge
 /// have the same vertices there.
 ///
-/// Immutable: all its functions may be called at once from any number of threads, but leafless_boundary_free
-/// needs the reference that it gives back for itself.
+/// Immutable: all its functions may be called at once from any number of threads, but no other call may use
+/// the reference that leafless_boundary_free releases.
 pub struct leafless_boundary {
     mesh: Arc<TriangleMesh>,
     report: BoundaryReport,
@@ -245,11 +245,11 @@ pub unsafe extern "C" fn leafless_solid_boundary(
     })
 }
 
-/// One more reference to a boundary.
+/// Returns one more reference to a boundary.
 ///
 /// - Buffers: `boundary`, a handle; `reference`, one pointer.
 /// - Result: `*reference`, equal to `boundary`.
-/// - Ownership: give each reference back with leafless_boundary_free.
+/// - Ownership: release each reference with leafless_boundary_free.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn leafless_boundary_ref(
     boundary: *const leafless_boundary,

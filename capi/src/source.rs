@@ -113,9 +113,9 @@ pub struct leafless_sink {
     pub path_length: usize,
     /// Takes the bytes.
     pub write: leafless_write_fn,
-    /// What `write` is called with.
+    /// The context that `write` is called with.
     pub write_ctx: *mut c_void,
-    /// Room for `capacity` bytes, or NULL to ask for the length only.
+    /// Room for `capacity` bytes, or NULL to get only the length.
     pub bytes: *mut u8,
     /// How many bytes there is room for.
     pub capacity: u64,

@@ -24,8 +24,8 @@ use leafless_dexel_normals::*;
 /// which it runs inside the solid. An interval holds its start and not its end, so that set algebra is exact.
 /// All directions agree about the centres of cells.
 ///
-/// Immutable: all its functions may be called at once from any number of threads, but leafless_tridexel_free
-/// needs the reference that it gives back for itself. A leafless_tridexel_editor changes a copy in place.
+/// Immutable: all its functions may be called at once from any number of threads, but no other call may use
+/// the reference that leafless_tridexel_free releases. A leafless_tridexel_editor changes a copy in place.
 pub struct leafless_tridexel {
     pub(super) model: TriDexel,
 }
@@ -143,7 +143,7 @@ impl leafless_tridexel_format {
     }
 }
 
-/// What can be said of a tri-dexel model at once.
+/// Basic facts about a tri-dexel model.
 #[derive(Clone, Copy)]
 #[repr(C)]
 pub struct leafless_tridexel_info {
@@ -219,11 +219,11 @@ pub unsafe extern "C" fn leafless_tridexel_build(
     })
 }
 
-/// One more reference to a tri-dexel model.
+/// Returns one more reference to a tri-dexel model.
 ///
 /// - Buffers: `tridexel`, a handle; `reference`, one pointer.
 /// - Result: `*reference`, equal to `tridexel`.
-/// - Ownership: give each reference back with leafless_tridexel_free.
+/// - Ownership: release each reference with leafless_tridexel_free.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn leafless_tridexel_ref(
     tridexel: *const leafless_tridexel,
@@ -244,7 +244,7 @@ pub unsafe extern "C" fn leafless_tridexel_free(tridexel: *mut leafless_tridexel
     unsafe { release(tridexel) }
 }
 
-/// What can be said of a tri-dexel model at once. O(1).
+/// Returns basic facts about a tri-dexel model. O(1).
 ///
 /// - Buffers: `info`, one struct.
 /// - Result: `*info`.

@@ -135,7 +135,7 @@ pub unsafe extern "C" fn leafless_tridexel_editor_free(editor: *mut leafless_tri
     unsafe { discard(editor) }
 }
 
-/// What can be said of an editor at once. O(rays of the universe).
+/// Returns basic facts about an editor. O(rays of the universe).
 ///
 /// - Buffers: `info`, one struct.
 /// - Result: `*info`; `bytes` are those that the editor takes.

@@ -21,8 +21,8 @@ use std::sync::OnceLock;
 /// around it, its voxel: on each axis voxel i reaches from corner + i·spacing to corner + (i + 1)·spacing.
 /// leafless_solid_from_volume makes a solid of those whose samples lie in a band.
 ///
-/// Immutable: all its functions may be called at once from any number of threads, but leafless_volume_free
-/// needs the reference that it gives back for itself.
+/// Immutable: all its functions may be called at once from any number of threads, but no other call may use
+/// the reference that leafless_volume_free releases.
 pub struct leafless_volume {
     pub(super) samples: Samples<'static>,
     pub(super) grid: VoxelGrid,
@@ -94,7 +94,7 @@ enumeration! {
     }
 }
 
-/// What can be said of a volume at once.
+/// Basic facts about a volume.
 #[derive(Clone, Copy)]
 #[repr(C)]
 pub struct leafless_volume_info {
@@ -197,11 +197,11 @@ impl leafless_volume {
     }
 }
 
-/// One more reference to a volume.
+/// Returns one more reference to a volume.
 ///
 /// - Buffers: `volume`, a handle; `reference`, one pointer.
 /// - Result: `*reference`, equal to `volume`.
-/// - Ownership: give each reference back with leafless_volume_free.
+/// - Ownership: release each reference with leafless_volume_free.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn leafless_volume_ref(
     volume: *const leafless_volume,
@@ -222,7 +222,7 @@ pub unsafe extern "C" fn leafless_volume_free(volume: *mut leafless_volume) {
     unsafe { release(volume) }
 }
 
-/// What can be said of a volume at once. O(1).
+/// Returns basic facts about a volume. O(1).
 ///
 /// - Buffers: `info`, one struct.
 /// - Result: `*info`.

@@ -88,7 +88,7 @@ pub unsafe extern "C" fn leafless_volume_read(
 /// The name of the file that has the samples of a volume file, relative to that.
 ///
 /// - Buffers: `bytes`, `length` bytes: the file, or all of its header; may be NULL if there are none. `name`,
-///   room for `capacity` bytes, or NULL to ask for the length only; `name_length`, one number.
+///   room for `capacity` bytes, or NULL to get only the length; `name_length`, one number.
 /// - Result: `*name_length`, in bytes; 0 if the samples stand behind the header. The name, in UTF-8, not
 ///   NUL-terminated. It may be any text: check it before you open such a file.
 /// - Errors: LEAFLESS_E_VOLUME_FILE; LEAFLESS_E_BUFFER if the capacity is too small; LEAFLESS_E_NO_MEMORY.
