@@ -71,8 +71,8 @@ struct HostAttribute {
     components: usize,
 }
 
-// SAFETY: the library does nothing with `ctx` but hand it back; that the functions may be called from any
-// thread is their documented contract.
+// SAFETY: the library only passes `ctx` back to the host; that the functions may be called from any thread is
+// their documented contract.
 unsafe impl Send for HostAttribute {}
 // SAFETY: as above.
 unsafe impl Sync for HostAttribute {}
@@ -159,7 +159,7 @@ pub unsafe extern "C" fn leafless_attribute_new_callbacks(
         }
         let components = components(callbacks.components, "callbacks.components")?;
         let attribute = out(attribute, "attribute")?;
-        // From here on the host's context is ours.
+        // From here on the library owns the host's context.
         attribute.write(give(HostAttribute { callbacks, components }))
     })
 }

@@ -52,7 +52,7 @@ pub struct leafless_item_options {
     pub matrix_count: u64,
     /// Of LEAFLESS_ORIENTATIONS_FREE: how many turns by chance there are, 1 to 4096.
     pub free_count: u32,
-    /// 0.
+    /// Reserved; 0.
     pub reserved: u32,
 }
 

@@ -55,7 +55,7 @@ pub struct leafless_channel_fill_options {
     /// `coarse_model` and the criterion holds, or until its edge is at most `fine_model`. It then has the
     /// value at its centre.
     pub criterion: Number<leafless_criterion>,
-    /// Zero.
+    /// Reserved; must be 0.
     pub reserved: u32,
     /// The longest edge of cells with a criterion; 0 means any.
     pub coarse_model: f64,

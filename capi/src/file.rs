@@ -36,7 +36,7 @@ pub struct leafless_file_tridexel_info {
     pub has_surfaces: u32,
     /// 1 if it is stored what intervals are made of, else 0.
     pub has_materials: u32,
-    /// Zero.
+    /// Reserved; must be 0.
     pub reserved: u32,
     /// Rays in the window along each axis, empty ones among them.
     pub rays: [u64; 3],

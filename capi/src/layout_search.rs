@@ -84,7 +84,7 @@ pub struct leafless_search_options {
     /// was placed first. No other copy and no obstacle is in the way of a straight move; the container may
     /// be.
     pub free_along: Number<leafless_free_along>,
-    /// 0.
+    /// Reserved; 0.
     pub reserved: u32,
 }
 

@@ -116,7 +116,7 @@ pub unsafe extern "C" fn leafless_mesh_write(
 pub struct leafless_single_precision {
     /// sizeof(leafless_single_precision).
     pub struct_size: u32,
-    /// 0.
+    /// Reserved; 0.
     pub reserved: u32,
     /// Largest displacement of a vertex along an axis by rounding, in model units.
     pub rounding_model: f64,

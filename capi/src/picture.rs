@@ -38,7 +38,7 @@ pub struct leafless_shot {
     pub clip_box_model: *const f64,
     /// What is seen where nothing is: red, green, blue (sRGB) and opacity. All zero: nothing, transparent.
     pub background: [u8; 4],
-    /// 0.
+    /// Reserved; 0.
     pub reserved: u32,
 }
 
@@ -282,7 +282,7 @@ pub struct leafless_legend_name {
     pub name_length: usize,
     /// Red, green, blue (sRGB) and opacity.
     pub colour: [u8; 4],
-    /// 0.
+    /// Reserved; 0.
     pub reserved: u32,
 }
 

@@ -61,7 +61,7 @@ pub enum leafless_surface_kind {
 pub struct leafless_boundary_surface {
     /// A leafless_surface_kind.
     pub kind: leafless_surface_kind,
-    /// 0.
+    /// Reserved; 0.
     pub reserved: u32,
     /// Of a ball and a torus the centre, of a cylinder the point of the axis that is nearest to the origin,
     /// of a cone the apex.

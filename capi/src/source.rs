@@ -107,7 +107,7 @@ pub type leafless_write_fn =
 pub struct leafless_sink {
     /// sizeof(leafless_sink).
     pub struct_size: u32,
-    /// Zero.
+    /// Reserved; must be 0.
     pub reserved: u32,
     /// The file's path, UTF-8.
     pub path: *const c_char,

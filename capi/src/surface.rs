@@ -135,7 +135,7 @@ pub struct leafless_surface_options {
     /// Of LEAFLESS_SURFACE_METHOD_MARCHING_CUBES of solids: a leafless_vertex_placement. Octrees do not know
     /// where their solid's surface is.
     pub placement: Number<leafless_vertex_placement>,
-    /// 0.
+    /// Reserved; 0.
     pub reserved: u32,
     /// Of LEAFLESS_RESOLVE_SOURCE: the solid that the octree was made from.
     pub source: *const leafless_solid,

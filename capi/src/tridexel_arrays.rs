@@ -17,7 +17,7 @@ use leafless::memory;
 pub struct leafless_tridexel_arrays {
     /// The axis that the rays run along: 0 for x, 1 for y, 2 for z.
     pub axis: u32,
-    /// Zero.
+    /// Reserved; must be 0.
     pub reserved: u32,
     /// The indices of the first ray's cells on the other two axes in the order x, y, z.
     pub first: [u32; 2],

@@ -78,7 +78,7 @@ pub struct leafless_voxel_options {
     /// A leafless_criterion: what makes an inside voxel fine enough that is longer than the fine edge and no
     /// longer than the coarse one. Without one, all inside voxels have the coarse edge or less.
     pub criterion: Number<leafless_criterion>,
-    /// Zero.
+    /// Reserved; must be 0.
     pub reserved: u32,
 }
 
