@@ -100,7 +100,7 @@ impl leafless_channel_fill_options {
 
 /// The channel of an attribute: each cell has the attribute's value at its centre, rounded to the type of the
 /// numbers; a cell whose centre has no value has none. Cells are as large as proven ranges and the criterion
-/// allow. The result is the same bit for bit for any number of threads.
+/// allow. The result is identical, bit for bit, for any number of threads.
 ///
 /// Without a criterion the result is that of asking at the centre of every finest cell. An attribute without
 /// ranges is asked there: 8^depth times, or as often as the solid has cells that are not EMPTY.
@@ -229,7 +229,7 @@ pub unsafe extern "C" fn leafless_channel_value_at(
 }
 
 /// The channel with one value wherever an octree is not EMPTY, and as it is elsewhere. It is as deep as the
-/// deeper of the two. The same bit for bit for any number of threads.
+/// deeper of the two. identical, bit for bit, for any number of threads.
 ///
 /// - Buffers: `region`, a handle; `value`, as many numbers as the channel's values have, or NULL to take
 ///   values away; `options`, one struct or NULL; `changed`, one pointer.

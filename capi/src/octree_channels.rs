@@ -142,8 +142,8 @@ pub unsafe extern "C" fn leafless_octree_channel(
 
 /// An octree that was made of operands in the same cube, whatever the operation, with their channels.
 /// Channels of one name become one, in which at each point the values of those operands count that are not
-/// EMPTY there. A channel that only one operand has is shared as it is. The same bit for bit for any number
-/// of threads.
+/// EMPTY there. A channel that only one operand has is shared as it is. identical, bit for bit, for any
+/// number of threads.
 ///
 /// - Buffers: `octree`, a handle; `operands`, `count` handles; `carry`, a leafless_carry, by which channels
 ///   are joined that none of `rules` names; `rules`, `rule_count` structs, or NULL if that is 0; the first

@@ -176,8 +176,8 @@ pub(super) fn give(model: TriDexel) -> *mut leafless_tridexel {
     handle(leafless_tridexel { model })
 }
 
-/// Makes the tri-dexel model of a solid on the lattice of a frame. O(rays + crossings). The result is the
-/// same bit for bit for any number of threads.
+/// Makes the tri-dexel model of a solid on the lattice of a frame. O(rays + crossings). The result is
+/// identical, bit for bit, for any number of threads.
 ///
 /// Under LEAFLESS_RULE_SAMPLED intervals are those of the solid on each ray. An end says of the centres of
 /// cells beside it just what the solid does; apart from that it is off by at most 2^-31 of the universe's

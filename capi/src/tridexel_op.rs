@@ -9,7 +9,7 @@ use super::tridexel::{give, leafless_tridexel, leafless_tridexel_format};
 use leafless::{Metadata, TriDexel, memory};
 
 /// What a set operation makes of tri-dexel models, at least one. Exact: all laws of sets hold. O(rays +
-/// intervals · log models), and the same bit for bit for any number of threads. The result stores what any
+/// intervals · log models), and identical, bit for bit, for any number of threads. The result stores what any
 /// operand does; ends are doubles if those of one operand are. An end keeps its surface and its normal,
 /// turned about where a subtraction shows its other side. Where several operands hold a place, the material
 /// of the first one counts. Operands are joined two by two: limits of `options` concern each of these steps.

@@ -384,8 +384,8 @@ pub unsafe extern "C" fn leafless_voxels_moved(
 ///
 /// - Buffers: `lattice`, `codes`, `levels` and `kinds` as leafless_voxels_find; `options`, one struct or NULL
 ///   (only its limit `max_bytes` applies); `offsets`, room for `offset_capacity` numbers, and `triangles`,
-///   room for `triangle_capacity`, each NULL to ask for its count only; `offset_count` and `triangle_count`,
-///   one number each.
+///   room for `triangle_capacity`, each NULL to get only its count; `offset_count` and `triangle_count`, one
+///   number each.
 /// - Result: `offsets`, one more than records; `triangles`, indices into the mesh; their counts.
 /// - Errors: LEAFLESS_E_ARGUMENT if the arrays are no records; LEAFLESS_E_BUFFER if a capacity is too small:
 ///   nothing is written then; LEAFLESS_E_LIMIT; LEAFLESS_E_NO_MEMORY; LEAFLESS_E_CANCELLED.
