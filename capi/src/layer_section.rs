@@ -159,7 +159,7 @@ pub unsafe extern "C" fn leafless_layer_from_solid_slice(
 /// - Buffers: `lattice`, `codes`, `levels` and `kinds` as leafless_voxels_find; `options`, one struct or
 ///   NULL; `parts`, room for `count` numbers.
 /// - Result: `parts`. O(count · levels).
-/// - Errors: LEAFLESS_E_ARGUMENT if the arrays are no records; the solid's own; LEAFLESS_E_NO_MEMORY;
+/// - Errors: LEAFLESS_E_ARGUMENT if the arrays are not valid records; the solid's own; LEAFLESS_E_NO_MEMORY;
 ///   LEAFLESS_E_CANCELLED.
 /// - Untrusted input: any numbers, any solid.
 #[unsafe(no_mangle)]
@@ -241,8 +241,8 @@ impl Shown for OfVoxels {
 ///   published (Zhu, Tang and Dong 2002): a voxel is a cell of the edge `unit_model`, repeated as often as
 ///   its own edge is longer, and the transfer function's opacity holds for one repetition.
 /// - Result: `*layer`.
-/// - Errors: LEAFLESS_E_ARGUMENT if the arrays are no records, a weight is not 0 to 1, the transfer function
-///   not as it must be, or the unit below 0 or not finite; LEAFLESS_E_NO_MEMORY.
+/// - Errors: LEAFLESS_E_ARGUMENT if the arrays are not valid records, a weight is not 0 to 1, the transfer
+///   function not as it must be, or the unit below 0 or not finite; LEAFLESS_E_NO_MEMORY.
 /// - Ownership: the layer copies the arrays; release `*layer` with leafless_layer_free.
 /// - Untrusted input: any numbers.
 #[unsafe(no_mangle)]
