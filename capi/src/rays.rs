@@ -314,7 +314,7 @@ pub unsafe extern "C" fn leafless_solid_ray_spans(
 /// - Buffers: `frame`, one struct; `from_model` and `to_model`, 3 numbers each; `options`, one struct or NULL
 ///   (with its limit `max_splits`: cells that were not split count as PARTIAL); `sight`, one.
 /// - Result: `*sight`.
-/// - Errors: LEAFLESS_E_ARGUMENT if the points are equal, or a coordinate is not zero and not of a magnitude
+/// - Errors: LEAFLESS_E_ARGUMENT if the points are equal, or a coordinate is neither 0 nor of a magnitude
 ///   between 2^-256 and 2^256; otherwise as leafless_solid_contains_many.
 /// - Untrusted input: any solid, any numbers; set `max_splits` if the depth or the solid is untrusted.
 ///
