@@ -175,7 +175,7 @@ fn checked<T>(pointer: *const T, name: &'static str) -> Result<(), Failure> {
     Ok(())
 }
 
-/// What `pointer` points to.
+/// Returns the `T` that `pointer` points to.
 ///
 /// # Safety
 /// Unless `pointer` is NULL or misaligned, it points to a `T` that lives and does not change during the call.
@@ -186,7 +186,7 @@ pub(super) unsafe fn shared<'a, T>(pointer: *const T, name: &'static str) -> Res
     Ok(unsafe { &*pointer })
 }
 
-/// What `pointer` points to.
+/// Returns the `T` that `pointer` points to, for changing it.
 ///
 /// # Safety
 /// As [`shared`], and nothing else uses the `T` during the call.

@@ -328,26 +328,26 @@ pub unsafe extern "C" fn leafless_solid_interfere_many(
     })
 }
 
-/// The distance between two solids, as they are in the universe of a frame.
+/// Computes the distance between two solids inside the universe of a frame.
 ///
-/// `measured` of the result says why the search ended. With LEAFLESS_STOP_REASON_TOLERANCE the interval is no
-/// wider than `tolerance_model` (model units). With LEAFLESS_STOP_REASON_EXHAUSTED the cells of the frame's
-/// depth cannot raise the lower bound, and the interval is no wider than twice their diagonal, which is what
-/// cells can tell of most solids; or no pair of cells is left; or a solid may extend beyond the universe,
-/// which keeps the lower bound at 0. With LEAFLESS_STOP_REASON_BUDGET `max_splits` steps were taken, or 1 048
-/// 576 if that is 0. A step looks at the children of one cell. A cell whose children are looked at again,
-/// next to another cell, counts once more.
+/// `measured` of the result is the reason why the search ended. With LEAFLESS_STOP_REASON_TOLERANCE the
+/// interval is no wider than `tolerance_model` (model units). With LEAFLESS_STOP_REASON_EXHAUSTED the cells
+/// of the frame's depth cannot raise the lower bound, and the interval is no wider than twice their diagonal,
+/// which is the limit of cells for most solids; or no pair of cells is left; or a solid may extend beyond the
+/// universe, which keeps the lower bound at 0. With LEAFLESS_STOP_REASON_BUDGET `max_splits` steps were
+/// taken, or 1 048 576 if that is 0. A step visits the children of one cell. A cell whose children are
+/// visited again, next to another cell, counts once more.
 ///
-/// The distance of two closed meshes in the universe is found by their triangles, to rounding: some 10^-13 of
-/// their sizes and of the distance. Bodies of a mesh may overlap, unless only positive winding numbers count,
-/// triangles lie on each other, or vertices were moved. A step is then 64 pairs of boxes around triangles,
-/// and no cells are split.
+/// The distance of two closed meshes in the universe is computed from their triangles, exact up to rounding:
+/// some 10^-13 of their sizes and of the distance. Bodies of a mesh may overlap, unless only positive winding
+/// numbers count, triangles lie on each other, or vertices were moved. A step is then 64 pairs of boxes
+/// around triangles, and no cells are split.
 ///
-/// Where both solids know slabs, as expressions, open meshes and extended octrees do, each level makes the
-/// interval about four times as narrow, and plane faces, balls and cylinders are known at once. Other solids
-/// are known to the size of cells: the upper bound is finite once the search has met a FULL cell of each, and
-/// the work grows with the area where the distance is about the least one, measured in cells as large as the
-/// tolerance.
+/// If both solids provide slabs, as expressions, open meshes and extended octrees do, each level makes the
+/// interval about four times as narrow, and plane faces, balls and cylinders are resolved at once. Other
+/// solids are resolved to the size of cells: the upper bound is finite once the search has found a FULL cell
+/// of each, and the work grows with the area where the distance is close to the least one, measured in cells
+/// of the size of the tolerance.
 ///
 /// - Buffers: `frame`, one struct; `options`, one struct or NULL; `clearance`, one struct.
 /// - Result: `*clearance`.

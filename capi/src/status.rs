@@ -17,7 +17,7 @@ pub enum leafless_status {
     LEAFLESS_E_ARGUMENT = 2,
     /// A text is not UTF-8, or a path holds a NUL.
     LEAFLESS_E_UTF8 = 3,
-    /// A buffer is too small for what would be written to it.
+    /// A buffer is too small for the result.
     LEAFLESS_E_BUFFER = 4,
     /// Operands lie on different frames, or a solid belongs to another frame.
     LEAFLESS_E_FRAME = 5,
