@@ -123,7 +123,7 @@ impl leafless_search_options {
     }
 }
 
-/// Why a search ended.
+/// The reason why a search ended.
 #[derive(Clone, Copy)]
 #[repr(u32)]
 pub enum leafless_search_end {
