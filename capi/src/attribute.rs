@@ -304,8 +304,8 @@ pub unsafe extern "C" fn leafless_attribute_ref(
     guard(|| unsafe { refer(attribute, "attribute", reference) })
 }
 
-/// Releases a reference to an attribute; with the last one the attribute is gone. Channels that were filled
-/// from it stay.
+/// Releases a reference to an attribute; the last release frees the attribute. Channels that were filled from
+/// it stay.
 ///
 /// - Buffers: `attribute`, a handle or NULL, which does nothing.
 /// - Ownership: the reference is invalid afterwards.

@@ -209,7 +209,7 @@ pub unsafe extern "C" fn leafless_cursor_seek(
 ///   `exists`, one truth value, or NULL.
 /// - Result: `*neighbour`; `*exists`, whether it lies in the universe. If not, `*neighbour` is the cursor's
 ///   own cell with the exterior's tag.
-/// - Errors: LEAFLESS_E_ARGUMENT if `direction` is none.
+/// - Errors: LEAFLESS_E_ARGUMENT if `direction` is not a direction.
 /// - Threads: any, while no thread moves the cursor.
 /// - Untrusted input: any octree, any numbers; damage reads as PARTIAL.
 ///
@@ -240,7 +240,8 @@ pub unsafe extern "C" fn leafless_cursor_neighbour(
 /// - Buffers: `direction`, 3 numbers of -1, 0 and 1: the steps along x, y and z; `cells`, room for `capacity`
 ///   structs, or NULL to get only the count; `count`, one number.
 /// - Result: `*count`, 0 if the side lies on the boundary of the universe; the cells.
-/// - Errors: LEAFLESS_E_ARGUMENT if `direction` is none; LEAFLESS_E_BUFFER if the capacity is too small.
+/// - Errors: LEAFLESS_E_ARGUMENT if `direction` is not a direction; LEAFLESS_E_BUFFER if the capacity is too
+///   small.
 /// - Threads: any, while no thread moves the cursor.
 /// - Untrusted input: any octree, any numbers; damage reads as PARTIAL, and no array element is visited
 ///   twice.
@@ -371,7 +372,7 @@ pub unsafe extern "C" fn leafless_cells_next(
 /// # Safety
 /// As [`slice`], but no element is read.
 unsafe fn room<T>(buffer: *mut T, capacity: u64) -> Result<usize, Failure> {
-    // SAFETY: bytes that may be uninitialised may be looked at as such.
+    // SAFETY: bytes that may be uninitialised may be viewed as `MaybeUninit`.
     unsafe { Ok(slice(buffer.cast::<core::mem::MaybeUninit<T>>(), capacity, "buffer")?.len()) }
 }
 

@@ -96,8 +96,8 @@ pub unsafe extern "C" fn leafless_channel_ref(
     guard(|| unsafe { refer(channel, "channel", reference) })
 }
 
-/// Releases a reference to a channel. With the last one the channel is gone. The mapping of its file ends
-/// too, unless an octree, an attribute, or a channel with other metadata still shares it.
+/// Releases a reference to a channel. The last release frees the channel. The mapping of its file ends too,
+/// unless an octree, an attribute, or a channel with other metadata still shares it.
 ///
 /// - Buffers: `channel`, a handle or NULL, which does nothing.
 /// - Ownership: the reference is invalid afterwards.
@@ -264,7 +264,7 @@ pub unsafe extern "C" fn leafless_channel_peek_metadata(
 ///   get only the count.
 /// - Result: `*count`, the number of all facts; key and value, not NUL-terminated, with their lengths in
 ///   bytes.
-/// - Errors: LEAFLESS_E_ARGUMENT if there is no fact `index`, unless only the count is asked for.
+/// - Errors: LEAFLESS_E_ARGUMENT if there is no fact `index`, unless only the count is requested.
 /// - Ownership: the texts belong to the channel and live as long as the reference `channel`.
 /// - Untrusted input: any channel.
 #[unsafe(no_mangle)]

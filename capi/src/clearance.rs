@@ -87,7 +87,7 @@ impl From<&Gap> for leafless_gap {
 #[derive(Clone, Copy)]
 #[repr(C)]
 pub struct leafless_placed_gap {
-    /// As leafless_gap has it.
+    /// As in leafless_gap.
     pub distance_model: leafless_interval,
     /// If `has_points`, a point of the first solid, in model units; else zeros.
     pub point_a_model: [f64; 3],
@@ -129,13 +129,13 @@ impl From<&Gap> for leafless_placed_gap {
 #[derive(Clone, Copy)]
 #[repr(C)]
 pub struct leafless_placed_clearance {
-    /// As leafless_clearance has it.
+    /// As in leafless_clearance.
     pub distance_model: leafless_interval,
     /// If `has_points`, a point of the first solid, in model units; else zeros.
     pub point_a_model: [f64; 3],
     /// A point of the second solid.
     pub point_b_model: [f64; 3],
-    /// As leafless_clearance has it.
+    /// As in leafless_clearance.
     pub depth_model: f64,
     /// Cells of the first solid that were split.
     pub splits_a: u64,

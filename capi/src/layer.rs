@@ -275,7 +275,7 @@ pub unsafe extern "C" fn leafless_layer_ref(
     guard(|| unsafe { refer(layer, "layer", reference) })
 }
 
-/// Releases a reference to a layer; with the last one the layer is gone. Objects that it shows stay if other
+/// Releases a reference to a layer; the last release frees the layer. Objects that it shows stay if other
 /// references exist.
 ///
 /// - Buffers: `layer`, a handle or NULL, which does nothing.

@@ -233,8 +233,8 @@ impl Shown for OfVoxels {
 }
 
 /// Makes a layer of voxels as a translucent volume, composited in the correct order from every viewpoint.
-/// Surfaces of other layers hide voxels, and are visible through them. Of two such layers the first one in a
-/// picture counts as in front.
+/// Surfaces of other layers hide voxels, and are visible through them. If a picture has two such layers, the
+/// first one counts as in front.
 ///
 /// - Buffers: `voxels`, one struct; `transfer`, one struct: the colours of values; `layer`, one pointer. If
 ///   `unit_model` is 0, voxels are composited by the exact length of each line of sight in a voxel. Otherwise

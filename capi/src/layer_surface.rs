@@ -365,7 +365,7 @@ pub unsafe extern "C" fn leafless_layer_new_lines(
     })
 }
 
-/// A leafless_cell of which the host may have left the tag uninitialised.
+/// A leafless_cell whose tag the host may have left uninitialised.
 #[repr(C)]
 struct Untagged {
     cell: [u32; 3],

@@ -223,7 +223,7 @@ pub unsafe extern "C" fn leafless_mesh_ref(
     guard(|| unsafe { refer(mesh, "mesh", reference) })
 }
 
-/// Releases a reference to a mesh; with the last one the mesh is gone. Solids made of it stay.
+/// Releases a reference to a mesh; the last release frees the mesh. Solids made of it stay.
 ///
 /// - Buffers: `mesh`, a handle or NULL, which does nothing.
 /// - Ownership: the reference is invalid afterwards.

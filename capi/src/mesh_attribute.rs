@@ -26,7 +26,7 @@ fn at(mesh: &TriangleMesh, index: u64) -> Result<&MeshAttribute, Failure> {
 /// - Result: `*count`, the number of all attributes; the name in UTF-8, not NUL-terminated, with its length
 ///   in bytes; `*components`, the numbers per value, 1 to 4; `*per_corner`, true if each corner of a triangle
 ///   has a value, false if each triangle has one.
-/// - Errors: LEAFLESS_E_ARGUMENT if there is no attribute `index`, unless only the count is asked for.
+/// - Errors: LEAFLESS_E_ARGUMENT if there is no attribute `index`, unless only the count is requested.
 /// - Ownership: the name belongs to the mesh and lives as long as the reference `mesh`.
 /// - Untrusted input: any mesh.
 #[unsafe(no_mangle)]
@@ -63,7 +63,7 @@ pub unsafe extern "C" fn leafless_mesh_peek_attribute_at(
 /// - Result: `*count`, the number of values, from 0 on, that have names; the name in UTF-8, not
 ///   NUL-terminated, with its length in bytes.
 /// - Errors: LEAFLESS_E_ARGUMENT if there is no attribute `index`, or the value has no name, unless only the
-///   count is asked for.
+///   count is requested.
 /// - Ownership: the name belongs to the mesh and lives as long as the reference `mesh`.
 /// - Untrusted input: any mesh.
 #[unsafe(no_mangle)]
@@ -195,7 +195,7 @@ pub unsafe extern "C" fn leafless_mesh_with_values(
 
 /// Makes an attribute from an attribute of a mesh. Its value at a point is the value at the nearest point of
 /// the mesh's surface: the value of the nearest triangle, or, with values for corners, the interpolated
-/// value. Of triangles that are equally near the first one counts. Its ranges are proven.
+/// value. If several triangles are equally near, the first one counts. Its ranges are proven.
 ///
 /// - Buffers: `name`, `name_length` bytes of UTF-8: the name of an attribute of the mesh; `attribute`, one
 ///   pointer.

@@ -221,7 +221,7 @@ pub unsafe extern "C" fn leafless_mesh_read(
 ///
 /// - Buffers: `count`, one number; `warning`, `warning_length`, one each, both NULL to get only the count.
 /// - Result: `*count`, the number of all warnings; the text, not NUL-terminated, with its length in bytes.
-/// - Errors: LEAFLESS_E_ARGUMENT if there is no warning `index`, unless only the count is asked for.
+/// - Errors: LEAFLESS_E_ARGUMENT if there is no warning `index`, unless only the count is requested.
 /// - Ownership: the text belongs to the mesh and lives as long as the reference `mesh`.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn leafless_mesh_peek_warning_at(

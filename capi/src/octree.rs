@@ -218,7 +218,7 @@ pub unsafe extern "C" fn leafless_octree_ref(
     guard(|| unsafe { refer(octree, "octree", reference) })
 }
 
-/// Releases a reference to an octree. With the last one the octree is gone. The mapping of its file ends too,
+/// Releases a reference to an octree. The last release frees the octree. The mapping of its file ends too,
 /// unless a cursor, a solid, or an octree with other metadata still shares it.
 ///
 /// - Buffers: `octree`, a handle or NULL, which does nothing.
@@ -436,7 +436,7 @@ pub unsafe extern "C" fn leafless_octree_peek_metadata(
 ///   get only the count.
 /// - Result: `*count`, the number of all facts; key and value, not NUL-terminated, with their lengths in
 ///   bytes.
-/// - Errors: LEAFLESS_E_ARGUMENT if there is no fact `index`, unless only the count is asked for.
+/// - Errors: LEAFLESS_E_ARGUMENT if there is no fact `index`, unless only the count is requested.
 /// - Ownership: the texts belong to the octree and live as long as the reference `octree`.
 /// - Untrusted input: any octree.
 #[unsafe(no_mangle)]

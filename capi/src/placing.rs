@@ -158,7 +158,7 @@ impl From<&Standing> for leafless_standing {
 #[derive(Clone, Copy)]
 #[repr(C)]
 pub struct leafless_placed_standing {
-    /// As leafless_standing has it.
+    /// As in leafless_standing.
     pub conflict_count: u64,
     /// Cells that were split.
     pub splits: u64,

@@ -253,7 +253,7 @@ pub unsafe extern "C" fn leafless_scene_ref(
     guard(|| unsafe { refer(scene, "scene", reference) })
 }
 
-/// Releases a reference to a scene; with the last one the scene is gone. Solids made of it stay.
+/// Releases a reference to a scene; the last release frees the scene. Solids made of it stay.
 ///
 /// - Buffers: `scene`, a handle or NULL, which does nothing.
 /// - Ownership: the reference is invalid afterwards.

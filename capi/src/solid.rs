@@ -144,7 +144,7 @@ pub unsafe extern "C" fn leafless_solid_ref(
     guard(|| unsafe { refer(solid, "solid", reference) })
 }
 
-/// Releases a reference to a solid; with the last one the solid is gone. Octrees built from it stay.
+/// Releases a reference to a solid; the last release frees the solid. Octrees built from it stay.
 ///
 /// - Buffers: `solid`, a handle or NULL, which does nothing.
 /// - Ownership: the reference is invalid afterwards.

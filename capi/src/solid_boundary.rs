@@ -259,7 +259,7 @@ pub unsafe extern "C" fn leafless_boundary_ref(
     guard(|| unsafe { refer(boundary, "boundary", reference) })
 }
 
-/// Releases a reference to a boundary; with the last one the boundary is gone. References to its mesh stay
+/// Releases a reference to a boundary; the last release frees the boundary. References to its mesh stay
 /// valid.
 ///
 /// - Buffers: `boundary`, a handle or NULL, which does nothing.

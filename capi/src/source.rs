@@ -53,8 +53,8 @@ enumeration! {
 /// Viewed bytes are for files that are part of a program, or that the host maps itself.
 ///
 /// Untrusted input: with LEAFLESS_ACCESS_COPY any file and any bytes; memory is at most a small multiple of
-/// their length, unless the function says more. With the other two any content too, but only if nobody else
-/// can change it.
+/// their length, unless the function says more. With the other two any content too, but only if no other
+/// program can change it.
 #[derive(Clone, Copy)]
 #[repr(C)]
 pub struct leafless_source {

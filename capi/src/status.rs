@@ -11,7 +11,7 @@ use std::cell::RefCell;
 pub enum leafless_status {
     /// Success.
     LEAFLESS_OK = 0,
-    /// A pointer is NULL that must not be NULL.
+    /// A pointer that must not be NULL is NULL.
     LEAFLESS_E_NULL = 1,
     /// An argument is out of its range, not a number, or misaligned.
     LEAFLESS_E_ARGUMENT = 2,

@@ -233,8 +233,8 @@ pub unsafe extern "C" fn leafless_tridexel_ref(
     guard(|| unsafe { refer(tridexel, "tridexel", reference) })
 }
 
-/// Releases a reference to a tri-dexel model. With the last one the model is gone. The mapping of its file
-/// ends too, unless a model with other metadata still shares its arrays.
+/// Releases a reference to a tri-dexel model. The last release frees the model. The mapping of its file ends
+/// too, unless a model with other metadata still shares its arrays.
 ///
 /// - Buffers: `tridexel`, a handle or NULL, which does nothing.
 /// - Ownership: the reference is invalid afterwards.
@@ -391,7 +391,7 @@ pub unsafe extern "C" fn leafless_tridexel_peek_metadata(
 ///   get only the count.
 /// - Result: `*count`, the number of all facts; key and value, not NUL-terminated, with their lengths in
 ///   bytes.
-/// - Errors: LEAFLESS_E_ARGUMENT if there is no fact `index`, unless only the count is asked for.
+/// - Errors: LEAFLESS_E_ARGUMENT if there is no fact `index`, unless only the count is requested.
 /// - Ownership: the texts belong to the model and live as long as the reference `tridexel`.
 /// - Untrusted input: any model.
 #[unsafe(no_mangle)]

@@ -209,8 +209,8 @@ pub unsafe extern "C" fn leafless_volume_ref(
     guard(|| unsafe { refer(volume, "volume", reference) })
 }
 
-/// Releases a reference to a volume; with the last one the volume is gone. Solids made of it stay, and keep
-/// its samples.
+/// Releases a reference to a volume; the last release frees the volume. Solids made of it stay, and keep its
+/// samples.
 ///
 /// - Buffers: `volume`, a handle or NULL, which does nothing.
 /// - Ownership: the reference is invalid afterwards.
