@@ -51,8 +51,8 @@ pub struct leafless_point_distance {
     pub measured: leafless_stop_reason,
     /// Whether the nearest point is known. A mesh inside the universe provides it with the triangle, unless
     /// the nearest triangle intersects another one, or the boundary may be nearer across a hole. For other
-    /// solids it is known if the upper bound is finite, unless the point may lie on the side of the boundary
-    /// where the distance is 0; its distance is then at most the upper bound.
+    /// solids it is known if the upper bound is finite, and its distance is at most that bound; but it is not
+    /// known if the point may lie on the side of the boundary from which no distance is measured.
     pub has_nearest: bool,
 }
 

@@ -149,12 +149,11 @@ pub unsafe extern "C" fn leafless_mesh_bodies(
     })
 }
 
-/// Returns the same mesh with one more attribute, which takes its values from an attribute under a name. The
-/// value of a triangle is the value just inside it, `depth_model` behind its centroid. If there is none, it
-/// is the value at a quarter of the depth, at twice the depth, or at the centroid itself; otherwise the
-/// triangle has no value. So a surface takes values from the channels of its solid: half the edge of a
-/// channel's cells is a good depth. leafless_mesh_write writes colours as `colour`, and materials as
-/// `material`.
+/// Returns the same mesh with one more attribute with a name, whose values come from `attribute`. The value
+/// of a triangle is the value just inside it, `depth_model` behind its centroid. If there is none, it is the
+/// value at a quarter of the depth, at twice the depth, or at the centroid itself; otherwise the triangle has
+/// no value. So a surface takes values from the channels of its solid: half the edge of a channel's cells is
+/// a good depth. leafless_mesh_write writes colours as `colour`, and materials as `material`.
 ///
 /// O(t) queries. An attribute of the mesh with the same name is replaced.
 ///
