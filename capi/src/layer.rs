@@ -185,8 +185,7 @@ pub(super) fn chosen(colour: [u8; 4]) -> Option<[u8; 4]> {
     (colour != [0; 4]).then_some(colour)
 }
 
-/// Returns the clip: the points with a x + b y + c z + d ≥ 0 for all planes that lie in the box, if there is
-/// one.
+/// Returns the clip: the points in the box, if there is one, with a x + b y + c z + d ≥ 0 for all planes.
 ///
 /// # Safety
 /// As [`slice`] for 4 · `count` numbers, and for 6 unless the box is NULL.
