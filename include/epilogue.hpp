@@ -6,7 +6,7 @@ using box = std::array<double, 6>;
 
 namespace detail {
 
-/// Whether an object has a member that can be called with these arguments: HAS(classify, ...).
+/// has_classify<T, A...> and so on: true if a const T has a member of this name that can be called with arguments A.
 #define LEAFLESS_HAS_MEMBER(member)                                                                            \
     template <class Void, class T, class... A> struct has_##member##_ : std::false_type {};                    \
     template <class T, class... A>                                                                             \
@@ -40,9 +40,9 @@ template <class T> span<T> array_at(T *first, std::uint64_t count) noexcept {
 
 } // namespace detail
 
-/// A solid by the host's own shape, which lives until the library has no more use for it. The shape is a function
-/// that classifies the box between two corners (leafless_tag), or an object with some of these members, which are
-/// const, and called from several threads at once; what each has to do stands with the C function type:
+/// Makes a solid from the host's own shape, which lives until the library no longer needs it. The shape is a function
+/// that classifies the box between two corners (leafless_tag), or an object with some of the members below. They are
+/// const, and are called from several threads at once; the C function type documents each:
 ///
 ///     leafless_tag classify(const point &min, const point &max)                          leafless_classify_fn
 ///     bool contains(const point &at)                                                     leafless_contains_fn
@@ -52,7 +52,7 @@ template <class T> span<T> array_at(T *first, std::uint64_t count) noexcept {
 ///     void gradient(const point &min, const point &max, const point &middle, leafless_gradient &)
 ///     void tangent(const point &min, const point &max, const point &middle, leafless_tangent &)
 ///
-/// `promises` has what is no function: the exterior, a box, a fingerprint.
+/// `promises` has the fields that are not functions: the exterior, a box, a fingerprint.
 template <class S> returns<solid> solid_of(S shape, leafless_solid_callbacks promises) {
     auto owned = std::make_unique<S>(std::move(shape));
     leafless_solid_callbacks callbacks = promises;
@@ -131,19 +131,19 @@ template <class S> returns<solid> solid_of(S shape, leafless_solid_callbacks pro
     }
     leafless_solid *made = nullptr;
     const leafless_status status = leafless_solid_new_callbacks(&callbacks, &made);
-    if (status == LEAFLESS_OK) static_cast<void>(owned.release()); // From here on the library sees to it.
+    if (status == LEAFLESS_OK) static_cast<void>(owned.release()); // The library owns it from here on.
     return detail::finish(status, solid(made));
 }
 
-/// The same with nothing but a promise about the space outside of the universe.
+/// Makes the same solid with only a promise about the space outside the universe.
 template <class S> returns<solid> solid_of(S shape, leafless_exterior exterior) {
     leafless_solid_callbacks promises = LEAFLESS_INIT(leafless_solid_callbacks);
     promises.exterior = exterior;
     return solid_of(std::move(shape), promises);
 }
 
-/// The points where the host's function is not negative, as leafless_solid_function says, by an object with two members,
-/// which are const and called from several threads at once:
+/// Makes a solid of the points where the host's function is not negative (see leafless_solid_function), from an object
+/// with two members, which are const and are called from several threads at once:
 ///
 ///     double value(const point &at)                                                         leafless_value_fn
 ///     leafless_interval range(const point &min, const point &max)                           leafless_range_fn
@@ -171,14 +171,14 @@ template <class F> returns<solid> half_space_of(F function) {
     return detail::finish(status, solid(made));
 }
 
-/// The host's own attribute, with so many numbers a value: a function that fills the value at a point, or an object with
-/// some of these members, which are const and called from several threads at once:
+/// Makes the host's own attribute with `components` numbers a value, from a function that fills the value at a point,
+/// or from an object with some of these members, which are const and are called from several threads at once:
 ///
 ///     void value(const point &at, span<double> value)                             leafless_attribute_value_fn
 ///     void values(span<const point> points, span<double> values)                 leafless_attribute_values_fn
 ///     void range(const point &min, const point &max, leafless_value_range &)      leafless_attribute_range_fn
 template <class A> returns<attribute> attribute_of(A object, std::uint32_t components) {
-    // The library does not tell the functions how many numbers a value has.
+    // The library does not pass the numbers per value to the functions.
     struct host {
         A object;
         std::size_t components;
@@ -232,7 +232,8 @@ template <class A> returns<attribute> attribute_of(A object, std::uint32_t compo
     return detail::finish(status, attribute(made));
 }
 
-/// A sink that hands the pieces of a file to a function, which takes a span<const std::uint8_t> and must outlive the sink.
+/// Makes a sink that passes the pieces of a file to a function, which takes a span<const std::uint8_t> and must outlive
+/// the sink.
 template <class F> leafless_sink sink_to(F &take) {
     const leafless_write_fn write = [](void *ctx, const std::uint8_t *bytes,
                                        std::uint64_t count) noexcept -> std::int32_t {
@@ -244,8 +245,8 @@ template <class F> leafless_sink sink_to(F &take) {
     return leafless_to_function(write, &take);
 }
 
-/// Calls `use` with options that tell `hear` of progress, from 0 to 1, and returns what it returns. `hear` says
-/// whether to go on; it is called by one thread at a time. What it throws comes out here.
+/// Calls `use` with options that report progress, from 0 to 1, to `hear`, and returns the result of `use`. `hear`
+/// returns whether to go on; one thread at a time calls it. An exception of `hear` is thrown again here.
 template <class Hear, class Use> auto with_progress(leafless_options options, Hear hear, Use use) {
     struct state {
         Hear hear;
@@ -280,10 +281,10 @@ template <class Hear, class Use> auto with_progress(leafless_options options, He
 #endif
 }
 
-// ---- one after another --------------------------------------------------------------------------------------
+// ---- iterators ----------------------------------------------------------------------------------------------
 
-/// What a walk finds, for a loop: `for (const leafless_cell &cell : each(cells))`. The walk must outlive the loop, and
-/// goes on where it stands. A walk that fails throws from the loop.
+/// The remaining elements of an iterator of the library, for a loop: `for (const leafless_cell &cell : each(cells))`.
+/// The iterator must outlive the loop, and continues from its position. A failure is thrown from the loop.
 template <class Walk, class Element> class walk_range {
 public:
     class iterator {
@@ -331,10 +332,10 @@ private:
     Walk *walk_;
 };
 
-/// The cells that a walk finds from where it stands.
+/// Returns the remaining cells of an iterator.
 inline walk_range<cells, leafless_cell> each(cells &walk) noexcept { return walk_range<cells, leafless_cell>(walk); }
 
-/// The boundary faces that a walk finds from where it stands.
+/// Returns the remaining boundary faces of an iterator.
 inline walk_range<faces, leafless_boundary_face> each(faces &walk) noexcept {
     return walk_range<faces, leafless_boundary_face>(walk);
 }

@@ -1,14 +1,14 @@
-/// The file at a path, which ends with a NUL.
+/// Makes a source of the file at a NUL-terminated path.
 static inline leafless_source leafless_from_file(const char *path, leafless_access access) {
     leafless_source source = LEAFLESS_INIT(leafless_source);
     source.access = access;
     source.path = path;
-    /* NULL is refused for what it is, and not taken for no bytes. */
+    /* With the length 1, a NULL path is refused as such, and not read as an empty path. */
     source.path_length = path ? strlen(path) : 1;
     return source;
 }
 
-/// The bytes of a whole file.
+/// Makes a source of the bytes of a whole file.
 static inline leafless_source leafless_from_bytes(const void *bytes, uint64_t length,
                                                   leafless_access access) {
     leafless_source source = LEAFLESS_INIT(leafless_source);
@@ -22,7 +22,7 @@ static inline leafless_source leafless_from_bytes(const void *bytes, uint64_t le
     return source;
 }
 
-/// To the file at a path, which ends with a NUL.
+/// Makes a sink that writes to the file at a NUL-terminated path.
 static inline leafless_sink leafless_to_file(const char *path) {
     leafless_sink sink = LEAFLESS_INIT(leafless_sink);
     sink.path = path;
@@ -30,7 +30,7 @@ static inline leafless_sink leafless_to_file(const char *path) {
     return sink;
 }
 
-/// To a buffer; `bytes` is NULL and `capacity` 0 to ask for the length only.
+/// Makes a sink that writes to a buffer; `bytes` is NULL and `capacity` 0 to get only the length.
 static inline leafless_sink leafless_to_buffer(uint8_t *bytes, uint64_t capacity, uint64_t *length) {
     leafless_sink sink = LEAFLESS_INIT(leafless_sink);
     sink.bytes = bytes;
@@ -39,7 +39,7 @@ static inline leafless_sink leafless_to_buffer(uint8_t *bytes, uint64_t capacity
     return sink;
 }
 
-/// To a function, which is called with `ctx`.
+/// Makes a sink that passes the bytes to a function, which is called with `ctx`.
 static inline leafless_sink leafless_to_function(leafless_write_fn write, void *ctx) {
     leafless_sink sink = LEAFLESS_INIT(leafless_sink);
     sink.write = write;

@@ -2,22 +2,23 @@
 //
 // Generated from leafless.h; do not edit. SPDX-License-Identifier: MIT OR Apache-2.0
 //
-// Every function of the C interface is here under its own name: leafless_octree_statistics is a member of octree,
-// and so is leafless_octree_build, which makes one, as a static member. What each does, its errors and its threads
-// stand in leafless.h. The rules by which the functions are translated:
+// Every function of the C interface is here under its own name: leafless_octree_statistics is a member of octree;
+// leafless_octree_build, which makes an octree, is a static member. leafless.h documents the functions with their
+// errors and threads. The functions are translated by these rules:
 //
 // - An object is a class that owns one reference. It moves; share() gives one more reference.
 // - A function that fails throws leafless::error. With LEAFLESS_NO_EXCEPTIONS defined it returns a
-//   leafless::result instead, which is to be looked at.
+//   leafless::result instead, which must be checked.
 // - Results are returned; several results are a std::tuple in the order of the C function.
-// - An array that goes in is a leafless::span: of points (std::array<double, 3>), numbers or structs. An array whose
-//   length the caller knows, because there is one answer for each question, is a span that is filled.
-// - An array whose length only the library knows is returned as a std::vector. (It is filled in two calls.)
-// - Texts are std::string_view. What a _peek function returns belongs to the object.
-// - What may be NULL in C is a pointer here, by default nullptr where no argument without default follows.
-// - Functions of the host are lambdas, or objects with members (solid_of, half_space_of, attribute_of, sink_to, with_progress,
-//   at the end of this file). An exception inside of one ends the work. It comes out of the function of the library
-//   that called it, and never runs through the library itself.
+// - An input array is a leafless::span: of points (std::array<double, 3>), numbers or structs. An output array whose
+//   length the caller knows, because there is one answer for each query, is a span that is filled.
+// - An output array whose length only the library knows is returned as a std::vector. (It is filled in two calls.)
+// - Texts are std::string_view. The result of a _peek function belongs to the object.
+// - A parameter that may be NULL in C is a pointer here, with the default nullptr unless an argument without a default
+//   follows.
+// - Functions of the host are lambdas, or objects with members (solid_of, half_space_of, attribute_of, sink_to,
+//   with_progress, at the end of this file). An exception in one of them ends the work. The exception is thrown again
+//   by the leafless:: function that was called, and never unwinds the library itself.
 
 #ifndef LEAFLESS_HPP
 #define LEAFLESS_HPP
@@ -55,7 +56,7 @@ using cell_index = std::array<std::uint32_t, 3>;
 /// A ray along an axis by its indices along the other two, in the order x, y, z.
 using ray_index = std::array<std::uint32_t, 2>;
 
-/// Elements that lie one after another and belong to somebody else.
+/// A view of contiguous elements, without ownership.
 template <class T> class span {
 public:
     constexpr span() noexcept = default;
@@ -77,7 +78,7 @@ private:
     std::size_t size_ = 0;
 };
 
-/// The message of the last failure in the calling thread.
+/// Returns the message of the last failure in the calling thread.
 inline std::string last_message() {
     std::string message(leafless_last_error(nullptr, 0) + 1, '\0');
     leafless_last_error(message.data(), message.size());
@@ -87,7 +88,7 @@ inline std::string last_message() {
 
 #ifndef LEAFLESS_NO_EXCEPTIONS
 
-/// What a function throws that fails.
+/// The exception of a function that fails.
 class error : public std::runtime_error {
 public:
     error(leafless_status status, const std::string &message) : std::runtime_error(message), status_(status) {}
@@ -103,13 +104,15 @@ namespace detail {
 
 #ifndef LEAFLESS_NO_EXCEPTIONS
 
-/// Exceptions of the host's functions on their way around the library, by the numbers that the functions returned.
+/// Exceptions of the host's functions, stored while control returns through the library, by the codes that the
+/// functions returned.
 ///
-/// Several threads of one operation may throw. The library reports the number of one; the others stay here until
-/// the object that threw them goes, or until newer ones need the room.
+/// Several threads of one operation may throw. The library reports the code of one exception; the others stay here
+/// until the object that threw them is destroyed, or until newer ones need the room.
 class exceptions {
 public:
-    /// A number that no function of the host returns for anything else. `owner` is the object that threw.
+    /// Stores an exception and returns its code, which no function of the host returns otherwise. `owner` is the object
+    /// that threw.
     static std::int32_t keep(const void *owner, std::exception_ptr exception) noexcept {
         try {
             exceptions &all = instance();
@@ -122,7 +125,7 @@ public:
             if (all.kept_.size() > 4096) all.kept_.erase(std::prev(all.kept_.end()));
             return all.last_;
         } catch (...) {
-            return -1; // No memory: the exception is lost, the failure is not.
+            return -1; // No memory: the exception is lost, but the failure is reported.
         }
     }
 
@@ -136,7 +139,7 @@ public:
         return exception;
     }
 
-    /// Gives up what `owner` threw.
+    /// Drops the exceptions that `owner` threw.
     static void forget(const void *owner) noexcept {
         exceptions &all = instance();
         const std::lock_guard<std::mutex> lock(all.mutex_);
@@ -152,7 +155,7 @@ private:
     };
 
     static exceptions &instance() {
-        // It is never destroyed: threads of the host may be at work until the program has ended.
+        // It is never destroyed, because threads of the host may run until the program ends.
         static exceptions &all = *new exceptions;
         return all;
     }
@@ -162,7 +165,8 @@ private:
     std::int32_t last_ = -1;
 };
 
-/// What a function of the host returns, or the number of what it throws. `owner` is the object that has it.
+/// Calls a function of the host and returns its result, or the code of its exception. `owner` is the object that has
+/// it.
 template <class F> std::int32_t guarded(const void *owner, F &&function) noexcept {
     try {
         return function();
@@ -171,10 +175,10 @@ template <class F> std::int32_t guarded(const void *owner, F &&function) noexcep
     }
 }
 
-/// Gives up what an object threw, before it goes.
+/// Drops the exceptions of an object, before it is destroyed.
 inline void forget(const void *owner) noexcept { exceptions::forget(owner); }
 
-/// Throws what a failure in the calling thread was about.
+/// Throws the exception for the last failure in the calling thread.
 [[noreturn]] inline void raise(leafless_status status) {
     if (status == LEAFLESS_E_CALLBACK) {
         if (const std::exception_ptr exception = exceptions::take(leafless_last_code())) {
@@ -184,7 +188,7 @@ inline void forget(const void *owner) noexcept { exceptions::forget(owner); }
     throw error(status, last_message());
 }
 
-/// Arrays that belong together.
+/// Checks that arrays that belong together have the same size.
 inline void same_size(std::size_t a, std::size_t b) {
     if (a != b) throw std::invalid_argument("arrays that belong together have different sizes");
 }
@@ -219,10 +223,10 @@ public:
     owner &operator=(const owner &) = delete;
     ~owner() { Free(handle_); }
 
-    /// The handle, for functions of leafless.h. It stays this object's.
+    /// The handle, for functions of leafless.h. This object keeps the ownership.
     H *get() const noexcept { return handle_; }
     explicit operator bool() const noexcept { return handle_ != nullptr; }
-    /// The handle, which the caller now has to free.
+    /// Returns the handle, which the caller must free.
     [[nodiscard]] H *release() noexcept { return std::exchange(handle_, nullptr); }
     void reset(H *handle = nullptr) noexcept { Free(std::exchange(handle_, handle)); }
 
@@ -230,10 +234,10 @@ private:
     H *handle_ = nullptr;
 };
 
-/// The handle of an object that may be absent.
+/// Returns the handle of an object that may be absent.
 template <class T> auto handle_of(const T *object) noexcept { return object == nullptr ? nullptr : object->get(); }
 
-/// The first number of an array of several at once, such as points.
+/// Returns the address of the first number of an array whose elements have several numbers, such as points.
 template <class T, std::size_t N> const T *numbers(const span<const std::array<T, N>> &array) noexcept {
     return array.size() == 0 ? nullptr : array.data()->data();
 }
@@ -244,7 +248,7 @@ template <class T, std::size_t N> T *numbers(std::vector<std::array<T, N>> &arra
     return array.empty() ? nullptr : array.data()->data();
 }
 
-/// How many numbers a value has; the most that there may be, if that is not told.
+/// Returns the numbers per value; the maximum, 4, if that is not available.
 inline std::size_t components_of(const leafless_attribute *attribute) noexcept {
     leafless_attribute_info info = LEAFLESS_INIT(leafless_attribute_info);
     return leafless_attribute_describe(attribute, &info) == LEAFLESS_OK ? info.components : 4;
@@ -262,13 +266,13 @@ inline std::string_view text(const char *data, std::size_t size) noexcept {
 
 #ifdef LEAFLESS_NO_EXCEPTIONS
 
-/// What a function returns: a value, or why there is none.
+/// The result of a function: a value, or the status of a failure.
 template <class T> class [[nodiscard]] result {
 public:
     result(leafless_status status, T value) : status_(status), value_(std::move(value)) {}
     leafless_status status() const noexcept { return status_; }
     explicit operator bool() const noexcept { return status_ == LEAFLESS_OK; }
-    /// The value; without meaning after a failure.
+    /// The value; meaningless after a failure.
     T &value() & noexcept { return value_; }
     T &&value() && noexcept { return std::move(value_); }
 
@@ -296,7 +300,7 @@ inline result<void> finish(leafless_status status) { return result<void>(status)
 
 #else
 
-/// What a function returns.
+/// The return type of a function.
 template <class T> using returns = T;
 
 namespace detail {
@@ -311,13 +315,13 @@ inline void finish(leafless_status status) {
 
 #endif
 
-/// Handles of several objects, for functions that take any number: `refs(a, b, c)`.
+/// Returns the handles of several objects, for functions that take any number: `refs(a, b, c)`.
 template <class First, class... Rest> auto refs(const First &first, const Rest &...rest) {
     using handle = std::add_pointer_t<std::add_const_t<std::remove_pointer_t<decltype(first.get())>>>;
     return std::array<handle, 1 + sizeof...(rest)>{{first.get(), rest.get()...}};
 }
 
-/// Handles of a list of objects.
+/// Returns the handles of a list of objects.
 template <class T> auto refs(const std::vector<T> &objects) {
     std::vector<std::add_pointer_t<std::add_const_t<std::remove_pointer_t<decltype(objects[0].get())>>>> handles;
     handles.reserve(objects.size());
@@ -3366,7 +3370,7 @@ using box = std::array<double, 6>;
 
 namespace detail {
 
-/// Whether an object has a member that can be called with these arguments: HAS(classify, ...).
+/// has_classify<T, A...> and so on: true if a const T has a member of this name that can be called with arguments A.
 #define LEAFLESS_HAS_MEMBER(member)                                                                            \
     template <class Void, class T, class... A> struct has_##member##_ : std::false_type {};                    \
     template <class T, class... A>                                                                             \
@@ -3400,9 +3404,9 @@ template <class T> span<T> array_at(T *first, std::uint64_t count) noexcept {
 
 } // namespace detail
 
-/// A solid by the host's own shape, which lives until the library has no more use for it. The shape is a function
-/// that classifies the box between two corners (leafless_tag), or an object with some of these members, which are
-/// const, and called from several threads at once; what each has to do stands with the C function type:
+/// Makes a solid from the host's own shape, which lives until the library no longer needs it. The shape is a function
+/// that classifies the box between two corners (leafless_tag), or an object with some of the members below. They are
+/// const, and are called from several threads at once; the C function type documents each:
 ///
 ///     leafless_tag classify(const point &min, const point &max)                          leafless_classify_fn
 ///     bool contains(const point &at)                                                     leafless_contains_fn
@@ -3412,7 +3416,7 @@ template <class T> span<T> array_at(T *first, std::uint64_t count) noexcept {
 ///     void gradient(const point &min, const point &max, const point &middle, leafless_gradient &)
 ///     void tangent(const point &min, const point &max, const point &middle, leafless_tangent &)
 ///
-/// `promises` has what is no function: the exterior, a box, a fingerprint.
+/// `promises` has the fields that are not functions: the exterior, a box, a fingerprint.
 template <class S> returns<solid> solid_of(S shape, leafless_solid_callbacks promises) {
     auto owned = std::make_unique<S>(std::move(shape));
     leafless_solid_callbacks callbacks = promises;
@@ -3491,19 +3495,19 @@ template <class S> returns<solid> solid_of(S shape, leafless_solid_callbacks pro
     }
     leafless_solid *made = nullptr;
     const leafless_status status = leafless_solid_new_callbacks(&callbacks, &made);
-    if (status == LEAFLESS_OK) static_cast<void>(owned.release()); // From here on the library sees to it.
+    if (status == LEAFLESS_OK) static_cast<void>(owned.release()); // The library owns it from here on.
     return detail::finish(status, solid(made));
 }
 
-/// The same with nothing but a promise about the space outside of the universe.
+/// Makes the same solid with only a promise about the space outside the universe.
 template <class S> returns<solid> solid_of(S shape, leafless_exterior exterior) {
     leafless_solid_callbacks promises = LEAFLESS_INIT(leafless_solid_callbacks);
     promises.exterior = exterior;
     return solid_of(std::move(shape), promises);
 }
 
-/// The points where the host's function is not negative, as leafless_solid_function says, by an object with two members,
-/// which are const and called from several threads at once:
+/// Makes a solid of the points where the host's function is not negative (see leafless_solid_function), from an object
+/// with two members, which are const and are called from several threads at once:
 ///
 ///     double value(const point &at)                                                         leafless_value_fn
 ///     leafless_interval range(const point &min, const point &max)                           leafless_range_fn
@@ -3531,14 +3535,14 @@ template <class F> returns<solid> half_space_of(F function) {
     return detail::finish(status, solid(made));
 }
 
-/// The host's own attribute, with so many numbers a value: a function that fills the value at a point, or an object with
-/// some of these members, which are const and called from several threads at once:
+/// Makes the host's own attribute with `components` numbers a value, from a function that fills the value at a point,
+/// or from an object with some of these members, which are const and are called from several threads at once:
 ///
 ///     void value(const point &at, span<double> value)                             leafless_attribute_value_fn
 ///     void values(span<const point> points, span<double> values)                 leafless_attribute_values_fn
 ///     void range(const point &min, const point &max, leafless_value_range &)      leafless_attribute_range_fn
 template <class A> returns<attribute> attribute_of(A object, std::uint32_t components) {
-    // The library does not tell the functions how many numbers a value has.
+    // The library does not pass the numbers per value to the functions.
     struct host {
         A object;
         std::size_t components;
@@ -3592,7 +3596,8 @@ template <class A> returns<attribute> attribute_of(A object, std::uint32_t compo
     return detail::finish(status, attribute(made));
 }
 
-/// A sink that hands the pieces of a file to a function, which takes a span<const std::uint8_t> and must outlive the sink.
+/// Makes a sink that passes the pieces of a file to a function, which takes a span<const std::uint8_t> and must outlive
+/// the sink.
 template <class F> leafless_sink sink_to(F &take) {
     const leafless_write_fn write = [](void *ctx, const std::uint8_t *bytes,
                                        std::uint64_t count) noexcept -> std::int32_t {
@@ -3604,8 +3609,8 @@ template <class F> leafless_sink sink_to(F &take) {
     return leafless_to_function(write, &take);
 }
 
-/// Calls `use` with options that tell `hear` of progress, from 0 to 1, and returns what it returns. `hear` says
-/// whether to go on; it is called by one thread at a time. What it throws comes out here.
+/// Calls `use` with options that report progress, from 0 to 1, to `hear`, and returns the result of `use`. `hear`
+/// returns whether to go on; one thread at a time calls it. An exception of `hear` is thrown again here.
 template <class Hear, class Use> auto with_progress(leafless_options options, Hear hear, Use use) {
     struct state {
         Hear hear;
@@ -3640,10 +3645,10 @@ template <class Hear, class Use> auto with_progress(leafless_options options, He
 #endif
 }
 
-// ---- one after another --------------------------------------------------------------------------------------
+// ---- iterators ----------------------------------------------------------------------------------------------
 
-/// What a walk finds, for a loop: `for (const leafless_cell &cell : each(cells))`. The walk must outlive the loop, and
-/// goes on where it stands. A walk that fails throws from the loop.
+/// The remaining elements of an iterator of the library, for a loop: `for (const leafless_cell &cell : each(cells))`.
+/// The iterator must outlive the loop, and continues from its position. A failure is thrown from the loop.
 template <class Walk, class Element> class walk_range {
 public:
     class iterator {
@@ -3691,10 +3696,10 @@ private:
     Walk *walk_;
 };
 
-/// The cells that a walk finds from where it stands.
+/// Returns the remaining cells of an iterator.
 inline walk_range<cells, leafless_cell> each(cells &walk) noexcept { return walk_range<cells, leafless_cell>(walk); }
 
-/// The boundary faces that a walk finds from where it stands.
+/// Returns the remaining boundary faces of an iterator.
 inline walk_range<faces, leafless_boundary_face> each(faces &walk) noexcept {
     return walk_range<faces, leafless_boundary_face>(walk);
 }

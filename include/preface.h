@@ -11,12 +11,12 @@
  *                                                  |                   |
  *                                                  '-------------------' each is a solid again
  *
- *   A leafless_solid is a shape: it can be asked about points, rays, boxes, volumes and other solids, and
- *   it can be built. A leafless_octree stores a shape in the cells of a leafless_frame; set operations on
- *   one frame are exact. A leafless_tridexel stores a shape as intervals of rays. Octrees and tri-dexel
- *   models are written to files, and mapped from them. A cell is EMPTY or FULL, which is proven, or PARTIAL,
- *   which is undecided. A volume is an interval that contains the true volume. A leafless_layout tells which
- *   solids may stand where in a container, and places them.
+ *   A leafless_solid is a shape: it answers queries about points, rays, boxes, volumes and other solids, and
+ *   an octree can be built from it. A leafless_octree stores a shape in the cells of a leafless_frame; set
+ *   operations on one frame are exact. A leafless_tridexel stores a shape as intervals of rays. Octrees and
+ *   tri-dexel models are written to files, and mapped from them. A cell is EMPTY or FULL, which is proven, or
+ *   PARTIAL, which is undecided. A volume is an interval that contains the true volume. A leafless_layout
+ *   checks the placements of solids in a container, and searches for valid placements.
  *
  * EXAMPLE: a bored ball, its volume, a file. (Check each status; see RULES.)
  *
@@ -56,12 +56,12 @@
  *
  * Memory. The library returns LEAFLESS_E_NO_MEMORY if the system refuses memory whose size depends on an
  * input or a result. The process ends only if the system refuses one of the remaining small pieces (2 KiB at
- * most), or the memory of a new thread. Triangulating a polygon with holes or dents needs 320 bytes a corner:
- * the library reserves and releases that amount first, so that a shortage is an error.
+ * most), or the memory of a new thread. Triangulating a non-convex polygon, or one with holes, needs 320
+ * bytes a corner: the library reserves and releases that amount first, so that a shortage is an error.
  *
- * Objects. Objects are opaque handles. _new, _read and the like return a reference; _ref returns one more;
- * _free gives one back, and accepts NULL. References may be given back in any order: an object shares what it
- * needs of another one. A pointer from a _peek function belongs to the object.
+ * Objects. Objects are opaque handles. _new, _read and similar functions return a reference; _ref returns one
+ * more; _free releases one, and accepts NULL. References may be released in any order, because an object
+ * shares the data that it needs from another one. A pointer from a _peek function belongs to the object.
  *
  * Threads. Calls that take only pointers to const handles may run at once, on the same object too. Other
  * calls need the object for themselves. A _free needs only its own reference; other references may be in use
@@ -69,21 +69,21 @@
  * they are in use. Different objects never interfere. The library has no global state. No thread of the
  * library outlives the call that started it.
  *
- * Names. A function has the name of its object, which is the first parameter or the result, and a verb. _new
- * makes an object of parameters, _from_x of another model, _read of a source; _build does so under options.
- * _with_x and _without_x return a copy with one thing more or less; participles (_placed, _sewn) a copy that
- * is changed. _describe fills a struct of facts, such as leafless_octree_info; _copy fills buffers of the
- * caller; _write goes to a sink. _at takes a place or an index, _many takes an array of questions. Set
+ * Names. A function is named by its object, which is the first parameter or the result, and a verb. _new
+ * makes an object from parameters, _from_x from another model, _read from a source; _build does so under
+ * options. _with_x and _without_x return a copy with one thing more or less; participles (_placed, _sewn)
+ * return a changed copy. _describe fills a struct of facts, such as leafless_octree_info; _copy fills buffers
+ * of the caller; _write writes to a sink. _at takes a position or an index, _many an array of queries. Set
  * operations are _combine for any number of operands, and _complement. A member of an enumeration begins with
  * the name of the enumeration, a leafless_status alone with an E. UNDECIDED is 2 in every answer, as
- * LEAFLESS_TAG_PARTIAL is. UNKNOWN, that nobody has said, is 0.
+ * LEAFLESS_TAG_PARTIAL is. UNKNOWN, a value that is not given, is 0.
  *
  * Structs. A struct with a field struct_size begins with its own sizeof, which the caller sets, also before
- * the library fills it: LEAFLESS_INIT(type) does so, and zeroes all other fields. Zero is the default of what
- * the library reads. Such structs may grow at their end, and programs that were compiled with an older,
- * shorter one go on working: fields that they do not have count as zero, and are not written. Of a newer,
- * longer one the library writes the fields that it knows. Structs without the field, elements of arrays among
- * them, are fixed for one LEAFLESS_ABI.
+ * the library fills it: LEAFLESS_INIT(type) does so, and zeroes all other fields. Zero is the default of
+ * fields that the library reads. Such structs may grow at their end, and programs that were compiled with an
+ * older, shorter struct go on working: missing fields count as zero, and are not written. In a newer, longer
+ * struct the library writes the fields that it knows. Structs without the field, including elements of
+ * arrays, are fixed for one LEAFLESS_ABI.
  *
  * Numbers. A number that stands for a member of an enumeration has its type, and is checked: C++ refuses
  * another type, and the library refuses a number that is no member. In C, write leafless_tag for a variable,
@@ -96,8 +96,9 @@
  * Units. Names that end in _model are in model units; names that end in _cells are in finest cells. "3
  * numbers" are x, y and z.
  *
- * Cells. A cell is told by its level and by its place among the cells of that level. Level 0 is the universe.
- * leafless_frame_cell_bounds gives the box of any cell in model units, also of witnesses and nearest cells.
+ * Cells. A cell is identified by its level and by its index on each axis among the cells of that level. Level
+ * 0 is the universe. leafless_frame_cell_bounds returns the box of any cell in model units, also of witnesses
+ * and nearest cells.
  *
  * Buffers. A buffer whose size the caller cannot know is filled in two steps. With a NULL buffer and the
  * capacity 0 the function returns the number of elements; the second call fills the buffer. Capacities count
@@ -106,11 +107,11 @@
  * Functions of the host get their context first, return 0 to go on, and must not throw or longjmp through the
  * library.
  *
- * Comments of functions have entries in a fixed order. An entry is left out where it says just this:
+ * Comments of functions have entries in a fixed order. A missing entry means:
  * - Buffers: none.
  * - Result: the status alone.
  * - Errors: only the general ones.
- * - Ownership: nothing changes hands; the library keeps nothing that it was given.
+ * - Ownership: no reference changes hands; the library keeps no pointer that it was given.
  * - Threads: any thread may call, and the work is done in the calling thread.
  * - Untrusted input: the function takes none.
  * - Since: 0.1. Before version 0.1 everything may still change.
@@ -124,7 +125,7 @@
 #include <stdint.h>
 #include <string.h>
 
-/* LEAFLESS_ENUM: an enumeration of a fixed size. C has no such thing; there the name is the integer's.
+/* LEAFLESS_ENUM: an enumeration of a fixed size. C has none; there the name is that of the integer type.
  * LEAFLESS_INIT: the default of a struct with a struct_size, as in
  *     leafless_options options = LEAFLESS_INIT(leafless_options); */
 #ifdef __cplusplus
@@ -141,8 +142,8 @@ extern "C" {
 #define LEAFLESS_VERSION \
     (LEAFLESS_VERSION_MAJOR * 1000000 + LEAFLESS_VERSION_MINOR * 1000 + LEAFLESS_VERSION_PATCH)
 
-/// Whether the library that is linked fits this header: it has the same binary interface, and is not older.
-/// Before 0.1, where nothing is promised, it must have the same version.
+/// True if the linked library fits this header: it has the same binary interface, and is not older. Before
+/// 0.1, where nothing is promised, it must have the same version.
 #define LEAFLESS_COMPATIBLE() \
     (leafless_abi() == LEAFLESS_ABI && \
      (LEAFLESS_ABI > 0 ? leafless_version() >= LEAFLESS_VERSION : leafless_version() == LEAFLESS_VERSION))

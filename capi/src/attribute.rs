@@ -1,4 +1,4 @@
-//! Attributes: what has a value at every point, or at some.
+//! Attributes: values at points of model space.
 
 use super::boundary::{
     Failure, array, buffer, filled, guard, handle, out, output, refer, release, shared, slice,
@@ -12,12 +12,13 @@ use leafless::{Bounds, Interval};
 use leafless_range_kind::*;
 use std::sync::Arc;
 
-/// Something that has a value at every point of model space, or at some: one number, the host's own function,
-/// the values of a channel, any of them in another place. A value has one to four numbers, as many at all
-/// points of an attribute. Where a value is written and there is none, its numbers are NaN.
+/// An attribute: a value at every point of model space, or at some points. It is a constant, the host's own
+/// function, the values of a channel, of a mesh or of a volume, or any of these under a map. A value has one
+/// to four numbers, the same count at all points. Where a value is written and there is none, its numbers are
+/// NaN.
 ///
-/// Immutable: all its functions may be called at once from any number of threads, but leafless_attribute_free
-/// needs the reference that it gives back for itself.
+/// Immutable: all its functions may be called at once from any number of threads, but no other call may use
+/// the reference that leafless_attribute_free releases.
 pub struct leafless_attribute {
     pub(super) attribute: AnyAttribute,
 }
@@ -44,16 +45,16 @@ impl Attribute for AnyAttribute {
     }
 }
 
-/// A handle of an attribute.
+/// Returns a handle of an attribute.
 pub(super) fn give(attribute: impl Attribute + Send + 'static) -> *mut leafless_attribute {
     handle(leafless_attribute { attribute: AnyAttribute(Arc::new(attribute)) })
 }
 
-/// What is known of the values in the interior of a box.
+/// The kind of knowledge about the values in the interior of a box.
 #[derive(Clone, Copy)]
 #[repr(u32)]
 pub enum leafless_range_kind {
-    /// Nothing.
+    /// The values are not known.
     LEAFLESS_RANGE_KIND_UNKNOWN = 0,
     /// No point has a value.
     LEAFLESS_RANGE_KIND_NOWHERE = 1,
@@ -61,19 +62,19 @@ pub enum leafless_range_kind {
     LEAFLESS_RANGE_KIND_WITHIN = 2,
 }
 
-/// What is known of the values of an attribute in the interior of a box.
+/// The range of the values of an attribute in the interior of a box.
 #[derive(Clone, Copy)]
 #[repr(C)]
 pub struct leafless_value_range {
-    /// For each number of a value an interval that contains it, if `kind` is LEAFLESS_RANGE_KIND_WITHIN. All numbers
-    /// are NaN otherwise, and beyond the numbers that a value has.
+    /// For each number of a value an interval that contains it, if `kind` is LEAFLESS_RANGE_KIND_WITHIN. All
+    /// numbers are NaN otherwise, and beyond the numbers that a value has.
     pub values: [leafless_interval; 4],
     /// A leafless_range_kind.
     pub kind: u32,
 }
 
 impl leafless_value_range {
-    /// Nothing is known.
+    /// The range of unknown values.
     pub(super) const UNKNOWN: leafless_value_range = leafless_value_range {
         values: [leafless_interval { lower: f64::NAN, upper: f64::NAN }; 4],
         kind: LEAFLESS_RANGE_KIND_UNKNOWN as u32,
@@ -94,7 +95,7 @@ impl leafless_value_range {
         given
     }
 
-    /// What a host says. Intervals that are none say nothing.
+    /// Returns the range that a host means. Invalid intervals mean that nothing is known.
     pub(super) fn range(&self, components: usize) -> Result<ValueRange, Error> {
         match self.kind {
             kind if kind == LEAFLESS_RANGE_KIND_UNKNOWN as u32 => Ok(ValueRange::Unknown),
@@ -114,13 +115,13 @@ impl leafless_value_range {
     }
 }
 
-/// Points that are asked at once.
+/// Number of points that are queried at once.
 const BATCH: usize = 256;
 
-/// The values of an attribute at the host's points, one after another, NaN where there is none.
+/// Writes the values of an attribute at the host's points, one after another; NaN where there is no value.
 ///
 /// # Safety
-/// As [`slice`] with `count` points, and [`buffer`] with as many values.
+/// As [`slice`] with `count` points, and [`buffer`] with `count` values.
 pub(super) unsafe fn sample(
     attribute: &dyn Attribute,
     points_model: *const f64,
@@ -133,7 +134,7 @@ pub(super) unsafe fn sample(
         return Ok(());
     }
     let components = attribute.components();
-    // At most four numbers a point, which has three.
+    // A value has at most four numbers; a point has three.
     let numbers = points.len().saturating_mul(components);
     // SAFETY: the caller's promise; the buffer is for this call alone.
     let values = unsafe {
@@ -151,12 +152,12 @@ pub(super) unsafe fn sample(
     Ok(())
 }
 
-/// The attribute that has one value everywhere.
+/// Makes the attribute that has one value everywhere.
 ///
 /// - Buffers: `value`, `components` numbers; `attribute`, one pointer.
 /// - Result: `*attribute`.
 /// - Errors: LEAFLESS_E_ARGUMENT unless `components` is 1 to 4, and no number NaN.
-/// - Ownership: give `*attribute` back with leafless_attribute_free.
+/// - Ownership: release `*attribute` with leafless_attribute_free.
 /// - Untrusted input: any numbers.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn leafless_attribute_new_constant(
@@ -175,7 +176,7 @@ pub unsafe extern "C" fn leafless_attribute_new_constant(
     })
 }
 
-/// A number of components.
+/// Checks a number of components.
 pub(super) fn components(components: u32, name: &'static str) -> Result<usize, Failure> {
     match components {
         1..=4 => Ok(components as usize),
@@ -183,15 +184,15 @@ pub(super) fn components(components: u32, name: &'static str) -> Result<usize, F
     }
 }
 
-/// An attribute in another place: its value at the image M p + t of a point p is that of `operand` at p. It
-/// carries attributes and channels along with a solid that leafless_solid_placed moves by the same map. The
-/// map is inverted; what is rounded thereby moves the values by about 2^-50 of the coordinates.
+/// Makes an attribute under an affine map: its value at the image M p + t of a point p is that of `operand`
+/// at p. Use it to move attributes and channels with a solid that leafless_solid_placed moves by the same
+/// map. The map is inverted; the rounding displaces the values by about 2^-50 of the coordinates.
 ///
 /// - Buffers: `matrix`, 12 numbers, the rows of [M | t]; `attribute`, one pointer.
 /// - Result: `*attribute`.
 /// - Errors: LEAFLESS_E_ARGUMENT if an entry is neither 0 nor of a magnitude between 2^-64 and 2^64, M is
 ///   singular, or an entry of the inverse is beyond 2^64.
-/// - Ownership: the operand is shared and may be freed; give `*attribute` back with leafless_attribute_free.
+/// - Ownership: the operand is shared and may be freed; release `*attribute` with leafless_attribute_free.
 /// - Untrusted input: any attribute and numbers.
 ///
 /// cbindgen:ptrs-as-arrays=[[matrix; 12]]
@@ -209,22 +210,22 @@ pub unsafe extern "C" fn leafless_attribute_placed(
     })
 }
 
-/// What can be said of an attribute at once.
+/// Basic facts about an attribute.
 #[derive(Clone, Copy)]
 #[repr(C)]
 pub struct leafless_attribute_info {
     /// sizeof(leafless_attribute_info).
     pub struct_size: u32,
-    /// How many numbers a value has: 1 to 4.
+    /// Numbers per value: 1 to 4.
     pub components: u32,
-    /// About how many bytes of memory (or of mapped files) the attribute keeps alive: its own, and those of the mesh, channel
-    /// or samples that it shares. 0 for constants and for objects of the host.
+    /// Approximate number of bytes of memory (or of mapped files) that the attribute keeps alive: its own,
+    /// and those of the mesh, channel or samples that it shares. 0 for constants and for objects of the host.
     pub bytes: u64,
 }
 
 output!(leafless_attribute_info);
 
-/// What can be said of an attribute at once. O(1).
+/// Returns basic facts about an attribute. O(1).
 ///
 /// - Buffers: `info`, one struct.
 /// - Result: `*info`.
@@ -244,11 +245,11 @@ pub unsafe extern "C" fn leafless_attribute_describe(
     })
 }
 
-/// The values of an attribute at points.
+/// Returns the values of an attribute at points.
 ///
-/// - Buffers: `points_model`, `count` points of 3 numbers; `values`, room for `count` values of as many numbers
-///   as leafless_attribute_describe says. Both may be NULL if `count` is 0.
-/// - Result: the value at point i from `values[components * i]` on; NaN where there is none.
+/// - Buffers: `points_model`, `count` points of 3 numbers; `values`, room for `count` values with
+///   `components` numbers each, from leafless_attribute_describe. Both may be NULL if `count` is 0.
+/// - Result: the value at point i from `values[components * i]` on; NaN where there is no value.
 /// - Errors: LEAFLESS_E_CALLBACK; LEAFLESS_E_DAMAGED; LEAFLESS_E_NO_MEMORY.
 /// - Untrusted input: any attribute, any numbers.
 #[unsafe(no_mangle)]
@@ -264,7 +265,7 @@ pub unsafe extern "C" fn leafless_attribute_values(
     })
 }
 
-/// What is known of the values of an attribute in the interior of a box.
+/// Returns the range of the values of an attribute in the interior of a box.
 ///
 /// - Buffers: `min_model` and `max_model`, 3 numbers each; `range`, one struct.
 /// - Result: `*range`.
@@ -290,11 +291,11 @@ pub unsafe extern "C" fn leafless_attribute_range(
     })
 }
 
-/// One more reference to an attribute.
+/// Returns one more reference to an attribute.
 ///
 /// - Buffers: `attribute`, a handle; `reference`, one pointer.
 /// - Result: `*reference`, equal to `attribute`.
-/// - Ownership: give each reference back with leafless_attribute_free.
+/// - Ownership: release each reference with leafless_attribute_free.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn leafless_attribute_ref(
     attribute: *const leafless_attribute,
@@ -303,11 +304,11 @@ pub unsafe extern "C" fn leafless_attribute_ref(
     guard(|| unsafe { refer(attribute, "attribute", reference) })
 }
 
-/// Gives back a reference to an attribute; with the last one the attribute is gone. Channels that were filled
-/// from it stay.
+/// Releases a reference to an attribute; the last release frees the attribute. Channels that were filled from
+/// it stay.
 ///
 /// - Buffers: `attribute`, a handle or NULL, which does nothing.
-/// - Ownership: the reference is gone.
+/// - Ownership: the reference is invalid afterwards.
 /// - Threads: any; no other call may use this reference.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn leafless_attribute_free(attribute: *mut leafless_attribute) {

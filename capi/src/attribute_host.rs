@@ -1,4 +1,4 @@
-//! Attributes of the host program.
+//! Attributes that the host program implements.
 
 use super::attribute::{components, give, leafless_attribute, leafless_value_range};
 use super::boundary::{Failure, Sized32, guard, out, sized};
@@ -10,27 +10,28 @@ use leafless::Error;
 use leafless::attribute::{Attribute, ValueRange};
 use leafless::memory;
 
-/// The value of the host's attribute at a point (3 numbers, model units): sets the numbers of `value`, as many as
-/// the attribute has components. All are NaN before; they stay so where there is no value, and a value whose
-/// first number is NaN is none. 0, or the number of the host's own error, which ends the operation with
-/// LEAFLESS_E_CALLBACK and the number in the message.
+/// Computes the value of the host's attribute at a point (3 numbers, model units): sets the numbers of
+/// `value`, one for each component of the attribute. All are NaN before and stay NaN where there is no value;
+/// a value whose first number is NaN counts as no value. Returns 0, or the host's own error code, which ends
+/// the operation with LEAFLESS_E_CALLBACK and the code in the message.
 ///
 /// It is called from several threads at once, which may all be the library's own, unless the operation's
-/// options say `threads` = 1; and it must give the same answer to the same point. It must return: no exception,
+/// options have `threads` = 1. It must give the same answer to the same point. It must return: no exception,
 /// no longjmp. It may call this library.
 pub type leafless_attribute_value_fn =
     Option<unsafe extern "C" fn(ctx: *mut c_void, point: *const f64, value: *mut f64) -> i32>;
 
-/// The values at `count` points (3 numbers each) at once, for hosts that do that faster than one by one: the
-/// numbers of the first, then those of the second, and so on. Else as leafless_attribute_value_fn.
+/// Computes the values at `count` points (3 numbers each) at once, for hosts that do this faster than one by
+/// one: the numbers of the first value, then those of the second, and so on. Otherwise as
+/// leafless_attribute_value_fn.
 pub type leafless_attribute_values_fn =
     Option<unsafe extern "C" fn(ctx: *mut c_void, points: *const f64, count: u64, values: *mut f64) -> i32>;
 
 /// Bounds the values of the host's attribute in the interior of the box [min, max] (3 numbers each, model
-/// units): sets `kind` and the intervals of `*range`, of which the kind is LEAFLESS_RANGE_KIND_UNKNOWN and all numbers
-/// are NaN before. The answer must be proven: a wrong range hides details that nobody looks for any more. An
-/// interval that contains a NaN, or of which lower > upper, says nothing; a `kind` that is none ends the operation
-/// with LEAFLESS_E_CALLBACK. Else as leafless_attribute_value_fn.
+/// units): sets `kind` and the intervals of `*range`. Before the call the kind is LEAFLESS_RANGE_KIND_UNKNOWN
+/// and all numbers are NaN. The range must be proven: a wrong range hides details, because the library does
+/// not search further. An interval that contains a NaN, or with lower > upper, proves nothing; an invalid
+/// `kind` ends the operation with LEAFLESS_E_CALLBACK. Otherwise as leafless_attribute_value_fn.
 pub type leafless_attribute_range_fn = Option<
     unsafe extern "C" fn(
         ctx: *mut c_void,
@@ -40,25 +41,25 @@ pub type leafless_attribute_range_fn = Option<
     ) -> i32,
 >;
 
-/// An attribute of the host. `components` and one of `value` and `values` must be set; all other fields but the
-/// first may be zero.
+/// An attribute of the host. `components` and one of `value` and `values` must be set; all other fields but
+/// the first may be zero.
 #[derive(Clone, Copy)]
 #[repr(C)]
 pub struct leafless_attribute_callbacks {
     /// sizeof(leafless_attribute_callbacks).
     pub struct_size: u32,
-    /// How many numbers a value has: 1 to 4.
+    /// Numbers per value: 1 to 4.
     pub components: u32,
-    /// The value at a point; not called if `values` is set.
+    /// Computes the value at a point; not called if `values` is set.
     pub value: leafless_attribute_value_fn,
-    /// The values at many points, as many as the work has at hand.
+    /// Computes the values at many points, as many as the operation has ready.
     pub values: leafless_attribute_values_fn,
-    /// Bounds the values in a box; optional. With it channels that hardly change are filled without asking at every
-    /// cell, and LEAFLESS_CRITERION_RANGE misses no detail.
+    /// Bounds the values in a box; optional. With it, channels that hardly change are filled without a call
+    /// for every cell, and LEAFLESS_CRITERION_RANGE misses no detail.
     pub range: leafless_attribute_range_fn,
-    /// Called when `ctx` is not needed any more; optional.
+    /// Called when the library no longer needs `ctx`; optional.
     pub destroy: leafless_destroy_fn,
-    /// What the functions are called with.
+    /// The context that the functions are called with.
     pub ctx: *mut c_void,
 }
 
@@ -71,8 +72,8 @@ struct HostAttribute {
     components: usize,
 }
 
-// SAFETY: the library does nothing with `ctx` but hand it back; that the functions may be called from any
-// thread is their documented contract.
+// SAFETY: the library only passes `ctx` back to the host. By their documented contract, the functions may be
+// called from any thread.
 unsafe impl Send for HostAttribute {}
 // SAFETY: as above.
 unsafe impl Sync for HostAttribute {}
@@ -87,7 +88,7 @@ impl Drop for HostAttribute {
 }
 
 impl HostAttribute {
-    /// What the numbers of a value say.
+    /// Returns the value that the numbers mean.
     fn value(&self, numbers: &[f64]) -> Option<[f64; 4]> {
         let mut value = [0.0; 4];
         for (to, &number) in value.iter_mut().zip(numbers).take(self.components) {
@@ -97,8 +98,8 @@ impl HostAttribute {
     }
 }
 
-// SAFETY, of all calls here: the functions are as the host gave them, with their own context and as many
-// numbers as they are told of.
+// SAFETY, of all calls here: the functions are as the host gave them, called with their own context and with
+// the documented counts of numbers.
 impl Attribute for HostAttribute {
     fn components(&self) -> usize {
         self.components
@@ -134,15 +135,15 @@ impl Attribute for HostAttribute {
     }
 }
 
-/// The host's own attribute.
+/// Makes an attribute from the host's own functions.
 ///
 /// - Buffers: `callbacks`, one struct, which is copied; `attribute`, one pointer.
 /// - Result: `*attribute`.
-/// - Errors: LEAFLESS_E_NULL if `value` and `values` are NULL; LEAFLESS_E_ARGUMENT unless `components` is 1 to 4.
-///   After an error `destroy` is not called.
-/// - Ownership: `ctx` must live until `destroy` is called with it; give `*attribute` back with
+/// - Errors: LEAFLESS_E_NULL if `value` and `values` are NULL; LEAFLESS_E_ARGUMENT unless `components` is 1
+///   to 4. After an error `destroy` is not called.
+/// - Ownership: `ctx` must live until `destroy` is called with it; release `*attribute` with
 ///   leafless_attribute_free.
-/// - Threads: any; in which the functions are called, leafless_attribute_value_fn says.
+/// - Threads: any; leafless_attribute_value_fn describes the threads that call the functions.
 /// - Untrusted input: any answers.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn leafless_attribute_new_callbacks(
@@ -159,7 +160,7 @@ pub unsafe extern "C" fn leafless_attribute_new_callbacks(
         }
         let components = components(callbacks.components, "callbacks.components")?;
         let attribute = out(attribute, "attribute")?;
-        // From here on the host's context is ours.
+        // From here on the library owns the host's context.
         attribute.write(give(HostAttribute { callbacks, components }))
     })
 }

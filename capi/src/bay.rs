@@ -1,4 +1,4 @@
-//! What is laid out: a container, obstacles, items and how these may be turned.
+//! Bays: a container, obstacles, items and their orientations.
 
 use super::boundary::{Failure, Sized32, discard, exclusive, guard, out, shared, sized, slice};
 use super::csg::placement;
@@ -8,20 +8,22 @@ use super::status::leafless_status;
 use leafless::layout::{Bay, Item, Orientations};
 use leafless::memory;
 
-/// A container, obstacles and items: what leafless_layout_new makes a layout of. It is filled by one thread at a time.
+/// A container, obstacles and items, from which leafless_layout_new makes a layout. One thread at a time may
+/// fill it.
 pub struct leafless_bay(pub(super) Bay);
 
-/// The ways in which an item may be turned.
+/// The orientations that an item may take.
 #[derive(Clone, Copy)]
 #[repr(u32)]
 pub enum leafless_orientations {
-    /// The 24 turns that take axes to axes. They are exact.
+    /// The 24 rotations that take axes to axes. They are exact.
     LEAFLESS_ORIENTATIONS_TURNS = 0,
-    /// Only as it is.
+    /// Only the given orientation.
     LEAFLESS_ORIENTATIONS_AS_GIVEN = 1,
-    /// As it is, and `free_count` turns by chance, evenly spread over all turns. They depend on the seed of the search.
+    /// The given orientation, and `free_count` random rotations, distributed uniformly over all rotations.
+    /// They depend on the seed of the search.
     LEAFLESS_ORIENTATIONS_FREE = 2,
-    /// Any of `matrices`, of which only the linear part M counts.
+    /// The linear parts M of `matrices`.
     LEAFLESS_ORIENTATIONS_LIST = 3,
 }
 use leafless_orientations::*;
@@ -33,7 +35,7 @@ enumeration!(leafless_orientations => leafless_orientations {
     LEAFLESS_ORIENTATIONS_LIST => LEAFLESS_ORIENTATIONS_LIST,
 });
 
-/// What is said of an item beside its solid.
+/// Options of an item.
 #[derive(Clone, Copy)]
 #[repr(C)]
 pub struct leafless_item_options {
@@ -43,28 +45,28 @@ pub struct leafless_item_options {
     pub orientations: Number<leafless_orientations>,
     /// Mass per cubic model unit, a positive number; 0 means 1.
     pub density: f64,
-    /// Of LEAFLESS_ORIENTATIONS_LIST: `matrix_count` times 12 numbers, the rows of [M | t]. M must turn; it may neither mirror nor
-    /// stretch lengths by more than 10^-9 of them.
+    /// For LEAFLESS_ORIENTATIONS_LIST: `matrix_count` times 12 numbers, the rows of [M | t]. M must be a
+    /// rotation: it must not mirror, nor change lengths by more than 10^-9 of them.
     pub matrices: *const f64,
-    /// Of LEAFLESS_ORIENTATIONS_LIST: how many matrices there are, 1 to 4096.
+    /// For LEAFLESS_ORIENTATIONS_LIST: number of matrices, 1 to 4096.
     pub matrix_count: u64,
-    /// Of LEAFLESS_ORIENTATIONS_FREE: how many turns by chance there are, 1 to 4096.
+    /// For LEAFLESS_ORIENTATIONS_FREE: number of random rotations, 1 to 4096.
     pub free_count: u32,
-    /// 0.
+    /// Reserved; 0.
     pub reserved: u32,
 }
 
 // SAFETY: numbers and a pointer.
 unsafe impl Sized32 for leafless_item_options {}
 
-/// Refuses a field that should be zero, and is not.
+/// Refuses a field that should be zero and is not.
 fn unused(is_unused: bool, name: &'static str, problem: &'static str) -> Result<(), Failure> {
     if is_unused { Ok(()) } else { Err(Failure::Argument { name, problem }) }
 }
 
 impl leafless_item_options {
     /// # Safety
-    /// `matrices` is NULL or misaligned, or there are that many.
+    /// `matrices` is NULL or misaligned, or points to `matrix_count` matrices.
     unsafe fn orientations(&self) -> Result<Orientations, Failure> {
         unused(self.reserved == 0, "item.reserved", "must be 0")?;
         let orientations = self.orientations.known("item.orientations")?;
@@ -94,7 +96,7 @@ impl leafless_item_options {
     }
 }
 
-/// A distance that has to be kept, refused under the name that the host knows.
+/// Checks a distance to keep. Errors use the name of the host's parameter.
 fn distance(value: f64, name: &'static str) -> Result<f64, Failure> {
     match (0.0..=Bay::FURTHEST).contains(&value) {
         true => Ok(value),
@@ -102,13 +104,15 @@ fn distance(value: f64, name: &'static str) -> Result<f64, Failure> {
     }
 }
 
-/// A bay with a container, without obstacles and items. The container is any solid that ends.
+/// Makes a bay with a container, without obstacles and items. The container is any bounded solid.
 ///
-/// - Buffers: `bay`, one pointer. `clearance_model` is the least distance between two items, and between an item and an
-///   obstacle; `wall_clearance_model` that between an item and what lies outside of the container.
+/// - Buffers: `bay`, one pointer. `clearance_model` is the least distance between two items, and between an
+///   item and an obstacle; `wall_clearance_model` is the least distance between an item and the outside of
+///   the container. Both are in model units.
 /// - Result: `*bay`.
-/// - Errors: LEAFLESS_E_ARGUMENT if a distance is not between 0 and 2^64; if the container has no bounds, or no extent along an axis.
-/// - Ownership: the bay shares the container, which may be freed; give `*bay` back with leafless_bay_free.
+/// - Errors: LEAFLESS_E_ARGUMENT if a distance is not between 0 and 2^64; if the container has no bounds, or
+///   no extent along an axis.
+/// - Ownership: the bay shares the container, which may be freed; release `*bay` with leafless_bay_free.
 /// - Untrusted input: any solid and numbers.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn leafless_bay_new(
@@ -127,10 +131,10 @@ pub unsafe extern "C" fn leafless_bay_new(
     })
 }
 
-/// Gives back a bay. Layouts that were made of it stay.
+/// Releases a bay. Layouts that were made from it stay.
 ///
 /// - Buffers: `bay`, a handle or NULL, which does nothing.
-/// - Ownership: the handle is gone.
+/// - Ownership: the handle is invalid afterwards.
 /// - Threads: no other call may use the handle.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn leafless_bay_free(bay: *mut leafless_bay) {
@@ -138,11 +142,12 @@ pub unsafe extern "C" fn leafless_bay_free(bay: *mut leafless_bay) {
     unsafe { discard(bay) }
 }
 
-/// Adds a solid that stands where it is, and that items must stay away from.
+/// Adds an obstacle: a solid with a fixed position that items must keep away from.
 ///
 /// - Buffers: `number`, one number.
-/// - Result: `*number`, which leafless_neighbour tells: obstacles are counted from 0.
-/// - Errors: LEAFLESS_E_ARGUMENT if the solid has no bounds, or no extent along an axis; LEAFLESS_E_NO_MEMORY.
+/// - Result: `*number`, the number of the obstacle in leafless_neighbour, counted from 0.
+/// - Errors: LEAFLESS_E_ARGUMENT if the solid has no bounds, or no extent along an axis;
+///   LEAFLESS_E_NO_MEMORY.
 /// - Ownership: the bay shares the solid, which may be freed.
 /// - Threads: any, but no other call may use the bay.
 /// - Untrusted input: any solid.
@@ -159,13 +164,14 @@ pub unsafe extern "C" fn leafless_bay_add_obstacle(
     })
 }
 
-/// Adds an item: a solid, of which leafless_layout_search places so many copies. leafless_layout_place places any number.
+/// Adds an item: a solid of which leafless_layout_search places `count` copies. leafless_layout_place places
+/// any number of copies.
 ///
-/// - Buffers: `item`, one struct or NULL, which means 24 turns and a density of 1; `number`, one number.
-/// - Result: `*number`, by which leafless_layout_place takes it: items are counted from 0.
-/// - Errors: LEAFLESS_E_ARGUMENT if the solid has no bounds, or no extent along an axis; if a field of `item` is none of its
-///   enumeration, or is set though it is not used; if the density is neither 0 nor a positive number; if a matrix does
-///   not turn, or there is none though there should be one; LEAFLESS_E_NO_MEMORY.
+/// - Buffers: `item`, one struct or NULL, which means 24 rotations and a density of 1; `number`, one number.
+/// - Result: `*number`, the number of the item for leafless_layout_place, counted from 0.
+/// - Errors: LEAFLESS_E_ARGUMENT if the solid has no bounds, or no extent along an axis; if a field of `item`
+///   is not a member of its enumeration, or is set though it is not used; if the density is neither 0 nor a
+///   positive number; if a matrix is not a rotation, or a required matrix is missing; LEAFLESS_E_NO_MEMORY.
 /// - Ownership: the bay shares the solid, which may be freed. It copies the matrices.
 /// - Threads: any, but no other call may use the bay.
 /// - Untrusted input: any solid and numbers. A search takes memory for the cells of each orientation.

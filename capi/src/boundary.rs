@@ -1,4 +1,5 @@
-//! What every function of the interface does first and last: check pointers, catch panics, keep the message.
+//! Pointer checks, panic handling and error messages: the first and last steps of every function of the
+//! interface.
 
 use super::status::keep;
 use super::status::leafless_status::{self, *};
@@ -13,7 +14,7 @@ use leafless::error::FormatError;
 use std::panic::{AssertUnwindSafe, catch_unwind};
 use std::sync::Arc;
 
-/// Why a call fails.
+/// The reason why a call fails.
 pub(super) enum Failure {
     Null {
         name: &'static str,
@@ -71,7 +72,7 @@ impl Display for Failure {
     }
 }
 
-/// The end of a path, so that what is wrong with the file fits beside it.
+/// Returns the end of a path, so that the description of the problem fits beside it.
 fn end(path: &str) -> &str {
     let start = path.len().saturating_sub(255);
     (start..=path.len()).find_map(|start| path.get(start..)).unwrap_or_default()
@@ -97,7 +98,7 @@ impl From<&Failure> for leafless_status {
                 Error::Format(FormatError::Version { .. } | FormatError::Required { .. }) => {
                     LEAFLESS_E_VERSION
                 }
-                // Not the contents, but where the host has put them.
+                // The host's address is wrong, not the contents.
                 Error::Format(
                     FormatError::Alignment | FormatError::NotRegular | FormatError::OtherModel { .. },
                 ) => LEAFLESS_E_ARGUMENT,
@@ -108,7 +109,7 @@ impl From<&Failure> for leafless_status {
                 Error::Cancelled => LEAFLESS_E_CANCELLED,
                 Error::Callback { .. } => LEAFLESS_E_CALLBACK,
                 Error::Io(_) | Error::File { .. } => LEAFLESS_E_IO,
-                // There is no other: a test compares this list with the library's.
+                // No other variant exists: a test compares this list with the library's.
                 _ => LEAFLESS_E_ARGUMENT,
             },
         }
@@ -117,10 +118,10 @@ impl From<&Failure> for leafless_status {
 
 /// Runs the body of a function.
 ///
-/// A panic does not reach the host. Nothing that survives it can be half-changed: handles are immutable but
-/// for atomic flags, cursors, bays, lazy octrees, editors and layouts. A cursor's position is checked at every step; a bay gets
-/// one thing at a time; a lazy octree changes only once the solid has answered; an editor and a layout that a panic left refuse
-/// everything.
+/// A panic does not reach the host. No object that survives the panic can be half-changed: handles are
+/// immutable, except atomic flags, cursors, bays, lazy octrees, editors and layouts. A cursor's position is
+/// checked at every step. A bay changes in one step. A lazy octree changes only after the solid has answered.
+/// An editor and a layout that a panic interrupted refuse every call.
 #[inline(always)]
 pub(super) fn guard(body: impl FnOnce() -> Result<(), Failure>) -> leafless_status {
     match catch_unwind(AssertUnwindSafe(body)) {
@@ -130,7 +131,7 @@ pub(super) fn guard(body: impl FnOnce() -> Result<(), Failure>) -> leafless_stat
     }
 }
 
-/// As [`guard`] for functions that have nothing to refuse, such as `_free`.
+/// Like [`guard`], for functions that cannot fail, such as `_free`.
 fn guard_free(body: impl FnOnce()) {
     if let Err(payload) = catch_unwind(AssertUnwindSafe(body)) {
         panicked(payload);
@@ -174,10 +175,10 @@ fn checked<T>(pointer: *const T, name: &'static str) -> Result<(), Failure> {
     Ok(())
 }
 
-/// What `pointer` points to.
+/// Returns the `T` that `pointer` points to.
 ///
 /// # Safety
-/// Unless it is NULL or misaligned, it points to a `T` that stays and does not change during the call.
+/// Unless `pointer` is NULL or misaligned, it points to a `T` that lives and does not change during the call.
 #[inline(always)]
 pub(super) unsafe fn shared<'a, T>(pointer: *const T, name: &'static str) -> Result<&'a T, Failure> {
     checked(pointer, name)?;
@@ -185,10 +186,10 @@ pub(super) unsafe fn shared<'a, T>(pointer: *const T, name: &'static str) -> Res
     Ok(unsafe { &*pointer })
 }
 
-/// What `pointer` points to.
+/// Returns the `T` that `pointer` points to, for changing it.
 ///
 /// # Safety
-/// As [`shared`], and nothing else uses it during the call.
+/// As [`shared`], and nothing else uses the `T` during the call.
 #[inline(always)]
 pub(super) unsafe fn exclusive<'a, T>(pointer: *mut T, name: &'static str) -> Result<&'a mut T, Failure> {
     checked(pointer, name)?;
@@ -196,10 +197,10 @@ pub(super) unsafe fn exclusive<'a, T>(pointer: *mut T, name: &'static str) -> Re
     Ok(unsafe { &mut *pointer })
 }
 
-/// The `N` numbers at `pointer`.
+/// Returns the `N` numbers at `pointer`.
 ///
 /// # Safety
-/// Unless it is NULL or misaligned, it points to that many.
+/// Unless `pointer` is NULL or misaligned, it points to `N` elements.
 #[inline(always)]
 pub(super) unsafe fn array<T: Copy, const N: usize>(
     pointer: *const T,
@@ -210,10 +211,11 @@ pub(super) unsafe fn array<T: Copy, const N: usize>(
     Ok(unsafe { *pointer.cast() })
 }
 
-/// The `count` elements at `pointer`, which may be NULL if there is none.
+/// Returns the `count` elements at `pointer`, which may be NULL if `count` is 0.
 ///
 /// # Safety
-/// Unless it is NULL or misaligned, it points to that many, which stay and do not change during the call.
+/// Unless `pointer` is NULL or misaligned, it points to `count` elements that live and do not change during
+/// the call.
 pub(super) unsafe fn slice<'a, T>(
     pointer: *const T,
     count: u64,
@@ -223,7 +225,7 @@ pub(super) unsafe fn slice<'a, T>(
         return Ok(&[]);
     }
     let count = length::<T>(pointer, count, name)?;
-    // SAFETY: neither NULL nor misaligned, and not longer than memory can be; the rest the caller promises.
+    // SAFETY: neither NULL nor misaligned, and not longer than memory can be; the caller promises the rest.
     Ok(unsafe { core::slice::from_raw_parts(pointer, count) })
 }
 
@@ -236,7 +238,8 @@ fn length<T>(pointer: *const T, count: u64, name: &'static str) -> Result<usize,
     }
 }
 
-/// Elements in memory of the host, at equal distances and on any address. Nothing between them is read.
+/// Elements in the host's memory, at equal distances and at any address. The bytes between elements are not
+/// read.
 #[derive(Clone, Copy)]
 pub(super) struct Strided<'a, T> {
     start: *const u8,
@@ -245,12 +248,13 @@ pub(super) struct Strided<'a, T> {
     host: PhantomData<&'a T>,
 }
 
-/// The `count` elements from `start` on, `stride` bytes from one's beginning to the next's; 0 means without a
-/// gap. `start` may be NULL if there is none. The names are those of `start` and `stride`.
+/// Returns the `count` elements from `start` on. `stride` is the number of bytes from the start of one
+/// element to the start of the next; 0 means that elements follow each other without gaps. `start` may be
+/// NULL if `count` is 0. `names` are the names of `start` and `stride` in messages.
 ///
 /// # Safety
-/// Any bytes are a `T`. `start` is NULL, or that many elements lie there, and stay and do not change during
-/// the call.
+/// Any bytes are a valid `T`. `start` is NULL, or points to `count` elements that live and do not change
+/// during the call.
 pub(super) unsafe fn strided<'a, T>(
     start: *const c_void,
     count: u64,
@@ -266,10 +270,10 @@ pub(super) unsafe fn strided<'a, T>(
     if count == 0 {
         return Ok(Strided { start: NonNull::dangling().as_ptr(), stride: 0, len: 0, host: PhantomData });
     }
-    // From the first byte of the first element to the last of the last.
+    // The span runs from the first byte of the first element to the last byte of the last element.
     let span = stride.checked_mul(count - 1).and_then(|before| before.checked_add(size));
     length::<u8>(start.cast(), span.unwrap_or(u64::MAX), names[0])?;
-    // Both fit, as the span does; but of a single element the stride need not, and is not used.
+    // Both fit because the span fits. The stride of a single element need not fit, and is not used.
     let stride = usize::try_from(stride).unwrap_or(0);
     Ok(Strided { start: start.cast(), stride, len: count as usize, host: PhantomData })
 }
@@ -279,31 +283,31 @@ impl<T: Copy> Strided<'_, T> {
         self.len
     }
 
-    /// The element with this index, which there must be.
+    /// Returns the element with this index, which must exist.
     #[inline(always)]
     pub(super) fn at(&self, index: usize) -> T {
         assert!(index < self.len, "index {index} of {}", self.len);
-        // SAFETY: one of the elements that `strided` was promised; where it begins is less than their span,
-        // which is no longer than memory can be.
+        // SAFETY: one of the elements promised to `strided`; its offset is less than the span, which is no
+        // longer than memory can be.
         unsafe { self.start.add(index * self.stride).cast::<T>().read_unaligned() }
     }
 }
 
 impl<'a, T> Strided<'a, T> {
-    /// The elements themselves, if they follow each other without a gap where their type can lie.
+    /// Returns the elements as a slice, if they are aligned and follow each other without gaps.
     pub(super) fn as_slice(&self) -> Option<&'a [T]> {
         if self.len == 0 {
             return Some(&[]);
         }
         let start = self.start.cast::<T>();
         let is_packed = self.stride == size_of::<T>() || self.len == 1;
-        // SAFETY: promised to `strided`: that many elements, which stay and do not change during the call.
-        // Their span is no longer than memory can be.
+        // SAFETY: promised to `strided`: `len` elements that live and do not change during the call. Their
+        // span is no longer than memory can be.
         (is_packed && start.is_aligned()).then(|| unsafe { core::slice::from_raw_parts(start, self.len) })
     }
 }
 
-/// The UTF-8 text of `length` bytes at `pointer`, which may be NULL if there is none.
+/// Returns the UTF-8 text of `length` bytes at `pointer`, which may be NULL if `length` is 0.
 ///
 /// # Safety
 /// As [`slice`].
@@ -317,7 +321,7 @@ pub(super) unsafe fn text<'a>(
     core::str::from_utf8(bytes).map_err(|_| Failure::Utf8 { name })
 }
 
-/// The path of `length` bytes of UTF-8 at `pointer`.
+/// Returns the path of `length` bytes of UTF-8 at `pointer`.
 ///
 /// # Safety
 /// As [`slice`].
@@ -338,7 +342,7 @@ pub(super) unsafe fn named_path<'a>(
     Ok(path)
 }
 
-/// What the header says of handles and threads.
+/// Checks at compile time what the header promises about handles and threads.
 const _: () = {
     const fn shared_by_threads<T: Send + Sync>() {}
     shared_by_threads::<super::leafless_control>();
@@ -362,7 +366,7 @@ const _: () = {
     shared_by_threads::<super::leafless_layout>();
 };
 
-/// A place for a result, checked before the work begins and written once it is done.
+/// The location of a result, checked before the work begins and written when the work is done.
 pub(super) struct Out<T>(NonNull<T>);
 
 /// # Safety
@@ -377,13 +381,13 @@ pub(super) unsafe fn out<T>(pointer: *mut T, name: &'static str) -> Result<Out<T
 impl<T> Out<T> {
     #[inline(always)]
     pub(super) fn write(self, value: T) -> Result<(), Failure> {
-        // SAFETY: promised to `out`. What lay there is not dropped: it may be uninitialised.
+        // SAFETY: promised to `out`. The old value is not dropped, because it may be uninitialised.
         unsafe { self.0.write(value) };
         Ok(())
     }
 }
 
-/// A buffer for many elements, which may be absent to ask how many there are.
+/// A buffer for many elements. It is absent if only the number of elements is wanted.
 pub(super) struct Buffer<T> {
     name: &'static str,
     start: *mut T,
@@ -405,12 +409,12 @@ pub(super) unsafe fn buffer<T>(
 }
 
 impl<T: Copy> Buffer<T> {
-    /// Whether elements are wanted, and not only their number.
+    /// Returns whether elements are wanted, and not only their number.
     pub(super) fn wanted(&self) -> bool {
         !self.start.is_null()
     }
 
-    /// Refuses if there is a buffer, but not for `count` elements.
+    /// Returns an error if there is a buffer that is too small for `count` elements.
     pub(super) fn check(&self, count: usize) -> Result<(), Failure> {
         if self.wanted() && count as u64 > self.capacity {
             let (name, capacity) = (self.name, self.capacity);
@@ -429,7 +433,7 @@ impl<T: Copy> Buffer<T> {
         Ok(())
     }
 
-    /// Writes one element, if there is a buffer, and room in it.
+    /// Writes one element, if there is a buffer with room for it.
     #[inline]
     pub(super) fn put(&self, index: usize, element: T) {
         if self.wanted() && (index as u64) < self.capacity {
@@ -438,10 +442,10 @@ impl<T: Copy> Buffer<T> {
         }
     }
 
-    /// The first `count` elements of the buffer, set to zero; `None` if there is none.
+    /// Returns the first `count` elements of the buffer, set to zero; `None` if there is no buffer.
     ///
     /// # Safety
-    /// What [`buffer`] was promised holds for `'a`, and there is no other slice of the buffer.
+    /// The promise made to [`buffer`] holds for `'a`, and there is no other slice of the buffer.
     pub(super) unsafe fn zeroed<'a>(&self, count: usize) -> Result<Option<&'a mut [T]>, Failure>
     where
         T: bytemuck::Zeroable,
@@ -457,7 +461,7 @@ impl<T: Copy> Buffer<T> {
         }
     }
 
-    /// Fills the buffer, if there is one, with what elements of the library are in C.
+    /// Fills the buffer, if there is one, with the C forms of elements of the library.
     pub(super) fn fill_with<'e, E>(&self, elements: &'e [E]) -> Result<(), Failure>
     where
         T: From<&'e E>,
@@ -473,26 +477,27 @@ impl<T: Copy> Buffer<T> {
     }
 }
 
-/// A struct of the host that begins with its own size: older hosts have shorter ones, newer ones longer.
+/// A struct of the host that begins with its own size. Older hosts have shorter structs, newer hosts longer
+/// ones.
 ///
 /// # Safety
-/// All-zero bytes are a `T`.
+/// All-zero bytes are a valid `T`.
 pub(super) unsafe trait Sized32: Copy {}
 
-/// No struct of any version has more bytes.
+/// The largest size in bytes that a struct of any version has.
 const LARGEST_STRUCT: usize = 4096;
 
-/// Whether a host's struct can have this size. No version's ends within a field: its size is a multiple of
-/// its alignment. So half a pointer is never taken for one.
+/// Returns whether a host's struct can have this size. The struct of every version has a size that is a
+/// multiple of its alignment, so no version ends within a field, and half a pointer is never read.
 fn sensible<T>(size: usize) -> bool {
     (size_of::<u32>()..=LARGEST_STRUCT).contains(&size) && size.is_multiple_of(align_of::<T>())
 }
 
-/// The host's struct, or the default (all zero) if it is NULL. What an older host does not have yet is zero;
-/// what this library does not know yet must be.
+/// Returns the host's struct, or the default (all zero) if `pointer` is NULL. Fields that an older host lacks
+/// are zero. Fields that this library lacks must be zero.
 ///
 /// # Safety
-/// Unless it is NULL or misaligned, `pointer` points to as many bytes as its first four say.
+/// Unless `pointer` is NULL or misaligned, it points to as many bytes as its first four bytes say.
 pub(super) unsafe fn sized<T: Sized32>(pointer: *const T, name: &'static str) -> Result<T, Failure> {
     // SAFETY: a promise of the trait.
     let mut known: T = unsafe { core::mem::zeroed() };
@@ -521,14 +526,14 @@ pub(super) unsafe fn sized<T: Sized32>(pointer: *const T, name: &'static str) ->
     Ok(known)
 }
 
-/// A struct that the library fills and that begins with its own size, which the host sets: older hosts have
-/// shorter ones, newer ones longer.
+/// A struct that the library fills and that begins with its own size, which the host sets. Older hosts have
+/// shorter structs, newer hosts longer ones.
 ///
 /// # Safety
-/// It is `repr(C)`, and its first field is `struct_size`, a `u32`. [`output`] sees to that.
+/// The struct is `repr(C)`, and its first field is `struct_size`, a `u32`. [`output`] ensures that.
 pub(super) unsafe trait Output: Copy {}
 
-/// Says of a struct that it is an [`Output`].
+/// Declares that a struct is an [`Output`].
 macro_rules! output {
     ($name:ident) => {
         const _: () = assert!(core::mem::offset_of!($name, struct_size) == 0);
@@ -538,15 +543,15 @@ macro_rules! output {
 }
 pub(super) use output;
 
-/// A place for an output, checked before the work begins and written once it is done.
+/// The location of an output, checked before the work begins and written when the work is done.
 pub(super) struct Filled<T> {
     start: NonNull<T>,
     size: usize,
 }
 
 /// # Safety
-/// Unless it is NULL or misaligned, `pointer` points to as many bytes as its first four say, which nothing
-/// else uses during the call.
+/// Unless `pointer` is NULL or misaligned, it points to as many bytes as its first four bytes say. Nothing
+/// else uses these bytes during the call.
 pub(super) unsafe fn filled<T: Output>(pointer: *mut T, name: &'static str) -> Result<Filled<T>, Failure> {
     checked(pointer, name)?;
     // SAFETY: the caller promises four bytes.
@@ -559,8 +564,8 @@ pub(super) unsafe fn filled<T: Output>(pointer: *mut T, name: &'static str) -> R
 }
 
 impl<T: Output> Filled<T> {
-    /// Writes what the host's struct has room for. Its size stays, and so do fields that this library does not
-    /// know.
+    /// Writes the fields that the host's struct has room for. The struct's size, and fields that this library
+    /// does not know, are unchanged.
     pub(super) fn write(self, value: T) -> Result<(), Failure> {
         const FIRST: usize = size_of::<u32>();
         let end = self.size.min(size_of::<T>());
@@ -573,7 +578,7 @@ impl<T: Output> Filled<T> {
     }
 }
 
-/// Makes a struct of the host its default, of which the first field is its size: that, and zeros.
+/// Sets a struct of the host to its default: the size in the first field, and zeros.
 ///
 /// # Safety
 /// Unless it is NULL or misaligned, `pointer` points to room for `size` bytes.
@@ -590,16 +595,16 @@ pub(super) unsafe fn initialise(pointer: *mut c_void, size: usize) -> Result<(),
     Ok(())
 }
 
-/// A new handle with one reference.
+/// Returns a new handle with one reference.
 pub(super) fn handle<T>(value: T) -> *mut T {
     Arc::into_raw(Arc::new(value)).cast_mut()
 }
 
-/// One more share of what a handle stands for. Never through a reference: the count lies beside what that
-/// covers.
+/// Returns one more share of a handle's object. The code uses no Rust reference, because the count lies
+/// outside the memory that a reference covers.
 ///
 /// # Safety
-/// The handle is NULL or misaligned, or alive and came from [`handle`].
+/// The handle is NULL or misaligned, or it is alive and came from [`handle`].
 pub(super) unsafe fn share<T>(handle: *const T, name: &'static str) -> Result<Arc<T>, Failure> {
     checked(handle, name)?;
     // SAFETY: `handle` came from `Arc::into_raw`.
@@ -626,7 +631,7 @@ pub(super) unsafe fn refer<T>(
     }
 }
 
-/// Gives back one reference.
+/// Releases one reference.
 ///
 /// # Safety
 /// The handle is NULL, or alive and came from [`handle`]; the reference is the caller's.
@@ -637,7 +642,7 @@ pub(super) unsafe fn release<T>(handle: *mut T) {
     }
 }
 
-/// Gives back a handle that nothing shares.
+/// Releases a handle that nothing shares.
 ///
 /// # Safety
 /// The handle is NULL, or alive and came from `Box::into_raw`; no other call uses it.
@@ -648,7 +653,7 @@ pub(super) unsafe fn discard<T>(handle: *mut T) {
     }
 }
 
-/// Panics inside, to show what becomes of it: only in libraries that are built for tests.
+/// Panics inside, to test how a panic is handled. It exists only in libraries that are built for tests.
 ///
 /// - Result: LEAFLESS_E_PANIC.
 #[cfg(feature = "test")]

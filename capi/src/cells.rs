@@ -1,4 +1,4 @@
-//! Cells of octrees: neighbours, and cells and boundary faces one after another.
+//! Cells of octrees: neighbours, and iterators over cells and boundary faces.
 
 use super::boundary::{Failure, array, buffer, discard, exclusive, guard, out, share, slice};
 use super::cursor::leafless_cursor;
@@ -12,11 +12,11 @@ use leafless::octree::{BoundaryFace, BoundaryFaces, CellFilter, Cells, Direction
 use std::sync::Arc;
 use yoke::Yoke;
 
-/// A cell of an octree and what is known of it.
+/// A cell of an octree and its tag.
 #[derive(Clone, Copy)]
 #[repr(C)]
 pub struct leafless_cell {
-    /// The cell's place among those of its level, per axis: its lower corner in units of its edge.
+    /// The cell's index on each axis among the cells of its level: its lower corner in units of its edge.
     pub cell: [u32; 3],
     /// The cell's level; 0 is the universe.
     pub level: u32,
@@ -32,14 +32,14 @@ impl From<TaggedCell> for leafless_cell {
     }
 }
 
-/// A square between two cells that are not split: one of a tag that was asked for, and one of another. It is a
-/// whole face of the smaller one.
+/// A square between two cells that are not split: one with a requested tag, and one with another tag. It is a
+/// whole face of the smaller cell.
 #[derive(Clone, Copy)]
 #[repr(C)]
 pub struct leafless_boundary_face {
-    /// The cell of a tag that was asked for.
+    /// The cell with a requested tag.
     pub inner: leafless_cell,
-    /// The cell of another tag. Outside of the universe: the inner cell's place and level, with the exterior's
+    /// The cell with another tag. Outside the universe: the inner cell's index and level, with the exterior's
     /// tag.
     pub outer: leafless_cell,
     /// The axis from the inner cell to the outer one: 0 is x, 1 y, 2 z.
@@ -50,12 +50,12 @@ pub struct leafless_boundary_face {
     pub has_outer: bool,
 }
 
-/// Which tags' cells are wanted: one of these values, or several joined by `|`.
+/// A set of tags: one of these values, or several joined by `|`.
 #[repr(u32)]
 pub enum leafless_tags {
     /// EMPTY cells.
     LEAFLESS_TAGS_EMPTY = 1,
-    /// BRANCH cells: those that are cut and split.
+    /// BRANCH cells: cells that are split.
     LEAFLESS_TAGS_BRANCH = 2,
     /// PARTIAL cells.
     LEAFLESS_TAGS_PARTIAL = 4,
@@ -65,12 +65,12 @@ pub enum leafless_tags {
     LEAFLESS_TAGS_LEAVES = 13,
 }
 
-/// Cells of an octree one after another. It stands before its next cell.
+/// An iterator over cells of an octree. Its position is before the next cell.
 ///
 /// Reading changes it: while one thread reads, no other may use it. Threads may have one each.
 pub struct leafless_cells(Yoke<Cells<'static>, Arc<leafless_octree>>);
 
-/// Boundary faces of an octree one after another. It stands before its next face.
+/// An iterator over boundary faces of an octree. Its position is before the next face.
 ///
 /// Reading changes it: while one thread reads, no other may use it. Threads may have one each.
 pub struct leafless_faces {
@@ -92,7 +92,7 @@ impl leafless_faces {
     }
 }
 
-/// The cell with these coordinates; what is out of range stays so.
+/// Returns the cell with these coordinates; values out of range stay out of range.
 ///
 /// # Safety
 /// As [`array`].
@@ -112,7 +112,7 @@ unsafe fn direction(pointer: *const i32) -> Result<Direction, Failure> {
     Direction::new(steps).ok_or(Failure::Argument { name: "direction", problem })
 }
 
-/// The tags of one or several leafless_tags.
+/// Returns the tags of one or several leafless_tags.
 pub(super) fn tags(tags: u32) -> Result<std::vec::Vec<Tag>, Failure> {
     if !(1..=15).contains(&tags) {
         return Err(Failure::Argument { name: "tags", problem: "must be one or several leafless_tags" });
@@ -142,7 +142,7 @@ unsafe fn filter(
     unsafe { Ok(filter.within(array(min_cell, "min_cell")?, array(max_cell, "max_cell")?)) }
 }
 
-/// The box of a cell of any level, in model units: the doubles nearest to its corners that contain it.
+/// Returns the box of a cell of any level, in model units, rounded outward to the nearest doubles.
 ///
 /// - Buffers: `frame`, one struct; `cell`, 3 numbers; `min_model` and `max_model`, room for 3 numbers each.
 /// - Result: `min_model` and `max_model`; the exact corners if these are doubles.
@@ -178,9 +178,9 @@ pub unsafe extern "C" fn leafless_frame_cell_bounds(
 /// ancestor).
 ///
 /// - Buffers: `cell`, 3 numbers; `reached`, one truth value, or NULL.
-/// - Result: `*reached`, whether the cursor stands on the cell itself.
+/// - Result: `*reached`, whether the cursor is at the cell itself.
 /// - Errors: LEAFLESS_E_ARGUMENT if `level` is greater than the octree's depth, or a coordinate of `cell` not
-///   below 2^level; the cursor then stays where it is.
+///   below 2^level; then the cursor does not move.
 /// - Threads: no other call may use the cursor.
 /// - Untrusted input: any octree, any numbers; damage reads as PARTIAL.
 ///
@@ -201,16 +201,16 @@ pub unsafe extern "C" fn leafless_cursor_seek(
     })
 }
 
-/// The neighbour of a cursor's cell through a face, an edge or a vertex: the cell of the same size, which is a
-/// BRANCH if it is split, or the larger one that contains it and is not split. The cursor stays where it is.
-/// Along a walk amortised O(1), at most O(depth).
+/// Returns the neighbour of a cursor's cell across a face, an edge or a vertex: the cell of the same size,
+/// which is a BRANCH if it is split, or the larger cell that contains it and is not split. The cursor does
+/// not move. Amortised O(1) along a walk, at most O(depth).
 ///
 /// - Buffers: `direction`, 3 numbers of -1, 0 and 1: the steps along x, y and z; `neighbour`, one struct;
 ///   `exists`, one truth value, or NULL.
 /// - Result: `*neighbour`; `*exists`, whether it lies in the universe. If not, `*neighbour` is the cursor's
 ///   own cell with the exterior's tag.
-/// - Errors: LEAFLESS_E_ARGUMENT if `direction` is none.
-/// - Threads: any, while nobody moves the cursor.
+/// - Errors: LEAFLESS_E_ARGUMENT if `direction` is not a direction.
+/// - Threads: any, while no thread moves the cursor.
 /// - Untrusted input: any octree, any numbers; damage reads as PARTIAL.
 ///
 /// cbindgen:ptrs-as-arrays=[[direction; 3]]
@@ -234,15 +234,17 @@ pub unsafe extern "C" fn leafless_cursor_neighbour(
     })
 }
 
-/// All cells that are not split and touch a cursor's cell on one side: one that is at least as large, or the
-/// smaller ones at its face, edge or vertex, in Morton order.
+/// Returns all cells that are not split and touch a cursor's cell on one side: one cell that is at least as
+/// large, or the smaller cells at its face, edge or vertex, in Morton order.
 ///
 /// - Buffers: `direction`, 3 numbers of -1, 0 and 1: the steps along x, y and z; `cells`, room for `capacity`
-///   structs, or NULL to ask for the count only; `count`, one number.
+///   structs, or NULL to get only the count; `count`, one number.
 /// - Result: `*count`, 0 if the side lies on the boundary of the universe; the cells.
-/// - Errors: LEAFLESS_E_ARGUMENT if `direction` is none; LEAFLESS_E_BUFFER if the capacity is too small.
-/// - Threads: any, while nobody moves the cursor.
-/// - Untrusted input: any octree, any numbers; damage reads as PARTIAL, and no array element is met twice.
+/// - Errors: LEAFLESS_E_ARGUMENT if `direction` is not a direction; LEAFLESS_E_BUFFER if the capacity is too
+///   small.
+/// - Threads: any, while no thread moves the cursor.
+/// - Untrusted input: any octree, any numbers; damage reads as PARTIAL, and no array element is visited
+///   twice.
 ///
 /// cbindgen:ptrs-as-arrays=[[direction; 3]]
 #[unsafe(no_mangle)]
@@ -269,16 +271,16 @@ pub unsafe extern "C" fn leafless_cursor_neighbours(
     })
 }
 
-/// Cells of an octree one after another, in Morton order: those of some tags, on some levels, in a box. A cell
-/// that is split comes before the cells in it. It reads no parts of the octree outside of the box or below the
-/// levels.
+/// Makes an iterator over the cells of an octree with some tags, on some levels, in a box, in Morton order. A
+/// cell that is split comes before the cells in it. The iterator reads no parts of the octree outside the box
+/// or below the levels.
 ///
-/// - Buffers: `min_cell` and `max_cell`, 3 numbers each, or NULL both for the whole universe: the first finest
-///   cell of the box on each axis, and the first beyond it; `cells`, one pointer. `tags` are leafless_tags.
-///   `min_level` and `max_level` may be greater than the depth.
-/// - Result: `*cells`, which stands before the first such cell.
-/// - Errors: LEAFLESS_E_ARGUMENT if `tags` are none.
-/// - Ownership: `*cells` shares the octree, which may be freed; give it back with leafless_cells_free.
+/// - Buffers: `min_cell` and `max_cell`, 3 numbers each, or both NULL for the whole universe: the first
+///   finest cell of the box on each axis, and the first cell beyond it; `cells`, one pointer. `tags` are
+///   leafless_tags. `min_level` and `max_level` may be greater than the depth.
+/// - Result: `*cells`, positioned before the first such cell.
+/// - Errors: LEAFLESS_E_ARGUMENT if `tags` is not a combination of leafless_tags.
+/// - Ownership: `*cells` shares the octree, which may be freed; release it with leafless_cells_free.
 /// - Untrusted input: any octree, any numbers.
 ///
 /// cbindgen:ptrs-as-arrays=[[min_cell; 3], [max_cell; 3]]
@@ -301,10 +303,10 @@ pub unsafe extern "C" fn leafless_cells_new(
     })
 }
 
-/// Gives back what leafless_cells_new made.
+/// Frees an iterator over cells.
 ///
 /// - Buffers: `cells`, a handle or NULL, which does nothing.
-/// - Ownership: the handle is gone.
+/// - Ownership: the handle is invalid afterwards.
 /// - Threads: no other call may use the handle.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn leafless_cells_free(cells: *mut leafless_cells) {
@@ -312,12 +314,12 @@ pub unsafe extern "C" fn leafless_cells_free(cells: *mut leafless_cells) {
     unsafe { discard(cells) }
 }
 
-/// Goes on from a cell: the next one is that cell, or the one that contains it and is not split, or the first
-/// wanted one after it in Morton order. O(depth).
+/// Moves an iterator to a cell: the next cell is that cell, or the cell that contains it and is not split, or
+/// the first requested cell after it in Morton order. O(depth).
 ///
 /// - Buffers: `cell`, 3 numbers.
 /// - Errors: LEAFLESS_E_ARGUMENT if `level` is greater than the octree's depth, or a coordinate of `cell` not
-///   below 2^level; nothing then changes.
+///   below 2^level; then nothing changes.
 /// - Threads: no other call may use `cells`.
 /// - Untrusted input: any octree, any numbers.
 ///
@@ -337,10 +339,11 @@ pub unsafe extern "C" fn leafless_cells_seek(
 
 /// Reads the next cells.
 ///
-/// - Buffers: `buffer`, room for `capacity` structs, which may be NULL if `capacity` is 0; `count`, one number.
-/// - Result: the cells; `*count`, how many: fewer than `capacity` only if there are no more.
+/// - Buffers: `buffer`, room for `capacity` structs, which may be NULL if `capacity` is 0; `count`, one
+///   number.
+/// - Result: the cells; `*count`, their number: less than `capacity` only if there are no more.
 /// - Threads: no other call may use `cells`.
-/// - Untrusted input: any octree; damage reads as PARTIAL, and no array element is met twice.
+/// - Untrusted input: any octree; damage reads as PARTIAL, and no array element is visited twice.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn leafless_cells_next(
     cells: *mut leafless_cells,
@@ -355,7 +358,7 @@ pub unsafe extern "C" fn leafless_cells_next(
         let mut free = buffer;
         let found = cells.0.with_mut_return(move |cells| {
             cells.put(room, |found| {
-                // SAFETY: there is room for as many as are asked for, and each is written once.
+                // SAFETY: there is room for `capacity` elements, and each is written once.
                 free.write(found.into());
                 free = free.add(1);
             })
@@ -364,26 +367,27 @@ pub unsafe extern "C" fn leafless_cells_next(
     })
 }
 
-/// How many elements there is room for at `buffer`.
+/// Returns the number of elements that `buffer` has room for.
 ///
 /// # Safety
-/// As [`slice`], but that nothing there is read.
+/// As [`slice`], but no element is read.
 unsafe fn room<T>(buffer: *mut T, capacity: u64) -> Result<usize, Failure> {
-    // SAFETY: bytes that may be uninitialised may be looked at as such.
+    // SAFETY: bytes that may be uninitialised may be viewed as `MaybeUninit`.
     unsafe { Ok(slice(buffer.cast::<core::mem::MaybeUninit<T>>(), capacity, "buffer")?.len()) }
 }
 
-/// Boundary faces of an octree one after another: those between cells of some tags and cells of others, which
-/// are both not split. With FULL, the boundary of what is surely solid; with FULL and PARTIAL, of what is
-/// possibly solid. Where cells of different sizes meet there is one face for each of the smaller ones. What is
-/// outside of the universe has the exterior's tag. They come in Morton order of the inner cells, for each of
-/// these in the order -z, -y, -x, +x, +y, +z, and for each side in the Morton order of the outer cells.
+/// Makes an iterator over the boundary faces of an octree: faces between cells with some tags and cells with
+/// other tags, both not split. FULL gives the boundary of the region that is certainly solid; FULL and
+/// PARTIAL that of the region that is possibly solid. Where cells of different sizes meet, there is one face
+/// for each of the smaller cells. The space outside the universe has the exterior's tag. Faces come in Morton
+/// order of the inner cells, for each inner cell in the order -z, -y, -x, +x, +y, +z, and for each side in
+/// the Morton order of the outer cells.
 ///
-/// - Buffers: as leafless_cells_new; levels and box are those of the inner cells; `faces`, one pointer.
-///   BRANCH among the tags does nothing.
-/// - Result: `*faces`, which stands before the first face.
-/// - Errors: LEAFLESS_E_ARGUMENT if `tags` are none.
-/// - Ownership: `*faces` shares the octree, which may be freed; give it back with leafless_faces_free.
+/// - Buffers: as leafless_cells_new; levels and box apply to the inner cells; `faces`, one pointer. BRANCH
+///   among the tags is ignored.
+/// - Result: `*faces`, positioned before the first face.
+/// - Errors: LEAFLESS_E_ARGUMENT if `tags` is not a combination of leafless_tags.
+/// - Ownership: `*faces` shares the octree, which may be freed; release it with leafless_faces_free.
 /// - Untrusted input: any octree, any numbers.
 ///
 /// cbindgen:ptrs-as-arrays=[[min_cell; 3], [max_cell; 3]]
@@ -407,10 +411,10 @@ pub unsafe extern "C" fn leafless_faces_new(
     })
 }
 
-/// Gives back what leafless_faces_new made.
+/// Frees an iterator over boundary faces.
 ///
 /// - Buffers: `faces`, a handle or NULL, which does nothing.
-/// - Ownership: the handle is gone.
+/// - Ownership: the handle is invalid afterwards.
 /// - Threads: no other call may use the handle.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn leafless_faces_free(faces: *mut leafless_faces) {
@@ -418,12 +422,12 @@ pub unsafe extern "C" fn leafless_faces_free(faces: *mut leafless_faces) {
     unsafe { discard(faces) }
 }
 
-/// Goes on with the faces of a cell, or of the one that contains it and is not split, or of the first wanted
-/// one after it in Morton order. O(depth).
+/// Moves an iterator to the faces of a cell, or of the cell that contains it and is not split, or of the
+/// first requested cell after it in Morton order. O(depth).
 ///
 /// - Buffers: `cell`, 3 numbers.
 /// - Errors: LEAFLESS_E_ARGUMENT if `level` is greater than the octree's depth, or a coordinate of `cell` not
-///   below 2^level; nothing then changes.
+///   below 2^level; then nothing changes.
 /// - Threads: no other call may use `faces`.
 /// - Untrusted input: any octree, any numbers.
 ///
@@ -443,11 +447,12 @@ pub unsafe extern "C" fn leafless_faces_seek(
 
 /// Reads the next faces.
 ///
-/// - Buffers: `buffer`, room for `capacity` structs, which may be NULL if `capacity` is 0; `count`, one number.
-/// - Result: the faces; `*count`, how many: fewer than `capacity` only if there are no more.
+/// - Buffers: `buffer`, room for `capacity` structs, which may be NULL if `capacity` is 0; `count`, one
+///   number.
+/// - Result: the faces; `*count`, their number: less than `capacity` only if there are no more.
 /// - Threads: no other call may use `faces`.
-/// - Untrusted input: any octree; damage reads as PARTIAL. An array element is met once for its own cells, and
-///   no oftener for those beside them than in a sound octree: six times.
+/// - Untrusted input: any octree; damage reads as PARTIAL. An array element is visited once for its own
+///   cells, and at most six times for neighbouring cells, as in a sound octree.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn leafless_faces_next(
     faces: *mut leafless_faces,

@@ -1,4 +1,4 @@
-//! Channels: what they hold, and the facts that travel with them.
+//! Channels: description, comparison, metadata, and use as attributes.
 
 use super::attribute::{give as give_attribute, leafless_attribute};
 use super::boundary::{filled, guard, handle, out, output, refer, release, shared};
@@ -11,18 +11,18 @@ use leafless::attribute::{Channel, ScalarType};
 use leafless::octree::MetadataLimit;
 use leafless_scalar_type::*;
 
-/// Values inside a cube, in a tree of their own: a colour, a temperature, a material at every point, or at some.
-/// leafless_octree_with_channel attaches it to a solid, in whose file it then travels. The tree may be finer or
-/// coarser than the solid's.
+/// Values inside a cube, stored in a tree of their own: a colour, a temperature or a material at every point,
+/// or at some points. leafless_octree_with_channel attaches a channel to an octree, whose file then contains
+/// it. The tree may be finer or coarser than the octree.
 ///
-/// Immutable: all its functions may be called at once from any number of threads, but leafless_channel_free
-/// needs the reference that it gives back for itself.
+/// Immutable: all its functions may be called at once from any number of threads, but no other call may use
+/// the reference that leafless_channel_free releases.
 pub struct leafless_channel {
     pub(super) channel: Channel,
 }
 
-/// The type of the numbers of a channel. Numbers are rounded to the nearest one of the type, to an even integer
-/// half-way.
+/// The type of the numbers of a channel. Numbers are rounded to the nearest number of the type; half-way
+/// cases go to the even integer.
 #[derive(Clone, Copy)]
 #[repr(u32)]
 pub enum leafless_scalar_type {
@@ -56,19 +56,19 @@ impl From<ScalarType> for leafless_scalar_type {
     }
 }
 
-/// What can be said of a channel at once.
+/// Basic facts about a channel.
 #[derive(Clone, Copy)]
 #[repr(C)]
 pub struct leafless_channel_info {
     /// sizeof(leafless_channel_info).
     pub struct_size: u32,
-    /// Where it lies: in the cube of its solid, with a depth of its own.
+    /// The frame: the cube of its solid, with a depth of its own.
     pub frame: leafless_frame,
     /// The type of the numbers.
     pub scalar: leafless_scalar_type,
-    /// How many numbers a value has: 1 to 4.
+    /// Numbers per value: 1 to 4.
     pub components: u32,
-    /// Values that are stored: one for each run of equal ones.
+    /// Number of stored values: one for each run of equal values.
     pub value_count: u64,
     /// Array elements and bricks of the tree.
     pub elements: u64,
@@ -78,16 +78,16 @@ pub struct leafless_channel_info {
 
 output!(leafless_channel_info);
 
-/// A handle of a channel.
+/// Returns a handle of a channel.
 pub(super) fn give(channel: Channel) -> *mut leafless_channel {
     handle(leafless_channel { channel })
 }
 
-/// One more reference to a channel.
+/// Returns one more reference to a channel.
 ///
 /// - Buffers: `channel`, a handle; `reference`, one pointer.
 /// - Result: `*reference`, equal to `channel`.
-/// - Ownership: give each reference back with leafless_channel_free.
+/// - Ownership: release each reference with leafless_channel_free.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn leafless_channel_ref(
     channel: *const leafless_channel,
@@ -96,11 +96,11 @@ pub unsafe extern "C" fn leafless_channel_ref(
     guard(|| unsafe { refer(channel, "channel", reference) })
 }
 
-/// Gives back a reference to a channel. With the last one the channel is gone, and with it the mapping of its
-/// file, unless an octree, an attribute, or a channel with other metadata still shares it.
+/// Releases a reference to a channel. The last release frees the channel. The mapping of its file ends too,
+/// unless an octree, an attribute, or a channel with other metadata still shares it.
 ///
 /// - Buffers: `channel`, a handle or NULL, which does nothing.
-/// - Ownership: the reference is gone.
+/// - Ownership: the reference is invalid afterwards.
 /// - Threads: any; no other call may use this reference.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn leafless_channel_free(channel: *mut leafless_channel) {
@@ -108,8 +108,8 @@ pub unsafe extern "C" fn leafless_channel_free(channel: *mut leafless_channel) {
     unsafe { release(channel) }
 }
 
-/// What can be said of a channel at once. O(1), but for a channel of a file that was mapped unverified: when such
-/// a channel is first read, by whichever function, its links are checked in one pass.
+/// Returns basic facts about a channel. O(1), except for a channel of a file that was mapped unverified: the
+/// first function that reads it checks its links in one pass.
 ///
 /// - Buffers: `info`, one struct.
 /// - Result: `*info`.
@@ -136,9 +136,10 @@ pub unsafe extern "C" fn leafless_channel_describe(
     })
 }
 
-/// Checks that a channel is well-formed: O(n). Those that the library makes, opens or maps verified are.
+/// Checks that a channel is well-formed: O(n). Channels that the library makes, opens or maps verified always
+/// are.
 ///
-/// - Result: LEAFLESS_OK if it is.
+/// - Result: LEAFLESS_OK if the check passes.
 /// - Errors: LEAFLESS_E_DAMAGED, with the first damage in the message; LEAFLESS_E_NO_MEMORY.
 /// - Untrusted input: any channel.
 #[unsafe(no_mangle)]
@@ -146,8 +147,8 @@ pub unsafe extern "C" fn leafless_channel_check(channel: *const leafless_channel
     guard(|| unsafe { Ok(shared(channel, "channel")?.channel.view()?.check()?) })
 }
 
-/// Whether two channels have the same values in the same cells, of one type and on one frame. Metadata does not
-/// count. O(n).
+/// Returns whether two channels have the same values of the same type in the same cells, on the same frame.
+/// Metadata is not compared. O(n).
 ///
 /// - Buffers: `equal`, one truth value.
 /// - Result: `*equal`.
@@ -164,14 +165,14 @@ pub unsafe extern "C" fn leafless_channel_equal(
     })
 }
 
-/// The values of a channel as an attribute, which may be placed, or fill a channel on another frame. It has no
-/// values outside of the channel's cube.
+/// Makes an attribute from the values of a channel, for example to place them, or to fill a channel on
+/// another frame. It has no values outside the channel's cube.
 ///
 /// - Buffers: `attribute`, one pointer.
 /// - Result: `*attribute`.
-/// - Errors: only the general ones; asking for its values returns LEAFLESS_E_DAMAGED if the channel was mapped
+/// - Errors: only the general ones; reading its values returns LEAFLESS_E_DAMAGED if the channel was mapped
 ///   unverified and its links are damaged.
-/// - Ownership: the attribute shares the channel, which may be freed; give `*attribute` back with
+/// - Ownership: the attribute shares the channel, which may be freed; release `*attribute` with
 ///   leafless_attribute_free.
 /// - Untrusted input: any channel.
 #[unsafe(no_mangle)]
@@ -186,17 +187,16 @@ pub unsafe extern "C" fn leafless_attribute_from_channel(
     })
 }
 
-/// The channel with one more fact in its metadata, or with another value of one; the arrays are shared. Names in
-/// use: "name", by which a solid knows the channel, "unit" (of the values), "meaning" (what they are, such as
-/// "colour" or "density").
+/// Returns the channel with one more fact in its metadata, or with a new value of a fact; the arrays are
+/// shared. Names in use: "name" (by which an octree finds the channel), "unit" (of the values), "meaning" (of
+/// the values, such as "colour" or "density").
 ///
 /// - Buffers: `key` and `value`, `key_length` and `value_length` bytes of UTF-8; `named`, one pointer.
 /// - Result: `*named`.
-/// - Errors: LEAFLESS_E_UTF8; LEAFLESS_E_ARGUMENT if all facts would take more than 64 KiB in a file, 8 bytes
-///   and the two texts each; LEAFLESS_E_NO_MEMORY.
-/// - Ownership: the texts are copied. `*named` shares the arrays of `channel`, which may be freed: what must
-///   outlive `channel`, such as bytes that it views, must outlive `*named` too. Give that back with
-///   leafless_channel_free.
+/// - Errors: LEAFLESS_E_UTF8; LEAFLESS_E_ARGUMENT if all facts would take more than 64 KiB in a file (each
+///   takes 8 bytes and its two texts); LEAFLESS_E_NO_MEMORY.
+/// - Ownership: the texts are copied. `*named` shares the arrays of `channel`, which may be freed. Bytes that
+///   `channel` views must outlive `*named` too. Release `*named` with leafless_channel_free.
 /// - Untrusted input: any texts.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn leafless_channel_with_metadata(
@@ -216,10 +216,10 @@ pub unsafe extern "C" fn leafless_channel_with_metadata(
     })
 }
 
-/// The channel with one fact less in its metadata, or with none; the arrays are shared.
+/// Returns the channel with one fact less in its metadata, or without metadata; the arrays are shared.
 ///
 /// - Buffers: `key`, `key_length` bytes of UTF-8, or NULL for all facts; `unnamed`, one pointer.
-/// - Result: `*unnamed`; a fact that is not there need not be.
+/// - Result: `*unnamed`; it is not an error if there is no such fact.
 /// - Errors: LEAFLESS_E_UTF8; LEAFLESS_E_NO_MEMORY.
 /// - Ownership: as leafless_channel_with_metadata.
 /// - Untrusted input: any texts.
@@ -237,7 +237,7 @@ pub unsafe extern "C" fn leafless_channel_without_metadata(
     })
 }
 
-/// The value of a fact in a channel's metadata, such as "name".
+/// Returns the value of a fact in a channel's metadata, such as "name".
 ///
 /// - Buffers: `key`, `key_length` bytes of UTF-8; `value` and `value_length`, one each.
 /// - Result: `*value`, not NUL-terminated; NULL if there is no such fact. `*value_length`, in bytes.
@@ -258,13 +258,13 @@ pub unsafe extern "C" fn leafless_channel_peek_metadata(
     })
 }
 
-/// A fact of a channel's metadata by its place among all, which stand by ascending key.
+/// Returns a fact of a channel's metadata by its index. Facts are sorted by key.
 ///
 /// - Buffers: `count`, one number; `key`, `key_length`, `value`, `value_length`, one each, all four NULL to
-///   ask for the count only.
+///   get only the count.
 /// - Result: `*count`, the number of all facts; key and value, not NUL-terminated, with their lengths in
 ///   bytes.
-/// - Errors: LEAFLESS_E_ARGUMENT if there is no fact `index`, unless only the count is asked for.
+/// - Errors: LEAFLESS_E_ARGUMENT if there is no fact `index`, unless only the count is requested.
 /// - Ownership: the texts belong to the channel and live as long as the reference `channel`.
 /// - Untrusted input: any channel.
 #[unsafe(no_mangle)]

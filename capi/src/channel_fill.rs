@@ -1,4 +1,4 @@
-//! Channels that are filled from attributes, asked at points, and changed in regions.
+//! Channels: filling from attributes, values at points, and changes in regions.
 
 use super::attribute::{components, leafless_attribute, sample};
 use super::boundary::{Failure, Sized32, array, guard, out, shared, sized, slice, text};
@@ -14,17 +14,18 @@ use leafless::attribute::ValueType;
 use leafless::attribute::{Attribute, Criterion, Detail, FillOptions, fill_channel};
 use leafless::octree::MetadataLimit;
 
-/// How finely an attribute is followed.
+/// The criterion for the size of cells that follow an attribute.
 #[derive(Clone, Copy)]
 #[repr(u32)]
 pub enum leafless_criterion {
-    /// To the finest cells, wherever it is not proven that all of a cell has one value.
+    /// Cells are split to the finest level, unless a cell is proven to have one value.
     LEAFLESS_CRITERION_NONE = 0,
-    /// Until the variance of the values at a cell's corners is at most the square of the tolerance. The variance of
-    /// several numbers is the sum of their variances. A detail between the corners is missed.
+    /// Cells are split until the variance of the values at a cell's corners is at most the square of the
+    /// tolerance. The variance of several numbers is the sum of their variances. A detail between the corners
+    /// is missed.
     LEAFLESS_CRITERION_VARIANCE = 1,
-    /// Until the values in a cell are proven to differ by no more than the tolerance, in each of their numbers.
-    /// Nothing is missed. A cell whose range is unknown is split.
+    /// Cells are split until the values in a cell are proven to differ by no more than the tolerance, in each
+    /// of their numbers. No detail is missed. A cell whose range is unknown is split.
     LEAFLESS_CRITERION_RANGE = 2,
 }
 
@@ -36,38 +37,37 @@ enumeration! {
     }
 }
 
-/// How a channel is filled. NULL means the defaults. All fields but the first may be zero, which is their
-/// default.
+/// Options of filling a channel. NULL means the defaults. Zero is the default of every field but the first.
 #[derive(Clone, Copy)]
 #[repr(C)]
 pub struct leafless_channel_fill_options {
     /// sizeof(leafless_channel_fill_options).
     pub struct_size: u32,
-    /// A leafless_scalar_type: what numbers are rounded to.
+    /// A leafless_scalar_type: the type that numbers are rounded to.
     pub scalar: Number<leafless_scalar_type>,
-    /// How many numbers a value has, which is as many as those of the attribute; 0 does not ask.
+    /// Numbers per value, the same as for the attribute; 0 means those of the attribute.
     pub components: u32,
-    /// Levels of the channel; 0 means those of the frame.
+    /// Depth of the channel; 0 means the depth of the frame.
     pub depth: u32,
-    /// The solid inside which values matter; optional. Where it is EMPTY, the channel says whatever takes the
-    /// least memory.
+    /// The octree inside which values matter; optional. Where it is EMPTY, the channel has arbitrary values
+    /// that take the least memory.
     pub solid: *const leafless_octree,
     /// A leafless_criterion. Unless it is LEAFLESS_CRITERION_NONE, a cell is split until its edge is at most
-    /// `coarse_model` and the criterion holds, or until its edge is at most `fine_model`. It then has the value at its
-    /// centre.
+    /// `coarse_model` and the criterion holds, or until its edge is at most `fine_model`. It then has the
+    /// value at its centre.
     pub criterion: Number<leafless_criterion>,
-    /// Zero.
+    /// Reserved; must be 0.
     pub reserved: u32,
-    /// The longest edge of cells with a criterion; 0 means any.
+    /// With a criterion, the longest edge of cells; 0 means any.
     pub coarse_model: f64,
-    /// The edge below which cells are not split any more, with a criterion, at most `coarse_model`; 0 means that of the
-    /// finest cells.
+    /// With a criterion, cells of this edge or less are not split. At most `coarse_model`; 0 means the edge
+    /// of the finest cells.
     pub fine_model: f64,
     /// The tolerance of the criterion, in the attribute's units; may be infinite.
     pub tolerance: f64,
     /// The name of the channel, `name_length` bytes of UTF-8; optional.
     pub name: *const c_char,
-    /// The length of the name.
+    /// Length of the name in bytes.
     pub name_length: usize,
 }
 
@@ -93,31 +93,31 @@ impl leafless_channel_fill_options {
             return Ok(None);
         };
         let coarse = if self.coarse_model == 0.0 { f64::INFINITY } else { self.coarse_model };
-        // No cell is that small.
+        // No cell is this small.
         let fine = if self.fine_model == 0.0 { f64::MIN_POSITIVE } else { self.fine_model };
         Ok(Some(Detail::new(coarse, fine, self.tolerance, criterion)?))
     }
 }
 
-/// The channel of an attribute: each cell has the attribute's value at its centre, rounded to the type of the
-/// numbers; a cell whose centre has no value has none. Cells are as large as proven ranges and the criterion
-/// allow. The result is the same bit for bit for any number of threads.
+/// Fills a channel from an attribute: each cell gets the attribute's value at its centre, rounded to the type
+/// of the numbers; a cell whose centre has no value gets none. Cells are as large as proven ranges and the
+/// criterion allow. The result is identical, bit for bit, for any number of threads.
 ///
-/// Without a criterion the result is that of asking at the centre of every finest cell. An attribute without ranges is
-/// asked there: 8^depth times, or as often as the solid has cells that are not EMPTY.
+/// Without a criterion the result is that of evaluating the attribute at the centre of every finest cell. An
+/// attribute without ranges is evaluated at all these centres: 8^depth times, or, with a solid, once for each
+/// finest cell that is not EMPTY.
 ///
-/// - Buffers: `frame`, one struct, or NULL for the frame of `fill->solid`, which is then needed; `fill`, one struct
-///   or NULL; `options`, one struct or NULL; `channel`, one pointer.
+/// - Buffers: `frame`, one struct, or NULL for the frame of `fill->solid`, which is then needed; `fill`, one
+///   struct or NULL; `options`, one struct or NULL; `channel`, one pointer.
 /// - Result: `*channel`, with the name as its only fact, if there is one.
-/// - Errors: LEAFLESS_E_ARGUMENT as leafless_frame_check, if a field of `fill` is wrong, or a value beyond the range
-///   of the type, infinite, or partly NaN; LEAFLESS_E_FRAME if the solid lies in another cube than the frame;
-///   LEAFLESS_E_NULL if both are missing; LEAFLESS_E_UTF8; LEAFLESS_E_CALLBACK; LEAFLESS_E_DAMAGED;
-///   LEAFLESS_E_LIMIT; LEAFLESS_E_CANCELLED; LEAFLESS_E_NO_MEMORY.
-/// - Ownership: nothing is kept of the attribute, the solid and the name; give `*channel` back with
-///   leafless_channel_free.
-/// - Threads: any; uses as many as `options` says.
-/// - Untrusted input: any attribute, any octree; set `max_bytes` where the depth or the attribute is not your own
-///   choice.
+/// - Errors: LEAFLESS_E_ARGUMENT as leafless_frame_check, if a field of `fill` is wrong, or if a value is
+///   beyond the range of the type, infinite, or partly NaN; LEAFLESS_E_FRAME if the solid lies in another
+///   cube than the frame; LEAFLESS_E_NULL if both are missing; LEAFLESS_E_UTF8; LEAFLESS_E_CALLBACK;
+///   LEAFLESS_E_DAMAGED; LEAFLESS_E_LIMIT; LEAFLESS_E_CANCELLED; LEAFLESS_E_NO_MEMORY.
+/// - Ownership: the library keeps no reference to the attribute, the solid and the name; release `*channel`
+///   with leafless_channel_free.
+/// - Threads: any; runs on as many threads as `options` says.
+/// - Untrusted input: any attribute, any octree; set `max_bytes` if the depth or the attribute is untrusted.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn leafless_channel_fill(
     attribute: *const leafless_attribute,
@@ -157,12 +157,13 @@ pub unsafe extern "C" fn leafless_channel_fill(
     })
 }
 
-/// The values of a channel at points. A point on a face between cells belongs to the upper one. O(depth) each.
+/// Returns the values of a channel at points. A point on a face between cells belongs to the upper cell.
+/// O(depth) each.
 ///
-/// - Buffers: `points_model`, `count` points of 3 numbers; `values`, room for `count` values of as many numbers as
-///   `components` of leafless_channel_describe. Both may be NULL if `count` is 0.
-/// - Result: the value at point i from `values[components * i]` on; NaN where there is none, and outside of the
-///   channel's cube.
+/// - Buffers: `points_model`, `count` points of 3 numbers; `values`, room for `count` values with
+///   `components` numbers each, from leafless_channel_describe. Both may be NULL if `count` is 0.
+/// - Result: the value at point i from `values[components * i]` on; NaN where there is no value, and outside
+///   the channel's cube.
 /// - Errors: LEAFLESS_E_DAMAGED.
 /// - Untrusted input: any channel, any numbers; damage reads as no value.
 #[unsafe(no_mangle)]
@@ -178,15 +179,15 @@ pub unsafe extern "C" fn leafless_channel_values(
     })
 }
 
-/// A value in four places: those beyond its numbers are 0, and all are NaN if there is none.
+/// Returns a value as four numbers: 0 beyond its own numbers, and all NaN if there is no value.
 fn four(value: Option<[f64; 4]>) -> [f64; 4] {
     value.unwrap_or([f64::NAN; 4])
 }
 
-/// The value of a channel at a point, as leafless_channel_values.
+/// Returns the value of a channel at a point, like leafless_channel_values.
 ///
 /// - Buffers: `point_model`, 3 numbers; `value`, room for 4 numbers.
-/// - Result: `value`: as many numbers as the channel's values have, and 0 beyond them; four NaN if there is none.
+/// - Result: `value`: the numbers of the channel's value, and 0 beyond them; four NaN if there is no value.
 /// - Errors: LEAFLESS_E_DAMAGED.
 /// - Untrusted input: any channel, any numbers; damage reads as no value.
 ///
@@ -205,7 +206,7 @@ pub unsafe extern "C" fn leafless_channel_value(
     })
 }
 
-/// The value of a finest cell of a channel's own frame. O(depth).
+/// Returns the value of a finest cell of a channel's own frame. O(depth).
 ///
 /// - Buffers: `cell`, 3 numbers; `value`, room for 4 numbers.
 /// - Result: `value`, as leafless_channel_value; four NaN if a coordinate is not below 2^depth.
@@ -227,16 +228,17 @@ pub unsafe extern "C" fn leafless_channel_value_at(
     })
 }
 
-/// The channel with one value wherever an octree is not EMPTY, and as it is elsewhere. It is as deep as the deeper of
-/// the two. The same bit for bit for any number of threads.
+/// Returns the channel with one value wherever an octree is not EMPTY, and unchanged elsewhere. It has the
+/// depth of the deeper of the two. The result is identical, bit for bit, for any number of threads.
 ///
-/// - Buffers: `region`, a handle; `value`, as many numbers as the channel's values have, or NULL to take values
-///   away; `options`, one struct or NULL; `changed`, one pointer.
+/// - Buffers: `region`, a handle; `value`, as many numbers as the channel's values have, or NULL to remove
+///   values; `options`, one struct or NULL; `changed`, one pointer.
 /// - Result: `*changed`, with the metadata of `channel`.
-/// - Errors: LEAFLESS_E_ARGUMENT if the value is beyond the type's range, or not finite; LEAFLESS_E_FRAME unless both
-///   lie in one cube; LEAFLESS_E_DAMAGED; LEAFLESS_E_LIMIT; LEAFLESS_E_CANCELLED; LEAFLESS_E_NO_MEMORY.
-/// - Ownership: `channel` stays as it is; give `*changed` back with leafless_channel_free.
-/// - Threads: any; uses as many as `options` says.
+/// - Errors: LEAFLESS_E_ARGUMENT if the value is beyond the type's range, or not finite; LEAFLESS_E_FRAME
+///   unless both lie in one cube; LEAFLESS_E_DAMAGED; LEAFLESS_E_LIMIT; LEAFLESS_E_CANCELLED;
+///   LEAFLESS_E_NO_MEMORY.
+/// - Ownership: `channel` is unchanged; release `*changed` with leafless_channel_free.
+/// - Threads: any; runs on as many threads as `options` says.
 /// - Untrusted input: any channel, any octree, any numbers.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn leafless_channel_with_value_in(

@@ -1,4 +1,4 @@
-//! What the values of channels amount to, and where they lie in a band.
+//! Channels: summaries, regions of a band of values, materials; volumes as attributes.
 
 use super::attribute::{give as give_attribute, leafless_attribute};
 use super::boundary::{array, buffer, filled, guard, out, output, shared, slice};
@@ -18,13 +18,14 @@ use leafless::attribute::{
 use leafless::solid::Band;
 use leafless::{Bounds, Interval};
 
-/// What lies between the samples of a volume.
+/// The interpolation between the samples of a volume.
 #[derive(Clone, Copy)]
 #[repr(u32)]
 pub enum leafless_interpolation {
     /// The trilinear interpolation of the eight samples around a point.
     LEAFLESS_INTERPOLATION_TRILINEAR = 0,
-    /// The sample of the voxel that contains the point; on a face between voxels, that of the upper one.
+    /// The sample of the voxel that contains the point; on a face between voxels, the sample of the upper
+    /// voxel.
     LEAFLESS_INTERPOLATION_NEAREST = 1,
 }
 
@@ -35,8 +36,8 @@ enumeration! {
     }
 }
 
-/// What the values of a channel amount to in a region, number by number; places beyond the numbers of a value
-/// are 0. All intervals contain the truth, as far as the cells of the solid and of the channel tell it.
+/// A summary of a channel's values in a region, number by number; entries beyond the numbers of a value are 0.
+/// All intervals contain the truth, as far as the cells of the solid and of the channel represent it.
 #[derive(Clone, Copy)]
 #[repr(C)]
 pub struct leafless_channel_summary {
@@ -46,16 +47,16 @@ pub struct leafless_channel_summary {
     pub least: [f64; 4],
     /// The greatest value of any cell that may belong to the region.
     pub greatest: [f64; 4],
-    /// The integral of the value over the region, in the value's units times cubic model units: of a density, the
-    /// mass.
+    /// The integral of the value over the region, in the value's units times cubic model units: for a
+    /// density, the mass.
     pub integral: [leafless_interval; 4],
     /// The mean value.
     pub mean: [leafless_interval; 4],
     /// The volume of the region that has values, in cubic model units.
     pub volume_model: leafless_interval,
-    /// The volume of the region that has none.
+    /// The volume of the region without values, in cubic model units.
     pub volume_without_model: leafless_interval,
-    /// Whether any of the region may have a value. If not, all else is 0.
+    /// Whether a part of the region may have a value. If not, all other fields are 0.
     pub has_values: bool,
 }
 
@@ -89,9 +90,9 @@ impl From<Option<ChannelSummary>> for leafless_channel_summary {
 #[derive(Clone, Copy)]
 #[repr(C)]
 pub struct leafless_material {
-    /// The value; places beyond its numbers are 0.
+    /// The value; entries beyond its numbers are 0.
     pub value: [f64; 4],
-    /// Measures of the points of the solid that have the value, of density 1.
+    /// Measures of the part of the solid that has the value, for density 1.
     pub measures: leafless_measures,
 }
 
@@ -101,15 +102,15 @@ impl From<&MaterialProperties> for leafless_material {
     }
 }
 
-/// Least, greatest, mean and integral of a channel's values in the part of a solid that lies in a box, whose faces may
-/// lie anywhere. O(cells that the box meets).
+/// Computes least, greatest, mean and integral of a channel's values in the part of a solid that lies in a
+/// box at any position. O(cells that the box meets).
 ///
-/// - Buffers: `solid`, a handle, or NULL for all space; `min_model` and `max_model`, 3 numbers each, which may be
-///   infinite, or both NULL for all of the channel's cube; `options`, one struct or NULL, of which limits do not
-///   matter; `summary`, one struct.
+/// - Buffers: `solid`, a handle, or NULL for all space; `min_model` and `max_model`, 3 numbers each, which
+///   may be infinite, or both NULL for all of the channel's cube; `options`, one struct or NULL (its limits
+///   are ignored); `summary`, one struct.
 /// - Result: `*summary`.
-/// - Errors: LEAFLESS_E_ARGUMENT if a coordinate is not a number, or min > max; LEAFLESS_E_FRAME if the solid lies in
-///   another cube; LEAFLESS_E_DAMAGED; LEAFLESS_E_CANCELLED.
+/// - Errors: LEAFLESS_E_ARGUMENT if a coordinate is not a number, or min > max; LEAFLESS_E_FRAME if the solid
+///   lies in another cube; LEAFLESS_E_DAMAGED; LEAFLESS_E_CANCELLED.
 /// - Untrusted input: any channel, any octree, any numbers.
 ///
 /// cbindgen:ptrs-as-arrays=[[min_model; 3], [max_model; 3]]
@@ -140,17 +141,18 @@ pub unsafe extern "C" fn leafless_channel_summarise(
     })
 }
 
-/// The octree of the cells whose values lie in a band: every number between those of `low` and `high`, both included.
-/// Where there is no value, it is EMPTY. It lies on the channel's frame, and nothing is PARTIAL. A Boolean makes it that of
-/// a part: of a material, of all that is hotter than a limit.
+/// Makes the octree of the cells whose values lie in a band: every number between those of `low` and `high`,
+/// both included. Cells without a value are EMPTY. The octree lies on the channel's frame, and no cell is
+/// PARTIAL. Intersect it with a part to get, for example, the region of a material, or the region hotter than
+/// a limit.
 ///
-/// - Buffers: `low` and `high`, as many numbers each as the channel's values have, which may be infinite; `options`, one
-///   struct or NULL; `octree`, one pointer.
+/// - Buffers: `low` and `high`, as many numbers each as the channel's values have, which may be infinite;
+///   `options`, one struct or NULL; `octree`, one pointer.
 /// - Result: `*octree`.
-/// - Errors: LEAFLESS_E_ARGUMENT if a bound is not a number; LEAFLESS_E_DAMAGED; LEAFLESS_E_LIMIT; LEAFLESS_E_CANCELLED;
-///   LEAFLESS_E_NO_MEMORY.
-/// - Ownership: give `*octree` back with leafless_octree_free.
-/// - Threads: any; uses as many as `options` says.
+/// - Errors: LEAFLESS_E_ARGUMENT if a bound is not a number; LEAFLESS_E_DAMAGED; LEAFLESS_E_LIMIT;
+///   LEAFLESS_E_CANCELLED; LEAFLESS_E_NO_MEMORY.
+/// - Ownership: release `*octree` with leafless_octree_free.
+/// - Threads: any; runs on as many threads as `options` says.
 /// - Untrusted input: any channel, any numbers.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn leafless_channel_region(
@@ -175,17 +177,18 @@ pub unsafe extern "C" fn leafless_channel_region(
     })
 }
 
-/// Measures the parts of a solid in which a channel has one value, each as leafless_solid_measure: one for each value of
-/// the channel that the solid may have somewhere, in ascending order of the values. The channel is taken as it is; its
-/// cells decide what is which material. To ask for the count alone takes as long.
+/// Measures the parts of a solid in which a channel has one value, each as leafless_solid_measure: one for
+/// each value of the channel that the solid may have somewhere, in ascending order of the values. The cells
+/// of the channel decide the material. Returning only the count takes as long.
 ///
-/// - Buffers: `frame`, one struct: where the solid is split, in the channel's cube; `options`, one struct or NULL;
-///   `measured`, room for `capacity` structs, or NULL to ask for the count only; `count`, one number. `relative` and
-///   `absolute_model` are those of leafless_solid_measure.
+/// - Buffers: `frame`, one struct: the frame on which the solid is split, with the channel's cube; `options`,
+///   one struct or NULL; `measured`, room for `capacity` structs, or NULL to get only the count; `count`, one
+///   number. `relative` and `absolute_model` are those of leafless_solid_measure.
 /// - Result: `*count`; the materials.
-/// - Errors: LEAFLESS_E_LIMIT if the channel has more than 4096 different values; LEAFLESS_E_FRAME unless `frame` is of
-///   the channel's cube; LEAFLESS_E_BUFFER if the capacity is too small; else as leafless_solid_measure.
-/// - Threads: any; uses as many as `options` says.
+/// - Errors: LEAFLESS_E_LIMIT if the channel has more than 4096 different values; LEAFLESS_E_FRAME unless
+///   `frame` has the channel's cube; LEAFLESS_E_BUFFER if the capacity is too small; otherwise as
+///   leafless_solid_measure.
+/// - Threads: any; runs on as many threads as `options` says.
 /// - Untrusted input: any solid, any channel; the default of `max_splits` bounds the work for each value.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn leafless_solid_materials(
@@ -213,18 +216,18 @@ pub unsafe extern "C" fn leafless_solid_materials(
     })
 }
 
-/// The samples of a volume as an attribute of one number, where the file says that they lie. There is no value outside of
-/// the voxels, nor where a sample that counts is not a number. The first solid, range or attribute of a volume reads all
-/// samples, in O(n).
+/// Makes an attribute of one number from the samples of a volume, at the position that the file states. There
+/// is no value outside the voxels, nor where a sample used for the value is not a number. The first solid,
+/// range or attribute of a volume reads all samples, in O(n).
 ///
-/// - Buffers: `interpolation`, a leafless_interpolation; `options`, one struct or NULL, of which limits do not matter;
-///   `attribute`, one pointer.
+/// - Buffers: `interpolation`, a leafless_interpolation; `options`, one struct or NULL (its limits are
+///   ignored); `attribute`, one pointer.
 /// - Result: `*attribute`.
-/// - Errors: LEAFLESS_E_ARGUMENT if the map that places the volume has no inverse that a map can have;
+/// - Errors: LEAFLESS_E_ARGUMENT if the map that places the volume has no valid inverse;
 ///   LEAFLESS_E_CANCELLED; LEAFLESS_E_NO_MEMORY.
-/// - Ownership: the attribute shares the samples, and `volume` may be freed; give `*attribute` back with
+/// - Ownership: the attribute shares the samples, and `volume` may be freed; release `*attribute` with
 ///   leafless_attribute_free.
-/// - Threads: any; uses as many as `options` says.
+/// - Threads: any; runs on as many threads as `options` says.
 /// - Untrusted input: any volume.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn leafless_attribute_from_volume(

@@ -1,4 +1,4 @@
-//! Two solids: are they far enough apart, and how far in many places?
+//! Clearance of two solids: checks of a least distance, and distances for many placements.
 
 use super::boundary::{Failure, buffer, filled, guard, out, output, shared, slice};
 use super::control::{controlled, leafless_options};
@@ -11,15 +11,16 @@ use leafless::memory;
 use leafless::query::{Gap, GapVerdict, clearance_at, gap_at_least, gap_at_least_at};
 use leafless::{Affine, Clearance};
 
-/// Whether two solids are at least as far apart as they should be.
+/// The verdict on whether two solids keep a least distance.
 #[derive(Clone, Copy)]
 #[repr(u32)]
 pub enum leafless_gap_verdict {
-    /// Proven: no two points of them are nearer.
+    /// Proven: no two points of the solids are nearer.
     LEAFLESS_GAP_VERDICT_YES = 0,
     /// Proven: two points are nearer.
     LEAFLESS_GAP_VERDICT_NO = 1,
-    /// Not decided at the frame's depth, or before the splits were spent; or a solid may go on outside of the universe.
+    /// Not decided at the frame's depth, or before the splits were spent; or a solid may extend beyond the
+    /// universe.
     LEAFLESS_GAP_VERDICT_UNDECIDED = 2,
 }
 
@@ -33,7 +34,7 @@ impl From<GapVerdict> for leafless_gap_verdict {
     }
 }
 
-/// Whether two solids are at least as far apart as they should be, and what proves it.
+/// The verdict on whether two solids keep a least distance, with its proof.
 #[derive(Clone, Copy)]
 #[repr(C)]
 pub struct leafless_gap {
@@ -41,10 +42,10 @@ pub struct leafless_gap {
     pub struct_size: u32,
     /// A leafless_gap_verdict.
     pub verdict: u32,
-    /// What was known of the distance when the search ended, in model units.
+    /// Bounds of the distance when the search ended, in model units.
     pub distance_model: leafless_interval,
-    /// If `has_points`, a point of the first solid, in model units: both points are no further apart than the upper bound, but
-    /// for the rounding of their coordinates. Else zeros.
+    /// If `has_points`, a point of the first solid, in model units. The distance of the two points is at most
+    /// the upper bound, up to rounding of their coordinates. Else zeros.
     pub point_a_model: [f64; 3],
     /// A point of the second solid.
     pub point_b_model: [f64; 3],
@@ -52,11 +53,12 @@ pub struct leafless_gap {
     pub splits_a: u64,
     /// Cells of the second solid that were split.
     pub splits_b: u64,
-    /// Why the search ended; LEAFLESS_STOP_REASON_TOLERANCE if the verdict is proven.
+    /// The reason why the search ended; LEAFLESS_STOP_REASON_TOLERANCE if the verdict is proven.
     pub measured: leafless_stop_reason,
     /// Whether the upper bound is finite.
     pub has_points: bool,
-    /// Whether one of the solids may go on outside of the universe, of which nothing is said.
+    /// Whether one of the solids may extend beyond the universe; the result says nothing about the part
+    /// beyond.
     pub is_clipped: bool,
 }
 
@@ -81,11 +83,11 @@ impl From<&Gap> for leafless_gap {
     }
 }
 
-/// Whether two solids, one of which is moved, are at least as far apart as they should be.
+/// The verdict on whether two solids, one of which is moved, keep a least distance.
 #[derive(Clone, Copy)]
 #[repr(C)]
 pub struct leafless_placed_gap {
-    /// As leafless_gap has it.
+    /// As in leafless_gap.
     pub distance_model: leafless_interval,
     /// If `has_points`, a point of the first solid, in model units; else zeros.
     pub point_a_model: [f64; 3],
@@ -97,11 +99,12 @@ pub struct leafless_placed_gap {
     pub splits_b: u64,
     /// A leafless_gap_verdict.
     pub verdict: u32,
-    /// Why the search ended; LEAFLESS_STOP_REASON_TOLERANCE if the verdict is proven.
+    /// The reason why the search ended; LEAFLESS_STOP_REASON_TOLERANCE if the verdict is proven.
     pub measured: leafless_stop_reason,
     /// Whether the upper bound is finite.
     pub has_points: bool,
-    /// Whether one of the solids may go on outside of the universe, of which nothing is said.
+    /// Whether one of the solids may extend beyond the universe; the result says nothing about the part
+    /// beyond.
     pub is_clipped: bool,
 }
 
@@ -122,27 +125,28 @@ impl From<&Gap> for leafless_placed_gap {
     }
 }
 
-/// What is known of the distance between two solids, one of which is moved.
+/// Bounds of the distance between two solids, one of which is moved.
 #[derive(Clone, Copy)]
 #[repr(C)]
 pub struct leafless_placed_clearance {
-    /// As leafless_clearance has it.
+    /// As in leafless_clearance.
     pub distance_model: leafless_interval,
     /// If `has_points`, a point of the first solid, in model units; else zeros.
     pub point_a_model: [f64; 3],
     /// A point of the second solid.
     pub point_b_model: [f64; 3],
-    /// As leafless_clearance has it.
+    /// As in leafless_clearance.
     pub depth_model: f64,
     /// Cells of the first solid that were split.
     pub splits_a: u64,
     /// Cells of the second solid that were split.
     pub splits_b: u64,
-    /// Why the search ended.
+    /// The reason why the search ended.
     pub measured: leafless_stop_reason,
     /// Whether the upper bound is finite.
     pub has_points: bool,
-    /// Whether one of the solids may go on outside of the universe, of which nothing is said.
+    /// Whether one of the solids may extend beyond the universe; the result says nothing about the part
+    /// beyond.
     pub is_clipped: bool,
 }
 
@@ -163,13 +167,14 @@ impl From<&Clearance> for leafless_placed_clearance {
     }
 }
 
-/// Whether no point of a solid is nearer than `least_model` to one of another solid, as they are in the universe of a frame. The
-/// search ends as soon as that is proven or disproven. If the distance is `least_model` to the last digit, nothing may be proven
-/// within `max_splits`, which are counted and limited as for leafless_solid_clearance.
+/// Returns whether two solids keep the distance `least_model` (model units) inside the universe of a frame.
+/// The search ends as soon as this is proven or disproven. If the distance is almost exactly `least_model`,
+/// nothing may be proven within `max_splits`, which are counted and limited as for leafless_solid_clearance.
 ///
 /// - Buffers: `frame`, one struct; `options`, one struct or NULL; `gap`, one struct.
 /// - Result: `*gap`.
-/// - Errors: as leafless_solid_interfere; LEAFLESS_E_ARGUMENT also if `least_model` is not between 2^-256 and 2^256.
+/// - Errors: as leafless_solid_interfere; LEAFLESS_E_ARGUMENT also if `least_model` is not between 2^-256 and
+///   2^256.
 /// - Untrusted input: any solids; the default of `max_splits` bounds the work.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn leafless_solid_gap_at_least(
@@ -189,16 +194,16 @@ pub unsafe extern "C" fn leafless_solid_gap_at_least(
     })
 }
 
-/// As leafless_solid_clearance of `a` with `b` under each of many affine maps, as
-/// leafless_solid_transformed makes them. `max_splits` concerns each of them. The results are the same for
-/// any number of threads.
+/// Like leafless_solid_clearance for `a` and `b` under each of many affine maps, applied as by
+/// leafless_solid_transformed. `max_splits` applies to each map. The results are identical for any number of
+/// threads.
 ///
 /// - Buffers: `own`, one struct, the frame of `b`; `matrices`, `count` times 12 numbers; `frame`, one struct,
 ///   that of `a`; `options`, one struct or NULL; `clearances`, room for `count`. `matrices` and
 ///   `clearances` may be NULL if `count` is 0.
 /// - Result: `clearances[i]` for map i.
 /// - Errors: as leafless_solid_interfere and leafless_solid_transformed; nothing is then written.
-/// - Threads: any; uses as many as `options` says.
+/// - Threads: any; runs on as many threads as `options` says.
 /// - Untrusted input: as leafless_solid_clearance, and any numbers.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn leafless_solid_clearance_many(
@@ -229,14 +234,16 @@ pub unsafe extern "C" fn leafless_solid_clearance_many(
     })
 }
 
-/// As leafless_solid_gap_at_least of `a` with `b` under each of many affine maps, as leafless_solid_transformed makes them.
-/// `max_splits` concerns each of them. The results are the same for any number of threads.
+/// Like leafless_solid_gap_at_least for `a` and `b` under each of many affine maps, applied as by
+/// leafless_solid_transformed. `max_splits` applies to each map. The results are identical for any number of
+/// threads.
 ///
 /// - Buffers: `own`, one struct, the frame of `b`; `matrices`, `count` times 12 numbers; `frame`, one struct,
-///   that of `a`; `options`, one struct or NULL; `gaps`, room for `count`. `matrices` and `gaps` may be NULL if `count` is 0.
+///   that of `a`; `options`, one struct or NULL; `gaps`, room for `count`. `matrices` and `gaps` may be NULL
+///   if `count` is 0.
 /// - Result: `gaps[i]` for map i.
 /// - Errors: as leafless_solid_gap_at_least and leafless_solid_transformed; nothing is then written.
-/// - Threads: any; uses as many as `options` says.
+/// - Threads: any; runs on as many threads as `options` says.
 /// - Untrusted input: as leafless_solid_gap_at_least, and any numbers.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn leafless_solid_gap_at_least_many(
@@ -267,7 +274,7 @@ pub unsafe extern "C" fn leafless_solid_gap_at_least_many(
     })
 }
 
-/// The maps of a list of matrices.
+/// Returns the maps of a list of matrices.
 unsafe fn placements(matrices: &[[f64; 12]]) -> Result<Vec<Affine>, Failure> {
     let mut placements = memory::with_capacity(matrices.len())?;
     for matrix in matrices {

@@ -1,4 +1,4 @@
-//! Columns of cells along an axis: which cells are solid, and how high these reach.
+//! Columns of cells along an axis: runs of solid cells, and height maps.
 
 use super::boundary::{Failure, array, buffer, guard, handle, out, release, shared};
 use super::control::{controlled, leafless_options};
@@ -17,7 +17,7 @@ use leafless::{Frame, Interval};
 pub struct leafless_run {
     /// The coordinate of the lowest cell along the column.
     pub start: u32,
-    /// How many cells there are, at least one.
+    /// Number of cells, at least one.
     pub length: u32,
 }
 
@@ -27,21 +27,21 @@ impl From<&Run> for leafless_run {
     }
 }
 
-/// Where columns are looked at from.
+/// The side from which columns are viewed.
 #[repr(u32)]
 pub enum leafless_side {
-    /// From above, towards lower coordinates: what counts is the highest cell.
+    /// From above, towards lower coordinates: the height is that of the highest cell.
     LEAFLESS_SIDE_ABOVE = 0,
-    /// From below: what counts is the lowest cell.
+    /// From below: the height is that of the lowest cell.
     LEAFLESS_SIDE_BELOW = 1,
 }
 
 /// The solid cells of columns, as runs.
 ///
-/// It does not change: any number of threads may read it at once.
+/// Immutable: any number of threads may read it at once.
 pub struct leafless_columns(ColumnCells);
 
-/// The rectangle with these corners, or all columns of a frame.
+/// Returns the rectangle with these corners, or all columns of a frame.
 ///
 /// # Safety
 /// As [`array`] for a corner that is not NULL.
@@ -67,19 +67,20 @@ enumeration! {
     }
 }
 
-/// Which of an octree's cells are solid in a rectangle of columns, whatever they prove of the solid that it was made
-/// from. A column is a row of finest cells along an axis, from one side of the universe to the other. It stands for
-/// all lines along the axis within it, such as the ray through the centres of its cells. O(cells in the columns +
-/// columns · cells along each), counting cells as they are stored.
+/// Returns the solid cells of an octree in a rectangle of columns, regardless of their proofs about the
+/// original solid. A column is a row of finest cells along an axis, from one side of the universe to the
+/// other. It stands for all lines along the axis within it, such as the ray through the centres of its cells.
+/// O(cells in the columns + columns · cells along each), where a stored cell counts once.
 ///
-/// - Buffers: `first` and `end`, 2 numbers each, or NULL both for all columns: the coordinates of the first column's
-///   cells on the other two axes in the order x, y, z, and the first beyond the last one's; `columns`, one pointer.
-///   `axis` is 0 for x, 1 for y, 2 for z.
+/// - Buffers: `first` and `end`, 2 numbers each, or both NULL for all columns: the coordinates of the first
+///   column's cells on the other two axes in the order x, y, z, and the first coordinates beyond the last
+///   column; `columns`, one pointer. `axis` is 0 for x, 1 for y, 2 for z.
 /// - Result: `*columns`, to be read with leafless_columns_copy.
-/// - Errors: LEAFLESS_E_ARGUMENT if `axis` is greater than 2, `first` lies beyond `end`, or the columns reach beyond
-///   the universe; LEAFLESS_E_NO_MEMORY.
-/// - Ownership: give `*columns` back with leafless_columns_free.
-/// - Untrusted input: any octree, any numbers; damage reads as PARTIAL, and no array element is met twice.
+/// - Errors: LEAFLESS_E_ARGUMENT if `axis` is greater than 2, `first` lies beyond `end`, or the columns reach
+///   beyond the universe; LEAFLESS_E_NO_MEMORY.
+/// - Ownership: release `*columns` with leafless_columns_free.
+/// - Untrusted input: any octree, any numbers; damage reads as PARTIAL, and no array element is visited
+///   twice.
 ///
 /// cbindgen:ptrs-as-arrays=[[first; 2], [end; 2]]
 #[unsafe(no_mangle)]
@@ -98,16 +99,16 @@ pub unsafe extern "C" fn leafless_octree_columns(
     })
 }
 
-/// Which cells of a frame are solid in a rectangle of columns, without an octree: all PARTIAL cells in the columns are
-/// split down to the frame's depth.
+/// Returns the solid cells of a frame in a rectangle of columns, without an octree: all PARTIAL cells in the
+/// columns are split down to the frame's depth.
 ///
-/// - Buffers: as leafless_octree_columns; `frame`, one struct; `options`, one struct or NULL, of which `max_bytes`
-///   counts and `max_splits` does not.
-/// - Result: `*columns`, to be read with leafless_columns_copy; the same for any number of threads.
+/// - Buffers: as leafless_octree_columns; `frame`, one struct; `options`, one struct or NULL (only its limit
+///   `max_bytes` applies).
+/// - Result: `*columns`, to be read with leafless_columns_copy; identical for any number of threads.
 /// - Errors: LEAFLESS_E_ARGUMENT as leafless_octree_columns; LEAFLESS_E_LIMIT if the result takes more than
-///   `max_bytes`; else as leafless_solid_contains_many.
-/// - Ownership: give `*columns` back with leafless_columns_free.
-/// - Threads: any; uses as many as `options` says.
+///   `max_bytes`; otherwise as leafless_solid_contains_many.
+/// - Ownership: release `*columns` with leafless_columns_free.
+/// - Threads: any; runs on as many threads as `options` says.
 /// - Untrusted input: any solid, any numbers; choose the depth and the rectangle yourself.
 ///
 /// cbindgen:ptrs-as-arrays=[[first; 2], [end; 2]]
@@ -131,16 +132,17 @@ pub unsafe extern "C" fn leafless_solid_columns(
     })
 }
 
-/// The runs of solid cells in columns, in compressed rows: those of column i are `runs[offsets[i]]` to before
-/// `runs[offsets[i + 1]]`. They ascend, and no two of them touch. The column at steps (u, v) from the first is
-/// i = v · width + u, of a rectangle that is `width` columns wide along the first of the other two axes.
+/// Copies the runs of solid cells in columns, in compressed rows: the runs of column i are `runs[offsets[i]]`
+/// up to, but not including, `runs[offsets[i + 1]]`. They ascend, and no two of them touch. In a rectangle
+/// that is `width` columns wide along the first of the other two axes, the column at steps (u, v) from the
+/// first has the index i = v · width + u.
 ///
-/// - Buffers: `offsets`, room for `offset_capacity` numbers, and `runs`, room for `run_capacity` structs, each NULL to
-///   ask for its count only; `offset_count` and `run_count`, one number each. `on` is a leafless_obstacle: FULL for
-///   the cells that are proven to be solid, UPPER for those that may be.
+/// - Buffers: `offsets`, room for `offset_capacity` numbers, and `runs`, room for `run_capacity` structs,
+///   each NULL to get only its count; `offset_count` and `run_count`, one number each. `on` is a
+///   leafless_obstacle: FULL for cells that are proven solid, UPPER for cells that may be solid.
 /// - Result: `offsets`, one more than columns; `runs`; their counts.
-/// - Errors: LEAFLESS_E_ARGUMENT if `on` is none; LEAFLESS_E_BUFFER if a capacity is too small: nothing is written
-///   then.
+/// - Errors: LEAFLESS_E_ARGUMENT if `on` is not a leafless_obstacle; LEAFLESS_E_BUFFER if a capacity is too
+///   small: nothing is written then.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn leafless_columns_copy(
     columns: *const leafless_columns,
@@ -170,10 +172,10 @@ pub unsafe extern "C" fn leafless_columns_copy(
     })
 }
 
-/// Gives back what leafless_octree_columns or leafless_solid_columns made.
+/// Frees columns.
 ///
 /// - Buffers: `columns`, a handle or NULL, which does nothing.
-/// - Ownership: the handle is gone.
+/// - Ownership: the handle is invalid afterwards.
 /// - Threads: no other call may use the handle.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn leafless_columns_free(columns: *mut leafless_columns) {
@@ -181,7 +183,7 @@ pub unsafe extern "C" fn leafless_columns_free(columns: *mut leafless_columns) {
     unsafe { release(columns) }
 }
 
-/// Writes the heights of columns where the host wants them.
+/// Writes the heights of columns to the host's buffer.
 ///
 /// # Safety
 /// As [`buffer`] and [`out`].
@@ -209,18 +211,19 @@ unsafe fn write_heights(
     }
 }
 
-/// How far an octree's solid cells reach in a rectangle of columns, whatever they prove of the solid that it was made
-/// from: a height map. Costs as leafless_octree_columns.
+/// Computes a height map: how far an octree's solid cells reach in a rectangle of columns, regardless of
+/// their proofs about the original solid. It costs as much as leafless_octree_columns.
 ///
-/// - Buffers: `first` and `end` as leafless_octree_columns; `heights_model`, room for `capacity` structs, or NULL to
-///   ask for the count only; `count`, one number. `side` is a leafless_side.
-/// - Result: `*count`, that of the columns; for each column, in the order of leafless_columns_copy, an interval in
-///   which the greatest coordinate of the solid's points in the column lies, or from below the least one. The end
-///   that needs a proof is infinite if no cell of the column is FULL. Both are -INFINITY (from below INFINITY) if
-///   the column is empty.
-/// - Errors: LEAFLESS_E_ARGUMENT as leafless_octree_columns, or if `side` is none; LEAFLESS_E_BUFFER if the capacity
-///   is too small; LEAFLESS_E_NO_MEMORY.
-/// - Untrusted input: any octree, any numbers; damage reads as PARTIAL, and no array element is met twice.
+/// - Buffers: `first` and `end` as leafless_octree_columns; `heights_model`, room for `capacity` structs, or
+///   NULL to get only the count; `count`, one number. `side` is a leafless_side.
+/// - Result: `*count`, the number of columns; for each column, in the order of leafless_columns_copy, an
+///   interval that contains the greatest coordinate of the solid's points in the column, or from below the
+///   least one. The end that needs a proof is infinite if no cell of the column is FULL. Both are -INFINITY
+///   (from below INFINITY) if the column is empty.
+/// - Errors: LEAFLESS_E_ARGUMENT as leafless_octree_columns, or if `side` is not a leafless_side;
+///   LEAFLESS_E_BUFFER if the capacity is too small; LEAFLESS_E_NO_MEMORY.
+/// - Untrusted input: any octree, any numbers; damage reads as PARTIAL, and no array element is visited
+///   twice.
 ///
 /// cbindgen:ptrs-as-arrays=[[first; 2], [end; 2]]
 #[unsafe(no_mangle)]
@@ -243,15 +246,16 @@ pub unsafe extern "C" fn leafless_octree_heights(
     })
 }
 
-/// How far a solid reaches in a rectangle of columns, without an octree, as far as cells of the frame tell: a height
-/// map. PARTIAL cells in the columns are split down to the frame's depth, unless FULL ones hide them.
+/// Computes a height map: how far a solid reaches in a rectangle of columns, without an octree, as far as the
+/// cells of the frame decide it. PARTIAL cells in the columns are split down to the frame's depth, unless
+/// FULL cells hide them.
 ///
-/// - Buffers: as leafless_octree_heights; `frame`, one struct; `options`, one struct or NULL, of which `max_bytes`
-///   counts and `max_splits` does not.
-/// - Result: as leafless_octree_heights; the same for any number of threads.
+/// - Buffers: as leafless_octree_heights; `frame`, one struct; `options`, one struct or NULL (only its limit
+///   `max_bytes` applies).
+/// - Result: as leafless_octree_heights; identical for any number of threads.
 /// - Errors: LEAFLESS_E_ARGUMENT as leafless_octree_heights; LEAFLESS_E_BUFFER if the capacity is too small;
-///   LEAFLESS_E_LIMIT if the result takes more than `max_bytes`; else as leafless_solid_contains_many.
-/// - Threads: any; uses as many as `options` says.
+///   LEAFLESS_E_LIMIT if the result takes more than `max_bytes`; otherwise as leafless_solid_contains_many.
+/// - Threads: any; runs on as many threads as `options` says.
 /// - Untrusted input: any solid, any numbers; choose the depth and the rectangle yourself.
 ///
 /// cbindgen:ptrs-as-arrays=[[first; 2], [end; 2]]

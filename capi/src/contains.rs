@@ -1,4 +1,4 @@
-//! Whether an octree or a solid contains a point, and how a box lies to it.
+//! Queries of points and boxes in octrees and solids.
 
 use super::boundary::{Failure, array, guard, out, shared, slice};
 use super::control::{controlled, leafless_options};
@@ -18,7 +18,7 @@ pub enum leafless_membership {
     LEAFLESS_MEMBERSHIP_OUTSIDE = 0,
     /// Proven inside.
     LEAFLESS_MEMBERSHIP_INSIDE = 1,
-    /// In a PARTIAL cell, outside of the universe, or not a number.
+    /// In a PARTIAL cell, outside the universe, or not a number.
     LEAFLESS_MEMBERSHIP_UNDECIDED = 2,
 }
 
@@ -33,7 +33,7 @@ impl From<Membership> for leafless_membership {
     }
 }
 
-// Batches write their answers where the host wants them: the two are the same bytes.
+// Batches write their answers directly to the host's buffer: both types have the same bytes.
 const _: () = {
     assert!(size_of::<Membership>() == size_of::<leafless_membership>());
     assert!(align_of::<Membership>() == align_of::<leafless_membership>());
@@ -42,10 +42,10 @@ const _: () = {
     assert!(Membership::Undecided as u8 == leafless_membership::LEAFLESS_MEMBERSHIP_UNDECIDED as u8);
 };
 
-/// Room for the answers to `count` points, at least one.
+/// Returns room for the answers to `count` points, at least one.
 ///
 /// # Safety
-/// `memberships` is NULL, or has room for `count` answers that nobody else touches.
+/// `memberships` is NULL, or has room for `count` answers that nothing else uses.
 pub(super) unsafe fn answers<'m>(
     memberships: *mut leafless_membership,
     count: usize,
@@ -53,7 +53,7 @@ pub(super) unsafe fn answers<'m>(
     // SAFETY: the caller's promise.
     unsafe {
         out(memberships, "memberships")?;
-        // Every byte must be an answer before there is a slice of answers.
+        // Every byte must be a valid answer before a slice of answers exists.
         memberships.cast::<u8>().write_bytes(Membership::Undecided as u8, count);
         Ok(core::slice::from_raw_parts_mut(memberships.cast(), count))
     }
@@ -84,8 +84,9 @@ impl From<Region> for leafless_region {
     }
 }
 
-/// Whether the solid contains a point. A point on the boundary may be answered either way; one that is
-/// outside of the universe or not a number is undecided. At most ⌈depth/2⌉ array elements are read.
+/// Returns whether the solid of an octree contains a point. A point on the boundary may be inside or outside;
+/// a point that is outside the universe or not a number is undecided. At most ⌈depth/2⌉ array elements are
+/// read.
 ///
 /// - Buffers: `point_model`, 3 numbers; `membership`, one.
 /// - Result: `*membership`.
@@ -106,7 +107,7 @@ pub unsafe extern "C" fn leafless_octree_contains(
     })
 }
 
-/// As leafless_octree_contains for many points at once, which is faster than one by one.
+/// Like leafless_octree_contains for many points at once, which is faster than one by one.
 ///
 /// - Buffers: `points_model`, `count` points of 3 numbers; `memberships`, room for `count`. Both may be NULL
 ///   if `count` is 0.
@@ -130,7 +131,7 @@ pub unsafe extern "C" fn leafless_octree_contains_many(
     })
 }
 
-/// The tag of a finest cell.
+/// Returns the tag of a finest cell.
 ///
 /// - Buffers: `cell`, 3 numbers; `tag`, one.
 /// - Result: `*tag`: EMPTY, FULL or PARTIAL; PARTIAL if a coordinate is not below 2^depth.
@@ -150,7 +151,7 @@ pub unsafe extern "C" fn leafless_octree_tag_at(
     })
 }
 
-/// How a box lies to the solid; what of it lies outside of the universe is undecided.
+/// Classifies a box against the solid of an octree. The part of the box outside the universe is undecided.
 ///
 /// - Buffers: `min_model` and `max_model`, 3 numbers each; `region`, one.
 /// - Result: `*region`.
@@ -173,19 +174,19 @@ pub unsafe extern "C" fn leafless_octree_classify_box(
     })
 }
 
-/// Whether a solid contains points, without an octree: a point in a cell of the frame that is undecided at
-/// the frame's depth, outside of the universe, or not a number is undecided. A point on the boundary may be
-/// answered either way. The host's own `contains` is asked first, where there is one; for others at most one
-/// cell a level is split a point, and points near each other share the way.
+/// Returns whether a solid contains points, without an octree. A point is undecided if it lies in a cell of
+/// the frame that is undecided at the frame's depth, lies outside the universe, or is not a number. A point
+/// on the boundary may be inside or outside. If the solid has a `contains` function of the host, it is called
+/// first. Otherwise each point splits at most one cell a level, and points near each other share splits.
 ///
-/// - Buffers: `frame`, one struct; `points_model`, `count` points of 3 numbers; `options`, one struct or
-///   NULL, of which limits do not matter; `memberships`, room for `count`. `points_model` and `memberships`
-///   may be NULL if `count` is 0.
-/// - Result: `memberships[i]` for point i; the same for any number of threads.
+/// - Buffers: `frame`, one struct; `points_model`, `count` points of 3 numbers; `options`, one struct or NULL
+///   (its limits are ignored); `memberships`, room for `count`. `points_model` and `memberships` may be NULL
+///   if `count` is 0.
+/// - Result: `memberships[i]` for point i; identical for any number of threads.
 /// - Errors: LEAFLESS_E_FRAME if the solid belongs to another frame; LEAFLESS_E_ARGUMENT as
 ///   leafless_frame_check; LEAFLESS_E_CALLBACK; LEAFLESS_E_DAMAGED; LEAFLESS_E_CANCELLED;
 ///   LEAFLESS_E_NO_MEMORY.
-/// - Threads: any; uses as many as `options` says.
+/// - Threads: any; runs on as many threads as `options` says.
 /// - Untrusted input: any solid, any numbers.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn leafless_solid_contains_many(
@@ -208,17 +209,16 @@ pub unsafe extern "C" fn leafless_solid_contains_many(
     })
 }
 
-/// How a box lies to a solid, without an octree, as far as cells of the frame tell; what of the box lies
-/// outside of the universe is undecided. The work ends as soon as the answer is known, or once `max_splits`
-/// cells are split.
+/// Classifies a box against a solid, without an octree, as far as the cells of the frame decide it. The part
+/// of the box outside the universe is undecided. The work ends as soon as the answer is known, or when
+/// `max_splits` cells are split.
 ///
 /// - Buffers: `frame`, one struct; `min_model` and `max_model`, 3 numbers each; `options`, one struct or
 ///   NULL; `region`, one.
 /// - Result: `*region`.
-/// - Errors: LEAFLESS_E_ARGUMENT if min > max on an axis, or a coordinate is not a number; else as
+/// - Errors: LEAFLESS_E_ARGUMENT if min > max on an axis, or a coordinate is not a number; otherwise as
 ///   leafless_solid_contains_many.
-/// - Untrusted input: any solid, any numbers; set `max_splits` where the depth or the solid is not your own
-///   choice.
+/// - Untrusted input: any solid, any numbers; set `max_splits` if the depth or the solid is untrusted.
 ///
 /// cbindgen:ptrs-as-arrays=[[min_model; 3], [max_model; 3]]
 #[unsafe(no_mangle)]

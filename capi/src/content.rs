@@ -1,4 +1,4 @@
-//! How much of a solid lies in a region, and how the two lie to each other.
+//! The content of a solid in a region, and the relation of solid and region.
 
 use super::boundary::{array, guard, out, shared};
 use super::contains::leafless_region;
@@ -9,9 +9,10 @@ use super::solid::leafless_solid;
 use super::status::leafless_status;
 use leafless::query::{CellsIn, cells_in, classify_in, volume_in};
 
-/// How many finest cells of a solid lie in a region, between bounds. A cell where the region is FULL lies in it, one
-/// where it is EMPTY does not, and one where it is PARTIAL may: so the bounds hold whether a cell counts that lies in the
-/// region as a whole, whose centre does, or that has any volume in common with it.
+/// Bounds on the number of finest cells of a solid in a region. A cell where the region is FULL lies in the
+/// region, a cell where it is EMPTY does not, and a cell where it is PARTIAL may. So the bounds hold whether
+/// a cell counts if all of it lies in the region, if its centre does, or if it shares any volume with the
+/// region.
 #[derive(Clone, Copy)]
 #[repr(C)]
 pub struct leafless_cells_in {
@@ -32,13 +33,13 @@ impl From<CellsIn> for leafless_cells_in {
     }
 }
 
-/// The number of finest cells in a box that are surely solid (FULL), and of those that are possibly solid (FULL or
-/// PARTIAL).
+/// Counts the finest cells in a box that are certainly solid (FULL), and those that are possibly solid (FULL
+/// or PARTIAL).
 ///
-/// - Buffers: `min_cell` and `max_cell`, 3 numbers each: the first finest cell, and the first one beyond the box on each
-///   axis; `least` and `most`, one number each.
+/// - Buffers: `min_cell` and `max_cell`, 3 numbers each: the first finest cell of the box, and the first cell
+///   beyond it on each axis; `least` and `most`, one number each.
 /// - Result: `*least` and `*most`.
-/// - Errors: LEAFLESS_E_ARGUMENT if the box is none, or lies outside of the universe.
+/// - Errors: LEAFLESS_E_ARGUMENT if min > max on an axis, or the box is not within the universe.
 /// - Untrusted input: any octree, any numbers; no array element is read twice; damage reads as PARTIAL.
 ///
 /// cbindgen:ptrs-as-arrays=[[min_cell; 3], [max_cell; 3]]
@@ -60,14 +61,15 @@ pub unsafe extern "C" fn leafless_octree_cells_in_box(
     })
 }
 
-/// The volume that the solid has in common with a box whose faces may lie anywhere, as an octree's cells tell it: FULL
-/// ones bound it from below, FULL and PARTIAL ones from above. Cells that the box cuts count with the part in the box,
-/// rounded outward. What lies outside of the universe does not count.
+/// Returns the volume that the solid of an octree shares with a box at any position. FULL cells bound it from
+/// below, FULL and PARTIAL cells from above. Cells that the box cuts count with their part in the box,
+/// rounded outward. Space outside the universe is ignored.
 ///
 /// - Buffers: `min_model` and `max_model`, 3 numbers each; `volume_model`, one struct.
 /// - Result: `*volume_model`, in cubic model units.
 /// - Errors: LEAFLESS_E_ARGUMENT if min > max on an axis, or a coordinate is not a number.
-/// - Untrusted input: any octree, any numbers; no array element is read more than 27 times; damage reads as PARTIAL.
+/// - Untrusted input: any octree, any numbers; no array element is read more than 27 times; damage reads as
+///   PARTIAL.
 ///
 /// cbindgen:ptrs-as-arrays=[[min_model; 3], [max_model; 3]]
 #[unsafe(no_mangle)]
@@ -85,16 +87,18 @@ pub unsafe extern "C" fn leafless_octree_volume_in_box(
     })
 }
 
-/// How a region lies to a solid, as far as cells of the frame tell: a ball, or any other solid.
-/// LEAFLESS_REGION_INSIDE means that all of the region lies in the solid; LEAFLESS_REGION_OUTSIDE that the interiors are
-/// disjoint, as they also are if the region is empty; LEAFLESS_REGION_CROSSING that some of the region does and some does
-/// not. The work ends as soon as the answer is known, or once `max_splits` cells of both are split.
+/// Classifies a region, which is a ball or any other solid, against a solid, as far as the cells of the frame
+/// decide it. LEAFLESS_REGION_INSIDE means that all of the region lies in the solid; LEAFLESS_REGION_OUTSIDE
+/// that the interiors are disjoint, also if the region is empty; LEAFLESS_REGION_CROSSING that a part of the
+/// region lies in the solid and a part does not. The work ends as soon as the answer is known, or when
+/// `max_splits` cells of both are split.
 ///
 /// - Buffers: `frame`, one struct; `options`, one struct or NULL; `relation`, one.
 /// - Result: `*relation`.
-/// - Errors: LEAFLESS_E_FRAME if solid or region belong to another frame; LEAFLESS_E_ARGUMENT as leafless_frame_check;
-///   LEAFLESS_E_CALLBACK; LEAFLESS_E_DAMAGED; LEAFLESS_E_CANCELLED; LEAFLESS_E_NO_MEMORY.
-/// - Untrusted input: any solids; set `max_splits` where the depth or the solids are not your own choice.
+/// - Errors: LEAFLESS_E_FRAME if solid or region belong to another frame; LEAFLESS_E_ARGUMENT as
+///   leafless_frame_check; LEAFLESS_E_CALLBACK; LEAFLESS_E_DAMAGED; LEAFLESS_E_CANCELLED;
+///   LEAFLESS_E_NO_MEMORY.
+/// - Untrusted input: any solids; set `max_splits` if the depth or the solids are untrusted.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn leafless_solid_classify_in(
     solid: *const leafless_solid,
@@ -112,20 +116,20 @@ pub unsafe extern "C" fn leafless_solid_classify_in(
     })
 }
 
-/// How many finest cells of an octree lie in a region, which is a ball or any other solid. The octree's cells are taken
-/// as they are, whatever they prove; what is not proven of the region counts as PARTIAL. What lies outside of the
-/// universe does not count.
+/// Counts the finest cells of an octree in a region, which is a ball or any other solid. The octree's cells
+/// count as they are, regardless of their proofs; unproven tags of the region count as PARTIAL. Space outside
+/// the universe is ignored.
 ///
-/// Where the region is FULL, whole subtrees are counted, 64 cells at a time; where it is EMPTY, nothing is read; where it
-/// is undecided and the octree is not EMPTY, it is split, down to the octree's depth. Once `max_splits` cells of both are
-/// split, the others count as undecided.
+/// Where the region is FULL, whole subtrees are counted, 64 cells at a time; where it is EMPTY, nothing is
+/// read; where it is undecided and the octree is not EMPTY, it is split, down to the octree's depth. When
+/// `max_splits` cells of both are split, the others count as undecided.
 ///
 /// - Buffers: `options`, one struct or NULL; `cells`, one struct.
 /// - Result: `*cells`.
-/// - Errors: LEAFLESS_E_FRAME if the region belongs to another frame; LEAFLESS_E_CALLBACK; LEAFLESS_E_DAMAGED if the region
-///   is; LEAFLESS_E_CANCELLED; LEAFLESS_E_NO_MEMORY.
-/// - Untrusted input: any octree, any region; no array element is read twice; damage reads as PARTIAL; set `max_splits`
-///   where the depth or the region are not your own choice.
+/// - Errors: LEAFLESS_E_FRAME if the region belongs to another frame; LEAFLESS_E_CALLBACK; LEAFLESS_E_DAMAGED
+///   if the region is damaged; LEAFLESS_E_CANCELLED; LEAFLESS_E_NO_MEMORY.
+/// - Untrusted input: any octree, any region; no array element is read twice; damage reads as PARTIAL; set
+///   `max_splits` if the depth or the region is untrusted.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn leafless_octree_cells_in(
     octree: *const leafless_octree,
@@ -141,10 +145,10 @@ pub unsafe extern "C" fn leafless_octree_cells_in(
     })
 }
 
-/// The volume that an octree and a region have in common, as the octree's cells tell it: FULL ones bound it from below,
-/// FULL and PARTIAL ones from above. In a finest cell that the region cuts, its volume is known as well as the region
-/// knows it there: that of a ball to the third order. What lies outside of the universe does not count. The work is that
-/// of leafless_octree_cells_in, with a microsecond or two more for each cell that is cut.
+/// Returns the volume that the solid of an octree shares with a region. FULL cells bound it from below, FULL
+/// and PARTIAL cells from above. In a finest cell that the region cuts, the precision is that of the region's
+/// own bounds: third order for a ball. Space outside the universe is ignored. The work is that of
+/// leafless_octree_cells_in, with a microsecond or two more for each cell that is cut.
 ///
 /// - Buffers: `options`, one struct or NULL; `volume_model`, one struct.
 /// - Result: `*volume_model`, in cubic model units.
@@ -165,16 +169,18 @@ pub unsafe extern "C" fn leafless_octree_volume_in(
     })
 }
 
-/// How many finest cells of a frame lie in a solid and in a region, which is a ball or any other solid. What is not proven
-/// of either counts as PARTIAL, and what lies outside of the universe does not count. No octree is made: the time is about
-/// that of splitting the region's boundary inside of the solid and the solid's boundary inside of the region, and the
-/// memory is proportional to the depth. Once `max_splits` cells of both are split, the others count as undecided.
+/// Counts the finest cells of a frame that lie in a solid and in a region, which is a ball or any other
+/// solid. Unproven tags of either count as PARTIAL. Space outside the universe is ignored. No octree is made:
+/// the time is about that of splitting the region's boundary inside the solid and the solid's boundary inside
+/// the region, and the memory is proportional to the depth. When `max_splits` cells of both are split, the
+/// others count as undecided.
 ///
 /// - Buffers: `frame`, one struct; `options`, one struct or NULL; `cells`, one struct.
 /// - Result: `*cells`.
-/// - Errors: LEAFLESS_E_FRAME if solid or region belong to another frame; LEAFLESS_E_ARGUMENT as leafless_frame_check;
-///   LEAFLESS_E_CALLBACK; LEAFLESS_E_DAMAGED; LEAFLESS_E_CANCELLED; LEAFLESS_E_NO_MEMORY.
-/// - Untrusted input: any solids; set `max_splits` where the depth or the solids are not your own choice.
+/// - Errors: LEAFLESS_E_FRAME if solid or region belong to another frame; LEAFLESS_E_ARGUMENT as
+///   leafless_frame_check; LEAFLESS_E_CALLBACK; LEAFLESS_E_DAMAGED; LEAFLESS_E_CANCELLED;
+///   LEAFLESS_E_NO_MEMORY.
+/// - Untrusted input: any solids; set `max_splits` if the depth or the solids are untrusted.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn leafless_solid_cells_in(
     solid: *const leafless_solid,
@@ -191,10 +197,10 @@ pub unsafe extern "C" fn leafless_solid_cells_in(
     })
 }
 
-/// The volume that a solid and a region have in common inside of a frame's universe: an interval that contains the
-/// truth. In a cell of the finest level it is known as well as solid and region know it there. The work is that of
-/// leafless_solid_cells_in, with a microsecond or two more for each cell that is cut. (To split until a volume is known to a
-/// tolerance, use leafless_solid_measure on the intersection.)
+/// Returns the volume that a solid and a region share inside a frame's universe: an interval that contains
+/// the truth. In a finest cell, the precision is that of the own bounds of solid and region. The work is that
+/// of leafless_solid_cells_in, with a microsecond or two more for each cell that is cut. (To split until a
+/// volume is known to a tolerance, use leafless_solid_measure on the intersection.)
 ///
 /// - Buffers: `frame`, one struct; `options`, one struct or NULL; `volume_model`, one struct.
 /// - Result: `*volume_model`, in cubic model units.

@@ -7,7 +7,7 @@ use core::sync::atomic::{AtomicBool, AtomicU64, Ordering::Relaxed};
 use leafless::Control;
 use leafless::Error;
 
-/// A switch to stop long operations from any thread, and to ask how far they are.
+/// A switch that stops long operations from any thread and reports their progress.
 ///
 /// All its functions may be called at once from any number of threads.
 pub struct leafless_control {
@@ -16,59 +16,61 @@ pub struct leafless_control {
     fraction: AtomicU64,
 }
 
-/// Hears how far an operation is, with the fraction done (0 to 1); returns 0 to go on. Anything else ends the
-/// operation with LEAFLESS_E_CANCELLED, unless it is already done, and cancels the `control` of its options,
-/// if there is one, until leafless_control_reset.
+/// The host's progress function: receives the fraction that is done (0 to 1) and returns 0 to go on. Any
+/// other value ends the operation with LEAFLESS_E_CANCELLED, unless it is already done, and cancels the
+/// `control` of its options, if there is one, until leafless_control_reset.
 ///
-/// It is called from any of the operation's threads, also from two at once and then not in ascending order;
-/// with `threads` = 1 from the calling thread only. It must return: no exception, no longjmp. It may call
-/// this library.
+/// Any of the operation's threads may call it, also two at once and then not in ascending order; with
+/// `threads` = 1 only the calling thread does. It must return: no exception, no longjmp. It may call this
+/// library.
 pub type leafless_progress_fn = Option<unsafe extern "C" fn(ctx: *mut c_void, fraction: f64) -> i32>;
 
-/// How a long operation may proceed. Where a function takes options, NULL means the defaults. All fields but
-/// the first may be zero, which is their default. No option but
-/// `max_splits` changes a result.
+/// Options of long operations: threads, limits, progress and cancelling. Where a function takes options, NULL
+/// means the defaults. Zero is the default of every field but the first. No option but `max_splits` changes a
+/// result.
 #[derive(Clone, Copy)]
 #[repr(C)]
 pub struct leafless_options {
     /// sizeof(leafless_options).
     pub struct_size: u32,
-    /// Threads to use; 0 means as many as the machine has processors, numbers beyond 1024 mean 1024. Inside
-    /// of a function that the library calls it is always 1.
+    /// Number of threads; 0 means the number of processors, numbers beyond 1024 mean 1024. Inside a function
+    /// that the library calls it is always 1.
     pub threads: u32,
-    /// Refuse results of more octree nodes than this; 0 means no limit.
+    /// Largest number of octree nodes of a result; 0 means no limit. A larger result is refused with
+    /// LEAFLESS_E_LIMIT.
     pub max_nodes: u64,
-    /// Refuse results whose working form is larger than this many bytes; 0 means no limit. Where the size is known
-    /// beforehand nothing is done. When a result is put together, it takes as much again for a moment. Set a limit
-    /// where a solid or its depth is not your own choice: a file of some hundred bytes may hold a cell whose surface
-    /// has 2^43 triangles. Interference, clearance, deviations and bounding boxes end with what they know, as with max_splits spent,
-    /// before what they remember of a solid's parts takes so much.
+    /// Largest size in bytes of a result's working form; 0 means no limit. A larger result is refused with
+    /// LEAFLESS_E_LIMIT, before any work if the size is known beforehand. Assembling a result needs the same
+    /// amount once more for a moment. Set a limit if a solid or its depth is untrusted: a file of some
+    /// hundred bytes may hold a cell whose surface has 2^43 triangles. Interference, clearance, deviations
+    /// and bounding boxes stop before their cache of a solid's parts exceeds the limit; as when max_splits is
+    /// spent, they return the answer found so far.
     pub max_bytes: u64,
-    /// Split at most this many cells; 0 means no limit, or the one that the function names. Only functions
-    /// that split on demand heed it, and say so: with it spent they stop, and keep or return what they have;
-    /// it is no error.
+    /// Largest number of cells to split; 0 means no limit, or the default that the function names. It applies
+    /// only to functions that split on demand, and their comments say so. When it is spent, they stop and
+    /// keep or return the result so far, without an error.
     pub max_splits: u64,
-    /// Hears of the progress; optional.
+    /// The progress function; optional.
     pub progress: leafless_progress_fn,
-    /// What `progress` is called with.
+    /// The context that `progress` is called with.
     pub progress_ctx: *mut c_void,
-    /// Ends the operation when it is cancelled, and can be asked for the progress; optional. Give operations
-    /// that run at once a control each, or their progress is mixed up.
+    /// A control that can cancel the operation and report its progress; optional. Give operations that run at
+    /// the same time a control each, or their progress is mixed up.
     pub control: *const leafless_control,
 }
 
 // SAFETY: numbers, pointers, and an optional function.
 unsafe impl Sized32 for leafless_options {}
 
-/// Pointers of the host that are handed to its own functions, in any thread.
+/// Pointers of the host that are passed to its own functions, in any thread.
 struct Host<'a> {
     progress: leafless_progress_fn,
     ctx: *mut c_void,
     control: &'a leafless_control,
 }
 
-// SAFETY: the library does nothing with `ctx` but hand it back; that the host's function may be called from
-// any thread is its documented contract.
+// SAFETY: the library only passes `ctx` back to the host. By its documented contract, the host's function may
+// be called from any thread.
 unsafe impl Sync for Host<'_> {}
 
 impl Host<'_> {
@@ -104,8 +106,8 @@ pub(super) unsafe fn controlled<R>(
     let limit = |most: u64| (most != 0).then_some(most);
     control.fraction.store(0, Relaxed);
     Ok(operation(&Control {
-        // A thread of the library that waited for others would meanwhile take up other work of theirs, and
-        // call the host's function again in the midst of a call.
+        // A thread of the library that waits for others takes up other work meanwhile. It would call the
+        // host's function again during a call.
         threads: if rayon::current_thread_index().is_some() { 1 } else { options.threads as usize },
         max_nodes: limit(options.max_nodes),
         max_bytes: limit(options.max_bytes),
@@ -115,12 +117,12 @@ pub(super) unsafe fn controlled<R>(
     })?)
 }
 
-/// Makes any struct that begins with `struct_size` its default: its size, and zeros. In C and C++ the macro LEAFLESS_INIT
-/// does the same; this function is for other languages.
+/// Sets any struct that begins with `struct_size` to its default: its size, and zeros. In C and C++ the macro
+/// LEAFLESS_INIT does the same; this function is for other languages.
 ///
 /// - Buffers: `value`, one struct of `struct_size` bytes, which need not be initialised.
 /// - Result: `*value`.
-/// - Errors: LEAFLESS_E_ARGUMENT if `struct_size` cannot be right.
+/// - Errors: LEAFLESS_E_ARGUMENT if `struct_size` is not sensible.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn leafless_init(value: *mut c_void, struct_size: usize) -> leafless_status {
     guard(|| unsafe { initialise(value, struct_size) })
@@ -130,8 +132,7 @@ pub unsafe extern "C" fn leafless_init(value: *mut c_void, struct_size: usize) -
 ///
 /// - Buffers: `control`, one pointer.
 /// - Result: `*control`, not cancelled.
-/// - Ownership: give `*control` back with leafless_control_free, not before the operations that use it are
-///   done.
+/// - Ownership: release `*control` with leafless_control_free, after the operations that use it are done.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn leafless_control_new(control: *mut *mut leafless_control) -> leafless_status {
     guard(|| unsafe {
@@ -141,10 +142,10 @@ pub unsafe extern "C" fn leafless_control_new(control: *mut *mut leafless_contro
     })
 }
 
-/// Gives back a control.
+/// Releases a control.
 ///
 /// - Buffers: `control`, a handle or NULL, which does nothing.
-/// - Ownership: the handle is gone.
+/// - Ownership: the handle is invalid afterwards.
 /// - Threads: no other call may use the handle.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn leafless_control_free(control: *mut leafless_control) {
@@ -152,8 +153,8 @@ pub unsafe extern "C" fn leafless_control_free(control: *mut leafless_control) {
     unsafe { release(control) }
 }
 
-/// Ends the operations that run with this control: they return LEAFLESS_E_CANCELLED soon, and so do later
-/// ones until leafless_control_reset.
+/// Cancels the operations that run with this control. They return LEAFLESS_E_CANCELLED soon, and so do later
+/// operations until leafless_control_reset.
 ///
 /// - Buffers: `control`, a handle.
 /// - Result: none; returns at once.
@@ -168,7 +169,7 @@ pub unsafe extern "C" fn leafless_control_cancel(control: *const leafless_contro
 /// Makes a cancelled control usable again.
 ///
 /// - Buffers: `control`, a handle.
-/// - Threads: any, but operations that have not noticed the cancelling yet may go on.
+/// - Threads: any, but operations that have not noticed the cancellation yet may go on.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn leafless_control_reset(control: *const leafless_control) -> leafless_status {
     guard(|| unsafe {
@@ -179,7 +180,7 @@ pub unsafe extern "C" fn leafless_control_reset(control: *const leafless_control
     })
 }
 
-/// Whether a control was cancelled, and how far the operation is that runs with it.
+/// Returns whether a control was cancelled, and the progress of the operation that runs with it.
 ///
 /// - Buffers: `control`, a handle; `cancelled` and `fraction`, one each, each may be NULL.
 /// - Result: `*cancelled`; `*fraction`, 0 to 1.

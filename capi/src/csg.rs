@@ -1,4 +1,4 @@
-//! Constructive solid geometry: half-spaces, primitives, and the set operations that join solids.
+//! Constructive solid geometry: half-spaces, primitives and set operations on solids.
 
 use super::boundary::{Failure, array, guard, out, shared, slice};
 use super::number::{Number, enumeration};
@@ -11,7 +11,7 @@ use leafless::memory;
 use leafless::solid::{Adaptive, HalfSpace, Motion, Touch};
 use leafless::{AnySolid, Csg, Solid};
 
-/// What counts as touching: when a cell that meets the boundary of an expression of half-spaces, but not its
+/// The rule of touching: whether a cell that meets the boundary of an expression of half-spaces, but not its
 /// interior, is EMPTY.
 #[derive(Clone, Copy)]
 #[repr(u32)]
@@ -19,7 +19,7 @@ pub enum leafless_touch {
     /// Contact is not overlap: a cell is EMPTY if the interiors are disjoint.
     LEAFLESS_TOUCH_EXACT = 0,
     /// A vertex on the surface counts as inside, so that a cell that touches a primitive with a vertex from
-    /// outside is PARTIAL. It reproduces published tables and is no better for anything else.
+    /// outside is PARTIAL. This rule reproduces published tables and has no other advantage.
     LEAFLESS_TOUCH_PAPER = 1,
 }
 
@@ -30,12 +30,12 @@ enumeration! {
     }
 }
 
-/// A solid as an expression.
+/// Returns a solid as an expression.
 fn expression(solid: &leafless_solid) -> Csg {
     Csg::solid(solid.solid.solid().clone())
 }
 
-/// The map of twelve numbers.
+/// Returns the affine map of twelve numbers.
 ///
 /// # Safety
 /// As [`array`].
@@ -45,10 +45,10 @@ pub(super) unsafe fn placement(matrix: *const f64) -> Result<Affine, Failure> {
     Ok(Affine::new([0, 4, 8].map(|row| [m[row], m[row + 1], m[row + 2], m[row + 3]]))?)
 }
 
-/// A solid under the map with these rows, or where it is if that is NULL.
+/// Returns a solid under the map with these rows, or unmoved if `matrix` is NULL.
 ///
 /// # Safety
-/// As [`array`], unless it is NULL.
+/// `matrix` is NULL, or as for [`array`].
 unsafe fn moved(solid: Csg, matrix: *const f64) -> Result<Csg, Failure> {
     if matrix.is_null() {
         return Ok(solid);
@@ -58,13 +58,13 @@ unsafe fn moved(solid: Csg, matrix: *const f64) -> Result<Csg, Failure> {
     Ok(solid.placed(&placement)?)
 }
 
-/// The ball of all points at most `radius` from `centre`. Its verdicts are exact.
+/// Makes the ball of all points at most `radius` from `centre`. Its verdicts are exact.
 ///
 /// - Buffers: `centre_model`, 3 numbers; `solid`, one pointer.
 /// - Result: `*solid`.
 /// - Errors: LEAFLESS_E_ARGUMENT if the radius is not between 2^-256 and 2^256, or a coordinate neither 0 nor
 ///   of such a magnitude.
-/// - Ownership: give `*solid` back with leafless_solid_free.
+/// - Ownership: release `*solid` with leafless_solid_free.
 /// - Untrusted input: any numbers.
 ///
 /// cbindgen:ptrs-as-arrays=[[centre_model; 3]]
@@ -81,14 +81,14 @@ pub unsafe extern "C" fn leafless_solid_new_ball(
     })
 }
 
-/// The box [min, max] with faces parallel to the lattice. Its verdicts are exact, so a face on a lattice
-/// plane leaves nothing undecided.
+/// Makes the box [min, max] with faces parallel to the lattice. Its verdicts are exact, so a face on a
+/// lattice plane leaves nothing undecided.
 ///
 /// - Buffers: `min_model` and `max_model`, 3 numbers each; `solid`, one pointer.
 /// - Result: `*solid`.
 /// - Errors: LEAFLESS_E_ARGUMENT if min ≥ max on an axis, or a coordinate is neither 0 nor of a magnitude
 ///   between 2^-256 and 2^256.
-/// - Ownership: give `*solid` back with leafless_solid_free.
+/// - Ownership: release `*solid` with leafless_solid_free.
 /// - Untrusted input: any numbers.
 ///
 /// cbindgen:ptrs-as-arrays=[[min_model; 3], [max_model; 3]]
@@ -105,13 +105,13 @@ pub unsafe extern "C" fn leafless_solid_new_box(
     })
 }
 
-/// The half-space of the points p with normal · p + offset ≥ 0. Its verdicts are exact.
+/// Makes the half-space of the points p with normal · p + offset ≥ 0. Its verdicts are exact.
 ///
 /// - Buffers: `normal`, 3 numbers, of any length and pointing into the solid; `solid`, one pointer.
 /// - Result: `*solid`.
 /// - Errors: LEAFLESS_E_ARGUMENT if the normal is zero, or a coefficient neither 0 nor of a magnitude between
 ///   2^-256 and 2^256.
-/// - Ownership: give `*solid` back with leafless_solid_free.
+/// - Ownership: release `*solid` with leafless_solid_free.
 /// - Untrusted input: any numbers.
 ///
 /// cbindgen:ptrs-as-arrays=[[normal; 3]]
@@ -128,14 +128,14 @@ pub unsafe extern "C" fn leafless_solid_new_halfspace(
     })
 }
 
-/// The points p with a x² + b y² + c z² + d xy + e yz + f zx + g x + h y + i z + j ≥ 0, of which the ten
-/// coefficients are a to j. Its signs are exact.
+/// Makes the quadric of the points p with a x² + b y² + c z² + d xy + e yz + f zx + g x + h y + i z + j ≥ 0.
+/// The ten coefficients are a to j. Its signs are exact.
 ///
 /// - Buffers: `coefficients`, 10 numbers; `solid`, one pointer.
 /// - Result: `*solid`.
 /// - Errors: LEAFLESS_E_ARGUMENT if all coefficients but the last are 0, or one is neither 0 nor of a
 ///   magnitude between 2^-256 and 2^256.
-/// - Ownership: give `*solid` back with leafless_solid_free.
+/// - Ownership: release `*solid` with leafless_solid_free.
 /// - Untrusted input: any numbers.
 ///
 /// cbindgen:ptrs-as-arrays=[[coefficients; 10]]
@@ -151,15 +151,15 @@ pub unsafe extern "C" fn leafless_solid_new_quadric(
     })
 }
 
-/// The ellipsoid around `centre` with the semi-axes `radii` along x, y and z, moved by `matrix` if there is one. The
-/// surface has exact coefficients. Its verdicts are exact, too, unless `matrix` turns it.
+/// Makes the ellipsoid around `centre` with the semi-axes `radii` along x, y and z, moved by `matrix` unless
+/// that is NULL. The surface has exact coefficients. Its verdicts are exact, too, unless `matrix` rotates it.
 ///
-/// - Buffers: `centre_model` and `radii_model`, 3 numbers each; `matrix`, 12 numbers as for leafless_solid_placed, or
-///   NULL; `solid`, one pointer.
+/// - Buffers: `centre_model` and `radii_model`, 3 numbers each; `matrix`, 12 numbers as for
+///   leafless_solid_placed, or NULL; `solid`, one pointer.
 /// - Result: `*solid`.
 /// - Errors: LEAFLESS_E_ARGUMENT if a radius is not between 2^-256 and 2^256, or a coordinate neither 0 nor
 ///   of such a magnitude; for `matrix` as leafless_solid_placed.
-/// - Ownership: give `*solid` back with leafless_solid_free.
+/// - Ownership: release `*solid` with leafless_solid_free.
 /// - Untrusted input: any numbers.
 ///
 /// cbindgen:ptrs-as-arrays=[[centre_model; 3], [radii_model; 3], [matrix; 12]]
@@ -177,15 +177,15 @@ pub unsafe extern "C" fn leafless_solid_new_ellipsoid(
     })
 }
 
-/// The cylinder of `radius` around the segment between two points, with flat ends through them. The axis may have any
-/// direction, and nothing is rounded: the surface has exact coefficients. If the axis is parallel to x, y or z, the
-/// verdicts are exact, too.
+/// Makes the cylinder of `radius` around the segment between two points, with flat ends through the points.
+/// The axis may have any direction. Nothing is rounded: the surface has exact coefficients. If the axis is
+/// parallel to x, y or z, the verdicts are exact, too.
 ///
 /// - Buffers: `from_model` and `to_model`, 3 numbers each; `solid`, one pointer.
 /// - Result: `*solid`.
-/// - Errors: LEAFLESS_E_ARGUMENT if the points are equal, the radius is not between 2^-256 and 2^256, or a coordinate
-///   neither 0 nor of such a magnitude.
-/// - Ownership: give `*solid` back with leafless_solid_free.
+/// - Errors: LEAFLESS_E_ARGUMENT if the points are equal, the radius is not between 2^-256 and 2^256, or a
+///   coordinate neither 0 nor of such a magnitude.
+/// - Ownership: release `*solid` with leafless_solid_free.
 /// - Untrusted input: any numbers.
 ///
 /// cbindgen:ptrs-as-arrays=[[from_model; 3], [to_model; 3]]
@@ -203,14 +203,15 @@ pub unsafe extern "C" fn leafless_solid_new_cylinder(
     })
 }
 
-/// The frustum of a cone around the segment between two points: it has the radius `from_radius` at `from`, and
-/// `to_radius` at `to`. One of the radii may be 0, which makes a cone. Exact as leafless_solid_new_cylinder is.
+/// Makes the frustum of a cone around the segment between two points, with the radius `from_radius` at `from`
+/// and `to_radius` at `to`. One of the radii may be 0, which makes a cone. It is as exact as
+/// leafless_solid_new_cylinder.
 ///
 /// - Buffers: `from_model` and `to_model`, 3 numbers each; `solid`, one pointer.
 /// - Result: `*solid`.
-/// - Errors: LEAFLESS_E_ARGUMENT if the points are equal, if both radii are 0 or one is not between 2^-256 and 2^256,
-///   or a coordinate neither 0 nor of such a magnitude.
-/// - Ownership: give `*solid` back with leafless_solid_free.
+/// - Errors: LEAFLESS_E_ARGUMENT if the points are equal, if both radii are 0 or one is not between 2^-256
+///   and 2^256, or a coordinate neither 0 nor of such a magnitude.
+/// - Ownership: release `*solid` with leafless_solid_free.
 /// - Untrusted input: any numbers.
 ///
 /// cbindgen:ptrs-as-arrays=[[from_model; 3], [to_model; 3]]
@@ -229,14 +230,15 @@ pub unsafe extern "C" fn leafless_solid_new_frustum(
     })
 }
 
-/// The points p with A (x − a)^n + B (y − b)^m + C (z − c)^k + `constant` ≥ 0. Its signs are exact.
+/// Makes the solid of the points p with A (x − a)^n + B (y − b)^m + C (z − c)^k + `constant` ≥ 0. Its signs
+/// are exact.
 ///
 /// - Buffers: `coefficients` A, B, C, `centre_model` a, b, c, and `exponents` n, m, k, 3 numbers each;
 ///   `solid`, one pointer.
 /// - Result: `*solid`.
 /// - Errors: LEAFLESS_E_ARGUMENT if all coefficients are 0, an exponent is not 1 to 64, or a number neither 0
 ///   nor of a magnitude between 2^-256 and 2^256.
-/// - Ownership: give `*solid` back with leafless_solid_free.
+/// - Ownership: release `*solid` with leafless_solid_free.
 /// - Untrusted input: any numbers.
 ///
 /// cbindgen:ptrs-as-arrays=[[coefficients; 3], [centre_model; 3], [exponents; 3]]
@@ -258,15 +260,16 @@ pub unsafe extern "C" fn leafless_solid_new_power(
     })
 }
 
-/// The torus around the axis through `centre` in the direction `axis`, of any length: all points at most `minor` from
-/// the circle of radius `major` around the centre; where `minor` is greater, there is no hollow core. If the axis is
-/// parallel to x, y or z, nothing is rounded. Otherwise its direction is rounded to double precision.
+/// Makes the torus around the axis through `centre` in the direction `axis`, of any length: all points at
+/// most `minor` from the circle of radius `major` around the centre. If `minor` is greater than `major`,
+/// there is no hollow core. If the axis is parallel to x, y or z, nothing is rounded. Otherwise its direction
+/// is rounded to double precision.
 ///
 /// - Buffers: `centre_model` and `axis`, 3 numbers each; `solid`, one pointer.
 /// - Result: `*solid`.
-/// - Errors: LEAFLESS_E_ARGUMENT if the axis is zero, a radius is not between 2^-256 and 2^256, or a coordinate neither
-///   0 nor of such a magnitude; `major` may be 0, which makes a ball.
-/// - Ownership: give `*solid` back with leafless_solid_free.
+/// - Errors: LEAFLESS_E_ARGUMENT if the axis is zero, a radius is not between 2^-256 and 2^256, or a
+///   coordinate neither 0 nor of such a magnitude; `major` may be 0, which makes a ball.
+/// - Ownership: release `*solid` with leafless_solid_free.
 /// - Untrusted input: any numbers.
 ///
 /// cbindgen:ptrs-as-arrays=[[centre_model; 3], [axis; 3]]
@@ -285,15 +288,16 @@ pub unsafe extern "C" fn leafless_solid_new_torus(
     })
 }
 
-/// The right angular wedge: the box between the origin and `size` whose face at the greatest y is narrowed,
-/// or widened, to 0 ≤ x ≤ `top`; 0 makes that face an edge. (So it is defined by STEP, ISO 10303-42.)
-/// `matrix` moves it elsewhere without rounding.
+/// Makes the right angular wedge of STEP (ISO 10303-42): the box between the origin and `size` whose face at
+/// the greatest y is narrowed, or widened, to 0 ≤ x ≤ `top`; 0 makes that face an edge. `matrix` moves it
+/// without rounding.
 ///
-/// - Buffers: `size_model`, 3 numbers; `matrix`, 12 numbers as for leafless_solid_placed, or NULL; `solid`, one pointer.
+/// - Buffers: `size_model`, 3 numbers; `matrix`, 12 numbers as for leafless_solid_placed, or NULL; `solid`,
+///   one pointer.
 /// - Result: `*solid`.
-/// - Errors: LEAFLESS_E_ARGUMENT if a size, or `top` unless it is 0, is not between 2^-256 and 2^256; for `matrix` as
-///   leafless_solid_placed.
-/// - Ownership: give `*solid` back with leafless_solid_free.
+/// - Errors: LEAFLESS_E_ARGUMENT if a size, or `top` unless it is 0, is not between 2^-256 and 2^256; for
+///   `matrix` as leafless_solid_placed.
+/// - Ownership: release `*solid` with leafless_solid_free.
 /// - Untrusted input: any numbers.
 ///
 /// cbindgen:ptrs-as-arrays=[[size_model; 3], [matrix; 12]]
@@ -311,17 +315,17 @@ pub unsafe extern "C" fn leafless_solid_new_wedge(
     })
 }
 
-/// The prism over a simple polygon in the xy plane, between z = `low` and z = `high`. The polygon's corners
-/// are given in order, in either direction of rotation; the last is joined to the first. The planes through
-/// its edges are exact. `matrix` moves it elsewhere without rounding.
+/// Makes the prism over a simple polygon in the xy plane, between z = `low` and z = `high`. The polygon's
+/// corners are given in order, in either direction of rotation; the last corner is joined to the first. The
+/// planes through its edges are exact. `matrix` moves it without rounding.
 ///
-/// - Buffers: `polygon_model`, `count` points of 2 numbers each; `matrix`, 12 numbers as for leafless_solid_placed, or
-///   NULL; `solid`, one pointer.
+/// - Buffers: `polygon_model`, `count` points of 2 numbers each; `matrix`, 12 numbers as for
+///   leafless_solid_placed, or NULL; `solid`, one pointer.
 /// - Result: `*solid`.
 /// - Errors: LEAFLESS_E_ARGUMENT if the outline touches or crosses itself or encloses nothing, a coordinate
-///   is neither 0 nor of a magnitude between 2^-256 and 2^256, or `low` not less than `high`; for `matrix` as
-///   leafless_solid_placed; LEAFLESS_E_NO_MEMORY.
-/// - Ownership: give `*solid` back with leafless_solid_free.
+///   is neither 0 nor of a magnitude between 2^-256 and 2^256, or `low` is not less than `high`; for `matrix`
+///   as leafless_solid_placed; LEAFLESS_E_NO_MEMORY.
+/// - Ownership: release `*solid` with leafless_solid_free.
 /// - Untrusted input: any numbers.
 ///
 /// cbindgen:ptrs-as-arrays=[[matrix; 12]]
@@ -341,15 +345,15 @@ pub unsafe extern "C" fn leafless_solid_new_prism(
     })
 }
 
-/// The convex polyhedron of the points p with normal · p + offset ≥ 0 for all of the planes. It may be
-/// unbounded, or empty.
+/// Makes the convex polyhedron of the points p with normal · p + offset ≥ 0 for all planes. It may be
+/// unbounded or empty.
 ///
 /// - Buffers: `planes`, `count` of 4 numbers each: the normal, of any length and pointing inward, and the
 ///   offset; `solid`, one pointer.
 /// - Result: `*solid`.
 /// - Errors: LEAFLESS_E_ARGUMENT if there is no plane, a normal is zero, or a number neither 0 nor of a
 ///   magnitude between 2^-256 and 2^256; LEAFLESS_E_NO_MEMORY.
-/// - Ownership: give `*solid` back with leafless_solid_free.
+/// - Ownership: release `*solid` with leafless_solid_free.
 /// - Untrusted input: any numbers.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn leafless_solid_new_convex(
@@ -365,16 +369,16 @@ pub unsafe extern "C" fn leafless_solid_new_convex(
     })
 }
 
-/// What a set operation makes of solids. Of no solid, the union and the xor are empty. The intersection of no
-/// solid is everything. No tree is built: the result asks its operands about each cell that it is asked about,
-/// and expressions of half-spaces join into one.
+/// Combines solids by a set operation. Without operands, the union and the xor are empty, and the
+/// intersection is all of space. No octree is built: the result queries its operands for each cell, and
+/// expressions of half-spaces are joined into one expression.
 ///
 /// - Buffers: `solids`, `count` handles, or NULL if there is none; `result`, one pointer. `operation` is a
 ///   leafless_operation.
 /// - Result: `*result`.
 /// - Errors: LEAFLESS_E_NULL, also of an element; LEAFLESS_E_ARGUMENT, also if `count` is 0 for a difference;
 ///   LEAFLESS_E_NO_MEMORY.
-/// - Ownership: the operands are shared and may be freed; give `*result` back with leafless_solid_free.
+/// - Ownership: the operands are shared and may be freed; release `*result` with leafless_solid_free.
 /// - Untrusted input: any solids.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn leafless_solid_combine(
@@ -400,12 +404,13 @@ pub unsafe extern "C" fn leafless_solid_combine(
     })
 }
 
-/// What `operand` does not contain. A solid and its complement share their boundary.
+/// Makes the complement of a solid: the points that `operand` does not contain. A solid and its complement
+/// share their boundary.
 ///
 /// - Buffers: `solid`, one pointer.
 /// - Result: `*solid`.
 /// - Errors: LEAFLESS_E_NULL.
-/// - Ownership: the operand is shared and may be freed; give `*solid` back with leafless_solid_free.
+/// - Ownership: the operand is shared and may be freed; release `*solid` with leafless_solid_free.
 /// - Untrusted input: any solids.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn leafless_solid_complement(
@@ -419,18 +424,18 @@ pub unsafe extern "C" fn leafless_solid_complement(
     })
 }
 
-/// What an affine map does to a solid.
+/// The effect of an affine map on the precision of a solid.
 #[derive(Clone, Copy)]
 #[repr(u32)]
 pub enum leafless_motion {
-    /// Nothing is rounded: half-spaces, and what is made of them.
+    /// Nothing is rounded: half-spaces and expressions of them.
     LEAFLESS_MOTION_EXACT = 0,
-    /// The vertices of a mesh are moved and rounded, by some 10^-16 of their coordinates; what is proven
-    /// allows for that.
+    /// The vertices of a mesh are moved and rounded, by some 10^-16 of their coordinates; all proofs allow
+    /// for that.
     LEAFLESS_MOTION_VERTICES = 1,
-    /// A surface that is not parallel to the lattice blurs by about a cell: as leafless_solid_transformed does, on a frame
-    /// that is chosen for the solid; a host's shape is asked about boxes around the inverse images of cells. Where cells
-    /// are the images of cells, nothing blurs.
+    /// A surface that is not parallel to the lattice blurs by about a cell, as with
+    /// leafless_solid_transformed on a frame that is chosen for the solid. A host's shape is queried for
+    /// boxes around the inverse images of cells. If the map takes cells to cells, nothing blurs.
     LEAFLESS_MOTION_CONSERVATIVE = 2,
 }
 use leafless_motion::*;
@@ -445,16 +450,16 @@ impl From<Motion> for leafless_motion {
     }
 }
 
-/// A solid moved by an affine map, in the best way that its kind knows: half-spaces exactly, meshes by their
-/// vertices, others as leafless_solid_transformed; of an expression each part in its own way.
+/// Makes a solid moved by an affine map, in the best way for its kind: half-spaces exactly, meshes by their
+/// vertices, others as by leafless_solid_transformed. Each part of an expression is moved in its own way.
 ///
 /// - Buffers: `matrix`, 12 numbers, the rows of [M | t], where a point p goes to M p + t; `motion`, one
 ///   leafless_motion or NULL; `solid`, one pointer.
-/// - Result: `*solid`; `*motion`, the worst that a map does to any part (the identity does nothing).
+/// - Result: `*solid`; `*motion`, the worst effect of the map on any part (the identity has no effect).
 /// - Errors: LEAFLESS_E_ARGUMENT if an entry is neither 0 nor of a magnitude between 2^-64 and 2^64, or M is
-///   singular; LEAFLESS_E_MESH if a mesh is moved beyond the numbers that meshes may have;
+///   singular; LEAFLESS_E_MESH if a vertex leaves the range of coordinates of meshes, ±2^256;
 ///   LEAFLESS_E_NO_MEMORY.
-/// - Ownership: the operand is shared and may be freed; give `*solid` back with leafless_solid_free.
+/// - Ownership: the operand is shared and may be freed; release `*solid` with leafless_solid_free.
 /// - Untrusted input: any solids and numbers.
 ///
 /// cbindgen:ptrs-as-arrays=[[matrix; 12]]
@@ -478,13 +483,13 @@ pub unsafe extern "C" fn leafless_solid_placed(
     })
 }
 
-/// A solid whose cells are not split where its surface is known to lie within a layer no thicker than a tolerance:
-/// an octree of it stays coarse where the surface is flat. Such cells stay PARTIAL. Half-spaces know such layers;
-/// a solid that knows none is split as ever.
+/// Makes a solid whose cells are not split where its surface is known to lie within a layer no thicker than a
+/// tolerance: an octree of it stays coarse where the surface is flat. Such cells stay PARTIAL. Half-spaces
+/// provide such layers; a solid that provides none is split as usual.
 ///
 /// - Result: `*solid`, a new solid.
 /// - Errors: LEAFLESS_E_ARGUMENT if `tolerance_model` is negative or not a number; LEAFLESS_E_NO_MEMORY.
-/// - Ownership: the caller's, to be given to leafless_solid_free; `operand` stays the caller's.
+/// - Ownership: the operand is shared and may be freed; release `*solid` with leafless_solid_free.
 /// - Untrusted input: any solid.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn leafless_solid_adaptive(
@@ -503,13 +508,13 @@ pub unsafe extern "C" fn leafless_solid_adaptive(
     })
 }
 
-/// The same solid by another rule of touching, which holds for the whole expression. What joins it to others
-/// follows its own rule.
+/// Makes the same solid with another rule of touching, which holds for the whole expression. An expression
+/// that joins it to other solids follows its own rule.
 ///
 /// - Buffers: `solid`, one pointer. `touch` is a leafless_touch.
 /// - Result: `*solid`.
-/// - Errors: LEAFLESS_E_NULL; LEAFLESS_E_ARGUMENT if `touch` is no leafless_touch.
-/// - Ownership: the operand is shared and may be freed; give `*solid` back with leafless_solid_free.
+/// - Errors: LEAFLESS_E_NULL; LEAFLESS_E_ARGUMENT if `touch` is not a leafless_touch.
+/// - Ownership: the operand is shared and may be freed; release `*solid` with leafless_solid_free.
 /// - Untrusted input: any solids.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn leafless_solid_with_touch(

@@ -7,36 +7,36 @@ use leafless::octree::Cursor;
 use std::sync::Arc;
 use yoke::Yoke;
 
-/// A position in an octree that moves along its links, one level at a step. At first it stands on the
-/// universe.
+/// A position in an octree that moves along its links, one level at a step. It starts at the universe.
 ///
-/// Moving changes it: while one thread moves a cursor, no other may use it. Threads may have a cursor each.
+/// Moving changes the cursor: while one thread moves it, no other thread may use it. Each thread may have its
+/// own cursor.
 pub struct leafless_cursor(pub(super) Yoke<Cursor<'static>, Arc<leafless_octree>>);
 
-/// Where a cursor stands.
+/// The state of a cursor: the cell that it is at.
 #[derive(Clone, Copy)]
 #[repr(C)]
 pub struct leafless_cursor_info {
     /// sizeof(leafless_cursor_info).
     pub struct_size: u32,
-    /// The cell's place among those of its level, per axis.
+    /// The cell's index on each axis among the cells of its level.
     pub cell: [u32; 3],
     /// The cell's level; 0 is the universe.
     pub level: u32,
     /// The cell's tag.
     pub tag: leafless_tag,
-    /// Of a BRANCH the tags of its children, in octant order (bit 0 of the octant is x, bit 1 y, bit 2 z);
-    /// else eight times the cell's own.
+    /// For a BRANCH, the tags of its children in octant order (bit 0 of the octant is x, bit 1 y, bit 2 z);
+    /// else eight times the cell's own tag.
     pub children: [leafless_tag; 8],
 }
 
 output!(leafless_cursor_info);
 
-/// Makes a cursor that stands on the universe.
+/// Makes a cursor at the universe.
 ///
 /// - Buffers: `cursor`, one pointer.
 /// - Result: `*cursor`.
-/// - Ownership: the cursor shares the octree, which may be freed; give `*cursor` back with
+/// - Ownership: the cursor shares the octree, which may be freed; release `*cursor` with
 ///   leafless_cursor_free.
 /// - Untrusted input: any octree.
 #[unsafe(no_mangle)]
@@ -52,10 +52,10 @@ pub unsafe extern "C" fn leafless_cursor_new(
     })
 }
 
-/// Gives back a cursor.
+/// Releases a cursor.
 ///
 /// - Buffers: `cursor`, a handle or NULL, which does nothing.
-/// - Ownership: the handle is gone.
+/// - Ownership: the handle is invalid afterwards.
 /// - Threads: no other call may use the handle.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn leafless_cursor_free(cursor: *mut leafless_cursor) {
@@ -63,11 +63,11 @@ pub unsafe extern "C" fn leafless_cursor_free(cursor: *mut leafless_cursor) {
     unsafe { discard(cursor) }
 }
 
-/// Where a cursor stands.
+/// Returns the state of a cursor.
 ///
 /// - Buffers: `state`, one struct.
 /// - Result: `*state`.
-/// - Threads: any, while nobody moves the cursor.
+/// - Threads: any, while no thread moves the cursor.
 /// - Untrusted input: any octree.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn leafless_cursor_describe(
@@ -88,7 +88,7 @@ pub unsafe extern "C" fn leafless_cursor_describe(
     })
 }
 
-/// Moves a cursor to a child of its cell. On a cell that is no BRANCH it stays where it is.
+/// Moves a cursor to a child of its cell. On a cell that is not a BRANCH it does not move.
 ///
 /// - Buffers: `moved`, one truth value, or NULL. `octant` is 0 to 7.
 /// - Result: `*moved`, whether the cell is a BRANCH.
@@ -113,7 +113,7 @@ pub unsafe extern "C" fn leafless_cursor_descend(
     })
 }
 
-/// Moves a cursor to the parent of its cell. On the universe it stays where it is.
+/// Moves a cursor to the parent of its cell. On the universe it does not move.
 ///
 /// - Buffers: `moved`, one truth value, or NULL.
 /// - Result: `*moved`, whether there is a parent.

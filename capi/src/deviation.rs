@@ -1,4 +1,4 @@
-//! How far the boundaries of two solids are from each other.
+//! Deviation: the distance of the boundaries of two solids.
 
 use super::boundary::{filled, guard, output, shared};
 use super::control::{controlled, leafless_options};
@@ -10,20 +10,21 @@ use super::status::leafless_status;
 use leafless::query::{OneWay, Within};
 use leafless::{Deviation, deviation};
 
-/// How far points of one boundary are from another one.
+/// The one-sided distance of one boundary from another.
 #[derive(Clone, Copy)]
 #[repr(C)]
 pub struct leafless_one_way {
-    /// The greatest distance of a point of the one boundary from the nearest point of the other, in model units. 0 if the first
-    /// solid has no boundary; infinite if the second has none and the first has.
+    /// The greatest distance of a point of the first boundary from the nearest point of the second, in model
+    /// units. 0 if the first solid has no boundary; infinite if only the second solid has none.
     pub distance_model: leafless_interval,
     /// If `has_witness`, a point next to the first boundary; else zeros.
     pub point_model: [f64; 3],
-    /// If `has_witness`, the first boundary is that near to the point, or nearer; else 0.
+    /// If `has_witness`, an upper bound of the point's distance from the first boundary, in model units; else 0.
     pub apart_model: f64,
-    /// If `has_witness`, the point next to the second boundary that is nearest to it, but for what is not known; else zeros.
+    /// If `has_witness`, the point next to the second boundary that is nearest to `point_model`, as far as
+    /// the boundary is known; else zeros.
     pub nearest_model: [f64; 3],
-    /// Whether the lower bound was found at a point.
+    /// Whether the lower bound was attained at a point, the witness.
     pub has_witness: bool,
 }
 
@@ -40,15 +41,15 @@ impl From<&OneWay> for leafless_one_way {
     }
 }
 
-/// Whether two boundaries are within a distance of each other.
+/// The verdict on whether two boundaries are within a distance of each other.
 #[derive(Clone, Copy)]
 #[repr(u32)]
 pub enum leafless_within {
-    /// Proven: each point of one boundary is that near to the other.
+    /// Proven: each point of either boundary is within the distance of the other.
     LEAFLESS_WITHIN_YES = 0,
     /// Proven: a point of one boundary is further away from the other.
     LEAFLESS_WITHIN_NO = 1,
-    /// Not decided by what is known.
+    /// Not decided by the bounds.
     LEAFLESS_WITHIN_UNDECIDED = 2,
 }
 
@@ -62,37 +63,37 @@ impl From<Within> for leafless_within {
     }
 }
 
-/// What is known of how far the boundaries of two solids are from each other.
+/// Bounds of the distance of the boundaries of two solids.
 #[derive(Clone, Copy)]
 #[repr(C)]
 pub struct leafless_deviation {
     /// sizeof(leafless_deviation).
     pub struct_size: u32,
-    /// The greater of both directions, in model units: the Hausdorff distance of the boundaries.
+    /// The greater of the two one-sided distances, in model units: the Hausdorff distance of the boundaries.
     pub distance_model: leafless_interval,
-    /// How far points of the first boundary are from the second one.
+    /// The one-sided distance of the first boundary from the second.
     pub a_to_b: leafless_one_way,
-    /// How far points of the second boundary are from the first one.
+    /// The one-sided distance of the second boundary from the first.
     pub b_to_a: leafless_one_way,
-    /// What of the first solid is proven: what is not counts as undecided.
+    /// The proofs about the first solid; unproven tags count as undecided.
     pub proof_a: leafless_proof,
-    /// What of the second solid is proven.
+    /// The proofs about the second solid.
     pub proof_b: leafless_proof,
     /// Cells of the first solid that were split; 0 if its boundary is known to consist of triangles.
     pub splits_a: u64,
     /// Cells of the second solid that were split.
     pub splits_b: u64,
-    /// How often pieces of the first boundary were cut.
+    /// Number of cuts of pieces of the first boundary.
     pub cuts_a: u64,
-    /// How often pieces of the second boundary were cut.
+    /// Number of cuts of pieces of the second boundary.
     pub cuts_b: u64,
     /// A leafless_within: whether the boundaries are within `within_model` of each other.
     pub verdict: u32,
-    /// Why the search ended.
+    /// The reason why the search ended.
     pub measured: leafless_stop_reason,
-    /// Whether the first solid may go on outside of the universe, of which nothing is said.
+    /// Whether the first solid may extend beyond the universe; the result says nothing about the part beyond.
     pub is_clipped_a: bool,
-    /// Whether the second solid may.
+    /// Whether the second solid may extend beyond the universe.
     pub is_clipped_b: bool,
 }
 
@@ -119,24 +120,25 @@ impl leafless_deviation {
     }
 }
 
-/// How far the boundaries of two solids are from each other, in both directions, as they are in the universe of a frame.
+/// Computes the distance of the boundaries of two solids, in both directions, inside the universe of a frame.
 ///
-/// The boundary of a closed mesh whose triangles do not intersect is known exactly, and the answer for two of them is found to
-/// rounding. Of any other solid, cells are split until the slabs of each tell where the boundary lies to a twelfth of
-/// `tolerance_model` (model units); what is not decided widens the intervals.
+/// The boundary of a closed mesh whose triangles do not intersect is known exactly; for two such meshes the
+/// result is exact up to rounding. For any other solid, cells are split until the slabs of each cell locate
+/// the boundary to a twelfth of `tolerance_model` (model units); undecided parts widen the intervals.
 ///
-/// `measured` of the result says why the search ended. With LEAFLESS_STOP_REASON_TOLERANCE both intervals are no wider than
-/// `tolerance_model`. With LEAFLESS_STOP_REASON_EXHAUSTED neither cells nor pieces of the boundaries have more to tell. With
-/// LEAFLESS_STOP_REASON_BUDGET `max_splits` cells of a solid were split, or 262 144 if that is 0, or 64 times as many pieces of a
-/// boundary cut, or `max_bytes` are near.
+/// `measured` of the result is the reason why the search ended. With LEAFLESS_STOP_REASON_TOLERANCE both
+/// intervals are no wider than `tolerance_model`. With LEAFLESS_STOP_REASON_EXHAUSTED neither splits of cells
+/// nor cuts of pieces of the boundaries improve the result. With LEAFLESS_STOP_REASON_BUDGET `max_splits`
+/// cells of a solid were split (262 144 if that is 0), or 64 times as many pieces of a boundary were cut, or
+/// `max_bytes` is almost reached.
 ///
-/// `verdict` of the result is a leafless_within: whether the boundaries are proven to be within `within_model` of each other. If that
-/// is not a number, nothing is decided.
+/// `verdict` of the result is a leafless_within: whether the boundaries are proven to be within
+/// `within_model` of each other. If `within_model` is not a number, the verdict is undecided.
 ///
 /// - Buffers: `frame`, one struct; `options`, one struct or NULL; `deviation`, one struct.
 /// - Result: `*deviation`.
 /// - Errors: as leafless_solid_interfere.
-/// - Threads: any; uses as many as `options` says.
+/// - Threads: any; runs on as many threads as `options` says.
 /// - Untrusted input: any solids; the default of `max_splits` bounds the work.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn leafless_solid_deviation(

@@ -1,4 +1,4 @@
-//! Extended octrees: built, counted, read, made plain.
+//! Extended octrees: building, counting, reading, and conversion to plain octrees.
 
 use super::boundary::{Failure, Sized32, array, buffer, filled, guard, out, output, shared, sized};
 use super::control::{controlled, leafless_options};
@@ -11,21 +11,21 @@ use super::status::leafless_status;
 use leafless::octree::SurfaceKind;
 use leafless::{Cell, SurfaceOptions, build_extended, op};
 
-/// Which surfaces an extended octree keeps.
+/// Options of the surfaces that an extended octree keeps.
 #[derive(Clone, Copy)]
 #[repr(C)]
 pub struct leafless_cut_options {
     /// sizeof(leafless_cut_options).
     pub struct_size: u32,
-    /// Where nothing exact is known of a surface (a mesh, a function of the host), two parallel planes may stand for it that
-    /// are at most this far apart. 0: only exact surfaces are kept.
+    /// Largest distance, in model units, of the two parallel planes that replace a surface without an exact
+    /// form (a mesh, a function of the host). 0: only exact surfaces are kept.
     pub tolerance_model: f64,
 }
 
 // SAFETY: numbers.
 unsafe impl Sized32 for leafless_cut_options {}
 
-/// Which surfaces the host wants.
+/// Returns the host's options of surfaces.
 ///
 /// # Safety
 /// As [`sized`].
@@ -35,27 +35,28 @@ pub(super) unsafe fn surface_options(cuts: *const leafless_cut_options) -> Resul
     Ok(SurfaceOptions { tolerance: (tolerance != 0.0).then_some(tolerance) })
 }
 
-/// What the PARTIAL cells of an octree keep of the surfaces that cross them.
+/// Counts of the surfaces that the PARTIAL cells of an octree keep.
 #[derive(Clone, Copy)]
 #[repr(C)]
 pub struct leafless_cut_counts {
     /// sizeof(leafless_cut_counts).
     pub struct_size: u32,
-    /// Surfaces.
+    /// Number of surfaces.
     pub surfaces: u32,
-    /// Cells of which it is known which function of surfaces the solid is. Parts of cells count that have functions of their own.
+    /// Cells in which the solid is a known function of surfaces. Parts of cells with functions of their own
+    /// count.
     pub cells: u64,
-    /// Cells of which nothing is known.
+    /// Cells that were given up: no function is known.
     pub given_up: u64,
-    /// PARTIAL cells that are split, and have no node, because all of their parts are PARTIAL.
+    /// PARTIAL cells that are split without a node, because all of their parts are PARTIAL.
     pub splits: u64,
-    /// Bytes of all of this.
+    /// Bytes of the surfaces and functions.
     pub bytes: u64,
 }
 
 output!(leafless_cut_counts);
 
-/// What kind of function a surface is the zero set of, and what its numbers are.
+/// The kind of function whose zero set a surface is, and the meaning of its numbers.
 #[derive(Clone, Copy)]
 #[repr(u32)]
 pub enum leafless_stored_surface_kind {
@@ -67,8 +68,8 @@ pub enum leafless_stored_surface_kind {
     LEAFLESS_STORED_SURFACE_KIND_POWERS = 2,
     /// R, q, s, t of q - (sqrt((s x)² + (s y)²) - R)² - (s z + t)².
     LEAFLESS_STORED_SURFACE_KIND_TORUS = 3,
-    /// a, b, c and two offsets: positive where a x + b y + c z is less than the first, negative where it is greater than the
-    /// second, and not known between.
+    /// a, b, c and two offsets: positive where a x + b y + c z is less than the first, negative where it is
+    /// greater than the second, and unknown in between.
     LEAFLESS_STORED_SURFACE_KIND_SLAB = 4,
 }
 use leafless_stored_surface_kind::*;
@@ -79,56 +80,61 @@ use leafless_stored_surface_kind::*;
 pub struct leafless_stored_surface_info {
     /// sizeof(leafless_stored_surface_info).
     pub struct_size: u32,
-    /// What its numbers are.
+    /// The kind of surface.
     pub kind: leafless_stored_surface_kind,
-    /// How many numbers there are.
+    /// Count of its numbers.
     pub number_count: u32,
-    /// How many maps place it.
+    /// Count of the maps that place it.
     pub placement_count: u32,
-    /// Of how many doubles each number is the exact sum.
+    /// For each number, the count of doubles whose exact sum it is.
     pub terms: [u32; 10],
-    /// How many doubles that is in all.
+    /// Count of these doubles in all.
     pub term_count: u32,
-    /// Whether a slab can be told from others.
+    /// Whether a slab has an identity, by which equal slabs are recognised.
     pub has_origin: bool,
-    /// If so: its number where it was made. Numbers from 2^63 on are those of slabs that were made for one cell.
+    /// If `has_origin`, the slab's number in its origin. Numbers from 2^63 on belong to slabs that were made
+    /// for one cell.
     pub origin_number: u64,
-    /// And the fingerprint of what it was made from, the lower half first.
+    /// If `has_origin`, the fingerprint of the origin, the lower half first.
     pub origin: [u64; 2],
 }
 
 output!(leafless_stored_surface_info);
 
-/// The function that the solid is in a cell.
+/// The solid in a cell as a function of surfaces.
 #[derive(Clone, Copy)]
 #[repr(C)]
 pub struct leafless_cell_function {
-    /// The numbers of its surfaces, ascending.
+    /// Indices of its surfaces, ascending.
     pub surfaces: [u32; 3],
-    /// How many they are; 0 if nothing is known of the cell, or if it is decided.
+    /// Number of surfaces, 0 to 3; 0 if no function is known, or if the cell is decided.
     pub surface_count: u32,
-    /// Bit m is set if points lie in the solid that are on the positive side of those surfaces i for which bit i of m is set, and on
-    /// the negative side of the others.
+    /// Truth table. Bit m is set if a point lies in the solid that is on the positive side of each surface i
+    /// whose bit i of m is set, and on the negative side of the others.
     pub table: u8,
 }
 
-/// Builds the extended octree of a solid: a certified octree whose PARTIAL cells keep the surfaces that cross them, up to three,
-/// and the function of their sides that the solid is. A cell ends as soon as three surfaces are left in it, at any size, so that
-/// the octree is small, and as exact as the solid. With exact surfaces alone take a frame of depth 20. The result is the same
-/// bit for bit for any number of threads.
+/// Builds the extended octree of a solid: a certified octree whose PARTIAL cells keep the surfaces that cross
+/// them, up to three, and the solid as a function of the surfaces' sides. A cell is not split further when
+/// three surfaces are left in it, at any size, so that the octree is small, and as exact as the solid. If all
+/// surfaces are exact, use a frame of depth 20. The result is identical, bit for bit, for any number of
+/// threads.
 ///
-/// Points, rays and boxes of an octree (leafless_octree_contains, leafless_octree_cast_rays, leafless_octree_classify_box) are
-/// decided by the surfaces where they lie; next to a surface they may stay undecided. As a solid (leafless_solid_from_octree) it
-/// answers as its source would. Set operations (leafless_octree_combine, leafless_octree_complement) keep the surfaces. Functions
-/// that mean cells see the cells alone: leafless_octree_plain makes them.
+/// In such an octree, the surfaces decide queries of points, rays and boxes (leafless_octree_contains,
+/// leafless_octree_cast_rays, leafless_octree_classify_box); next to a surface they may stay undecided. As a
+/// solid (leafless_solid_from_octree) it answers like its source. Set operations (leafless_octree_combine,
+/// leafless_octree_complement) keep the surfaces. Functions for cells see only the cells:
+/// leafless_octree_plain converts the octree for them.
 ///
-/// - Buffers: `frame`, one struct; `cuts`, one struct or NULL; `options`, one struct or NULL; `octree`, one pointer.
+/// - Buffers: `frame`, one struct; `cuts`, one struct or NULL; `options`, one struct or NULL; `octree`, one
+///   pointer.
 /// - Result: `*octree`.
-/// - Errors: as leafless_octree_build under LEAFLESS_RULE_CERTIFIED; LEAFLESS_E_ARGUMENT if the tolerance is negative or no
-///   number; LEAFLESS_E_LIMIT also if an exact number of a surface is the sum of more than seven doubles.
-/// - Ownership: give `*octree` back with leafless_octree_free.
-/// - Threads: any; uses as many as `options` says.
-/// - Untrusted input: any solid; set `max_bytes` where the depth or the solid is not your own choice.
+/// - Errors: as leafless_octree_build under LEAFLESS_RULE_CERTIFIED; LEAFLESS_E_ARGUMENT if the tolerance is
+///   negative or not a number; LEAFLESS_E_LIMIT also if an exact number of a surface is the sum of more than
+///   seven doubles.
+/// - Ownership: release `*octree` with leafless_octree_free.
+/// - Threads: any; runs on as many threads as `options` says.
+/// - Untrusted input: any solid; set `max_bytes` if the depth or the solid is untrusted.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn leafless_octree_build_extended(
     solid: *const leafless_solid,
@@ -146,15 +152,16 @@ pub unsafe extern "C" fn leafless_octree_build_extended(
     })
 }
 
-/// The octree without surfaces that says what one with surfaces does, to a depth: for functions that mean cells. What is undecided at
-/// the depth is resolved by a rule. Of an octree without surfaces it is the same octree, cut at the depth.
+/// Converts an extended octree to an octree without surfaces, to a depth, for functions that work on cells.
+/// Cells that are undecided at the depth are resolved by a rule. For an octree without surfaces the result is
+/// the same octree, cut off at the depth.
 ///
 /// - Buffers: `options`, one struct or NULL; `plain`, one pointer. `rule` is a leafless_rule.
 /// - Result: `*plain`, with the octree's metadata and channels.
 /// - Errors: as leafless_octree_build; LEAFLESS_E_ARGUMENT if `depth` is not 1 to 20.
-/// - Ownership: `octree` stays as it is; give `*plain` back with leafless_octree_free.
-/// - Threads: any; uses as many as `options` says.
-/// - Untrusted input: any octree; set `max_bytes` where the depth is not your own choice.
+/// - Ownership: `octree` is unchanged; release `*plain` with leafless_octree_free.
+/// - Threads: any; runs on as many threads as `options` says.
+/// - Untrusted input: any octree; set `max_bytes` if the depth is untrusted.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn leafless_octree_plain(
     octree: *const leafless_octree,
@@ -172,7 +179,8 @@ pub unsafe extern "C" fn leafless_octree_plain(
     })
 }
 
-/// What the PARTIAL cells of an octree keep of the surfaces that cross them; all 0 if they keep nothing. O(cells that keep something).
+/// Counts the surfaces that the PARTIAL cells of an octree keep; all 0 if they keep none. O(cells that keep
+/// surfaces).
 ///
 /// - Buffers: `counts`, one struct.
 /// - Result: `*counts`.
@@ -196,13 +204,14 @@ pub unsafe extern "C" fn leafless_octree_count_cuts(
     })
 }
 
-/// A surface of an extended octree: what it is, its numbers, and the maps that place it. O(1).
+/// Returns a surface of an extended octree: its kind, its numbers, and the maps that place it. O(1).
 ///
-/// - Buffers: `info`, one struct; `terms`, room for `term_capacity` doubles, or NULL: those whose sums the numbers are, one number
-///   after the other; `placements`, room for `placement_capacity` doubles, or NULL: the 12 of the rows of [M | t] of each map, in
-///   the order in which the maps are applied.
+/// - Buffers: `info`, one struct; `terms`, room for `term_capacity` doubles, or NULL: the doubles whose sums
+///   are the numbers, one number after the other; `placements`, room for `placement_capacity` doubles, or
+///   NULL: the 12 of the rows of [M | t] of each map, in the order in which the maps are applied.
 /// - Result: `*info`, `terms` and `placements`.
-/// - Errors: LEAFLESS_E_ARGUMENT if there is no such surface, or it is damaged; LEAFLESS_E_BUFFER if a capacity is too small.
+/// - Errors: LEAFLESS_E_ARGUMENT if there is no such surface, or it is damaged; LEAFLESS_E_BUFFER if a
+///   capacity is too small.
 /// - Untrusted input: any octree, any number.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn leafless_octree_surface_at(
@@ -251,11 +260,12 @@ pub unsafe extern "C" fn leafless_octree_surface_at(
     })
 }
 
-/// The function that the solid is in a cell that lies in a PARTIAL one, or is one. O(depth).
+/// Returns the function of surfaces that the solid is in a cell. The cell is PARTIAL or lies in a PARTIAL
+/// cell. O(depth).
 ///
-/// - Buffers: `cell`, 3 numbers, of which each is less than 2^level; `function`, one struct.
-/// - Result: `*function`. It has no surface if nothing is known of the cell, if the cell is decided, if different functions hold in
-///   parts of it, or if there is no such cell.
+/// - Buffers: `cell`, 3 numbers, each less than 2^level; `function`, one struct.
+/// - Result: `*function`. It has no surface if no function is known, if the cell is decided, if different
+///   functions hold in parts of the cell, or if there is no such cell.
 /// - Untrusted input: any octree, any numbers.
 ///
 /// cbindgen:ptrs-as-arrays=[[cell; 3]]

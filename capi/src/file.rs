@@ -1,4 +1,4 @@
-//! Files: what they say of themselves, whether they are good; octrees.
+//! Files: description and verification; reading and writing of octrees.
 
 use super::boundary::{buffer, filled, guard, out, output, shared};
 use super::frame::leafless_frame;
@@ -15,36 +15,36 @@ use leafless::memory;
 
 /// Major version of the file format that this library writes, and the only one that it reads.
 pub const LEAFLESS_FORMAT_MAJOR: u32 = 0;
-/// Minor version of the file format that this library writes; it reads newer ones, too.
+/// Minor version of the file format that this library writes; it also reads newer minor versions.
 pub const LEAFLESS_FORMAT_MINOR: u32 = 4;
 const _: () = {
     assert!(LEAFLESS_FORMAT_MAJOR == file::MAJOR as u32);
     assert!(LEAFLESS_FORMAT_MINOR == file::MINOR as u32);
 };
 
-/// What header and section table of a tri-dexel model's file say of it.
+/// Facts about a tri-dexel model from the header and the section table of its file.
 #[derive(Clone, Copy)]
 #[repr(C)]
 pub struct leafless_file_tridexel_info {
     /// The axes that rays run along, a sum of leafless_axes; 0 if the file holds an octree.
     pub directions: u32,
-    /// How the ends of intervals are stored.
+    /// The storage format of the ends of intervals.
     pub ends: leafless_dexel_ends,
-    /// How unit normals are stored.
+    /// The storage format of unit normals.
     pub normals: leafless_dexel_normals,
-    /// 1 if it is stored on which surfaces the ends lie, else 0.
+    /// 1 if the surfaces of the ends are stored, else 0.
     pub has_surfaces: u32,
-    /// 1 if it is stored what intervals are made of, else 0.
+    /// 1 if the materials of intervals are stored, else 0.
     pub has_materials: u32,
-    /// Zero.
+    /// Reserved; 0.
     pub reserved: u32,
-    /// Rays in the window along each axis, empty ones among them.
+    /// Rays in the window along each axis, including empty rays.
     pub rays: [u64; 3],
     /// Intervals along each axis.
     pub intervals: [u64; 3],
 }
 
-/// What header and section table of a file say.
+/// Facts from the header and the section table of a file.
 #[derive(Clone, Copy)]
 #[repr(C)]
 pub struct leafless_file_info {
@@ -54,7 +54,7 @@ pub struct leafless_file_info {
     pub major: u32,
     /// Minor version of the format.
     pub minor: u32,
-    /// Where the octree or the tri-dexel model lies, and its depth.
+    /// The frame of the octree or the tri-dexel model.
     pub frame: leafless_frame,
     /// Array elements without bricks; 0 for a tri-dexel model.
     pub elements: u64,
@@ -62,17 +62,17 @@ pub struct leafless_file_info {
     pub bricks: u64,
     /// Length of the file in bytes.
     pub file_length: u64,
-    /// Sections of the file.
+    /// Number of sections of the file.
     pub sections: u64,
-    /// What the cells prove; nothing for a tri-dexel model.
+    /// The proofs that the cells give; none for a tri-dexel model.
     pub proof: leafless_proof,
-    /// The tag of the whole universe; BRANCH if it is cut; EMPTY for a tri-dexel model.
+    /// The tag of the whole universe; BRANCH if it is split; EMPTY for a tri-dexel model.
     pub root: leafless_tag,
-    /// What is known of the space outside of the universe; never BRANCH; EMPTY for a tri-dexel model.
+    /// The tag of the space outside the universe; never BRANCH; EMPTY for a tri-dexel model.
     pub exterior: leafless_tag,
-    /// Whether nothing is undecided.
+    /// Whether no cell is undecided.
     pub is_binary: bool,
-    /// What is stored of a tri-dexel model; all zeros for an octree.
+    /// Facts about a tri-dexel model; all zeros for an octree.
     pub tridexel: leafless_file_tridexel_info,
 }
 
@@ -100,13 +100,13 @@ impl From<Option<&DexelProbe>> for leafless_file_tridexel_info {
 pub struct leafless_file_section {
     /// Number of its kind.
     pub kind: u32,
-    /// The object that it belongs to: 0 is the solid.
+    /// The object that the section belongs to: 0 is the solid.
     pub owner: u32,
     /// Whether a reader must know the kind to read the file.
     pub is_required: bool,
     /// Name of its kind, NUL-terminated; empty if this library does not know it.
     pub name: [c_char; 24],
-    /// Where it begins in the file, in bytes.
+    /// Its offset in the file, in bytes.
     pub offset: u64,
     /// Its length in bytes.
     pub length: u64,
@@ -153,13 +153,13 @@ impl From<&Section> for leafless_file_section {
     }
 }
 
-/// What a file says of itself, without looking at more than header and section table. Whether the rest is
-/// good is not known then. Bytes may be the first ones of a file only: 128 and 40 for each section. 488 suffice
-/// for an octree without channels that this library wrote, 808 for a tri-dexel model, 163 968 for any file.
+/// Describes a file from its header and section table. The rest of the file is not checked. A source of bytes
+/// may hold only the first bytes of a file: 128, plus 40 for each section. 488 bytes suffice for an octree
+/// without channels that this library wrote, 808 for a tri-dexel model, 163 968 for any file.
 ///
-/// - Buffers: `source`, one struct, of which `access` makes no difference; `probe`, one struct; `sections`, room
-///   for `capacity` structs, or NULL if they are not wanted.
-/// - Result: `*probe`; as many sections as it says.
+/// - Buffers: `source`, one struct (`access` is ignored); `probe`, one struct; `sections`, room for
+///   `capacity` structs, or NULL if they are not wanted.
+/// - Result: `*probe`; as many sections as `sections` of `*probe`.
 /// - Errors: LEAFLESS_E_FORMAT, also if bytes end before the section table does; LEAFLESS_E_VERSION;
 ///   LEAFLESS_E_IO; LEAFLESS_E_BUFFER; LEAFLESS_E_UTF8; LEAFLESS_E_NO_MEMORY.
 /// - Untrusted input: any file, any bytes.
@@ -200,15 +200,15 @@ unsafe fn verify_mapped(path: &str) -> Result<(), Error> {
     }
 }
 
-/// Checks everything that the format promises of a whole file, of an octree or of a tri-dexel model: O(n). With
-/// LEAFLESS_ACCESS_COPY a file is read into memory, else it is mapped. Bytes are looked at where they lie.
+/// Verifies a whole file of an octree or a tri-dexel model against all rules of the format: O(n). With
+/// LEAFLESS_ACCESS_COPY a file is read into memory, else it is mapped. Bytes are checked in place.
 ///
 /// - Buffers: `source`, one struct; bytes on an address that is a multiple of 8.
-/// - Result: LEAFLESS_OK if the file is good.
+/// - Result: LEAFLESS_OK if the file is valid.
 /// - Errors: LEAFLESS_E_FORMAT; LEAFLESS_E_VERSION; LEAFLESS_E_DAMAGED; LEAFLESS_E_ARGUMENT if the bytes are
-///   misaligned, or if there is no regular file that could be mapped; LEAFLESS_E_IO; LEAFLESS_E_UTF8;
+///   misaligned, or if the file to map is not a regular file; LEAFLESS_E_IO; LEAFLESS_E_UTF8;
 ///   LEAFLESS_E_NO_MEMORY.
-/// - Untrusted input: as leafless_source tells.
+/// - Untrusted input: as described in leafless_source.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn leafless_file_verify(source: *const leafless_source) -> leafless_status {
     guard(|| unsafe {
@@ -226,12 +226,12 @@ pub unsafe extern "C" fn leafless_file_verify(source: *const leafless_source) ->
 /// - Buffers: `source`, one struct; `octree`, one pointer.
 /// - Result: `*octree`.
 /// - Errors: LEAFLESS_E_FORMAT; LEAFLESS_E_VERSION; LEAFLESS_E_DAMAGED, with LEAFLESS_ACCESS_MAP only if the
-///   level table contradicts the header; LEAFLESS_E_ARGUMENT if the file holds a tri-dexel model, if there is
-///   no regular file that could be mapped, or if bytes that shall be viewed are misaligned; LEAFLESS_E_IO;
-///   LEAFLESS_E_UTF8; LEAFLESS_E_NO_MEMORY.
-/// - Ownership: how long a file or bytes must stay as they are, leafless_source tells. Give `*octree` back with
-///   leafless_octree_free.
-/// - Untrusted input: as leafless_source tells.
+///   level table contradicts the header; LEAFLESS_E_ARGUMENT if the file holds a tri-dexel model, if the file
+///   to map is not a regular file, or if bytes to view are misaligned; LEAFLESS_E_IO; LEAFLESS_E_UTF8;
+///   LEAFLESS_E_NO_MEMORY.
+/// - Ownership: leafless_source describes how long a file or bytes must stay unchanged. Release `*octree`
+///   with leafless_octree_free.
+/// - Untrusted input: as described in leafless_source.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn leafless_octree_read(
     source: *const leafless_source,
@@ -240,7 +240,7 @@ pub unsafe extern "C" fn leafless_octree_read(
     guard(|| unsafe {
         let source = self::source(source)?;
         let octree = out(octree, "octree")?;
-        // What is used in place stays, as the host promises.
+        // The host promises that data used in place stays unchanged.
         let found = match source {
             (Source::Path(path), LEAFLESS_ACCESS_COPY) => file::open(path)?,
             (Source::Path(path), LEAFLESS_ACCESS_MAP) => file::map(path)?,
@@ -257,8 +257,8 @@ pub unsafe extern "C" fn leafless_octree_read(
     })
 }
 
-/// Writes an octree's file. Equal octrees with equal metadata and channels give equal bytes. Only for a buffer is
-/// the file in memory as a whole.
+/// Writes an octree's file. Equal octrees with equal metadata and channels give equal bytes. The whole file
+/// is in memory only if the sink is a buffer.
 ///
 /// - Buffers: `sink`, one struct.
 /// - Errors: LEAFLESS_E_DAMAGED if the octree was mapped unverified and is damaged; LEAFLESS_E_IO;

@@ -1,11 +1,11 @@
-//! Frames: where a tree lies in model space, and how fine it is.
+//! Frames: the position, the size and the resolution of a tree in model space.
 
 use super::boundary::{Failure, array, guard, out, shared};
 use super::status::leafless_status;
 use leafless::Error;
 use leafless::{Frame, Interval};
 
-/// Where a tree lies: the cube [origin, origin + edge]³ in model units, cut into 2^depth cells per axis.
+/// The lattice of a tree: the cube [origin, origin + edge]³ in model units, cut into 2^depth cells per axis.
 ///
 /// A coordinate of the origin is 0 or of a magnitude between 2^-256 and 2^256, the edge between 2^-256 and
 /// 2^256, the depth 1 to 20. The lattice planes are the real numbers origin + i·edge/2^depth, whether or not
@@ -27,7 +27,7 @@ impl From<&Frame> for leafless_frame {
     }
 }
 
-/// A depth that is out of range stays so.
+/// A depth that is out of range stays out of range.
 fn depth(depth: u32) -> u8 {
     u8::try_from(depth).unwrap_or(u8::MAX)
 }
@@ -62,7 +62,8 @@ pub struct leafless_interval {
 }
 
 impl leafless_interval {
-    /// What a host says with it. Bounds the wrong way round, or that are not numbers, say nothing.
+    /// Returns the interval that a host means. Bounds in the wrong order, or that are not numbers, mean the
+    /// interval of all numbers.
     pub(super) fn known(self) -> Interval {
         Interval::new(self.lower, self.upper).unwrap_or(Interval::ALL)
     }
@@ -108,8 +109,9 @@ unsafe fn around(
     }
 }
 
-/// The cube of edge L·(1 + 1/32) around the centre of a shape, L being its longest extent; the same universe at
-/// every depth. For parts with round dimensions leafless_frame_aligned is better.
+/// Makes a frame around a shape: a cube of edge L·(1 + 1/32) around the centre of the bounds, where L is the
+/// longest extent. The universe is the same at every depth. For parts with round dimensions
+/// leafless_frame_aligned is better.
 ///
 /// - Buffers: `min_model` and `max_model`, 3 numbers each; `frame`, one struct.
 /// - Result: `*frame`.
@@ -131,8 +133,9 @@ pub unsafe extern "C" fn leafless_frame_around(
     })
 }
 
-/// The frame of leafless_frame_around whose finest cells are no longer than a tolerance, the greater of a length and a part of the
-/// longest extent. It has the least such depth; where 20 levels do not suffice, and for tolerances of 0, it has 20.
+/// Makes the frame of leafless_frame_around whose finest cells are no longer than a tolerance. The tolerance
+/// is the greater of a length and a fraction of the longest extent. The depth is the least one that suffices;
+/// it is 20 if no depth suffices, and for tolerances of 0.
 ///
 /// - Buffers: `min_model` and `max_model`, 3 numbers each; `frame`, one struct.
 /// - Result: `*frame`.
@@ -155,10 +158,10 @@ pub unsafe extern "C" fn leafless_frame_to_tolerance(
     })
 }
 
-/// A frame whose lattice planes are round numbers, around a shape with these bounds: its edge is the smallest
-/// power of two that holds them, its origin a multiple of as great a power of two as possible. Faces at 25,
-/// 12.5 or -0.75 then lie on lattice planes, where they take no cells and the certified volume is exact. The
-/// same universe at every depth.
+/// Makes a frame whose lattice planes are round numbers, around a shape with these bounds. Its edge is the
+/// smallest power of two that holds the bounds; its origin is a multiple of the largest possible power of
+/// two. Faces at 25, 12.5 or -0.75 then lie on lattice planes, where they take no cells and the certified
+/// volume is exact. The universe is the same at every depth.
 ///
 /// - Buffers: `min_model` and `max_model`, 3 numbers each; `frame`, one struct.
 /// - Result: `*frame`.
@@ -178,13 +181,13 @@ pub unsafe extern "C" fn leafless_frame_aligned(
     })
 }
 
-/// A frame with cells of a given size around a shape with these bounds, its origin a multiple of the cell size
-/// times as great a power of two as possible, of the least depth that holds the bounds.
+/// Makes a frame with cells of a given size around a shape with these bounds. Its depth is the least one that
+/// holds the bounds. Its origin is a multiple of the cell size times the largest possible power of two.
 ///
 /// - Buffers: `min_model` and `max_model`, 3 numbers each; `frame`, one struct.
 /// - Result: `*frame`.
-/// - Errors: as leafless_frame_around; LEAFLESS_E_ARGUMENT also if `cell_size_model` is not 2^-256 to 2^256, or
-///   if the bounds take more than 2^20 cells on an axis.
+/// - Errors: as leafless_frame_around; LEAFLESS_E_ARGUMENT also if `cell_size_model` is not 2^-256 to 2^256,
+///   or if the bounds take more than 2^20 cells on an axis.
 /// - Untrusted input: any values.
 ///
 /// cbindgen:ptrs-as-arrays=[[min_model; 3], [max_model; 3]]
@@ -200,8 +203,9 @@ pub unsafe extern "C" fn leafless_frame_with_cells(
     })
 }
 
-/// The frame that suits a shape with these bounds: leafless_frame_aligned if all bounds are multiples of 2^-12 of
-/// its edge, as those of parts that people draw, else leafless_frame_around. The same universe at every depth.
+/// Makes the frame that suits a shape with these bounds: leafless_frame_aligned if all bounds are multiples
+/// of 2^-12 of its edge, as for parts drawn with round dimensions, else leafless_frame_around. The universe
+/// is the same at every depth.
 ///
 /// - Buffers: `min_model` and `max_model`, 3 numbers each; `frame`, one struct.
 /// - Result: `*frame`.
@@ -221,7 +225,7 @@ pub unsafe extern "C" fn leafless_frame_fitted(
     })
 }
 
-/// The edge length of a finest cell: edge / 2^depth, exactly.
+/// Returns the edge length of a finest cell: edge / 2^depth, exactly.
 ///
 /// - Buffers: `frame`, one struct; `cell_size_model`, one number.
 /// - Result: `*cell_size_model`, in model units.
@@ -238,13 +242,13 @@ pub unsafe extern "C" fn leafless_frame_cell_size(
     })
 }
 
-/// The finest cell that a point lies in. A point on a plane between two cells belongs to the upper one, on
-/// the universe's upper face to the last; the comparison is exact.
+/// Returns the finest cell that contains a point. A point on a plane between two cells belongs to the upper
+/// cell; a point on the universe's upper face belongs to the last cell. The comparison is exact.
 ///
 /// - Buffers: `frame`, one struct; `point_model`, 3 numbers; `cell`, room for 3.
 /// - Result: `cell`, each below 2^depth.
-/// - Errors: LEAFLESS_E_ARGUMENT as leafless_frame_check, and if the point is outside of the universe or not
-///   a number.
+/// - Errors: LEAFLESS_E_ARGUMENT as leafless_frame_check, and if the point is outside the universe or not a
+///   number.
 /// - Untrusted input: any values.
 ///
 /// cbindgen:ptrs-as-arrays=[[point_model; 3], [cell; 3]]
@@ -263,10 +267,10 @@ pub unsafe extern "C" fn leafless_frame_cell_at(
     })
 }
 
-/// Where a lattice plane lies: the tightest interval of doubles that contains it.
+/// Returns the position of a lattice plane: the tightest interval of doubles that contains it.
 ///
 /// - Buffers: `frame`, one struct; `plane_model`, one struct.
-/// - Result: `*plane_model`; lower = upper if the plane is a double.
+/// - Result: `*plane_model`; lower = upper if the position is a double.
 /// - Errors: LEAFLESS_E_ARGUMENT as leafless_frame_check, if `axis` is not 0 to 2, or `index` beyond 2^depth.
 /// - Untrusted input: any values.
 #[unsafe(no_mangle)]

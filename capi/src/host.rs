@@ -1,4 +1,4 @@
-//! Shapes and half-spaces of the host program.
+//! Shapes and half-spaces that the host program implements.
 
 use super::boundary::{Failure, Sized32, guard, out, sized};
 use super::frame::leafless_interval;
@@ -15,15 +15,15 @@ use leafless::solid::{Fingerprint, GradientRange, HalfSpace, TangentBalls};
 use leafless::{Bounds, Callback, Csg, Verdict};
 use std::sync::Arc;
 
-/// What a host promises of its shape outside of the universe that it is asked about.
+/// A host's promise about its shape outside the universe of the frame in use.
 #[derive(Clone, Copy)]
 #[repr(u32)]
 pub enum leafless_exterior {
-    /// Nothing: the shape counts as clipped by the universe.
+    /// No promise: the shape counts as clipped by the universe.
     LEAFLESS_EXTERIOR_UNKNOWN = 0,
-    /// The shape ends inside of the universe.
+    /// The shape ends inside the universe.
     LEAFLESS_EXTERIOR_EMPTY = 1,
-    /// Everything outside of the universe belongs to the shape.
+    /// Everything outside the universe belongs to the shape.
     LEAFLESS_EXTERIOR_FULL = 2,
 }
 enumeration! {
@@ -34,55 +34,56 @@ enumeration! {
     }
 }
 
-/// Classifies the box [min, max] (3 numbers each, model units) for the host's own shape: LEAFLESS_TAG_EMPTY
-/// or LEAFLESS_TAG_FULL if that is proven for all of the box, LEAFLESS_TAG_PARTIAL to be asked about its
-/// eight parts. Anything else ends the operation with LEAFLESS_E_CALLBACK and the number in the message; so
-/// use a negative number for the host's own errors.
+/// Classifies the box [min, max] (3 numbers each, model units) for the host's own shape: Returns
+/// LEAFLESS_TAG_EMPTY or LEAFLESS_TAG_FULL if that is proven for all of the box, or LEAFLESS_TAG_PARTIAL to
+/// be called for its eight parts. Any other value ends the operation with LEAFLESS_E_CALLBACK and the value
+/// in the message; use negative numbers for the host's own errors.
 ///
 /// It is called from several threads at once, which may all be the library's own, unless the operation's
-/// options say `threads` = 1; and it must give the same answer to the same box. It must return: no exception,
-/// no longjmp. It may call this library.
+/// options have `threads` = 1. It must give the same answer to the same box. It must return: no exception, no
+/// longjmp. It may call this library.
 pub type leafless_classify_fn =
     Option<unsafe extern "C" fn(ctx: *mut c_void, min: *const f64, max: *const f64) -> i32>;
 
-/// Decides a point (3 numbers, model units) for the host's own shape: 1 inside, 0 outside; anything else ends
-/// the operation with LEAFLESS_E_CALLBACK. Else as leafless_classify_fn.
+/// Decides a point (3 numbers, model units) for the host's own shape: returns 1 inside, 0 outside; any other
+/// value ends the operation with LEAFLESS_E_CALLBACK. Otherwise as leafless_classify_fn.
 pub type leafless_contains_fn = Option<unsafe extern "C" fn(ctx: *mut c_void, point: *const f64) -> i32>;
 
-/// Classifies `count` boxes (6 numbers each: min, then max) at once, for hosts that do that faster than one
-/// by one: sets `tags` to what leafless_classify_fn would answer. 0, or the number of the host's own error,
-/// which ends the operation with LEAFLESS_E_CALLBACK. Else as leafless_classify_fn.
+/// Classifies `count` boxes (6 numbers each: min, then max) at once, for hosts that do this faster than one
+/// by one: sets `tags` to the answers of leafless_classify_fn. Returns 0, or the host's own error code, which
+/// ends the operation with LEAFLESS_E_CALLBACK. Otherwise as leafless_classify_fn.
 pub type leafless_classify_many_fn =
     Option<unsafe extern "C" fn(ctx: *mut c_void, boxes: *const f64, count: u64, tags: *mut i32) -> i32>;
 
-/// Decides `count` points (3 numbers each) at once: sets each of `inside` to 1 or 0. 0, or the number of the
-/// host's own error. Else as leafless_contains_fn.
+/// Decides `count` points (3 numbers each) at once: sets each of `inside` to 1 or 0. Returns 0, or the host's
+/// own error code. Otherwise as leafless_contains_fn.
 pub type leafless_contains_many_fn =
     Option<unsafe extern "C" fn(ctx: *mut c_void, points: *const f64, count: u64, inside: *mut i32) -> i32>;
 
 /// Bounds the distances of `count` points (3 numbers each, model units) from the surface of the host's own
-/// shape: sets each of `distances_model` to a number whose magnitude is at most that distance, negative
-/// inside and positive outside; 0, or what is no number, says nothing. 0, or the number of the host's own
-/// error. Else as leafless_classify_fn.
+/// shape. It sets each of `distances_model` to a number whose magnitude is at most that distance, negative
+/// inside and positive outside; 0 or NaN proves nothing. Returns 0, or the host's own error code. Otherwise
+/// as leafless_classify_fn.
 pub type leafless_distance_many_fn = Option<
     unsafe extern "C" fn(ctx: *mut c_void, points: *const f64, count: u64, distances_model: *mut f64) -> i32,
 >;
 
-/// What a function f of the host does over a box. The shape is the set of the points where f is not positive, as for
-/// a signed distance; the gradient leads out of it. NaN, or lower > upper, says nothing of the box.
+/// Bounds of a function f of the host over a box. The shape is the set of the points where f is not positive,
+/// as for a signed distance; the gradient points out of it. NaN, or lower > upper, proves nothing about the
+/// box.
 #[derive(Clone, Copy)]
 #[repr(C)]
 pub struct leafless_gradient {
-    /// Contains the value of f at the middle of the box. One end may be infinite.
+    /// An interval that contains the value of f at the middle of the box. One end may be infinite.
     pub value: leafless_interval,
-    /// For each axis: contains the partial derivative of f everywhere in the box. f must be continuous there;
-    /// where it has no derivative, the range must contain the slopes on all sides.
+    /// For each axis, an interval that contains the partial derivative of f everywhere in the box. f must be
+    /// continuous there; where it has no derivative, the interval must contain the one-sided derivatives.
     pub gradient: [leafless_interval; 3],
 }
 
-/// Bounds the host's function f over the box [min, max] (3 numbers each, model units), of which `middle` is the
-/// middle (3 numbers): sets `*gradient`, all of which is NaN before. 0, or the number of the host's own error. Else
-/// as leafless_classify_fn.
+/// Bounds the host's function f over the box [min, max] (3 numbers each, model units) with the centre
+/// `middle` (3 numbers): sets `*gradient`, whose numbers are all NaN before. Returns 0, or the host's own
+/// error code. Otherwise as leafless_classify_fn.
 pub type leafless_gradient_fn = Option<
     unsafe extern "C" fn(
         ctx: *mut c_void,
@@ -95,29 +96,31 @@ pub type leafless_gradient_fn = Option<
 
 /// Two balls that touch the surface of the host's shape at a point, one inside and one outside.
 ///
-/// Let d = y - `point` for a point y of the box, and n = `normal` divided by its length. Each y of the box with
-/// n . d < -(inner_curvature / 2 |d|^2 + error) must lie in the shape, and no y with
-/// n . d > outer_curvature / 2 |d|^2 + error may. So without an error the balls have the radii 1 / `inner_curvature`
-/// and 1 / `outer_curvature`; 0 stands for a half-space, a negative curvature for all that lies outside of a ball,
-/// and infinity for nothing. The reciprocal of the surface's reach does for both: it is no less than any
-/// curvature, nor than 2 over the width of any wall or gap. NaN, or a negative error, says nothing of the box.
+/// Let d = y - `point` for a point y of the box, and n = `normal` divided by its length. Each y of the box
+/// with n . d < -(inner_curvature / 2 |d|^2 + error) must lie in the shape, and no y with n . d >
+/// outer_curvature / 2 |d|^2 + error may. So if `error` is 0, the balls have the radii 1 / `inner_curvature`
+/// and 1 / `outer_curvature`. A curvature of 0 means a half-space, a negative curvature the outside of a
+/// ball, and infinity nothing. The reciprocal of the surface's reach is valid for both: it is at least every
+/// curvature, and at least 2 over the width of every wall or gap. NaN, or a negative error, proves nothing
+/// about the box.
 #[derive(Clone, Copy)]
 #[repr(C)]
 pub struct leafless_tangent {
-    /// Where the balls touch (model units); best the surface's nearest point to the middle of the box.
+    /// The point where the balls touch (model units); best the surface's nearest point to the middle of the
+    /// box.
     pub point: [f64; 3],
-    /// The direction that leads out of the shape there, of any length.
+    /// The direction that points out of the shape there, of any length.
     pub normal: [f64; 3],
     /// The reciprocal of the radius of the ball inside.
     pub inner_curvature: f64,
     /// The reciprocal of the radius of the ball outside.
     pub outer_curvature: f64,
-    /// By how much the surface may be off (model units), for what is rounded in `point` and `normal`.
+    /// Bound of the error of the surface (model units), from rounding in `point` and `normal`.
     pub error: f64,
 }
 
-/// Tells where the surface of the host's own shape runs next to the middle of a box, and how it bends: sets `*tangent`,
-/// all of which is NaN before. Else as leafless_gradient_fn.
+/// Describes the position and the curvature of the surface of the host's own shape next to the middle of a
+/// box: sets `*tangent`, whose numbers are all NaN before. Otherwise as leafless_gradient_fn.
 pub type leafless_tangent_fn = Option<
     unsafe extern "C" fn(
         ctx: *mut c_void,
@@ -128,7 +131,7 @@ pub type leafless_tangent_fn = Option<
     ) -> i32,
 >;
 
-/// Called once, when nothing uses `ctx` any more, in the thread that gave back the last reference. It must
+/// Called once, when nothing uses `ctx` any more, in the thread that released the last reference. It must
 /// return: no exception, no longjmp. It may call this library.
 pub type leafless_destroy_fn = Option<unsafe extern "C" fn(ctx: *mut c_void)>;
 
@@ -138,38 +141,37 @@ pub type leafless_destroy_fn = Option<unsafe extern "C" fn(ctx: *mut c_void)>;
 pub struct leafless_solid_callbacks {
     /// sizeof(leafless_solid_callbacks).
     pub struct_size: u32,
-    /// What is known of the space outside of the universe.
+    /// A leafless_exterior: the host's promise about the space outside the universe.
     pub exterior: Number<leafless_exterior>,
     /// Classifies boxes.
     pub classify: leafless_classify_fn,
     /// Decides points: LEAFLESS_RULE_SAMPLED needs it; optional.
     pub contains: leafless_contains_fn,
-    /// Called when `ctx` is not needed any more; optional.
+    /// Called when the library no longer needs `ctx`; optional.
     pub destroy: leafless_destroy_fn,
-    /// What the functions are called with.
+    /// The context that the functions are called with.
     pub ctx: *mut c_void,
-    /// Any number but 0, of 128 bits, that tells the shape from others, such as a hash of what it is made of:
-    /// octrees that leafless_lazy_freeze makes remember it, and are taken up again by no other shape.
-    /// Optional.
+    /// A number of 128 bits that identifies the shape, such as a hash of its parameters; 0 means none.
+    /// Octrees from leafless_lazy_freeze store it, and only the same shape can continue them.
     pub fingerprint: [u64; 2],
-    /// Classifies many boxes at once, as many as the work has at hand; optional, and `classify` must be set
-    /// all the same.
+    /// Classifies many boxes at once, as many as the operation has ready; optional. `classify` must be set as
+    /// well.
     pub classify_many: leafless_classify_many_fn,
     /// Decides many points at once; optional, with or without `contains`.
     pub contains_many: leafless_contains_many_fn,
-    /// Bounds the distances of points from the surface; optional. It is asked about the middles of cells
-    /// before boxes are classified, and a cell whose middle is further from the surface than its corners is
-    /// decided. With it `classify` is optional.
+    /// Bounds the distances of points from the surface; optional. It is called for the middles of cells
+    /// before boxes are classified. A cell whose middle is further from the surface than from its own corners
+    /// is decided. If it is set, `classify` is optional.
     pub distance_many: leafless_distance_many_fn,
-    /// Bounds a function of the host over boxes; optional. It is asked about undecided cells. Measures,
+    /// Bounds a function of the host over boxes; optional. It is called for undecided cells. Measures,
     /// bounding boxes and adaptive octrees need far fewer splits with it. No verdict depends on it.
     pub gradient: leafless_gradient_fn,
-    /// Tells of the surface next to the middle of a box; optional. It is asked for the same as `gradient`; if
-    /// both are set, where that one proves nothing.
+    /// Describes the surface next to the middle of a box; optional. It serves the same purposes as
+    /// `gradient`. If both are set, it is called where `gradient` proves nothing.
     pub tangent: leafless_tangent_fn,
-    /// A box that the shape lies in: its lower and its upper corner (model units). All zero: none is known.
-    /// In a universe that holds the box the shape ends inside, whatever `exterior` says. The box moves along
-    /// with the shape; of a moved shape `exterior` says nothing.
+    /// A box that contains the shape: its lower and its upper corner (model units). All zero means that no
+    /// box is known. In a universe that holds the box the shape ends inside, whatever `exterior` is. The box
+    /// moves with the shape; for a moved shape `exterior` is ignored.
     pub bounds: [f64; 6],
 }
 
@@ -179,8 +181,8 @@ unsafe impl Sized32 for leafless_solid_callbacks {}
 /// The host's functions with their context.
 struct Host(leafless_solid_callbacks);
 
-// SAFETY: the library does nothing with `ctx` but hand it back; that the functions may be called from any
-// thread is their documented contract.
+// SAFETY: the library only passes `ctx` back to the host. By their documented contract, the functions may be
+// called from any thread.
 unsafe impl Send for Host {}
 // SAFETY: as above.
 unsafe impl Sync for Host {}
@@ -194,7 +196,7 @@ impl Drop for Host {
     }
 }
 
-/// What a host's tag says.
+/// Returns the verdict of a host's tag.
 fn verdict(code: i32) -> Result<Verdict<()>, Error> {
     match settled_tag(code.into(), "verdict") {
         Ok(Tag::Empty) => Ok(Verdict::Empty),
@@ -204,7 +206,7 @@ fn verdict(code: i32) -> Result<Verdict<()>, Error> {
     }
 }
 
-/// What a host's answer about a point says.
+/// Returns the membership of a host's answer about a point.
 fn membership(code: i32) -> Result<bool, Error> {
     match code {
         0 => Ok(false),
@@ -213,13 +215,13 @@ fn membership(code: i32) -> Result<bool, Error> {
     }
 }
 
-/// Nothing, or a host's own error.
+/// Returns success, or the host's own error.
 pub(super) fn done(code: i32) -> Result<(), Error> {
     if code == 0 { Ok(()) } else { Err(Error::Callback { code }) }
 }
 
-// SAFETY, of all calls here: the functions are as the host gave them, with their own context and as many
-// numbers as they are told of.
+// SAFETY, of all calls here: the functions are as the host gave them, called with their own context and with
+// the documented counts of numbers.
 impl Host {
     fn classify(&self, min: [f64; 3], max: [f64; 3]) -> Result<Verdict<()>, Error> {
         let Some(classify) = self.0.classify else { return Ok(Verdict::Partial(())) };
@@ -229,7 +231,7 @@ impl Host {
 
     fn classify_many(&self, boxes: &[[[f64; 3]; 2]], verdicts: &mut [Verdict<()>]) -> Result<(), Error> {
         let Some(classify) = self.0.classify_many else { return Ok(()) };
-        // A tag that is not set is none.
+        // A tag that the host does not set is invalid.
         let mut tags = memory::filled(boxes.len(), i32::MIN)?;
         // SAFETY: as above.
         done(unsafe { classify(self.0.ctx, boxes.as_ptr().cast(), boxes.len() as u64, tags.as_mut_ptr()) })?;
@@ -297,21 +299,20 @@ impl Host {
     }
 }
 
-/// The fingerprint that a host gives, unless it is 0.
+/// Returns the host's fingerprint, unless it is 0.
 fn fingerprint(given: [u64; 2]) -> Option<Fingerprint> {
     (given != [0; 2]).then(|| Fingerprint::of_bytes(bytemuck::bytes_of(&given.map(u64::to_le))))
 }
 
-/// The host's own shape.
+/// Makes a solid from the host's own shape.
 ///
 /// - Buffers: `callbacks`, one struct, which is copied; `solid`, one pointer.
 /// - Result: `*solid`.
 /// - Errors: LEAFLESS_E_NULL if `classify` is NULL, unless `distance_many` is set and `classify_many` is not;
-///   LEAFLESS_E_ARGUMENT if `exterior` is no leafless_exterior, or `bounds` is no box.
-///   After an error `destroy` is not called.
-/// - Ownership: `ctx` must live until `destroy` is called with it; give `*solid` back with
-///   leafless_solid_free.
-/// - Threads: any; in which the functions are called, leafless_classify_fn says.
+///   LEAFLESS_E_ARGUMENT if `exterior` is not a leafless_exterior, or `bounds` is not a box. After an error
+///   `destroy` is not called.
+/// - Ownership: `ctx` must live until `destroy` is called with it; release `*solid` with leafless_solid_free.
+/// - Threads: any; leafless_classify_fn describes the threads that call the functions.
 /// - Untrusted input: any answers.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn leafless_solid_new_callbacks(
@@ -344,7 +345,7 @@ pub unsafe extern "C" fn leafless_solid_new_callbacks(
         let has_many = callbacks.classify_many.is_some();
         let has_distance = callbacks.distance_many.is_some();
         let fingerprint = fingerprint(callbacks.fingerprint);
-        // From here on the host's context is ours.
+        // From here on the library owns the host's context.
         let host = Arc::new(Host(callbacks));
         let classify = {
             let host = host.clone();
@@ -387,13 +388,14 @@ pub unsafe extern "C" fn leafless_solid_new_callbacks(
     })
 }
 
-/// The value of the host's function at a point (3 numbers, model units): sets `*value`. 0, or the number of
-/// the host's own error, which ends the operation with LEAFLESS_E_CALLBACK. Else as leafless_classify_fn.
+/// Computes the value of the host's function at a point (3 numbers, model units): sets `*value`. Returns 0,
+/// or the host's own error code, which ends the operation with LEAFLESS_E_CALLBACK. Otherwise as
+/// leafless_classify_fn.
 pub type leafless_value_fn =
     Option<unsafe extern "C" fn(ctx: *mut c_void, point: *const f64, value: *mut f64) -> i32>;
 
-/// An interval that contains all values of the host's function over the box [min, max] (3 numbers each, model
-/// units): sets `*range`. Else as leafless_value_fn.
+/// Computes an interval that contains all values of the host's function over the box [min, max] (3 numbers
+/// each, model units): sets `*range`. Otherwise as leafless_value_fn.
 pub type leafless_range_fn = Option<
     unsafe extern "C" fn(
         ctx: *mut c_void,
@@ -409,16 +411,16 @@ pub type leafless_range_fn = Option<
 pub struct leafless_solid_function {
     /// sizeof(leafless_solid_function).
     pub struct_size: u32,
-    /// Zero.
+    /// Reserved; must be 0.
     pub reserved: u32,
-    /// The function's value at a point; NaN where it has none. Only its sign counts.
+    /// Computes the function's value at a point; NaN where the function is undefined. Only the sign matters.
     pub value: leafless_value_fn,
-    /// Its range over a box. It alone proves that a cell lies inside or outside. A NaN, or lower > upper,
-    /// proves nothing.
+    /// Bounds the function over a box. Only this range proves that a cell lies inside or outside. A NaN, or
+    /// lower > upper, proves nothing.
     pub range: leafless_range_fn,
-    /// Called when `ctx` is not needed any more; optional.
+    /// Called when the library no longer needs `ctx`; optional.
     pub destroy: leafless_destroy_fn,
-    /// What the functions are called with.
+    /// The context that the functions are called with.
     pub ctx: *mut c_void,
     /// As in leafless_solid_callbacks.
     pub fingerprint: [u64; 2],
@@ -463,16 +465,16 @@ impl HostFunction {
     }
 }
 
-/// A half-space of the host. It joins others, and may be placed: then its functions are asked in its own
-/// space, about the box around a cell's inverse image and about the rounded inverse image of a point.
+/// Makes a half-space of the host. It can be combined with other half-spaces and placed. The functions of a
+/// placed half-space are called in its own space, for the box around a cell's inverse image and for the
+/// rounded inverse image of a point.
 ///
 /// - Buffers: `function`, one struct, which is copied; `solid`, one pointer.
 /// - Result: `*solid`.
 /// - Errors: LEAFLESS_E_NULL if `value` or `range` is NULL; LEAFLESS_E_ARGUMENT. After an error `destroy` is
 ///   not called.
-/// - Ownership: `ctx` must live until `destroy` is called with it; give `*solid` back with
-///   leafless_solid_free.
-/// - Threads: any; in which the functions are called, leafless_classify_fn says.
+/// - Ownership: `ctx` must live until `destroy` is called with it; release `*solid` with leafless_solid_free.
+/// - Threads: any; leafless_classify_fn describes the threads that call the functions.
 /// - Untrusted input: any answers.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn leafless_solid_new_function(
@@ -495,7 +497,7 @@ pub unsafe extern "C" fn leafless_solid_new_function(
         }
         let solid = out(solid, "solid")?;
         let fingerprint = fingerprint(function.fingerprint);
-        // From here on the host's context is ours.
+        // From here on the library owns the host's context.
         let host = Arc::new(HostFunction(function));
         let values = host.clone();
         let half_space = HalfSpace::host(

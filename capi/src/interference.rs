@@ -1,4 +1,4 @@
-//! Two solids: do they overlap, by how much, how far are they apart?
+//! Overlap and distance of two solids, and solids under affine maps.
 
 use super::boundary::{Failure, buffer, filled, guard, out, output, shared, slice};
 use super::control::{controlled, leafless_options};
@@ -15,16 +15,16 @@ use leafless::query::{Ball, Overlap, interference_at};
 use leafless::solid::Transform;
 use leafless::{AnySolid, Clearance, Interference, clearance, interference};
 
-/// Whether the interiors of two solids have points in common.
+/// The verdict on whether the interiors of two solids share points.
 #[derive(Clone, Copy)]
 #[repr(u32)]
 pub enum leafless_overlap {
-    /// Proven: they have none. The solids may touch.
+    /// Proven: the interiors are disjoint. The solids may touch.
     LEAFLESS_OVERLAP_DISJOINT = 0,
     /// Proven: a ball lies in both.
     LEAFLESS_OVERLAP_OVERLAPPING = 1,
-    /// Not decided at the frame's depth, or before the splits were spent; or both solids go on outside of the
-    /// universe, where they may overlap.
+    /// Not decided at the frame's depth, or before the splits were spent; or both solids may extend beyond
+    /// the universe and overlap there.
     LEAFLESS_OVERLAP_UNDECIDED = 2,
 }
 
@@ -38,16 +38,15 @@ impl From<Overlap> for leafless_overlap {
     }
 }
 
-/// What is known of two solids inside of the universe of a frame.
+/// Facts about the overlap of two solids inside the universe of a frame.
 #[derive(Clone, Copy)]
 #[repr(C)]
 pub struct leafless_interference {
-    /// The volume of what they have in common, in cubic model units; the upper bound is infinite if
-    /// `is_clipped`.
+    /// The volume of their intersection, in cubic model units; the upper bound is infinite if `is_clipped`.
     pub volume_model: leafless_interval,
-    /// What of the first solid is proven: what is not counts as undecided.
+    /// The proofs about the first solid; unproven tags count as undecided.
     pub proof_a: leafless_proof,
-    /// What of the second solid is proven.
+    /// The proofs about the second solid.
     pub proof_b: leafless_proof,
     /// Cells of the first solid that were split.
     pub splits_a: u64,
@@ -55,19 +54,20 @@ pub struct leafless_interference {
     pub splits_b: u64,
     /// A leafless_overlap.
     pub verdict: u32,
-    /// The finest level of which cells were looked at.
+    /// The finest level of the visited cells.
     pub level: u32,
-    /// If they are proven to overlap, the centre of a ball, all of which is proven to lie in both, in model units; else zeros. It is not
-    /// the largest one.
+    /// If the solids are proven to overlap, the centre, in model units, of a ball that is proven to lie in
+    /// both; else zeros. It is not the largest such ball.
     pub ball_centre_model: [f64; 3],
     /// The radius of that ball.
     pub ball_radius_model: f64,
-    /// The cell in which that ball lies: its position in cells of its level; else zeros. leafless_frame_cell_bounds gives its box. (Of octrees
-    /// under a map there may be none: they may overlap by less than a cell.)
+    /// The witness: the cell that contains that ball, by its index on each axis; else zeros.
+    /// leafless_frame_cell_bounds returns its box. (For octrees under a map there may be no such cell,
+    /// because they may overlap by less than a cell.)
     pub witness: [u32; 3],
     /// The level of that cell.
     pub witness_level: u32,
-    /// Whether both solids may go on outside of the universe. Then they are not proven to be disjoint.
+    /// Whether both solids may extend beyond the universe. Then they are not proven to be disjoint.
     pub is_clipped: bool,
 }
 
@@ -92,48 +92,51 @@ impl From<&Interference> for leafless_interference {
     }
 }
 
-/// What is known of the distance between two solids inside of the universe of a frame.
+/// Bounds of the distance between two solids inside the universe of a frame.
 #[derive(Clone, Copy)]
 #[repr(C)]
 pub struct leafless_clearance {
     /// sizeof(leafless_clearance).
     pub struct_size: u32,
-    /// The least distance between points of the two, in model units: 0 if they touch or overlap. The upper
-    /// bound is infinite as long as no point of one of them is proven, and the lower one too
-    /// if one of them is proven to be empty.
+    /// The least distance between points of the two solids, in model units: 0 if they touch or overlap. The
+    /// upper bound is infinite as long as no point of one solid is proven; the lower bound is infinite, too,
+    /// if one solid is proven to be empty.
     pub distance_model: leafless_interval,
-    /// If `has_nearest`, a point of the first solid, in model units. Both points are no further apart than the upper bound, but
-    /// for the rounding of their coordinates; of solids with a `depth_model` both are the same. Else zeros.
+    /// If `has_nearest`, a point of the first solid, in model units. The distance of the two points is at
+    /// most the upper bound, up to rounding of their coordinates; for solids with a `depth_model` the points
+    /// are equal. Else zeros.
     pub point_a_model: [f64; 3],
     /// A point of the second solid.
     pub point_b_model: [f64; 3],
-    /// A unit vector that leads out of the first solid at its point, if one is known; else zeros.
+    /// A unit vector that points out of the first solid at its point, if one is known; else zeros.
     pub normal_a: [f64; 3],
-    /// The same of the second solid.
+    /// The same for the second solid.
     pub normal_b: [f64; 3],
-    /// Of solids that overlap: the radius of a ball, in model units, that is proven to lie in both. 0 if none was found.
+    /// For solids that overlap, the radius, in model units, of a ball that is proven to lie in both; 0 if no
+    /// ball was found.
     pub depth_model: f64,
-    /// What of the first solid is proven: what is not counts as undecided.
+    /// The proofs about the first solid; unproven tags count as undecided.
     pub proof_a: leafless_proof,
-    /// What of the second solid is proven.
+    /// The proofs about the second solid.
     pub proof_b: leafless_proof,
     /// Cells of the first solid that were split.
     pub splits_a: u64,
     /// Cells of the second solid that were split.
     pub splits_b: u64,
-    /// If `has_nearest`, cells of the first and of the second solid with such points: the position of the first in cells of its level; else zeros.
+    /// If `has_nearest`, the cell of the first solid with its point, by its index on each axis; else zeros.
     pub nearest_a: [u32; 3],
     /// The level of that cell.
     pub nearest_a_level: u32,
-    /// The position of the second.
+    /// The cell of the second solid with its point.
     pub nearest_b: [u32; 3],
     /// The level of that cell.
     pub nearest_b_level: u32,
-    /// Why the search ended.
+    /// The reason why the search ended.
     pub measured: leafless_stop_reason,
     /// Whether the upper bound is finite.
     pub has_nearest: bool,
-    /// Whether one of the solids may go on outside of the universe, of which nothing is said.
+    /// Whether one of the solids may extend beyond the universe; the result says nothing about the part
+    /// beyond.
     pub is_clipped: bool,
 }
 
@@ -167,22 +170,22 @@ impl From<&Clearance> for leafless_clearance {
     }
 }
 
-/// A solid, known on a frame of its own, under an affine map.
+/// Makes a solid under an affine map, from its cells on a frame of its own.
 ///
-/// A cell is FULL or EMPTY if all the cells of the solid's own frame are that its inverse image touches:
-/// cells of about its size, or larger ones that are decided. So a surface that is not parallel to the lattice
-/// blurs by about a cell, down to the depth of the solid's own frame; rounding is outward. Where the map
-/// takes lattice planes to lattice planes nothing blurs. What sticks out of the solid's own universe is
-/// undecided, unless the solid is proven to end inside. (leafless_solid_placed moves a solid in the best way
-/// that its kind knows, and chooses a frame where it takes one.)
+/// A cell is FULL or EMPTY if its inverse image touches only cells of the solid's own frame with that tag:
+/// cells of about its size, or larger decided cells. So a surface that is not parallel to the lattice blurs
+/// by about a cell, down to the depth of the solid's own frame; rounding is outward. If the map takes lattice
+/// planes to lattice planes, nothing blurs. Parts outside the solid's own universe are undecided, unless the
+/// solid is proven to end inside. (leafless_solid_placed moves a solid in the best way for its kind, and
+/// chooses a frame if one is needed.)
 ///
 /// - Buffers: `own`, one struct; `matrix`, 12 numbers, the rows of [M | t], where a point p goes to M p + t;
 ///   `solid`, one pointer.
 /// - Result: `*solid`.
 /// - Errors: LEAFLESS_E_ARGUMENT as leafless_frame_check, or if an entry is neither 0 nor of a magnitude
-///   between 2^-64 and 2^64, or M is singular; LEAFLESS_E_LIMIT if too many transforms lie within each other.
-///   Asking the result returns LEAFLESS_E_FRAME if `operand` belongs to another frame than `own`.
-/// - Ownership: the operand is shared and may be freed; give `*solid` back with leafless_solid_free.
+///   between 2^-64 and 2^64, or M is singular; LEAFLESS_E_LIMIT if too many transforms are nested. Queries of
+///   the result return LEAFLESS_E_FRAME if `operand` belongs to another frame than `own`.
+/// - Ownership: the operand is shared and may be freed; release `*solid` with leafless_solid_free.
 /// - Untrusted input: any solid and numbers.
 ///
 /// cbindgen:ptrs-as-arrays=[[matrix; 12]]
@@ -199,7 +202,7 @@ pub unsafe extern "C" fn leafless_solid_transformed(
     })
 }
 
-/// A solid on its own frame under a map.
+/// Makes a solid on its own frame under a map.
 unsafe fn transformed(
     operand: *const leafless_solid,
     own: *const leafless_frame,
@@ -214,20 +217,22 @@ unsafe fn transformed(
     Ok(Transform::new(operand.clone(), &own, &placement))
 }
 
-/// As leafless_solid_transformed, but that LEAFLESS_RULE_SAMPLED decides every centre, by the cell of the solid's own frame
-/// from which it comes: that cell is FULL, or its own centre lies inside.
+/// Like leafless_solid_transformed, except that LEAFLESS_RULE_SAMPLED decides every centre by the cell of the
+/// solid's own frame that contains its inverse image: the centre is inside if that cell is FULL, or if that
+/// cell's own centre lies inside.
 ///
-/// So an octree that is made of samples is sampled again, on a lattice that is turned, coarser or finer, where
-/// leafless_solid_transformed is refused with LEAFLESS_E_NOT_SAMPLED. A surface is displaced by up to half a diagonal of the
-/// solid's own cells. A centre that comes from a face between two cells belongs to the one above. Other rules, and all that is
-/// said of cells, are as for leafless_solid_transformed.
+/// So a sampled octree can be sampled again on a rotated, coarser or finer lattice, where
+/// leafless_solid_transformed is refused with LEAFLESS_E_NOT_SAMPLED. A surface is displaced by up to half a
+/// diagonal of the solid's own cells. A centre whose inverse image lies on a face between two cells belongs
+/// to the upper cell. Other rules, and the classification of cells, are as for leafless_solid_transformed.
 ///
 /// - Buffers: `own`, one struct; `matrix`, 12 numbers, the rows of [M | t], where a point p goes to M p + t;
 ///   `solid`, one pointer.
 /// - Result: `*solid`.
-/// - Errors: as leafless_solid_transformed. An octree by LEAFLESS_RULE_SAMPLED is refused with LEAFLESS_E_NOT_SAMPLED only if a
-///   centre comes from a cell that is itself undecided: leafless_octree_resolve decides those before.
-/// - Ownership: the operand is shared and may be freed; give `*solid` back with leafless_solid_free.
+/// - Errors: as leafless_solid_transformed. Building with LEAFLESS_RULE_SAMPLED returns
+///   LEAFLESS_E_NOT_SAMPLED only if the inverse image of a centre lies in an undecided cell;
+///   leafless_octree_resolve decides such cells beforehand.
+/// - Ownership: the operand is shared and may be freed; release `*solid` with leafless_solid_free.
 /// - Untrusted input: any solid and numbers.
 ///
 /// cbindgen:ptrs-as-arrays=[[matrix; 12]]
@@ -244,23 +249,23 @@ pub unsafe extern "C" fn leafless_solid_resampled(
     })
 }
 
-/// Whether two solids overlap, as they are in the universe of a frame. Once an overlap is proven its volume
-/// is refined until the interval is no wider than `tolerance_model` cubic model units; infinity ends the work
-/// with the proof.
+/// Returns whether two solids overlap inside the universe of a frame. Once an overlap is proven, its volume
+/// is refined until the interval is no wider than `tolerance_model` cubic model units; an infinite tolerance
+/// ends the work with the proof.
 ///
-/// Where both solids are made of surfaces (expressions of half-spaces, and octrees that keep their surfaces), a surface that bounds both is
-/// one, however both were placed, and solids that touch in it from opposite sides are proven to be disjoint. Meshes and functions of
-/// the host that touch stay undecided.
+/// If both solids consist of surfaces (expressions of half-spaces, and octrees that keep their surfaces), a
+/// surface that bounds both is recognised under all placements, and solids that touch in it from opposite
+/// sides are proven to be disjoint. Meshes and functions of the host that touch stay undecided.
 ///
-/// Only cells of one solid are split where the other one is. The work ends at the frame's depth, or once
-/// `max_splits` cells of both are split, with what is known by then.
+/// Cells of one solid are split only where the other solid may be. The work ends at the frame's depth, or
+/// when `max_splits` cells of both are split, and returns the result so far.
 ///
 /// - Buffers: `frame`, one struct; `options`, one struct or NULL; `interference`, one struct.
 /// - Result: `*interference`.
 /// - Errors: LEAFLESS_E_FRAME if a solid belongs to another frame; LEAFLESS_E_ARGUMENT as
 ///   leafless_frame_check, or if the tolerance is negative or not a number; LEAFLESS_E_CALLBACK;
 ///   LEAFLESS_E_DAMAGED; LEAFLESS_E_CANCELLED; LEAFLESS_E_NO_MEMORY.
-/// - Untrusted input: any solids; set `max_splits` where the depth or the solids are not your own choice.
+/// - Untrusted input: any solids; set `max_splits` if the depth or the solids are untrusted.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn leafless_solid_interfere(
     a: *const leafless_solid,
@@ -280,16 +285,16 @@ pub unsafe extern "C" fn leafless_solid_interfere(
     })
 }
 
-/// As leafless_solid_interfere of `a` with `b` under each of many affine maps, as
-/// leafless_solid_transformed makes them. `max_splits` concerns each of them. The results are the same for
-/// any number of threads.
+/// Like leafless_solid_interfere for `a` and `b` under each of many affine maps, applied as by
+/// leafless_solid_transformed. `max_splits` applies to each map. The results are identical for any number of
+/// threads.
 ///
 /// - Buffers: `own`, one struct, the frame of `b`; `matrices`, `count` times 12 numbers; `frame`, one struct,
 ///   that of `a`; `options`, one struct or NULL; `interferences`, room for `count`. `matrices` and
 ///   `interferences` may be NULL if `count` is 0.
 /// - Result: `interferences[i]` for map i.
 /// - Errors: as leafless_solid_interfere and leafless_solid_transformed; nothing is then written.
-/// - Threads: any; uses as many as `options` says.
+/// - Threads: any; runs on as many threads as `options` says.
 /// - Untrusted input: as leafless_solid_interfere, and any numbers.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn leafless_solid_interfere_many(
@@ -323,24 +328,26 @@ pub unsafe extern "C" fn leafless_solid_interfere_many(
     })
 }
 
-/// The distance between two solids, as they are in the universe of a frame.
+/// Computes the distance between two solids inside the universe of a frame.
 ///
-/// `measured` of the result says why the search ended. With LEAFLESS_STOP_REASON_TOLERANCE the interval is no
-/// wider than `tolerance_model` (model units). With LEAFLESS_STOP_REASON_EXHAUSTED the cells of the frame's depth
-/// cannot raise the lower bound, and the interval is no wider than twice their diagonal, which is what cells
-/// can tell of most solids; or no pair of cells is left; or a solid may go on outside of the universe, which keeps
-/// the lower bound at 0. With LEAFLESS_STOP_REASON_BUDGET `max_splits` steps were
-/// taken, or 1 048 576 if that is 0. A step looks at the children of one cell. A cell whose children are
-/// looked at again, next to another cell, counts once more.
+/// `measured` of the result is the reason why the search ended. With LEAFLESS_STOP_REASON_TOLERANCE the
+/// interval is no wider than `tolerance_model` (model units). With LEAFLESS_STOP_REASON_EXHAUSTED the cells
+/// of the frame's depth cannot raise the lower bound, and the interval is no wider than twice their diagonal,
+/// which is the limit of cells for most solids; or no pair of cells is left; or a solid may extend beyond the
+/// universe, which keeps the lower bound at 0. With LEAFLESS_STOP_REASON_BUDGET `max_splits` steps were
+/// taken, or 1 048 576 if that is 0. A step visits the children of one cell. A cell whose children are
+/// visited again, next to another cell, counts once more.
 ///
-/// The distance of two closed meshes in the universe is found by their triangles, to rounding: some 10^-13 of their sizes and of the distance. Bodies
-/// of a mesh may overlap, unless only positive winding numbers count, triangles lie on each other, or vertices were moved. A step is then 64 pairs
-/// of boxes around triangles, and no cells are split.
+/// The distance of two closed meshes in the universe is computed from their triangles, exact up to rounding:
+/// some 10^-13 of their sizes and of the distance. Bodies of a mesh may overlap, unless only positive winding
+/// numbers count, triangles lie on each other, or vertices were moved. A step is then 64 pairs of boxes
+/// around triangles, and no cells are split.
 ///
-/// Where both solids know slabs, as expressions, open meshes and extended octrees do, each level makes the interval about four times as
-/// narrow, and plane faces, balls and cylinders are known at once. Other solids are known to the size of cells: the upper bound is
-/// finite once the search has met a FULL cell of each, and the work grows with the area
-/// where the distance is about the least one, measured in cells as large as the tolerance.
+/// If both solids provide slabs, as expressions, open meshes and extended octrees do, each level makes the
+/// interval about four times as narrow, and plane faces, balls and cylinders are resolved at once. Other
+/// solids are resolved to the size of cells: the upper bound is finite once the search has found a FULL cell
+/// of each, and the work grows with the area where the distance is close to the least one, measured in cells
+/// of the size of the tolerance.
 ///
 /// - Buffers: `frame`, one struct; `options`, one struct or NULL; `clearance`, one struct.
 /// - Result: `*clearance`.

@@ -1,4 +1,4 @@
-//! Layers: what a picture is made of.
+//! Layers: the contents of pictures.
 
 use super::attribute::{AnyAttribute, components, leafless_attribute};
 use super::boundary::{Failure, Sized32, guard, handle, out, refer, release, shared, sized, slice};
@@ -9,28 +9,28 @@ use leafless::attribute::Attribute;
 use leafless::render::{Clip, ClippedLayer, ColourMap, Layer, Transfer};
 use std::sync::Arc;
 
-/// Something that is seen in a picture: the surface of an octree, a solid or a mesh, lines, a plane section, voxels.
+/// A layer of a picture: the surface of an octree, a solid or a mesh, lines, a plane section, or voxels.
 ///
-/// A layer shares or copies what it shows, which may be freed. It knows nothing of cameras: it may be part of any
-/// number of pictures.
+/// A layer shares or copies the objects that it shows, so these may be freed. It is independent of cameras,
+/// and may be part of any number of pictures.
 ///
-/// Immutable: all its functions may be called at once from any number of threads, but leafless_layer_free
-/// needs the reference that it gives back for itself.
+/// Immutable: all its functions may be called at once from any number of threads, but no other call may use
+/// the reference that leafless_layer_free releases.
 pub struct leafless_layer {
     shape: Arc<dyn Shown>,
     clip: Option<Clip>,
 }
 
-/// What the handle of a layer holds.
+/// The content of a layer's handle.
 pub(super) trait Shown: Send + Sync {
-    /// The layer that shows it.
+    /// Returns the layer that shows the content.
     fn layer(&self) -> Result<Box<dyn Layer + '_>, Failure>;
 
-    /// About how many bytes it keeps alive.
+    /// Returns the approximate number of bytes that the content keeps alive.
     fn kept_bytes(&self) -> u64;
 }
 
-/// A handle of a layer.
+/// Returns a handle of a layer.
 pub(super) fn give(shape: impl Shown + 'static) -> *mut leafless_layer {
     handle(leafless_layer { shape: Arc::new(shape), clip: None })
 }
@@ -40,25 +40,25 @@ impl leafless_layer {
         self.shape.layer()
     }
 
-    /// The same within its own clip, if it has one.
+    /// Returns `layer` within this handle's own clip, if it has one.
     pub(super) fn clipped<'a>(&self, layer: &'a dyn Layer) -> Option<ClippedLayer<'a>> {
         self.clip.clone().map(|clip| ClippedLayer::new(layer, clip))
     }
 }
 
-/// Colour maps: equal steps of a number look like equal steps of the colour.
+/// Colour maps. Equal steps of a value look like equal steps of colour.
 #[derive(Clone, Copy)]
 #[repr(u32)]
 pub enum leafless_colour_map {
-    /// From dark violet by way of green to yellow.
+    /// From dark violet through green to yellow.
     LEAFLESS_COLOUR_MAP_VIRIDIS = 0,
-    /// From dark blue to yellow; the colour-blind see it as others do.
+    /// From dark blue to yellow; it looks the same to colour-blind people.
     LEAFLESS_COLOUR_MAP_CIVIDIS = 1,
-    /// From black by way of red to light yellow.
+    /// From black through red to light yellow.
     LEAFLESS_COLOUR_MAP_INFERNO = 2,
-    /// From black by way of purple to near white.
+    /// From black through purple to near white.
     LEAFLESS_COLOUR_MAP_MAGMA = 3,
-    /// From dark blue by way of red to yellow.
+    /// From dark blue through red to yellow.
     LEAFLESS_COLOUR_MAP_PLASMA = 4,
     /// From black to white.
     LEAFLESS_COLOUR_MAP_GREY = 5,
@@ -75,12 +75,12 @@ enumeration! {
     }
 }
 
-/// What values look like. A value of one number has the colour of a map over a range. A value of three or four
-/// numbers is a colour itself: red, green and blue in sRGB, 0 to 255, and of volumes an opacity, 0 to 255, that
-/// scales `alpha_upper`. Of a value of two numbers the first counts. Where there is no value the colour is grey.
+/// A transfer function: the colours of values. A value of one number has the colour of a map over a range. A
+/// value of three or four numbers is a colour itself: red, green and blue in sRGB, 0 to 255, and, for
+/// volumes, an opacity, 0 to 255, that scales `alpha_upper`. For a value of two numbers the first is used.
+/// Without a value the colour is grey.
 ///
-/// The range must be set, and for volumes the opacity. All other fields but the first may be zero, which is their
-/// default.
+/// The range must be set, and for volumes the opacity. Zero is the default of all other fields but the first.
 #[derive(Clone, Copy)]
 #[repr(C)]
 pub struct leafless_transfer {
@@ -88,17 +88,18 @@ pub struct leafless_transfer {
     pub struct_size: u32,
     /// A leafless_colour_map.
     pub map: Number<leafless_colour_map>,
-    /// The value at the map's beginning.
+    /// The value at the start of the map.
     pub range_lower: f64,
-    /// The value at its end; greater than `range_lower`.
+    /// The value at the end of the map; greater than `range_lower`.
     pub range_upper: f64,
-    /// Of volumes: the opacity, 0 to 1, of a path of `length_model` through the value `range_lower`. Between the
-    /// two ends it changes linearly.
+    /// For volumes: the opacity, 0 to 1, of a path of `length_model` through the value `range_lower`. It
+    /// changes linearly over the range.
     pub alpha_lower: f64,
-    /// The same of `range_upper`, of values that are colours, and of voxels without a value.
+    /// For volumes: the opacity for `range_upper`, for values that are colours, and for voxels without a
+    /// value.
     pub alpha_upper: f64,
-    /// The path for which the opacities hold: what has the opacity a for it lets (1 - a)^(s / length_model) of the
-    /// light through a path s. 0: 1.
+    /// The path length of the opacities, in model units: a medium of opacity a transmits (1 - a)^(s /
+    /// length_model) of the light over a path s. 0 means 1.
     pub length_model: f64,
 }
 
@@ -114,11 +115,12 @@ impl leafless_transfer {
     }
 }
 
-/// The colour of a value under a transfer function, as surfaces show it in full light: for a legend of the host's own.
+/// Returns the colour of a value under a transfer function, as surfaces show it in full light, for a legend
+/// of the host's own.
 ///
 /// - Buffers: `transfer`, one struct; `value`, `components` numbers; `colour`, 4 bytes.
 /// - Result: `colour`: red, green and blue (sRGB), and 255. Grey if a number is NaN.
-/// - Errors: LEAFLESS_E_ARGUMENT if the transfer function is not as it must be, or `components` not 1 to 4.
+/// - Errors: LEAFLESS_E_ARGUMENT if the transfer function is invalid, or `components` not 1 to 4.
 /// - Untrusted input: any numbers.
 ///
 /// cbindgen:ptrs-as-arrays=[[colour; 4]]
@@ -140,7 +142,7 @@ pub unsafe extern "C" fn leafless_transfer_colour(
     })
 }
 
-/// Bytes that the values of a layer keep alive, if it has some.
+/// Returns the bytes that the values of a layer keep alive, if it has values.
 pub(super) fn bytes_of_values(values: &Option<Values>) -> u64 {
     values.as_ref().map_or(0, |values| values.attribute.kept_bytes())
 }
@@ -151,10 +153,10 @@ pub(super) struct Values {
     pub(super) colour: Box<dyn Fn(Option<[f64; 4]>) -> [u8; 4] + Send + Sync>,
 }
 
-/// The attribute and the transfer function of a layer, which has both or neither.
+/// Returns the attribute and the transfer function of a layer, which has both or neither.
 ///
 /// # Safety
-/// `attribute` is NULL or a living handle, `transfer` NULL or a valid struct.
+/// `attribute` is NULL or a handle that is alive; `transfer` is NULL or a valid struct.
 pub(super) unsafe fn values(
     attribute: *const leafless_attribute,
     transfer: *const leafless_transfer,
@@ -178,12 +180,12 @@ pub(super) unsafe fn values(
     Ok(Some(Values { attribute, colour: Box::new(move |value| transfer.opaque(value, components)) }))
 }
 
-/// A colour that was chosen: the one of which all bytes are zero stands for the default.
+/// Returns a chosen colour; all bytes zero stand for the default.
 pub(super) fn chosen(colour: [u8; 4]) -> Option<[u8; 4]> {
     (colour != [0; 4]).then_some(colour)
 }
 
-/// The points for which all planes say a x + b y + c z + d ≥ 0 and that lie in the box, if there is one.
+/// Returns the clip: the points in the box, if there is one, with a x + b y + c z + d ≥ 0 for all planes.
 ///
 /// # Safety
 /// As [`slice`] for 4 · `count` numbers, and for 6 unless the box is NULL.
@@ -212,17 +214,17 @@ pub(super) unsafe fn clip(
     Ok(clip)
 }
 
-/// What lies of a layer within planes and a box of its own, which count instead of the picture's: a surface that is
-/// cut away, for instance, to show the voxels behind it. A layer that has some already keeps what lies within all
+/// Returns a layer clipped by planes and a box of its own, which replace those of the picture: for instance,
+/// a surface that is cut away to show the voxels behind it. A layer that is clipped already is clipped by all
 /// of them.
 ///
-/// - Buffers: `planes`, 4 · `plane_count` numbers: a, b, c and d of each plane, which keeps the points with
-///   a x + b y + c z + d ≥ 0; `box_model`, 6 numbers, the least and the greatest corner of the box, or NULL for none;
-///   `clipped`, one pointer.
+/// - Buffers: `planes`, 4 · `plane_count` numbers: a, b, c and d of each plane, which keeps the points with a
+///   x + b y + c z + d ≥ 0; `box_model`, 6 numbers, the least and the greatest corner of the box, or NULL for
+///   none; `clipped`, one pointer.
 /// - Result: `*clipped`.
-/// - Errors: LEAFLESS_E_ARGUMENT if a number is not zero and not between 2^-256 and 2^256 in magnitude, a, b
-///   and c are zero, or the box is none; LEAFLESS_E_NO_MEMORY.
-/// - Ownership: the layer is shared and may be freed; give `*clipped` back with leafless_layer_free.
+/// - Errors: LEAFLESS_E_ARGUMENT if a number is neither 0 nor of a magnitude between 2^-256 and 2^256, a, b
+///   and c are zero, or the box has min > max on an axis; LEAFLESS_E_NO_MEMORY.
+/// - Ownership: the layer is shared and may be freed; release `*clipped` with leafless_layer_free.
 /// - Untrusted input: any numbers.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn leafless_layer_clipped(
@@ -241,9 +243,9 @@ pub unsafe extern "C" fn leafless_layer_clipped(
     })
 }
 
-/// About how many bytes of memory (or of mapped files) a layer keeps alive: its own, and those of the octree, solid, mesh and
-/// attribute that it shows, as leafless_octree_describe, leafless_solid_describe and so on tell them. What a picture needs
-/// while it is rendered is not in.
+/// Returns the approximate number of bytes of memory (or of mapped files) that a layer keeps alive: its own,
+/// and those of the octree, solid, mesh and attribute that it shows, as in leafless_octree_describe,
+/// leafless_solid_describe and so on. Memory for rendering a picture is not included.
 ///
 /// - Buffers: `bytes`, one number.
 /// - Result: `*bytes`.
@@ -259,11 +261,11 @@ pub unsafe extern "C" fn leafless_layer_bytes(
     })
 }
 
-/// One more reference to a layer.
+/// Returns one more reference to a layer.
 ///
 /// - Buffers: `layer`, a handle; `reference`, one pointer.
 /// - Result: `*reference`, equal to `layer`.
-/// - Ownership: give each reference back with leafless_layer_free.
+/// - Ownership: release each reference with leafless_layer_free.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn leafless_layer_ref(
     layer: *const leafless_layer,
@@ -272,11 +274,11 @@ pub unsafe extern "C" fn leafless_layer_ref(
     guard(|| unsafe { refer(layer, "layer", reference) })
 }
 
-/// Gives back a reference to a layer; with the last one the layer is gone. What it shows stays, as far as others
-/// have references to it.
+/// Releases a reference to a layer; the last release frees the layer. Objects that it shows stay if other
+/// references exist.
 ///
 /// - Buffers: `layer`, a handle or NULL, which does nothing.
-/// - Ownership: the reference is gone.
+/// - Ownership: the reference is invalid afterwards.
 /// - Threads: any; no other call may use this reference.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn leafless_layer_free(layer: *mut leafless_layer) {

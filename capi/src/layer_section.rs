@@ -1,4 +1,4 @@
-//! Layers of what is inside: plane sections, and voxels as a translucent volume.
+//! Layers of the inside: plane sections, and voxels as a translucent volume.
 
 use super::attribute::leafless_attribute;
 use super::boundary::{Failure, Sized32, array, buffer, guard, out, share, shared, sized, slice};
@@ -16,9 +16,9 @@ use leafless::voxel::VoxelRecords;
 use leafless::{Frame, Solid};
 use std::sync::Arc;
 
-/// What a plane section looks like. NULL means the defaults. All fields but the first may be zero, which is their
-/// default. Colours are red, green and blue (sRGB) and opacity, 0 to 255; what is
-/// to be invisible is {255, 255, 255, 0}.
+/// The appearance of a plane section. NULL means the defaults. Zero is the default of every field but the
+/// first. Colours are red, green and blue (sRGB) and opacity, 0 to 255; {255, 255, 255, 0} makes a part
+/// invisible.
 #[derive(Clone, Copy)]
 #[repr(C)]
 pub struct leafless_slice_look {
@@ -26,15 +26,15 @@ pub struct leafless_slice_look {
     pub struct_size: u32,
     /// 1 to draw no outlines of cells; else 0.
     pub is_plain: u32,
-    /// The colour of EMPTY cells; all zero: sky blue, hardly visible.
+    /// The colour of EMPTY cells; all zero means sky blue, hardly visible.
     pub empty_colour: [u8; 4],
-    /// The colour of FULL cells; all zero: blue.
+    /// The colour of FULL cells; all zero means blue.
     pub full_colour: [u8; 4],
-    /// The colour of PARTIAL cells; all zero: orange.
+    /// The colour of PARTIAL cells; all zero means orange.
     pub partial_colour: [u8; 4],
-    /// The colour of outlines; all zero: dark grey.
+    /// The colour of outlines; all zero means dark grey.
     pub outline_colour: [u8; 4],
-    /// Values, as a channel's, that are shown where cells are not EMPTY; optional.
+    /// The attribute whose values, such as those of a channel, are shown where cells are not EMPTY; optional.
     pub attribute: *const leafless_attribute,
     /// With an attribute: the colours of its values.
     pub transfer: *const leafless_transfer,
@@ -51,7 +51,7 @@ struct OfSlice {
     values: Option<Values>,
 }
 
-/// What is cut.
+/// The object that is cut.
 enum Cut {
     Octree(Arc<leafless_octree>),
     Solid(Arc<leafless_solid>, Frame),
@@ -80,7 +80,7 @@ impl Shown for OfSlice {
 }
 
 /// # Safety
-/// As the functions below.
+/// As for the functions below.
 unsafe fn section(
     cut: Cut,
     plane: *const f64,
@@ -103,15 +103,15 @@ unsafe fn section(
     }
 }
 
-/// A plane section of an octree: in the colours of its cells' tags or of an attribute's values, with the outlines of
-/// the cells.
+/// Makes a layer of a plane section of an octree, in the colours of its cells' tags or of an attribute's
+/// values, with the outlines of the cells.
 ///
-/// - Buffers: `plane`, 4 numbers a, b, c and d: the plane of the points with a x + b y + c z + d = 0; `look`, one struct or
-///   NULL; `layer`, one pointer.
+/// - Buffers: `plane`, 4 numbers a, b, c and d: the plane of the points with a x + b y + c z + d = 0; `look`,
+///   one struct or NULL; `layer`, one pointer.
 /// - Result: `*layer`.
-/// - Errors: LEAFLESS_E_ARGUMENT if a number is not zero and not between 2^-256 and 2^256 in magnitude, a, b and c are
-///   zero, or the look is not as it must be.
-/// - Ownership: the layer shares the octree and the attribute, which may be freed; give `*layer` back with
+/// - Errors: LEAFLESS_E_ARGUMENT if a number is neither 0 nor of a magnitude between 2^-256 and 2^256, a, b
+///   and c are zero, or the look is invalid.
+/// - Ownership: the layer shares the octree and the attribute, which may be freed; release `*layer` with
 ///   leafless_layer_free.
 /// - Untrusted input: any octree, any numbers.
 ///
@@ -126,13 +126,14 @@ pub unsafe extern "C" fn leafless_layer_from_octree_slice(
     guard(|| unsafe { section(Cut::Octree(share(octree, "octree")?), plane, look, layer) })
 }
 
-/// A plane section of a solid on a frame, of which the cells at the plane are split down to the frame's depth.
+/// Makes a layer of a plane section of a solid on a frame. Cells at the plane are split down to the frame's
+/// depth.
 ///
 /// - Buffers: `frame`, one struct; the others as leafless_layer_from_octree_slice.
 /// - Result: `*layer`.
-/// - Errors: as leafless_layer_from_octree_slice; LEAFLESS_E_ARGUMENT as leafless_frame_check. Taking a picture also returns
-///   what leafless_octree_build does.
-/// - Ownership: the layer shares the solid and the attribute, which may be freed; give `*layer` back with
+/// - Errors: as leafless_layer_from_octree_slice; LEAFLESS_E_ARGUMENT as leafless_frame_check. Taking a
+///   picture also returns the errors of leafless_octree_build.
+/// - Ownership: the layer shares the solid and the attribute, which may be freed; release `*layer` with
 ///   leafless_layer_free.
 /// - Untrusted input: any solid, any numbers.
 ///
@@ -151,15 +152,15 @@ pub unsafe extern "C" fn leafless_layer_from_solid_slice(
     })
 }
 
-/// Which part of each voxel is solid, 0 to 1: weights of voxels in a picture. Inside voxels have 1, outside and refined
-/// ones 0. Of a boundary voxel it is what the solid knows of its volume there, or the middle between what its slabs
-/// enclose; 1/2 where the solid knows neither.
+/// Computes the solid fraction of each voxel, 0 to 1, for use as the weights of voxels in a picture. Inside
+/// voxels have 1, outside and refined voxels 0. For a boundary voxel it is the fraction from the solid's own
+/// volume there, or the middle of the bounds from its slabs; 1/2 if the solid provides neither.
 ///
-/// - Buffers: `lattice`, `codes`, `levels` and `kinds` as leafless_voxels_find; `options`, one struct or NULL; `parts`,
-///   room for `count` numbers.
+/// - Buffers: `lattice`, `codes`, `levels` and `kinds` as leafless_voxels_find; `options`, one struct or
+///   NULL; `parts`, room for `count` numbers.
 /// - Result: `parts`. O(count · levels).
-/// - Errors: LEAFLESS_E_ARGUMENT if the arrays are no records; the solid's own; LEAFLESS_E_NO_MEMORY;
-///   LEAFLESS_E_CANCELLED.
+/// - Errors: LEAFLESS_E_ARGUMENT if the arrays are not valid records; the errors of the solid;
+///   LEAFLESS_E_NO_MEMORY; LEAFLESS_E_CANCELLED.
 /// - Untrusted input: any numbers, any solid.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn leafless_voxels_solid_parts(
@@ -181,29 +182,29 @@ pub unsafe extern "C" fn leafless_voxels_solid_parts(
     })
 }
 
-/// Voxels in arrays, as leafless_octree_voxels writes them: those of record i at `codes[i]`, `levels[i]`, `kinds[i]`.
-/// All fields but the first that are not said to be optional must be set.
+/// Voxels in arrays, as written by leafless_octree_voxels: record i is `codes[i]`, `levels[i]`, `kinds[i]`.
+/// All fields must be set, except where a comment allows 0 or NULL.
 #[derive(Clone, Copy)]
 #[repr(C)]
 pub struct leafless_voxel_arrays {
     /// sizeof(leafless_voxel_arrays).
     pub struct_size: u32,
-    /// How many numbers a value has, 1 to 4; 0 without values.
+    /// Numbers per value, 1 to 4; 0 without values.
     pub components: u32,
     /// The lattice that codes belong to.
     pub lattice: leafless_frame,
-    /// How many voxels there are.
+    /// Number of voxels.
     pub count: u64,
     /// Linear octree codes, ascending.
     pub codes: *const u64,
-    /// Levels.
+    /// Levels of the voxels.
     pub levels: *const u8,
-    /// Of each a leafless_voxel_kind. Inside and boundary voxels are seen.
+    /// A leafless_voxel_kind for each voxel. Inside and boundary voxels are visible.
     pub kinds: *const Byte<leafless_voxel_kind>,
     /// `components` · `count` numbers, NaN where there is no value; NULL without values.
     pub values: *const f64,
-    /// Of each voxel the part that is filled, 0 to 1; NULL: 1 inside and 1/2 at the boundary. As
-    /// leafless_voxels_solid_parts writes it.
+    /// The solid fraction of each voxel, 0 to 1, as written by leafless_voxels_solid_parts; NULL means 1
+    /// inside and 1/2 at the boundary.
     pub weights: *const f64,
 }
 
@@ -231,17 +232,19 @@ impl Shown for OfVoxels {
     }
 }
 
-/// Voxels as a translucent volume, seen in their right order from everywhere; surfaces of other layers hide them, and
-/// are seen through them. Of two such layers the one that comes first in a picture is taken to be in front.
+/// Makes a layer of voxels as a translucent volume, composited in the correct order from every viewpoint.
+/// Surfaces of other layers hide voxels, and are visible through them. If a picture has two such layers, the
+/// first one counts as in front.
 ///
-/// - Buffers: `voxels`, one struct; `transfer`, one struct: what values look like; `layer`, one pointer. `unit_model`: 0
-///   composites by the exact length of each line of sight in a voxel. Else it is done as published (Zhu, Tang and Dong
-///   2002): a voxel is a cell of the edge `unit_model`, repeated as often as its own edge is longer, and the transfer
-///   function's opacity holds for one repetition.
+/// - Buffers: `voxels`, one struct; `transfer`, one struct: the colours of values; `layer`, one pointer. If
+///   `unit_model` is 0, voxels are composited by the exact length of each line of sight in a voxel. Otherwise
+///   the published method (Zhu, Tang and Dong 2002) is used: a voxel is a cell of the edge `unit_model`,
+///   repeated once for each such length in its own edge, and the transfer function's opacity applies to one
+///   repetition.
 /// - Result: `*layer`.
-/// - Errors: LEAFLESS_E_ARGUMENT if the arrays are no records, a weight is not 0 to 1, the transfer function not as it
-///   must be, or the unit below 0 or not finite; LEAFLESS_E_NO_MEMORY.
-/// - Ownership: the layer copies the arrays; give `*layer` back with leafless_layer_free.
+/// - Errors: LEAFLESS_E_ARGUMENT if the arrays are not valid records, a weight is not 0 to 1, the transfer
+///   function is invalid, or the unit is below 0 or not finite; LEAFLESS_E_NO_MEMORY.
+/// - Ownership: the layer copies the arrays; release `*layer` with leafless_layer_free.
 /// - Untrusted input: any numbers.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn leafless_layer_new_voxels(
@@ -271,7 +274,7 @@ pub unsafe extern "C" fn leafless_layer_new_voxels(
         let compositing =
             if unit_model == 0.0 { Compositing::Exact } else { Compositing::Published { unit: unit_model } };
         let shown = OfVoxels { records, weights, transfer, compositing };
-        // What is wrong is told now, not when a picture is taken.
+        // Errors are reported now, not when a picture is taken.
         shown.layer()?;
         layer.write(give(shown))
     })

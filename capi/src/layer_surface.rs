@@ -1,4 +1,4 @@
-//! Layers of surfaces: of octrees, solids and meshes; lines.
+//! Layers of surfaces of octrees, solids and meshes, and of lines.
 
 use super::attribute::leafless_attribute;
 use super::boundary::{Failure, Sized32, guard, out, share, shared, sized, slice};
@@ -17,16 +17,16 @@ use leafless::render::{Finish, Layer, LinesLayer, MeshEdges, MeshLayer, OctreeLa
 use leafless::{Cell, Frame, Solid};
 use std::sync::Arc;
 
-/// Which edges are drawn as lines.
+/// The edges that are drawn as lines.
 #[derive(Clone, Copy)]
 #[repr(u32)]
 pub enum leafless_edges {
     /// None.
     LEAFLESS_EDGES_NONE = 0,
-    /// Those at which a mesh ends, or where its triangles meet at more than the crease angle. Of octrees and solids:
-    /// silhouettes, and where faces meet at more than that angle.
+    /// For meshes, open edges and edges whose triangles meet at more than the crease angle. For octrees and
+    /// solids, silhouettes and edges whose faces meet at more than that angle.
     LEAFLESS_EDGES_FEATURES = 1,
-    /// Those of all triangles of a mesh.
+    /// The edges of all triangles of a mesh.
     LEAFLESS_EDGES_ALL = 2,
 }
 
@@ -38,36 +38,36 @@ enumeration! {
     }
 }
 
-/// What a surface looks like. NULL means the defaults. All fields but the first may be zero, which is their
-/// default. A field that a shape does not use must be zero. Colours are red, green and blue (sRGB) and
-/// opacity, 0 to 255.
+/// The appearance of a surface. NULL means the defaults. Zero is the default of every field but the first. A
+/// field that a layer does not use must be zero. Colours are red, green and blue (sRGB) and opacity, 0 to 255.
 #[derive(Clone, Copy)]
 #[repr(C)]
 pub struct leafless_look {
     /// sizeof(leafless_look).
     pub struct_size: u32,
-    /// Of octrees: 1 to show cells by their faces, instead of the surface that they stand for; else 0.
+    /// For octrees: 1 to show the faces of cells instead of the surface that they represent; else 0.
     pub faces: u32,
-    /// The colour in full light; all zero: light grey.
+    /// The colour in full light; all zero means light grey.
     pub colour: [u8; 4],
-    /// The colour of what clip planes cut open, and of a mesh's faces that are seen from behind; all zero: orange, or
-    /// of a mesh the face's own colour mixed with orange.
+    /// The colour of parts that clip planes cut open, and of a mesh's faces seen from behind. All zero means
+    /// orange, or, for a mesh, the face's own colour mixed with orange.
     pub inside: [u8; 4],
     /// A leafless_edges.
     pub edges: Number<leafless_edges>,
-    /// The colour of edges; all zero: dark grey.
+    /// The colour of edges; all zero means dark grey.
     pub edge_colour: [u8; 4],
-    /// The width of edges in pixels, at most 256, or of octrees and solids 8; 0: 1, or of octrees and solids 1.5.
+    /// The width of edges in pixels, at most 256, or 8 for octrees and solids; 0 means 1, or 1.5 for octrees
+    /// and solids.
     pub edge_width: f64,
-    /// The angle in degrees, at most 180, at which faces meet at an edge, and up to which neighbouring triangles of a
-    /// mesh look smooth; 0: 30.
+    /// The angle in degrees, at most 180, above which faces meet at an edge, and up to which neighbouring
+    /// triangles of a mesh look smooth; 0 means 30.
     pub crease_degrees: f64,
-    /// Of meshes: 4 · `triangle_count` bytes, a colour for each triangle; NULL: all have one.
+    /// For meshes: 4 · `triangle_count` bytes, a colour for each triangle; NULL means that all have `colour`.
     pub triangle_colours: *const u8,
-    /// How many colours of triangles there are.
+    /// Number of colours of triangles.
     pub triangle_count: u64,
-    /// Of octrees and solids: values, as a channel's, that are shown half a finest cell below the surface, or of solids half
-    /// a pixel; optional.
+    /// For octrees and solids: the attribute whose values, such as those of a channel, are shown, taken half
+    /// a finest cell below the surface, or half a pixel for solids; optional.
     pub attribute: *const leafless_attribute,
     /// With an attribute: the colours of its values.
     pub transfer: *const leafless_transfer,
@@ -76,7 +76,7 @@ pub struct leafless_look {
 // SAFETY: numbers and pointers.
 unsafe impl Sized32 for leafless_look {}
 
-/// A width or an angle that was chosen: 0 stands for the default.
+/// Returns a chosen width or angle; 0 stands for the default.
 fn chosen_length(length: f64) -> Option<f64> {
     (length != 0.0).then_some(length)
 }
@@ -86,7 +86,7 @@ fn unused(is_unused: bool, name: &'static str, problem: &'static str) -> Result<
 }
 
 impl leafless_look {
-    /// Of what is made of cells.
+    /// Returns the finish of objects made of cells.
     fn finish(&self) -> Result<Finish, Failure> {
         unused(self.triangle_colours.is_null(), "look.triangle_colours", "is for meshes only")?;
         unused(self.triangle_count == 0, "look.triangle_count", "is for meshes only")?;
@@ -144,15 +144,16 @@ impl Shown for OfOctree {
     }
 }
 
-/// The surface of an octree: along each line of sight the first cell that is not EMPTY. Its normals are those of the
-/// surface that the cells seem to stand for. An octree that keeps surfaces is shown as leafless_layer_from_solid shows a
-/// solid, unless the look asks for faces of cells: these are its own, so leafless_octree_plain makes smaller ones first.
+/// Makes a layer of the surface of an octree: along each line of sight the first cell that is not EMPTY. Its
+/// normals are estimates of the surface that the cells represent. An octree that keeps surfaces is shown as
+/// by leafless_layer_from_solid, unless the look requests faces of cells; these are the octree's own cells,
+/// so make smaller cells with leafless_octree_plain first.
 ///
 /// - Buffers: `look`, one struct or NULL; `layer`, one pointer.
 /// - Result: `*layer`.
-/// - Errors: LEAFLESS_E_ARGUMENT if the look is not as it must be. Of an octree that keeps surfaces, taking a picture also
-///   returns what leafless_octree_build does.
-/// - Ownership: the layer shares the octree and the attribute, which may be freed; give `*layer` back with
+/// - Errors: LEAFLESS_E_ARGUMENT if the look is invalid. For an octree that keeps surfaces, taking a picture
+///   also returns the errors of leafless_octree_build.
+/// - Ownership: the layer shares the octree and the attribute, which may be freed; release `*layer` with
 ///   leafless_layer_free.
 /// - Untrusted input: any octree.
 #[unsafe(no_mangle)]
@@ -191,15 +192,15 @@ impl Shown for OfSolid {
     }
 }
 
-/// The surface of a solid within a universe. For each picture the solid is split to cells as large as a pixel, 2^11
-/// to an axis at the most; in these a line of sight meets what the solid knows of its boundary there, with the
-/// normals of that.
+/// Makes a layer of the surface of a solid inside a universe. For each picture the solid is split to cells of
+/// the size of a pixel, at most 2^11 on an axis. In these cells a line of sight meets the boundary that the
+/// solid provides there, with its normals.
 ///
-/// - Buffers: `frame`, one struct, of which the depth does not count; `look`, one struct or NULL; `layer`, one pointer.
+/// - Buffers: `frame`, one struct (its depth is ignored); `look`, one struct or NULL; `layer`, one pointer.
 /// - Result: `*layer`.
-/// - Errors: LEAFLESS_E_ARGUMENT if the look or the frame is not as it must be; taking a picture also returns what
-///   leafless_octree_build does.
-/// - Ownership: the layer shares the solid and the attribute, which may be freed; give `*layer` back with
+/// - Errors: LEAFLESS_E_ARGUMENT if the look or the frame is invalid; taking a picture also returns the
+///   errors of leafless_octree_build.
+/// - Ownership: the layer shares the solid and the attribute, which may be freed; release `*layer` with
 ///   leafless_layer_free.
 /// - Untrusted input: any solid.
 #[unsafe(no_mangle)]
@@ -226,7 +227,7 @@ struct OfMesh {
     colours: Option<Vec<[u8; 4]>>,
 }
 
-/// What of a look concerns meshes.
+/// The part of a look that applies to meshes.
 struct MeshLook {
     colour: Option<[u8; 4]>,
     inside: Option<[u8; 4]>,
@@ -260,14 +261,14 @@ impl Shown for OfMesh {
     }
 }
 
-/// The triangles of a mesh.
+/// Makes a layer of the triangles of a mesh.
 ///
 /// - Buffers: `look`, one struct or NULL; `layer`, one pointer.
 /// - Result: `*layer`.
-/// - Errors: LEAFLESS_E_ARGUMENT if the look is not as it must be, or there are colours of triangles and not one for
-///   each; LEAFLESS_E_NO_MEMORY. Taking a picture returns LEAFLESS_E_ARGUMENT if the width or the crease angle is out
-///   of range.
-/// - Ownership: the layer shares the mesh, which may be freed, and copies the colours; give `*layer` back with
+/// - Errors: LEAFLESS_E_ARGUMENT if the look is invalid, or if the number of triangle colours is not that of
+///   the triangles; LEAFLESS_E_NO_MEMORY. Taking a picture returns LEAFLESS_E_ARGUMENT if the width or the
+///   crease angle is out of range.
+/// - Ownership: the layer shares the mesh, which may be freed, and copies the colours; release `*layer` with
 ///   leafless_layer_free.
 /// - Untrusted input: any mesh.
 #[unsafe(no_mangle)]
@@ -337,14 +338,16 @@ unsafe fn colour_at(colour: *const u8) -> Result<Option<[u8; 4]>, Failure> {
     Ok(colours.first().copied().and_then(chosen))
 }
 
-/// Lines in space, some pixels wide, with round ends. A surface hides what lies behind it; a line on a surface is seen.
+/// Makes a layer of lines in space, some pixels wide, with round ends. Surfaces hide lines behind them; a
+/// line on a surface is visible.
 ///
-/// - Buffers: `points_model`, 6 · `count` numbers: the ends of each line; `colour`, 4 numbers: red, green, blue (sRGB) and
-///   opacity, or NULL for dark grey; `layer`, one pointer. `width` is in pixels, at most 256; 0 means 1.
+/// - Buffers: `points_model`, 6 · `count` numbers: the ends of each line; `colour`, 4 numbers: red, green,
+///   blue (sRGB) and opacity, or NULL for dark grey; `layer`, one pointer. `width` is in pixels, at most 256;
+///   0 means 1.
 /// - Result: `*layer`.
-/// - Errors: LEAFLESS_E_NO_MEMORY. Taking a picture returns LEAFLESS_E_ARGUMENT if the width is out of range, or a
-///   coordinate not zero and not between 2^-256 and 2^256 in magnitude.
-/// - Ownership: the layer copies the lines; give `*layer` back with leafless_layer_free.
+/// - Errors: LEAFLESS_E_NO_MEMORY. Taking a picture returns LEAFLESS_E_ARGUMENT if the width is out of range,
+///   or a coordinate is neither 0 nor of a magnitude between 2^-256 and 2^256.
+/// - Ownership: the layer copies the lines; release `*layer` with leafless_layer_free.
 /// - Untrusted input: any numbers.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn leafless_layer_new_lines(
@@ -362,7 +365,7 @@ pub unsafe extern "C" fn leafless_layer_new_lines(
     })
 }
 
-/// A leafless_cell of which the host may have left the tag uninitialised.
+/// A leafless_cell whose tag the host may have left uninitialised.
 #[repr(C)]
 struct Untagged {
     cell: [u32; 3],
@@ -372,13 +375,15 @@ struct Untagged {
 
 const _: () = assert!(size_of::<Untagged>() == size_of::<leafless_cell>());
 
-/// The edges of cells as lines. What several cells have in common is drawn once. A cell that is none of the frame is
-/// left out. Tags are not read.
+/// Makes a layer of the edges of cells as lines. Edges that cells share are drawn once. Cells that are not in
+/// the frame are left out. Tags are not read.
 ///
-/// - Buffers: `frame`, one struct; `cells`, `count` structs; `colour`, `width` and `layer` as leafless_layer_new_lines.
+/// - Buffers: `frame`, one struct; `cells`, `count` structs; `colour`, `width` and `layer` as
+///   leafless_layer_new_lines.
 /// - Result: `*layer`.
-/// - Errors: LEAFLESS_E_ARGUMENT as leafless_frame_check, and as leafless_layer_new_lines; LEAFLESS_E_NO_MEMORY.
-/// - Ownership: give `*layer` back with leafless_layer_free.
+/// - Errors: LEAFLESS_E_ARGUMENT as leafless_frame_check, and as leafless_layer_new_lines;
+///   LEAFLESS_E_NO_MEMORY.
+/// - Ownership: release `*layer` with leafless_layer_free.
 /// - Untrusted input: any numbers.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn leafless_layer_new_cells(

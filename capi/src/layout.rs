@@ -1,11 +1,11 @@
-//! What this library takes the header's structs and constants for: for its own tests.
+//! The layout of the header's structs and constants as the library sees it, for tests.
 
 use super::*;
 use core::ffi::c_char;
 use core::fmt::{self, Write};
 use core::mem::{offset_of, size_of};
 
-/// The size of what a field holds.
+/// Returns the size of a field.
 const fn size_at<S, F>(_: fn(&S) -> &F) -> usize {
     size_of::<F>()
 }
@@ -363,19 +363,19 @@ fn write_all(to: &mut dyn Write) -> fmt::Result {
     writeln!(to, "LEAFLESS_ABI {LEAFLESS_ABI}")
 }
 
-/// What the library was built with, to be compared with what C makes of this header: only in libraries that
-/// are built for tests. One line for each struct with its size, for each field with its offset and size, and
-/// for each constant with its value.
+/// Returns the library's layout of structs and constants, to be compared with that of a C compiler. It exists
+/// only in libraries that are built for tests. One line for each struct with its size, for each field with
+/// its offset and size, and for each constant with its value.
 ///
 /// - Buffers: `text`, `capacity` bytes; may be NULL if `capacity` is 0.
-/// - Result: the text's length in bytes, without the terminating NUL, also if not all of it was written. What
-///   is written is NUL-terminated.
+/// - Result: the text's length in bytes, without the terminating NUL, also if the buffer is too small. The
+///   text in the buffer is NUL-terminated.
 /// - Ownership: the text is copied.
 #[cfg(feature = "test")]
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn leafless_test_layout(text: *mut c_char, capacity: usize) -> usize {
     let mut all = std::string::String::new();
-    // A string takes all that is written to it.
+    // Writing to a string cannot fail.
     let _ = write_all(&mut all);
     if !text.is_null() && capacity > 0 {
         let length = all.len().min(capacity - 1);

@@ -1,4 +1,4 @@
-//! Layouts: placing what is not placed yet, and what all of it amounts to.
+//! Layouts: searching placements for the remaining copies, and measuring the layout.
 
 use super::boundary::{Failure, Sized32, filled, guard, output, sized};
 use super::control::{controlled, leafless_options};
@@ -10,7 +10,7 @@ use super::status::leafless_status;
 use leafless::Interval;
 use leafless::layout::{Direction, LayoutMeasures, Objective, SearchEnd, SearchOptions, SearchReport};
 
-/// What a search is after. First of all it places as much as goes in.
+/// The objective of a search. The first aim is always to place as much as possible.
 #[derive(Clone, Copy)]
 #[repr(u32)]
 pub enum leafless_objective {
@@ -20,7 +20,7 @@ pub enum leafless_objective {
     LEAFLESS_OBJECTIVE_HEIGHT = 1,
     /// As much volume as possible.
     LEAFLESS_OBJECTIVE_DENSITY = 2,
-    /// As many copies as possible, with the centre of gravity of all of them near to `target_model`.
+    /// As many copies as possible, with their common centre of gravity near to `target_model`.
     LEAFLESS_OBJECTIVE_BALANCE = 3,
 }
 use leafless_objective::*;
@@ -36,7 +36,7 @@ enumeration!(leafless_objective => leafless_objective {
 #[derive(Clone, Copy)]
 #[repr(u32)]
 pub enum leafless_free_along {
-    /// None is asked for.
+    /// No direction is required.
     LEAFLESS_FREE_ALONG_NONE = 0,
     /// Along x, to greater coordinates.
     LEAFLESS_FREE_ALONG_X_UP = 1,
@@ -62,28 +62,29 @@ enumeration!(leafless_free_along => Option<Direction> {
     LEAFLESS_FREE_ALONG_Z_DOWN => Some(Direction { axis: 2, upward: false }),
 });
 
-/// How a search proceeds.
+/// Options of a search.
 #[derive(Clone, Copy)]
 #[repr(C)]
 pub struct leafless_search_options {
     /// sizeof(leafless_search_options).
     pub struct_size: u32,
-    /// A leafless_objective: what the search is after.
+    /// A leafless_objective: the objective of the search.
     pub objective: Number<leafless_objective>,
-    /// Of LEAFLESS_OBJECTIVE_BALANCE: the point that the centre of gravity should be near to, in model units.
+    /// For LEAFLESS_OBJECTIVE_BALANCE: the target of the centre of gravity, in model units.
     pub target_model: [f64; 3],
-    /// What chance depends on: the same seed gives the same layout, for any number of threads.
+    /// Seed of the random choices: the same seed gives the same layout, for any number of threads.
     pub seed: u64,
-    /// How many places the solids themselves are asked about at the most; 0 means no limit.
+    /// Largest number of placements that are tested with the solids themselves; 0 means no limit.
     pub max_tests: u64,
-    /// How often everything is placed anew, in other orders, of which the best one stays; 0 means 4.
+    /// Number of rounds. Each round places everything anew in another order, and the best round is kept; 0
+    /// means 4.
     pub rounds: u32,
-    /// Cells along the longest side of the container, 4 to 512; 0 means as many as the items ask for.
+    /// Cells along the longest side of the container, 4 to 512; 0 means as many as the items need.
     pub cells: u32,
-    /// A leafless_free_along: all copies can be taken out in this direction, one after another, the last that was placed first. No
-    /// other copy and no obstacle is in the way of a straight move; the container may be.
+    /// A leafless_free_along: the direction in which all copies can be taken out, one after another, the copy
+    /// that was placed last first. No other copy and no obstacle blocks a straight move; the container may.
     pub free_along: Number<leafless_free_along>,
-    /// 0.
+    /// Reserved; 0.
     pub reserved: u32,
 }
 
@@ -122,17 +123,17 @@ impl leafless_search_options {
     }
 }
 
-/// Why a search ended.
+/// The reason why a search ended.
 #[derive(Clone, Copy)]
 #[repr(u32)]
 pub enum leafless_search_end {
-    /// Everything is placed, and nothing else is asked for.
+    /// Everything is placed, and the objective needs no more rounds.
     LEAFLESS_SEARCH_END_COMPLETE = 0,
     /// All rounds were made.
     LEAFLESS_SEARCH_END_ROUNDS = 1,
     /// `max_tests` of the search, or `max_splits` of the options, is spent.
     LEAFLESS_SEARCH_END_BUDGET = 2,
-    /// It was cancelled. What was best until then is placed.
+    /// The search was cancelled. The best layout found is placed.
     LEAFLESS_SEARCH_END_CANCELLED = 3,
 }
 
@@ -147,23 +148,24 @@ impl From<SearchEnd> for leafless_search_end {
     }
 }
 
-/// What a search did.
+/// A report of a search.
 #[derive(Clone, Copy)]
 #[repr(C)]
 pub struct leafless_search_report {
     /// sizeof(leafless_search_report).
     pub struct_size: u32,
-    /// Why it ended.
+    /// The reason why the search ended.
     pub end: leafless_search_end,
-    /// Copies that it placed.
+    /// Copies that the search placed.
     pub placed: u64,
     /// Copies that are still to be placed.
     pub left: u64,
-    /// Rounds that were made, those by boxes not counted.
+    /// Completed rounds, without the rounds that use only boxes.
     pub rounds: u64,
-    /// Places that the solids themselves were asked about.
+    /// Placements that were tested with the solids themselves.
     pub tests: u64,
-    /// Cells that were split for that. (Cells of items and of the container by which places are found are not counted.)
+    /// Cells that were split for these tests. (Cells of items and of the container that are used to find
+    /// placements are not counted.)
     pub splits: u64,
 }
 
@@ -183,7 +185,7 @@ impl From<SearchReport> for leafless_search_report {
     }
 }
 
-/// What all copies amount to. All intervals contain the truth. Overlaps, where there are any, count twice.
+/// Measures of all copies together. All intervals contain the truth. Overlaps count twice.
 #[derive(Clone, Copy)]
 #[repr(C)]
 pub struct leafless_layout_measures {
@@ -191,19 +193,20 @@ pub struct leafless_layout_measures {
     pub struct_size: u32,
     /// The volume of all copies.
     pub volume_model: leafless_interval,
-    /// The part of the container's volume that this is.
+    /// That volume as a fraction of the container's volume.
     pub filled_part: leafless_interval,
-    /// How far the highest point is above the lower end of the container's bounds, along z; 0 if nothing is placed.
+    /// Height of the highest point above the lower end of the container's bounds along z, in model units; 0
+    /// if nothing is placed.
     pub height_model: leafless_interval,
-    /// The mass, by the densities of the items.
+    /// The mass, from the densities of the items.
     pub mass: leafless_interval,
-    /// The centre of gravity; all numbers unless `has_centroid`.
+    /// The centre of gravity; intervals of all numbers unless `has_centroid`.
     pub centroid_model: [leafless_interval; 3],
-    /// Tensor of inertia about the model's origin, row by row, as leafless_measures has it, times the densities.
+    /// Tensor of inertia about the model's origin, row by row, as in leafless_measures, times the densities.
     pub inertia_origin_model: [leafless_interval; 9],
     /// The same about the centre of gravity; about the origin unless `has_centroid`.
     pub inertia_centroid_model: [leafless_interval; 9],
-    /// Whether anything is placed, and no placed item may be empty.
+    /// Whether a copy is placed, and every placed item is proven not to be empty.
     pub has_centroid: bool,
 }
 
@@ -225,24 +228,27 @@ impl From<LayoutMeasures> for leafless_layout_measures {
     }
 }
 
-/// Places copies of items of which fewer are placed than their counts say. Copies that are placed already stay where they are.
+/// Places the copies that are still missing from the counts of the items. Copies that are placed already do
+/// not move.
 ///
-/// Each copy is proven to lie in the container, to overlap with nothing, and to be as far from everything as it should be: by boxes, by
-/// the triangles of meshes, or by splits of the solids. What could not be proven is not placed. The layout that stays is
-/// the best of all rounds by what the search is after. A cancel ends the search and keeps what was best by then, and so does a
-/// budget: neither is an error.
+/// Each copy is proven to lie in the container, to overlap nothing, and to keep all clearances: by boxes, by
+/// the triangles of meshes, or by splits of the solids. A copy without this proof is not placed. The best
+/// layout of all rounds by the objective is kept. If the search is cancelled, or a limit is spent, it keeps
+/// the best layout found; neither is an error.
 ///
-/// Memory is that of the items' cells in all orientations, and of the container's cells: some megabytes. A step takes
-/// O(r n² / 64), with n the cells along the container and r the runs of cells of an item, for each layer of cells that is looked
-/// at.
+/// Memory is that of the items' cells in all orientations, and of the container's cells: some megabytes. A
+/// step takes O(r n² / 64) for each layer of cells that is examined, with n the cells along the container and
+/// r the runs of cells of an item.
 ///
 /// - Buffers: `search`, one struct or NULL; `options`, one struct or NULL; `report`, one struct.
 /// - Result: the layout is changed; `*report`.
-/// - Errors: LEAFLESS_E_ARGUMENT if `cells` is neither 0 nor between 4 and 512, if a field is none of its enumeration, or if
-///   `target_model` is not finite, or is set though it is not used; LEAFLESS_E_FRAME if a solid belongs to another frame;
-///   LEAFLESS_E_CALLBACK; LEAFLESS_E_DAMAGED; LEAFLESS_E_NO_MEMORY; LEAFLESS_E_BUSY. Then the layout is as it was.
-/// - Threads: any; uses as many as `options` says; LEAFLESS_E_BUSY while another call uses the layout.
-/// - Untrusted input: any numbers; set `max_tests` and `max_splits` where the solids are not your own choice.
+/// - Errors: LEAFLESS_E_ARGUMENT if `cells` is neither 0 nor between 4 and 512, if a field is not a member of
+///   its enumeration, or if `target_model` is not finite, or is set though it is not used; LEAFLESS_E_FRAME
+///   if a solid belongs to another frame; LEAFLESS_E_CALLBACK; LEAFLESS_E_DAMAGED; LEAFLESS_E_NO_MEMORY;
+///   LEAFLESS_E_BUSY. After an error the layout is unchanged.
+/// - Threads: any; runs on as many threads as `options` says; LEAFLESS_E_BUSY while another call uses the
+///   layout.
+/// - Untrusted input: any numbers; set `max_tests` and `max_splits` if the solids are untrusted.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn leafless_layout_search(
     layout: *mut leafless_layout,
@@ -258,15 +264,18 @@ pub unsafe extern "C" fn leafless_layout_search(
     })
 }
 
-/// Measures the container and each item of which there is a copy, once, as leafless_solid_measure does it, and adds up the
-/// copies. `relative` says how wide the interval of each volume may be, as a part of it.
+/// Measures all copies together. The container and each placed item are measured once, as by
+/// leafless_solid_measure, and the copies are added. `relative` bounds the width of each volume's interval as
+/// a fraction of the volume.
 ///
 /// - Buffers: `options`, one struct or NULL; `measures`, one struct.
 /// - Result: `*measures`.
-/// - Errors: LEAFLESS_E_ARGUMENT if `relative` is negative or not a number; LEAFLESS_E_CALLBACK; LEAFLESS_E_DAMAGED;
-///   LEAFLESS_E_CANCELLED; LEAFLESS_E_NO_MEMORY; LEAFLESS_E_BUSY.
-/// - Threads: any; uses as many as `options` says; LEAFLESS_E_BUSY while another call changes the layout.
-/// - Untrusted input: any number; the default of `max_splits`, that of leafless_solid_measure, bounds the work.
+/// - Errors: LEAFLESS_E_ARGUMENT if `relative` is negative or not a number; LEAFLESS_E_CALLBACK;
+///   LEAFLESS_E_DAMAGED; LEAFLESS_E_CANCELLED; LEAFLESS_E_NO_MEMORY; LEAFLESS_E_BUSY.
+/// - Threads: any; runs on as many threads as `options` says; LEAFLESS_E_BUSY while another call changes the
+///   layout.
+/// - Untrusted input: any number; the default of `max_splits`, that of leafless_solid_measure, bounds the
+///   work.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn leafless_layout_measure(
     layout: *const leafless_layout,

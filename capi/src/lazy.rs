@@ -14,18 +14,18 @@ use leafless::op::{Refinement, Zone};
 use leafless::solid::Prepared;
 use std::sync::{RwLock, RwLockReadGuard, RwLockWriteGuard, TryLockError, TryLockResult};
 
-/// An octree of a solid that is not built in one go: a cell is split when somebody asks for it, and what was
-/// split is remembered. FULL and EMPTY cells are proven; cells that nobody has split yet are PARTIAL.
+/// An octree of a solid that is split on demand: a cell is split when a call requests it, and split cells are
+/// stored. FULL and EMPTY cells are proven; cells that are not split yet are PARTIAL.
 ///
-/// Splitting and refining change it: while one call does so, every other call returns LEAFLESS_E_BUSY, from
-/// another thread as from the host's functions that are asked about a cell. While another call reads it,
-/// splitting and refining return LEAFLESS_E_BUSY. Its other functions may be called at once from any number
-/// of threads.
+/// Splitting and refining change the octree. While one call changes it, every other call returns
+/// LEAFLESS_E_BUSY, both from another thread and from the host's functions inside the call. While a call
+/// reads it, splitting and refining return LEAFLESS_E_BUSY. Its other functions may be called at once from
+/// any number of threads.
 pub struct leafless_lazy(RwLock<LazyOctree<Prepared>>);
 
 type Held = LazyOctree<Prepared>;
 
-/// To read the octree, unless another call changes it.
+/// Returns the octree for reading, unless another call changes it.
 ///
 /// # Safety
 /// As [`shared`].
@@ -34,7 +34,7 @@ unsafe fn read<'a>(lazy: *const leafless_lazy) -> Result<RwLockReadGuard<'a, Hel
     unlocked(unsafe { shared(lazy, "lazy")? }.0.try_read())
 }
 
-/// To change the octree, unless another call uses it.
+/// Returns the octree for changing, unless another call uses it.
 ///
 /// # Safety
 /// As [`shared`].
@@ -43,7 +43,7 @@ unsafe fn change<'a>(lazy: *const leafless_lazy) -> Result<RwLockWriteGuard<'a, 
     unlocked(unsafe { shared(lazy, "lazy")? }.0.try_write())
 }
 
-/// An octree stays as it was when a call panics.
+/// The octree is unchanged when a call panics, so a poisoned lock is usable.
 fn unlocked<G>(held: TryLockResult<G>) -> Result<G, Failure> {
     match held {
         Ok(held) => Ok(held),
@@ -52,21 +52,21 @@ fn unlocked<G>(held: TryLockResult<G>) -> Result<G, Failure> {
     }
 }
 
-/// What can be said of a lazy octree at once.
+/// Basic facts about a lazy octree.
 #[derive(Clone, Copy)]
 #[repr(C)]
 pub struct leafless_lazy_info {
     /// sizeof(leafless_lazy_info).
     pub struct_size: u32,
-    /// The universe, and how deep cells may be split.
+    /// The universe and the greatest depth of cells.
     pub frame: leafless_frame,
     /// Counts over all levels, and the certified volume.
     pub statistics: leafless_statistics,
-    /// Cells that were split, as it happened: also those that were merged again. Nothing is counted twice.
+    /// Cells that were split in total, including cells that were merged again. No cell is counted twice.
     pub splits: u64,
-    /// Splits that the solid was asked for anew, because cells below were to be split.
+    /// Splits that the solid repeated because cells below were to be split.
     pub replays: u64,
-    /// Bytes that the split cells take.
+    /// Bytes of the split cells.
     pub bytes: u64,
 }
 
@@ -82,7 +82,7 @@ unsafe fn cell(pointer: *const u32, level: u32) -> Result<Cell, Failure> {
     Ok(Cell { level: self::level(level), at })
 }
 
-/// A level that is out of range stays so.
+/// A level that is out of range stays out of range.
 fn level(level: u32) -> u8 {
     u8::try_from(level).unwrap_or(u8::MAX)
 }
@@ -91,14 +91,14 @@ fn new(lazy: LazyOctree<Prepared>) -> *mut leafless_lazy {
     Box::into_raw(Box::new(leafless_lazy(RwLock::new(lazy))))
 }
 
-/// An octree of which only the universe is known. No cell will ever be finer than the frame's depth, which
-/// costs nothing until they are asked for.
+/// Makes a lazy octree in which only the universe is classified. The frame's depth limits the depth of cells;
+/// a great depth costs nothing until its cells are requested.
 ///
 /// - Buffers: `frame`, one struct; `lazy`, one pointer.
 /// - Result: `*lazy`.
 /// - Errors: LEAFLESS_E_FRAME if the solid belongs to another frame; LEAFLESS_E_CALLBACK; LEAFLESS_E_DAMAGED;
 ///   LEAFLESS_E_ARGUMENT; LEAFLESS_E_NO_MEMORY.
-/// - Ownership: the octree shares the solid, which may be freed; give `*lazy` back with leafless_lazy_free.
+/// - Ownership: the octree shares the solid, which may be freed; release `*lazy` with leafless_lazy_free.
 /// - Untrusted input: any solid.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn leafless_lazy_new(
@@ -114,19 +114,19 @@ pub unsafe extern "C" fn leafless_lazy_new(
     })
 }
 
-/// Takes up an octree that leafless_lazy_freeze made of the same solid, which is known by its fingerprint;
-/// `frame` may be deeper than the octree's. Whatever else the octree holds is believed, as far as the solid's
-/// splits do not contradict it. Splits are counted from zero.
+/// Makes a lazy octree that continues an octree of leafless_lazy_freeze. The octree must come from the same
+/// solid, which the fingerprint identifies; `frame` may be deeper than the octree's frame. The octree's cells
+/// are trusted, unless splits of the solid contradict them. Splits are counted from zero.
 ///
 /// - Buffers: `frame`, one struct; `options`, one struct or NULL; `lazy`, one pointer.
 /// - Result: `*lazy`. O(n).
 /// - Errors: LEAFLESS_E_SOURCE if the octree does not hold the solid's fingerprint; LEAFLESS_E_ARGUMENT if
-///   the solid has none, or the octree is deeper than the frame; LEAFLESS_E_FRAME if it lies on another
+///   the solid has none, or the octree is deeper than the frame; LEAFLESS_E_FRAME if the octree has another
 ///   universe, or the solid belongs to another frame; LEAFLESS_E_DAMAGED; LEAFLESS_E_CALLBACK;
 ///   LEAFLESS_E_LIMIT; LEAFLESS_E_CANCELLED; LEAFLESS_E_NO_MEMORY.
-/// - Ownership: `octree` stays as it is; `*lazy` shares the solid, which may be freed; give it back with
+/// - Ownership: `octree` is unchanged; `*lazy` shares the solid, which may be freed; release it with
 ///   leafless_lazy_free.
-/// - Untrusted input: any octree; set `max_bytes` where it is not your own.
+/// - Untrusted input: any octree; set `max_bytes` if it is untrusted.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn leafless_lazy_resume(
     octree: *const leafless_octree,
@@ -144,10 +144,10 @@ pub unsafe extern "C" fn leafless_lazy_resume(
     })
 }
 
-/// Gives back a lazy octree.
+/// Releases a lazy octree.
 ///
 /// - Buffers: `lazy`, a handle or NULL, which does nothing.
-/// - Ownership: the handle is gone.
+/// - Ownership: the handle is invalid afterwards.
 /// - Threads: no other call may use the handle.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn leafless_lazy_free(lazy: *mut leafless_lazy) {
@@ -155,14 +155,14 @@ pub unsafe extern "C" fn leafless_lazy_free(lazy: *mut leafless_lazy) {
     unsafe { discard(lazy) }
 }
 
-/// Splits a PARTIAL cell. A cell that was split before, is decided, or that splitting does not help costs
-/// nothing.
+/// Splits a PARTIAL cell. It costs nothing if the cell was split before, is decided, or cannot be improved by
+/// splitting.
 ///
-/// - Buffers: `cell`, 3 numbers, the cell's place among those of its level; `tags`, room for 8.
+/// - Buffers: `cell`, 3 numbers, the cell's index on each axis; `tags`, room for 8.
 /// - Result: the tags of its children in octant order (bit 0 of the octant is x, bit 1 y, bit 2 z).
-/// - Errors: LEAFLESS_E_ARGUMENT if the cell is none of the frame's, lies at its depth, or in a cell that is
-///   still to be split; LEAFLESS_E_SOURCE if the solid contradicts what the octree holds;
-///   LEAFLESS_E_CALLBACK; LEAFLESS_E_NO_MEMORY.
+/// - Errors: LEAFLESS_E_ARGUMENT if the cell is not in the frame, has the frame's depth, or lies in a cell
+///   that is not split yet; LEAFLESS_E_SOURCE if the solid contradicts the octree; LEAFLESS_E_CALLBACK;
+///   LEAFLESS_E_NO_MEMORY.
 /// - Threads: any; LEAFLESS_E_BUSY while another call uses the handle.
 /// - Untrusted input: any solid, any numbers.
 ///
@@ -182,14 +182,14 @@ pub unsafe extern "C" fn leafless_lazy_split(
     })
 }
 
-/// Which cells are refined.
+/// The kind of zone: which cells are refined.
 #[derive(Clone, Copy)]
 #[repr(u32)]
 pub enum leafless_zone_kind {
     /// All of the universe.
     LEAFLESS_ZONE_KIND_EVERYTHING = 0,
-    /// The cells that have more than their surface in common with the box from `min_model` to `max_model`; of a box without
-    /// thickness, those that it lies in.
+    /// The cells whose interiors meet the box from `min_model` to `max_model`; for a box without thickness,
+    /// the cells that contain it.
     LEAFLESS_ZONE_KIND_BOX = 1,
     /// The cells that contain `point_model`: one of each level.
     LEAFLESS_ZONE_KIND_POINT = 2,
@@ -207,42 +207,45 @@ enumeration! {
     }
 }
 
-/// A part of model space, in which cells are refined. Fields that its kind does not name do not matter.
+/// A zone of model space in which cells are refined. Fields that its kind does not use are ignored.
 #[derive(Clone, Copy)]
 #[repr(C)]
 pub struct leafless_zone {
     /// sizeof(leafless_zone).
     pub struct_size: u32,
-    /// Which of the fields below count.
+    /// A leafless_zone_kind: the kind decides which of the fields below are used.
     pub kind: Number<leafless_zone_kind>,
     /// A box's lower corner.
     pub min_model: [f64; 3],
     /// A box's upper corner.
     pub max_model: [f64; 3],
-    /// A point, or a point of a ray; of a ray each coordinate is 0 or of a magnitude between 2^-256 and 2^256.
+    /// A point, or a point of a ray. For a ray each coordinate is 0 or of a magnitude between 2^-256 and
+    /// 2^256.
     pub point_model: [f64; 3],
-    /// A ray's direction, of any length but zero; each coordinate is as that of its point.
+    /// A ray's direction, of any length but zero; its coordinates have the range of a ray's point.
     pub direction_model: [f64; 3],
-    /// Where a ray begins; may be -INFINITY.
+    /// The parameter t of a ray's start; may be -INFINITY.
     pub from: f64,
-    /// Where a ray ends; may be INFINITY.
+    /// The parameter t of a ray's end; may be INFINITY.
     pub to: f64,
 }
 
 // SAFETY: numbers.
 unsafe impl Sized32 for leafless_zone {}
 
-/// Splits the cells of a zone down to `level`, those that can be. Limits in `options` (`max_splits`; `max_nodes` and
-/// `max_bytes` of all that the octree then holds) end the work, not the octree; coarser cells are then split before
-/// finer ones, and along a ray those that it comes to first.
+/// Splits the cells of a zone down to `level`, as far as they can be split. The limits in `options`
+/// (`max_splits`; `max_nodes` and `max_bytes` of the whole octree) end the work without damage to the octree.
+/// With limits, coarser cells are split before finer ones, and along a ray the nearest cells first.
 ///
-/// - Buffers: `zone`, one struct, or NULL for everything; `options`, one struct or NULL; `done`, one truth value, or NULL.
-/// - Result: `*done`, whether no limit was reached first.
-/// - Errors: LEAFLESS_E_ARGUMENT if `level` is beyond the frame's depth, a box has min > max on an axis, a number is not as
-///   leafless_zone says, or not from ≤ to; LEAFLESS_E_SOURCE if the solid contradicts what the octree holds;
-///   LEAFLESS_E_CALLBACK; LEAFLESS_E_CANCELLED; LEAFLESS_E_NO_MEMORY. What was split before stays so.
-/// - Threads: any; LEAFLESS_E_BUSY while another call uses the handle; uses the calling thread alone.
-/// - Untrusted input: any solid, any numbers; set limits where the level or the solid is not your own choice.
+/// - Buffers: `zone`, one struct, or NULL for everything; `options`, one struct or NULL; `done`, one truth
+///   value, or NULL.
+/// - Result: `*done`, whether the work was completed before a limit was reached.
+/// - Errors: LEAFLESS_E_ARGUMENT if `level` is beyond the frame's depth, a box has min > max on an axis, a
+///   number violates the ranges of leafless_zone, or from > to; LEAFLESS_E_SOURCE if the solid contradicts
+///   the octree; LEAFLESS_E_CALLBACK; LEAFLESS_E_CANCELLED; LEAFLESS_E_NO_MEMORY. Cells that were split
+///   before the error stay split.
+/// - Threads: any; LEAFLESS_E_BUSY while another call uses the handle; works in the calling thread.
+/// - Untrusted input: any solid, any numbers; set limits if the level or the solid is untrusted.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn leafless_lazy_refine(
     lazy: *mut leafless_lazy,
@@ -270,13 +273,13 @@ pub unsafe extern "C" fn leafless_lazy_refine(
     })
 }
 
-/// What is known of a cell. In a cell that is decided, or was not split yet, there are only cells like it.
+/// Returns the tag of a cell. Cells inside a cell that is decided, or not split yet, have its tag.
 ///
-/// - Buffers: `cell`, 3 numbers, the cell's place among those of its level; `tag`, one; `can_split`, one
-///   truth value, or NULL.
-/// - Result: `*tag`; BRANCH if the cell was split and its children differ; PARTIAL if it is none of the
-///   frame's. `*can_split`, whether leafless_lazy_split would ask the solid: the cell is PARTIAL, its parent
-///   was split, it is above the frame's depth, and the solid did not say that splitting does not help.
+/// - Buffers: `cell`, 3 numbers, the cell's index on each axis; `tag`, one; `can_split`, one truth value, or
+///   NULL.
+/// - Result: `*tag`; BRANCH if the cell was split and its children differ; PARTIAL if it is not a cell of the
+///   frame. `*can_split`, whether leafless_lazy_split would query the solid: the cell is PARTIAL, its parent
+///   was split, it is above the frame's depth, and the solid did not report that splitting does not help.
 /// - Threads: any; LEAFLESS_E_BUSY while another call changes the octree.
 /// - Untrusted input: any numbers.
 ///
@@ -299,8 +302,8 @@ pub unsafe extern "C" fn leafless_lazy_tag_at(
     })
 }
 
-/// Whether the solid contains a point, as far as cells have been split. A point on the boundary may be
-/// answered either way.
+/// Returns whether the solid contains a point, as far as cells have been split. A point on the boundary may
+/// be inside or outside.
 ///
 /// - Buffers: `point_model`, 3 numbers; `membership`, one.
 /// - Result: `*membership`.
@@ -321,7 +324,7 @@ pub unsafe extern "C" fn leafless_lazy_contains(
     })
 }
 
-/// What can be said of a lazy octree at once, as far as cells have been split. O(depth).
+/// Returns basic facts about a lazy octree, as far as cells have been split. O(depth).
 ///
 /// - Buffers: `info`, one struct.
 /// - Result: `*info`. A cell counts as a node also if its eight children are PARTIAL.
@@ -344,10 +347,10 @@ pub unsafe extern "C" fn leafless_lazy_describe(
     })
 }
 
-/// Counts of each level, and the certified volumes of the octree cut there. Entry 0 is the universe, entry
-/// `depth` the finest cells.
+/// Returns the counts of each level, and the certified volumes of the octree cut off at that level. Entry 0
+/// is the universe, entry `depth` the finest cells.
 ///
-/// - Buffers: `levels`, room for `capacity` structs, or NULL to ask for the count only; `count`, one number.
+/// - Buffers: `levels`, room for `capacity` structs, or NULL to get only the count; `count`, one number.
 /// - Result: `*count`, depth + 1; the levels.
 /// - Errors: LEAFLESS_E_BUFFER if the capacity is too small.
 /// - Threads: any; LEAFLESS_E_BUSY while another call changes the octree.
@@ -368,9 +371,10 @@ pub unsafe extern "C" fn leafless_lazy_levels(
     })
 }
 
-/// How many cells of each level were split, as it happened. Entry 0 is the universe.
+/// Returns the number of cells of each level that were split, including cells that were merged again. Entry 0
+/// is the universe.
 ///
-/// - Buffers: `splits`, room for `capacity` numbers, or NULL to ask for the count only; `count`, one number.
+/// - Buffers: `splits`, room for `capacity` numbers, or NULL to get only the count; `count`, one number.
 /// - Result: `*count`, the frame's depth; the numbers.
 /// - Errors: LEAFLESS_E_BUFFER if the capacity is too small.
 /// - Threads: any; LEAFLESS_E_BUSY while another call changes the octree.
@@ -391,14 +395,15 @@ pub unsafe extern "C" fn leafless_lazy_splits(
     })
 }
 
-/// The octree as it is now: canonical, and what is not split is PARTIAL. As the fact "source" it holds the
-/// solid's fingerprint, if there is one: saved or not, leafless_lazy_resume takes it up again.
+/// Returns the current octree: canonical, with PARTIAL cells where cells are not split. Its fact "source" is
+/// the solid's fingerprint, if there is one. leafless_lazy_resume continues it, also from a file.
 ///
 /// - Buffers: `options`, one struct or NULL; `octree`, one pointer.
 /// - Result: `*octree`.
 /// - Errors: LEAFLESS_E_LIMIT; LEAFLESS_E_CANCELLED; LEAFLESS_E_NO_MEMORY.
-/// - Ownership: give `*octree` back with leafless_octree_free.
-/// - Threads: any; LEAFLESS_E_BUSY while another call changes the octree; uses as many as `options` says.
+/// - Ownership: release `*octree` with leafless_octree_free.
+/// - Threads: any; LEAFLESS_E_BUSY while another call changes the octree; runs on as many threads as
+///   `options` says.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn leafless_lazy_freeze(
     lazy: *const leafless_lazy,

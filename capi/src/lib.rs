@@ -1,19 +1,21 @@
-//! The C interface: what `include/leafless.h` declares.
+//! The C interface, which `include/leafless.h` declares.
 //!
-//! Every function is a few lines: check what came from outside, call the one function of the library that
-//! does the work, hand its result over. The header's preface states the rules that hold for all of them;
-//! `boundary` enforces these, and the doc blocks here become the header's.
+//! Every function has a few lines: it checks the arguments, calls the one function of the library that does
+//! the work, and passes on the result. The header's preface states the rules that hold for all functions.
+//! `boundary` enforces these rules. The doc blocks here become those of the header.
 //!
 //! # A new function
 //!
-//! 1. It stands in the file of its topic with its documentation, of which the entries have a fixed order; the header's preface says
-//!    which of them may be left out. An array of a fixed length is marked by `/// cbindgen:ptrs-as-arrays=[…]`.
-//! 2. A new struct or enumeration has its lines in `layout`; an enumeration that comes in has `enumeration!`, and its name in
-//!    `include/cbindgen.toml`.
-//! 3. A new file has its place in `SECTIONS` of `c_tests/generated.rs`, and in the table below.
-//! 4. Every pointer is tried NULL and misaligned, every number out of range, in `c_tests/null.c` (an array of a fixed length
-//!    misaligned by `WRONG(out)`). A program in `c_tests` compares what the function does with a truth.
-//! 5. `LEAFLESS_BLESS=1 cargo test --test c_api generated` writes the headers for C and C++ anew.
+//! 1. Put it into the file of its topic, with its documentation. The entries of a doc block have a fixed
+//!    order; the header's preface says which of them may be left out. Mark an array of a fixed length by
+//!    `/// cbindgen:ptrs-as-arrays=[…]`.
+//! 2. Add a new struct or enumeration to `layout`. An enumeration that is an argument also needs
+//!    `enumeration!`, and its name in `include/cbindgen.toml`.
+//! 3. Add a new file to `SECTIONS` of `c_tests/generated.rs`, and to the table below.
+//! 4. In `c_tests/null.c`, test every pointer with NULL and a misaligned address, and every number out of
+//!    range (test an array of a fixed length misaligned by `WRONG(out)`). In a program in `c_tests`, compare
+//!    the function's results with a known truth.
+//! 5. Run `LEAFLESS_BLESS=1 cargo test --test c_api generated`, which writes the headers for C and C++ anew.
 //!
 //! # Files
 //!
@@ -23,49 +25,49 @@
 //! | `status` | status codes, messages |
 //! | `control` | options, cancelling, progress |
 //! | `frame` | frames, intervals |
-//! | `source` | sources and sinks: where files are read from and written to |
+//! | `source` | sources and sinks of files |
 //! | `mesh` | triangle meshes |
 //! | `mesh_arrays` | triangle meshes from the host's arrays |
-//! | `mesh_file` | mesh files, units |
+//! | `mesh_file` | reading mesh files, units |
 //! | `mesh_simplify` | meshes with fewer triangles |
-//! | `mesh_write` | mesh files, written |
+//! | `mesh_write` | writing mesh files |
 //! | `polyhedron` | triangle meshes from faces with holes, shells and voids |
 //! | `mesh_moments` | volume and moments of meshes, triangles that intersect |
-//! | `metadata` | facts of octrees and channels, for both |
-//! | `number` | numbers that stand for members of enumerations |
+//! | `metadata` | metadata of octrees and channels |
+//! | `number` | numbers of the host for members of enumerations |
 //! | `octree` | octrees: describing, statistics, metadata |
-//! | `operation` | set operations, for operands of every kind |
-//! | `solid` | solids: primitives, meshes, octrees, the host's own |
-//! | `csg` | half-spaces, primitives and expressions of them |
+//! | `operation` | set operations for operands of every kind |
+//! | `solid` | solids from meshes and octrees |
+//! | `csg` | half-spaces, primitives and their expressions |
 //! | `host` | solids by functions of the host |
-//! | `volume` | bitmaps and arrays of samples, and solids of them |
+//! | `volume` | bitmaps and arrays of samples, and solids from them |
 //! | `volume_arrays` | volumes from the host's arrays |
 //! | `volume_file` | volume files |
-//! | `attribute` | attributes: one value, those of a channel, moved ones |
-//! | `mesh_attribute` | what triangles of meshes bear, and attributes of the nearest point of a surface |
+//! | `attribute` | attributes: constants, placed attributes, values and ranges |
+//! | `mesh_attribute` | attributes of meshes, and attributes from the nearest point of a surface |
 //! | `attribute_host` | the host's own attributes |
 //! | `channel` | channels: describing, metadata |
-//! | `channel_fill` | channels filled from attributes, asked at points, changed in regions |
+//! | `channel_fill` | channels: filling from attributes, values at points, changes in regions |
 //! | `channel_summary` | least, greatest, mean and integral of channels, their regions, materials; volumes as attributes |
-//! | `octree_channels` | channels of octrees, carried to others |
+//! | `octree_channels` | channels of octrees, carried to other octrees |
 //! | `scene` | scenes in the language of OpenSCAD's CSG dumps |
 //! | `op` | building, resolving, Booleans |
-//! | `extended` | extended octrees: surfaces that PARTIAL cells keep |
-//! | `shard` | octrees in parts: built, cut, joined, counted, and asked as one solid |
-//! | `contains` | points, boxes |
+//! | `extended` | extended octrees, whose PARTIAL cells keep surfaces |
+//! | `shard` | octrees in parts: building, cutting, joining, counting, and use as one solid |
+//! | `contains` | queries of points and boxes |
 //! | `cursor` | cursors on the nodes of an octree |
 //! | `point_cursor` | cursors and tables for points |
 //! | `rays` | rays: first hits, intervals, line of sight |
 //! | `columns` | columns of cells along an axis, height maps |
 //! | `content` | cells and volumes in regions |
 //! | `voxel` | voxel records in arrays |
-//! | `cells` | neighbours of cells, cells and boundary faces one after another |
+//! | `cells` | neighbours of cells, iterators over cells and boundary faces |
 //! | `bitmap` | the cells of a box as bits |
 //! | `surface` | surfaces: closed meshes of octrees and solids |
-//! | `solid_boundary` | boundaries of solids that know their surfaces: faces as polygons, kinds and numbers of surfaces |
-//! | `contour` | contours: the same of any solid, with cells of several sizes |
+//! | `solid_boundary` | boundaries of solids that provide their surfaces: faces as polygons, kinds and numbers of surfaces |
+//! | `contour` | contours: meshes of any solid, from cells of several sizes |
 //! | `camera` | cameras |
-//! | `layer` | what pictures are made of; what values look like |
+//! | `layer` | layers of pictures, transfer functions |
 //! | `layer_surface` | surfaces of octrees, solids and meshes in pictures, lines |
 //! | `layer_section` | plane sections and voxels in pictures |
 //! | `picture` | pictures, PNG files, legends |
@@ -73,23 +75,23 @@
 //! | `interference`, `clearance` | solids under affine maps; overlap and distance of two solids |
 //! | `distance` | distances of points from solids |
 //! | `deviation` | distances of the boundaries of two solids |
-//! | `bay` | containers, obstacles and items: what is laid out |
-//! | `placing` | layouts: what stands where, and whether it may |
-//! | `layout_search` | layouts: placing what is left, and what all of it amounts to |
+//! | `bay` | bays: containers, obstacles and items |
+//! | `placing` | layouts: placing, moving and checking copies of items |
+//! | `layout_search` | layouts: searching placements, measuring the layout |
 //! | `measure` | volume, centroid, inertia, areas of surfaces and sections, bounding boxes of solids |
-//! | `mass_sum` | measures of the cells of a frame, which add up exactly |
-//! | `tridexel` | tri-dexel models: made of solids, described, metadata |
+//! | `mass_sum` | exact sums of measures of the cells of a frame |
+//! | `tridexel` | tri-dexel models: building from solids, description, metadata |
 //! | `tridexel_read` | cells, rays and intervals of tri-dexel models, statistics |
-//! | `tridexel_op` | set algebra of tri-dexel models, what they store |
+//! | `tridexel_op` | set algebra and storage formats of tri-dexel models |
 //! | `tridexel_editor` | tri-dexel models that are changed in place |
 //! | `tridexel_arrays` | tri-dexel models from the host's arrays |
 //! | `tridexel_surface` | meshes, octrees, solids and voxels of tri-dexel models |
 //! | `tridexel_file` | files of tri-dexel models |
-//! | `file` | files: what they say of themselves, whether they are good; octrees |
-//! | `layout` | for tests: what the structs look like |
+//! | `file` | files: description, verification; files of octrees |
+//! | `layout` | for tests: the layout of the structs |
 
 #![allow(unsafe_code, non_camel_case_types)]
-// What callers must keep to is said in the doc blocks in C's terms, and once for all in the header's preface.
+// The doc blocks state the duties of callers in C's terms, and the header's preface those for all functions.
 #![allow(clippy::missing_safety_doc)]
 
 mod attribute;

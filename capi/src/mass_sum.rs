@@ -1,4 +1,4 @@
-//! Measures of the cells of a frame, which add up exactly: for solids that several machines measure.
+//! Exact sums of the measures of a frame's cells, for solids that several machines measure.
 
 use super::boundary::{Failure, Sized32, filled, guard, output, shared, sized};
 use super::control::{controlled, leafless_options};
@@ -10,19 +10,20 @@ use super::status::leafless_status;
 use leafless::Tolerance;
 use leafless::query::{MassSum, measure_in};
 
-/// What is known of the volume and the moments of a solid in some cells of its frame.
+/// The volume and the moments of a solid in some cells of its frame.
 ///
-/// Sums are exact: they are the same in any order, and subtracting what was added leaves what there was. So several machines can measure
-/// the cells of one solid, and one of them adds up.
+/// Sums are exact: they are the same in any order, and subtracting a sum that was added restores the earlier
+/// sum. So several machines can measure the cells of one solid, and one machine adds the results.
 ///
-/// The struct has no pointers. A program may store it or send it to another machine as it lies in memory. Only the version of the
-/// library that made a sum reads it. The functions refuse bytes that are no sum; they cannot tell every damage.
+/// The struct has no pointers. A program may store its bytes or send them to another machine. Only the
+/// version of the library that made a sum can read it. The functions refuse bytes that are not a sum, but
+/// they cannot detect every damage.
 #[derive(Clone, Copy)]
 #[repr(C)]
 pub struct leafless_mass_sum {
     /// sizeof(leafless_mass_sum).
     pub struct_size: u32,
-    /// For the library alone.
+    /// For internal use of the library.
     pub bytes: [u8; 404],
 }
 
@@ -38,7 +39,7 @@ impl From<MassSum> for leafless_mass_sum {
     }
 }
 
-/// The sum at `pointer`.
+/// Returns the sum at `pointer`.
 ///
 /// # Safety
 /// As [`sized`].
@@ -48,7 +49,7 @@ unsafe fn sum_of(pointer: *const leafless_mass_sum, name: &'static str) -> Resul
     }
     // SAFETY: the caller's promise.
     let given = unsafe { sized(pointer, name)? };
-    // What a shorter struct does not have was lost when it was written, and is not zero.
+    // The missing bytes of a shorter struct were lost when it was written; they are not zero.
     if (given.struct_size as usize) < size_of::<leafless_mass_sum>() {
         return Err(Failure::Argument { name, problem: "is too short for a sum of this version" });
     }
@@ -56,18 +57,18 @@ unsafe fn sum_of(pointer: *const leafless_mass_sum, name: &'static str) -> Resul
     MassSum::from_bytes(&given.bytes).map_err(|_| Failure::Argument { name, problem })
 }
 
-/// Measures the part of a solid in one cell of a frame, as leafless_solid_measure measures the whole. The tolerances concern the volume
-/// in the cell. A solid that knows its own moments is split all the same.
+/// Measures the part of a solid in one cell of a frame, as leafless_solid_measure measures the whole. The
+/// tolerances apply to the volume in the cell. A solid that provides its own moments is split all the same.
 ///
-/// If the solid is an octree without surfaces, and both tolerances are 0, the sum over all cells of a level has the measures of the
-/// whole octree.
+/// If the solid is an octree without surfaces, and both tolerances are 0, the sum over all cells of a level
+/// has the measures of the whole octree.
 ///
-/// - Buffers: `frame`, one struct; `options`, one struct or NULL, of which `max_nodes` and `max_bytes` do not matter; `sum`, one struct.
-///   `code` is that of a cell of level `level`, as in leafless_shard.
+/// - Buffers: `frame`, one struct; `options`, one struct or NULL (`max_nodes` and `max_bytes` are ignored);
+///   `sum`, one struct. `code` is the code of a cell of level `level`, as in leafless_shard.
 /// - Result: `*sum`.
 /// - Errors: as leafless_solid_measure; LEAFLESS_E_ARGUMENT also if the frame does not have the cell.
-/// - Threads: any; uses as many as `options` says.
-/// - Untrusted input: any solid, any numbers; set `max_splits` where the depth or the solid is not your own choice.
+/// - Threads: any; runs on as many threads as `options` says.
+/// - Untrusted input: any solid, any numbers; set `max_splits` if the depth or the solid is untrusted.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn leafless_solid_measure_cell(
     solid: *const leafless_solid,
@@ -89,12 +90,13 @@ pub unsafe extern "C" fn leafless_solid_measure_cell(
     })
 }
 
-/// The sum of a cell of which nothing is known. Adding it to a sum takes nothing from what that sum proves.
+/// Returns the sum of a cell whose content is unknown. Adding it to a sum keeps the proofs of that sum.
 ///
-/// To measure a top and its shards: take the sum of the top in the whole universe (level 0, code 0). For each shard subtract the
-/// unknown sum of its cell, and add the sum of the shard in that cell.
+/// To measure a top and its shards: take the sum of the top in the whole universe (level 0, code 0). For each
+/// shard subtract the unknown sum of its cell, and add the sum of the shard in that cell.
 ///
-/// - Buffers: `frame` and `sum`, one struct each. `code` is that of a cell of level `level`, as in leafless_shard.
+/// - Buffers: `frame` and `sum`, one struct each. `code` is the code of a cell of level `level`, as in
+///   leafless_shard.
 /// - Result: `*sum`.
 /// - Errors: LEAFLESS_E_ARGUMENT if the frame does not have the cell.
 /// - Untrusted input: any numbers.
@@ -112,13 +114,13 @@ pub unsafe extern "C" fn leafless_mass_sum_unknown(
     })
 }
 
-/// The sum over the cells of two sums.
+/// Adds two sums over disjoint sets of cells.
 ///
 /// - Buffers: `a`, `b` and `sum`, one struct each; `sum` may be `a` or `b`.
 /// - Result: `*sum`.
-/// - Errors: LEAFLESS_E_ARGUMENT if `a` or `b` is no sum of this version, or if the result is more than the universe holds: then a cell
-///   was added twice; LEAFLESS_E_FRAME if the frames differ.
-/// - Untrusted input: any bytes; of damaged sums the result is wrong.
+/// - Errors: LEAFLESS_E_ARGUMENT if `a` or `b` is not a sum of this version, or if the result exceeds the
+///   universe, because a cell was added twice; LEAFLESS_E_FRAME if the frames differ.
+/// - Untrusted input: any bytes; damaged sums give a wrong result.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn leafless_mass_sum_add(
     a: *const leafless_mass_sum,
@@ -132,14 +134,14 @@ pub unsafe extern "C" fn leafless_mass_sum_add(
     })
 }
 
-/// The sum over the cells of `a` without those of `b`, which are some of them. What `a` proves, the result proves. Splits are counted
-/// together.
+/// Subtracts the sum `b` over some cells of `a` from `a`. The result proves what `a` proves. The numbers of
+/// splits are added.
 ///
 /// - Buffers: as leafless_mass_sum_add.
 /// - Result: `*sum`.
-/// - Errors: LEAFLESS_E_ARGUMENT if `a` or `b` is no sum of this version, or if less than nothing would be left; LEAFLESS_E_FRAME if the
-///   frames differ.
-/// - Untrusted input: any bytes; of damaged sums the result is wrong.
+/// - Errors: LEAFLESS_E_ARGUMENT if `a` or `b` is not a sum of this version, or if the result would be
+///   negative; LEAFLESS_E_FRAME if the frames differ.
+/// - Untrusted input: any bytes; damaged sums give a wrong result.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn leafless_mass_sum_subtract(
     a: *const leafless_mass_sum,
@@ -153,12 +155,13 @@ pub unsafe extern "C" fn leafless_mass_sum_subtract(
     })
 }
 
-/// Volume, centroid and inertia of what is in the cells of a sum. `is_exact` is false.
+/// Returns volume, centroid and inertia of the solid in the cells of a sum. `is_exact` is false.
 ///
 /// - Buffers: `sum` and `measures`, one struct each.
 /// - Result: `*measures`.
-/// - Errors: LEAFLESS_E_ARGUMENT if `sum` is no sum of this version, or if the frame's universe is too small for cells of level 20.
-/// - Untrusted input: any bytes; of a damaged sum the measures are wrong.
+/// - Errors: LEAFLESS_E_ARGUMENT if `sum` is not a sum of this version, or if the frame's universe is too
+///   small for cells of level 20.
+/// - Untrusted input: any bytes; a damaged sum gives wrong measures.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn leafless_mass_sum_measures(
     sum: *const leafless_mass_sum,

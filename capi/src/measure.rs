@@ -1,4 +1,4 @@
-//! Measures of solids: volume, centroid, inertia, areas of surface and sections, bounding box.
+//! Measures of solids: volume, centroid, inertia, areas of surfaces and sections, bounding boxes.
 
 use super::boundary::{array, filled, guard, output, shared};
 use super::control::{controlled, leafless_options};
@@ -12,16 +12,16 @@ use leafless::query::{
 };
 use leafless::{MassProperties, Tolerance, bounding_box, measure};
 
-/// Why a search or a measurement ended.
+/// The reason why a search or a measurement ended.
 #[derive(Clone, Copy)]
 #[repr(u32)]
 pub enum leafless_stop_reason {
-    /// What was asked for is known well enough.
+    /// The result has the requested precision.
     LEAFLESS_STOP_REASON_TOLERANCE = 0,
-    /// `max_splits` of the options, or the function's own limit, is spent.
+    /// `max_splits` of the options, or the function's default limit, is spent.
     LEAFLESS_STOP_REASON_BUDGET = 1,
-    /// No cell is left whose split would help: what is undecided has the size of the frame's finest cells, or
-    /// the solid itself knows no more about it, as an octree does of its PARTIAL cells.
+    /// No cell is left whose split would help: undecided cells have the size of the frame's finest cells, or
+    /// the solid itself has no more information about them, such as an octree about its PARTIAL cells.
     LEAFLESS_STOP_REASON_EXHAUSTED = 2,
 }
 use leafless_stop_reason::*;
@@ -36,8 +36,8 @@ impl From<StopReason> for leafless_stop_reason {
     }
 }
 
-/// Mass properties of a solid of density 1. All intervals contain the truth. All of it concerns the part
-/// inside of the universe; unless `is_clipped` says otherwise, that is the whole solid.
+/// Mass properties of a solid of density 1. All intervals contain the truth. They are those of the part
+/// inside the universe, which is the whole solid unless `is_clipped`.
 #[derive(Clone, Copy)]
 #[repr(C)]
 pub struct leafless_measures {
@@ -45,28 +45,28 @@ pub struct leafless_measures {
     pub struct_size: u32,
     /// Volume.
     pub volume_model: leafless_interval,
-    /// Centroid; all numbers unless `has_centroid`.
+    /// Centroid; intervals of all numbers unless `has_centroid`.
     pub centroid_model: [leafless_interval; 3],
     /// Tensor of inertia about the model's origin, row by row: the integral of |p|²δij - pi·pj over the
     /// points p of the solid. So products of inertia are negative where the product of the coordinates is
     /// mostly positive.
     pub inertia_origin_model: [leafless_interval; 9],
-    /// The same about the solid's own centroid, wherever in the interval that lies.
+    /// Tensor of inertia about the centroid, for every position of the centroid in its interval.
     pub inertia_centroid_model: [leafless_interval; 9],
-    /// What of the solid is proven: what is not counts as undecided.
+    /// The proofs about the solid; unproven tags count as undecided.
     pub proof: leafless_proof,
-    /// How many times a cell was split.
+    /// Number of cell splits.
     pub splits: u64,
-    /// The finest level of which cells were looked at.
+    /// The finest level of the visited cells.
     pub level: u32,
-    /// Why it ended.
+    /// The reason why the computation ended.
     pub measured: leafless_stop_reason,
-    /// Whether a cell is proven full: else the solid may be empty, and nothing is known of a centroid.
+    /// Whether a cell is proven full. Otherwise the solid may be empty, and the centroid is not known.
     pub has_centroid: bool,
-    /// Whether the solid may go on outside of the universe, or does.
+    /// Whether the solid may extend beyond the universe, or does.
     pub is_clipped: bool,
-    /// Whether the solid was not split because it knows its own moments, up to rounding: a mesh does that is closed and
-    /// whose triangles do not intersect.
+    /// Whether the solid was not split because it provides its own moments, up to rounding, as a closed mesh
+    /// without intersecting triangles does.
     pub is_exact: bool,
 }
 
@@ -78,15 +78,16 @@ output!(leafless_measures);
 pub struct leafless_surface_area {
     /// sizeof(leafless_surface_area).
     pub struct_size: u32,
-    /// Area. It contains the truth; its upper end is infinite where nothing is known.
+    /// Area. The interval contains the truth; its upper end is infinite if the area has no known bound.
     pub area_model: leafless_interval,
-    /// How many times a cell was split.
+    /// Number of cell splits.
     pub splits: u64,
-    /// The finest level of which cells were looked at.
+    /// The finest level of the visited cells.
     pub level: u32,
-    /// Why it ended.
+    /// The reason why the computation ended.
     pub measured: leafless_stop_reason,
-    /// Whether the solid may go on outside of the universe, or does: then it is the boundary inside of it.
+    /// Whether the solid may extend beyond the universe, or does; then the area is that of the boundary
+    /// inside.
     pub is_clipped: bool,
 }
 
@@ -111,15 +112,16 @@ impl From<SurfaceArea> for leafless_surface_area {
 pub struct leafless_section_area {
     /// sizeof(leafless_section_area).
     pub struct_size: u32,
-    /// Area. It contains the truth.
+    /// Area. The interval contains the truth.
     pub area_model: leafless_interval,
-    /// What of the solid is proven: what is not counts as undecided.
+    /// The proofs about the solid; unproven tags count as undecided.
     pub proof: leafless_proof,
-    /// How many times a cell was split.
+    /// Number of cell splits.
     pub splits: u64,
-    /// Why it ended.
+    /// The reason why the computation ended.
     pub measured: leafless_stop_reason,
-    /// Whether the solid may go on outside of the universe, or does: then it is the section inside of it.
+    /// Whether the solid may extend beyond the universe, or does; then the area is that of the section
+    /// inside.
     pub is_clipped: bool,
 }
 
@@ -138,27 +140,28 @@ impl From<SectionArea> for leafless_section_area {
     }
 }
 
-/// What is proven of a solid's bounding box inside of the universe.
+/// Proven bounds of a solid's bounding box inside the universe.
 #[derive(Clone, Copy)]
 #[repr(C)]
 pub struct leafless_extent {
     /// sizeof(leafless_extent).
     pub struct_size: u32,
-    /// Lower corner; all numbers if `is_empty`.
+    /// Lower corner; intervals of all numbers if `is_empty`.
     pub min_model: [leafless_interval; 3],
-    /// Upper corner; all numbers if `is_empty`.
+    /// Upper corner; intervals of all numbers if `is_empty`.
     pub max_model: [leafless_interval; 3],
-    /// What of the solid is proven: what is not counts as undecided.
+    /// The proofs about the solid; unproven tags count as undecided.
     pub proof: leafless_proof,
-    /// How many times a cell was split.
+    /// Number of cell splits.
     pub splits: u64,
-    /// Why it ended.
+    /// The reason why the computation ended.
     pub measured: leafless_stop_reason,
     /// Whether the solid is proven to be empty.
     pub is_empty: bool,
-    /// Whether it is proven not to be. If neither is proven, the corners are those of what the solid may be.
+    /// Whether the solid is proven not to be empty. If neither is proven, the corners bound the region that
+    /// may be solid.
     pub is_occupied: bool,
-    /// Whether the solid may go on outside of the universe, or does.
+    /// Whether the solid may extend beyond the universe, or does.
     pub is_clipped: bool,
 }
 
@@ -204,20 +207,20 @@ impl From<Extent> for leafless_extent {
     }
 }
 
-/// Measures a solid in the universe of a frame, without building an octree: the cells of which most is in doubt are
-/// split first, until the width of the volume's interval is at most `relative` times its middle or at most
-/// `absolute_model` (cubic model units), `max_splits` of the options is spent (2^26 splits without it), or nothing is
-/// left to split at the frame's depth. Under a budget the last whole pass counts. The result is the same bit for
-/// bit for any number of threads.
+/// Measures a solid in the universe of a frame, without building an octree. The cells with the largest
+/// uncertainty are split first, until the width of the volume's interval is at most `relative` times its
+/// middle or at most `absolute_model` (cubic model units), until `max_splits` of the options is spent (2^26
+/// splits if it is 0), or until no cell is left to split at the frame's depth. When the splits are spent, the
+/// result is that of the last complete pass. The result is identical, bit for bit, for any number of threads.
 ///
-/// - Buffers: `frame`, one struct; `options`, one struct or NULL, of which `max_nodes` and `max_bytes` do not
-///   matter; `measures`, one struct.
+/// - Buffers: `frame`, one struct; `options`, one struct or NULL (`max_nodes` and `max_bytes` are ignored);
+///   `measures`, one struct.
 /// - Result: `*measures`.
 /// - Errors: LEAFLESS_E_ARGUMENT, also if a tolerance is negative or not a number; LEAFLESS_E_FRAME if the
 ///   solid belongs to another frame; LEAFLESS_E_CALLBACK; LEAFLESS_E_DAMAGED; LEAFLESS_E_CANCELLED;
 ///   LEAFLESS_E_NO_MEMORY.
-/// - Threads: any; uses as many as `options` says.
-/// - Untrusted input: any solid; set `max_splits` where the depth or the solid is not your own choice.
+/// - Threads: any; runs on as many threads as `options` says.
+/// - Untrusted input: any solid; set `max_splits` if the depth or the solid is untrusted.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn leafless_solid_measure(
     solid: *const leafless_solid,
@@ -236,17 +239,18 @@ pub unsafe extern "C" fn leafless_solid_measure(
     })
 }
 
-/// The area of a solid's boundary in the universe of a frame, as leafless_solid_measure finds the volume: `relative` and
-/// `absolute_model` (square model units) say how wide the interval may be, and without `max_splits` of the options it ends
-/// after 2^23 splits. With N splits the width goes down with 1/N on curved surfaces; plane faces are exact. Where faces
-/// lie in planes of the frame's lattice, and the solid ends inside of the universe, another lattice is taken. Of an
-/// octree that keeps surfaces, of one without undecided cells, and of an expression that is clipped, faces between cells are
-/// counted as they are. Nothing is known of other octrees, of a host program's functions, and of a clipped mesh with such faces.
+/// Computes the area of a solid's boundary in the universe of a frame, as leafless_solid_measure computes the
+/// volume: `relative` and `absolute_model` (square model units) bound the width of the interval, and if
+/// `max_splits` of the options is 0, the search ends after 2^23 splits. With N splits the width decreases as
+/// 1/N on curved surfaces; plane faces are exact. If faces lie in planes of the frame's lattice, and the
+/// solid ends inside the universe, another lattice is used. For an octree that keeps surfaces, an octree
+/// without undecided cells, and an expression that is clipped, the faces between cells are added up. The area
+/// of other octrees, of a host program's functions, and of a clipped mesh with such faces is not known.
 ///
 /// - Buffers: as leafless_solid_measure; `surface`, one struct.
 /// - Result: `*surface`.
 /// - Errors: as leafless_solid_measure.
-/// - Threads: any; uses as many as `options` says.
+/// - Threads: any; runs on as many threads as `options` says.
 /// - Untrusted input: any solid; the default of `max_splits` bounds the work.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn leafless_solid_surface_area(
@@ -266,23 +270,23 @@ pub unsafe extern "C" fn leafless_solid_surface_area(
     })
 }
 
-/// The area of a solid's section with a plane, in the universe of a frame. The plane goes through a point, perpendicular to
-/// a normal of any length and either direction. The search splits only cells that the plane runs through. It ends with
-/// LEAFLESS_STOP_REASON_TOLERANCE if the interval is no wider than `relative` times its middle, or than `absolute_model` (square
-/// model units); with LEAFLESS_STOP_REASON_EXHAUSTED if no cell is left whose split would help; with LEAFLESS_STOP_REASON_BUDGET
-/// after `max_splits` of the options, or 2^20 splits if that is 0. With N splits the width goes down with 1/N² on curved
-/// surfaces of half-spaces and what is made of them, with 1/N for other solids; plane faces of the former are known to
-/// rounding.
+/// Computes the area of a solid's section with a plane, in the universe of a frame. The plane goes through a
+/// point, perpendicular to a normal of any length and either direction. The search splits only cells that the
+/// plane crosses. It ends with LEAFLESS_STOP_REASON_TOLERANCE if the interval is no wider than `relative`
+/// times its middle, or than `absolute_model` (square model units); with LEAFLESS_STOP_REASON_EXHAUSTED if no
+/// cell is left whose split would help; with LEAFLESS_STOP_REASON_BUDGET after `max_splits` of the options,
+/// or 2^20 splits if that is 0. With N splits the width decreases as 1/N² on curved surfaces of half-spaces
+/// and expressions of them, and as 1/N for other solids; plane faces of expressions are exact up to rounding.
 ///
-/// If faces of the solid lie in the plane, the sections on both sides of it differ. A plane perpendicular to an axis is taken
-/// as the limit from above, in the universe's upper face as that from below. If it is a plane of the lattice, the cells above
-/// it are those that count, and nothing is in doubt about faces there. Of any other plane the area contains the limits from
-/// both sides, and faces that lie in it stay in doubt.
+/// If faces of the solid lie in the plane, the sections on both sides of it differ. The section with a plane
+/// perpendicular to an axis is the limit from above, or, in the universe's upper face, the limit from below.
+/// If it is a plane of the lattice, the cells above it count, and faces in the plane cause no uncertainty.
+/// For any other plane the interval contains the limits from both sides, and faces in the plane widen it.
 ///
 /// - Buffers: as leafless_solid_measure; `point_model` and `normal`, 3 numbers each; `section`, one struct.
 /// - Result: `*section`.
-/// - Errors: as leafless_solid_measure, and LEAFLESS_E_ARGUMENT also if the normal is zero, or a number of point or normal is
-///   neither 0 nor of a magnitude between 2^-256 and 2^256.
+/// - Errors: as leafless_solid_measure, and LEAFLESS_E_ARGUMENT also if the normal is zero, or a number of
+///   point or normal is neither 0 nor of a magnitude between 2^-256 and 2^256.
 /// - Threads: any; works in the calling thread.
 /// - Untrusted input: any solid, any numbers; the default of `max_splits` bounds the work.
 ///
@@ -309,17 +313,18 @@ pub unsafe extern "C" fn leafless_solid_section_area(
     })
 }
 
-/// The bounding box of a solid in the universe of a frame: six intervals, one for each side. The search splits
-/// only cells that may reach beyond what is proven solid. It ends with LEAFLESS_STOP_REASON_TOLERANCE if no interval
-/// is wider than `tolerance_model`, or than 2^-44 of the universe's edge; with LEAFLESS_STOP_REASON_EXHAUSTED if
-/// the outermost undecided cells cannot be split, and either the interval is no wider than one of the frame's
-/// finest cells, or nothing else is left to split; with LEAFLESS_STOP_REASON_BUDGET after `max_splits` of the
-/// options, or 2^20 splits if that is 0.
+/// Computes the bounding box of a solid in the universe of a frame: six intervals, one for each side. The
+/// search splits only cells that may reach beyond the proven part of the solid. It ends with
+/// LEAFLESS_STOP_REASON_TOLERANCE if no interval is wider than `tolerance_model`, or than 2^-44 of the
+/// universe's edge; with LEAFLESS_STOP_REASON_EXHAUSTED if the outermost undecided cells cannot be split, and
+/// either the interval is no wider than one of the frame's finest cells, or nothing else is left to split;
+/// with LEAFLESS_STOP_REASON_BUDGET after `max_splits` of the options, or 2^20 splits if that is 0.
 ///
-/// Of half-spaces and what is made of them, a corner of three plane faces is known to rounding, and a curved side
-/// to some 10^-12 of the universe's edge at depth 20, after some hundred splits; a side that a cylinder touches
-/// along a line takes more. Of other solids, with n the universe's edge over the tolerance, a curved side takes
-/// some n splits and, unless it lies on a plane of the lattice, a flat one n².
+/// For half-spaces and expressions of them, a corner of three plane faces is exact up to rounding, and a
+/// curved side is known to some 10^-12 of the universe's edge at depth 20, after some hundred splits; a side
+/// that a cylinder touches along a line takes more. For other solids, with n the universe's edge divided by
+/// the tolerance, a curved side takes some n splits; a flat side takes n² splits, unless it lies on a plane
+/// of the lattice.
 ///
 /// - Buffers: as leafless_solid_measure; `extent`, one struct.
 /// - Result: `*extent`.

@@ -1,4 +1,4 @@
-//! Triangle meshes: what they are like, and what becomes of them.
+//! Triangle meshes: properties, defects, repair and placement.
 
 use super::boundary::{Failure, array, buffer, filled, guard, handle, out, output, refer, release, shared};
 use super::number::{Number, enumeration};
@@ -7,34 +7,34 @@ use leafless::mesh::{DefectKind, MeshDefect, MeshReport};
 use leafless::{FillRule, TriangleMesh};
 use std::sync::Arc;
 
-/// A surface of triangles with shared vertices. Vertices at equal places are welded; whether the mesh is
-/// closed is not implied, and need not be.
+/// A surface of triangles with shared vertices. Vertices at equal positions are welded. A mesh need not be
+/// closed.
 ///
-/// Immutable: all its functions may be called at once from any number of threads, but leafless_mesh_free
-/// needs the reference that it gives back for itself.
+/// Immutable: all its functions may be called at once from any number of threads, but no other call may use
+/// the reference that leafless_mesh_free releases.
 pub struct leafless_mesh {
     pub(super) mesh: Arc<TriangleMesh>,
-    /// About the file that it was read from.
+    /// Warnings about the file that the mesh was read from.
     pub(super) warnings: Vec<String>,
 }
 
-/// Which points a surface encloses.
+/// The fill rule: which points a surface encloses.
 ///
-/// The winding number of a surface at a point is the solid angle at which it is seen from there, over 4π,
-/// counted positive where the inner side is seen. Of a closed surface it is an integer. Where a surface has
-/// holes, fins, or triangles turned over, it is a fraction, and the nearest integer decides by convention: a
+/// The winding number of a surface at a point is the solid angle that the surface subtends there, divided by
+/// 4π, positive where the point sees the inner side. For a closed surface it is an integer. For a surface
+/// with holes, fins or inverted triangles it is a fraction, and by convention the nearest integer decides: a
 /// hole is closed by the surface from which half of all directions lead out.
 #[derive(Clone, Copy)]
 #[repr(u32)]
 pub enum leafless_fill {
-    /// Points whose winding number is at least 1/2 in magnitude: overlapping bodies are united, and a body
-    /// that is inside out is a body.
+    /// Points whose winding number is at least 1/2 in magnitude: overlapping bodies are united, and an
+    /// inside-out body counts as a body.
     LEAFLESS_FILL_NON_ZERO = 0,
     /// Points from which a ray crosses the surface an odd number of times: the overlap of two bodies is
     /// outside. Orientation does not matter. An even number of triangles must meet on every edge.
     LEAFLESS_FILL_EVEN_ODD = 1,
-    /// Points whose winding number is at least 1/2: a body that is inside out is a cavity, and takes away
-    /// from bodies that it overlaps.
+    /// Points whose winding number is at least 1/2: an inside-out body is a cavity, and is subtracted from
+    /// bodies that it overlaps.
     LEAFLESS_FILL_POSITIVE = 2,
 }
 
@@ -46,77 +46,76 @@ enumeration! {
     }
 }
 
-/// What was found while a mesh was taken in, and how its triangles hang together.
+/// A report of the import of a mesh and of the connectivity of its triangles.
 #[derive(Clone, Copy)]
 #[repr(C)]
 pub struct leafless_mesh_report {
     /// sizeof(leafless_mesh_report).
     pub struct_size: u32,
-    /// Triangles that were handed in: triangles + degenerate.
+    /// Triangles of the input: triangles + degenerate.
     pub facets_read: u64,
     /// Triangles of the mesh.
     pub triangles: u64,
-    /// Vertices of the mesh, all at different places.
+    /// Vertices of the mesh, all at different positions.
     pub vertices: u64,
-    /// Vertices that were handed in and lay on an earlier one.
+    /// Vertices of the input at the position of an earlier vertex.
     pub welded: u64,
-    /// Triangles that were dropped because two of their corners lie at one place.
+    /// Triangles that were dropped because two of their corners coincide.
     pub degenerate: u64,
-    /// Edges that an odd number of triangles use. A mesh is closed if there is none.
+    /// Edges that an odd number of triangles use. A mesh is closed if it has no such edge.
     pub boundary_edges: u64,
-    /// Loops of these edges, without vertices that occur twice: the holes of the surface and the rims of
-    /// sheets.
+    /// Loops of boundary edges that pass each vertex once: the holes of the surface and the rims of sheets.
     pub boundary_loops: u64,
     /// Edges that an even number of triangles use, but not half of them in each direction. A closed mesh is
-    /// consistently oriented if there is none.
+    /// consistently oriented if it has no such edge.
     pub misoriented_edges: u64,
-    /// Edges that more than two triangles use, for instance where two bodies touch. They do no harm.
+    /// Edges that more than two triangles use, for instance where two bodies touch. They are harmless.
     pub non_manifold_edges: u64,
-    /// Triangles that repeat an earlier one, in the same direction. They count as often as they occur.
+    /// Triangles that repeat an earlier one, in the same orientation. Each repetition counts.
     pub duplicate: u64,
-    /// Pairs of triangles with the same corners in opposite directions: walls without thickness. The two
+    /// Pairs of triangles with the same corners and opposite orientations: walls without thickness. The two
     /// cancel each other.
     pub opposite: u64,
-    /// Triangles without area whose corners are three different vertices. They do no harm.
+    /// Triangles without area whose corners are three different vertices. They are harmless.
     pub flat: u64,
-    /// Sets of triangles that hang together over edges. Bodies that touch only in single vertices count
-    /// separately, and so does the outer from the inner surface of a hollow body.
+    /// Sets of triangles that are connected by edges. Bodies that touch only in single vertices count
+    /// separately, and so do the outer and the inner surface of a hollow body.
     pub bodies: u64,
     /// Bodies that are open or not consistently oriented.
     pub open_bodies: u64,
-    /// Other bodies that enclose a negative volume: cavities, and bodies that are inside out.
+    /// Other bodies that enclose a negative volume: cavities and inside-out bodies.
     pub inside_out_bodies: u64,
-    /// Vertices that leafless_mesh_sewn moved onto another one.
+    /// Vertices that leafless_mesh_sewn moved onto another vertex.
     pub sewn: u64,
-    /// The farthest that any of them was moved along an axis, in model units. (A stated deviation is not in it.)
+    /// Largest displacement of a sewn vertex along an axis, in model units, without a stated deviation.
     pub displacement_model: f64,
-    /// Closed bodies that are proven to overlap another one: their surfaces cross, or one lies within the other
-    /// with the same sense and no cavity between them. There the surface winds around points more than once,
-    /// and leafless_mesh_volume is not what a fill rule encloses.
+    /// Closed bodies that are proven to overlap another one: their surfaces cross, or one lies inside the
+    /// other with the same orientation and no cavity between them. The winding number then exceeds 1 at some
+    /// points, and leafless_mesh_volume differs from the volume that a fill rule encloses.
     pub overlapping_bodies: u64,
     /// Other closed bodies that may overlap another one: they touch in a way that is not decided, such as a
-    /// peg that fits its hole exactly, or there was too much to look at.
+    /// peg that fits its hole exactly, or the search had to stop.
     pub undecided_bodies: u64,
-    /// Faces of more than three corners that the triangles were made from: of OBJ, PLY and OFF files and of
+    /// Faces of more than three corners that were triangulated: from OBJ, PLY and OFF files and from
     /// polyhedra. 0 for other meshes.
     pub polygons: u64,
-    /// Those that are not flat: corners lie beside the face's plane, by more than 2^-40 of its extent. Such a
-    /// face has no shape of its own. The mesh is one of its triangulations, and whatever is proven of the
-    /// mesh is proven of that one.
+    /// Polygons that are not flat: corners lie off the face's plane by more than 2^-40 of its extent. Such a
+    /// face does not define a surface. The mesh is one of its triangulations, and every proof about the mesh
+    /// is about that triangulation.
     pub bent_polygons: u64,
     /// Half the distance, in model units and up to rounding, between the two planes parallel to a face that
-    /// have all its corners between them, for the face where it is greatest. Each triangulation of the face
+    /// have all its corners between them, for the face where it is greatest. Every triangulation of the face
     /// lies between the planes.
     pub polygon_deviation_model: f64,
     /// Edges, each counted once.
     pub edges: u64,
-    /// V - E + F of the vertices that triangles use, the edges and the triangles: of a 2-manifold, 2 for each
-    /// component less 2 for each of its handles.
+    /// V - E + F of the vertices that triangles use, the edges and the triangles. For a 2-manifold it is 2
+    /// for each component less 2 for each handle.
     pub euler_characteristic: i64,
-    /// Whether the mesh is closed and consistently oriented: every edge is run along as often in one direction
-    /// as in the other. (An empty mesh is.)
+    /// Whether the mesh is closed and consistently oriented: every edge is used as often in one direction as
+    /// in the other. An empty mesh is closed.
     pub is_closed: bool,
-    /// Whether exactly two triangles meet on every edge, which run along it in opposite directions.
+    /// Whether exactly two triangles meet at every edge and use it in opposite directions.
     pub is_manifold: bool,
 }
 
@@ -156,7 +155,7 @@ impl From<MeshReport> for leafless_mesh_report {
     }
 }
 
-/// What is wrong with a part of a mesh, the most harmful first.
+/// Kinds of defects of a mesh, the most harmful first.
 #[derive(Clone, Copy)]
 #[repr(u32)]
 pub enum leafless_defect {
@@ -164,28 +163,28 @@ pub enum leafless_defect {
     LEAFLESS_DEFECT_HOLE = 0,
     /// Edges that an even number of triangles use, but not half of them in each direction.
     LEAFLESS_DEFECT_MISORIENTED = 1,
-    /// Triangles with the same corners as an earlier one, in the same or the opposite direction.
+    /// Triangles with the same corners as an earlier one, in the same or the opposite orientation.
     LEAFLESS_DEFECT_DUPLICATE = 2,
-    /// Edges that more than two triangles use. They do no harm.
+    /// Edges that more than two triangles use. They are harmless.
     LEAFLESS_DEFECT_NON_MANIFOLD = 3,
-    /// Triangles without area. They do no harm.
+    /// Triangles without area. They are harmless.
     LEAFLESS_DEFECT_FLAT = 4,
 }
 
-/// A part of a mesh that is not as it should be: one loop of a hole, or, of the other kinds, edges or
-/// triangles that hang together over common vertices.
+/// A defective part of a mesh: one loop around a hole, or, for the other kinds, edges or triangles that are
+/// connected by common vertices.
 #[derive(Clone, Copy)]
 #[repr(C)]
 pub struct leafless_mesh_defect {
-    /// The least coordinates of all its vertices.
+    /// Lower corner of the bounding box of its vertices.
     pub min_model: [f64; 3],
-    /// The greatest coordinates of all its vertices.
+    /// Upper corner of the bounding box of its vertices.
     pub max_model: [f64; 3],
-    /// The edges' lengths, added up; 0 where triangles are counted.
+    /// Total length of the edges, in model units; 0 for kinds that count triangles.
     pub length_model: f64,
-    /// Edges; or triangles of LEAFLESS_DEFECT_DUPLICATE and LEAFLESS_DEFECT_FLAT.
+    /// Number of edges; for LEAFLESS_DEFECT_DUPLICATE and LEAFLESS_DEFECT_FLAT number of triangles.
     pub count: u64,
-    /// What is wrong.
+    /// The kind of defect.
     pub kind: leafless_defect,
 }
 
@@ -211,11 +210,11 @@ pub(super) fn give(mesh: TriangleMesh) -> *mut leafless_mesh {
     handle(leafless_mesh { mesh: Arc::new(mesh), warnings: Vec::new() })
 }
 
-/// One more reference to a mesh.
+/// Returns one more reference to a mesh.
 ///
 /// - Buffers: `mesh`, a handle; `reference`, one pointer.
 /// - Result: `*reference`, equal to `mesh`.
-/// - Ownership: give each reference back with leafless_mesh_free.
+/// - Ownership: release each reference with leafless_mesh_free.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn leafless_mesh_ref(
     mesh: *const leafless_mesh,
@@ -224,10 +223,10 @@ pub unsafe extern "C" fn leafless_mesh_ref(
     guard(|| unsafe { refer(mesh, "mesh", reference) })
 }
 
-/// Gives back a reference to a mesh; with the last one the mesh is gone. Solids made of it stay.
+/// Releases a reference to a mesh; the last release frees the mesh. Solids made of it stay.
 ///
 /// - Buffers: `mesh`, a handle or NULL, which does nothing.
-/// - Ownership: the reference is gone.
+/// - Ownership: the reference is invalid afterwards.
 /// - Threads: any; no other call may use this reference.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn leafless_mesh_free(mesh: *mut leafless_mesh) {
@@ -235,31 +234,31 @@ pub unsafe extern "C" fn leafless_mesh_free(mesh: *mut leafless_mesh) {
     unsafe { release(mesh) }
 }
 
-/// What can be said of a mesh at once.
+/// Basic facts about a mesh.
 #[derive(Clone, Copy)]
 #[repr(C)]
 pub struct leafless_mesh_info {
     /// sizeof(leafless_mesh_info).
     pub struct_size: u32,
-    /// Attributes that its triangles bear: leafless_mesh_peek_attribute_at tells of each.
+    /// Number of attributes of its triangles; leafless_mesh_peek_attribute_at describes each.
     pub attributes: u32,
     /// Vertices.
     pub vertices: u64,
     /// Triangles.
     pub triangles: u64,
-    /// Bytes of memory that it keeps: its arrays and attributes, and what was found out about its edges if
-    /// somebody asked. What meshes and solids share counts for each of them.
+    /// Bytes of memory that the mesh keeps: its arrays and attributes, and the analysis of its edges if it
+    /// was computed. Memory that meshes and solids share counts for each of them.
     pub bytes: u64,
-    /// How far the true boundary may lie from the mesh: what leafless_mesh_with_deviation stated of it.
+    /// Largest distance between the true boundary and the mesh, as stated by leafless_mesh_with_deviation.
     pub deviation_model: f64,
-    /// How far it may lie from the mesh along an axis: the deviation, what vertices were moved by to close hair
-    /// cracks, and what a placement rounded.
+    /// Largest distance between the true boundary and the mesh along an axis: the deviation, plus the
+    /// displacement that closed hair cracks, plus the rounding of a placement.
     pub displacement_model: f64,
 }
 
 output!(leafless_mesh_info);
 
-/// What can be said of a mesh at once. O(1), but for the names of attributes.
+/// Returns basic facts about a mesh. O(1), but for the names of attributes.
 ///
 /// - Buffers: `info`, one struct.
 /// - Result: `*info`.
@@ -282,7 +281,7 @@ pub unsafe extern "C" fn leafless_mesh_describe(
     })
 }
 
-/// Copies the arrays of a mesh; leafless_mesh_describe tells their lengths.
+/// Copies the arrays of a mesh; leafless_mesh_describe returns their lengths.
 ///
 /// - Buffers: `vertices`, room for `vertex_capacity` vertices of 3 numbers; `triangles`, room for
 ///   `triangle_capacity` triangles of 3 indices. Each may be NULL if it is not wanted.
@@ -306,14 +305,14 @@ pub unsafe extern "C" fn leafless_mesh_copy(
     })
 }
 
-/// The unit normals at the vertices of a mesh, outward where triangles turn counter-clockwise as seen from
-/// outside: the mean of the normals of the triangles there, each weighted by its angle. So they do not depend on
-/// how plane parts are cut into triangles. Where the mean is zero, as at a vertex without triangles, so is the
-/// normal. O(t + v).
+/// Computes the unit normals at the vertices of a mesh. They point outward where triangles turn
+/// counter-clockwise as seen from outside. A normal is the mean of the normals of the adjacent triangles,
+/// each weighted by its angle at the vertex, so it does not depend on the triangulation of plane parts. Where
+/// the mean is zero, as at a vertex without triangles, the normal is zero. O(t + v).
 ///
-/// - Buffers: `normals`, room for `capacity` normals of 3 numbers, or NULL to ask for their number only; `count`,
+/// - Buffers: `normals`, room for `capacity` normals of 3 numbers, or NULL to get only their number; `count`,
 ///   one number.
-/// - Result: `*count`, that of the vertices; the normals, in the order of the vertices.
+/// - Result: `*count`, the number of vertices; the normals, in the order of the vertices.
 /// - Errors: LEAFLESS_E_BUFFER if the capacity is too small; LEAFLESS_E_NO_MEMORY.
 /// - Threads: any. Each call computes them.
 /// - Untrusted input: any mesh.
@@ -336,7 +335,7 @@ pub unsafe extern "C" fn leafless_mesh_normals(
     })
 }
 
-/// The bounding box of a mesh's triangles.
+/// Returns the bounding box of a mesh's triangles.
 ///
 /// - Buffers: `min_model` and `max_model`, room for 3 numbers each.
 /// - Result: both corners.
@@ -362,8 +361,9 @@ pub unsafe extern "C" fn leafless_mesh_bounds(
     })
 }
 
-/// The volume that a mesh encloses, by the divergence theorem: overlaps count twice, bodies that are inside
-/// out negative. Of an open mesh it has no meaning. Rounded; the certified volume is that of an octree.
+/// Returns the volume that a mesh encloses, by the divergence theorem: overlaps count twice, inside-out
+/// bodies count negative. For an open mesh it has no meaning. The result is rounded; an octree provides a
+/// certified volume.
 ///
 /// - Buffers: `volume_model`, one number.
 /// - Result: `*volume_model`, in cubic model units.
@@ -378,8 +378,8 @@ pub unsafe extern "C" fn leafless_mesh_volume(
     })
 }
 
-/// The sum of the areas of a mesh's triangles. Rounded; the certified area of a solid's boundary is told by
-/// leafless_solid_surface_area. O(t).
+/// Returns the sum of the areas of a mesh's triangles. The result is rounded; leafless_solid_surface_area
+/// returns the certified area of a solid's boundary. O(t).
 ///
 /// - Buffers: `area_model`, one number.
 /// - Result: `*area_model`, in square model units.
@@ -395,8 +395,8 @@ pub unsafe extern "C" fn leafless_mesh_area(
     })
 }
 
-/// What was found when a mesh was made, and how its triangles hang together. The first call analyses the
-/// edges and looks for bodies that overlap, later ones are free.
+/// Reports the import of a mesh and the connectivity of its triangles. The first call analyses the edges and
+/// searches for overlapping bodies; later calls take no time.
 ///
 /// - Buffers: `report`, one struct.
 /// - Result: `*report`.
@@ -413,11 +413,11 @@ pub unsafe extern "C" fn leafless_mesh_inspect(
     })
 }
 
-/// Where a mesh is not as it should be, the worst first: in the order of leafless_defect, and those of one
-/// kind by the longest side of their boxes, then by count, then by position.
+/// Lists the defects of a mesh, the worst first: in the order of leafless_defect, and within a kind by the
+/// longest side of their boxes, then by count, then by position.
 ///
-/// - Buffers: `defects`, room for `capacity` of them, or NULL to ask for their number only.
-/// - Result: `*count`, how many there are, but not more than `limit`; the worst ones in `defects`.
+/// - Buffers: `defects`, room for `capacity` of them, or NULL to get only their number.
+/// - Result: `*count`, the number of defects, but not more than `limit`; the worst ones in `defects`.
 /// - Errors: LEAFLESS_E_BUFFER if the capacity is too small; LEAFLESS_E_NO_MEMORY.
 /// - Threads: any. Each call analyses the mesh.
 /// - Untrusted input: any mesh.
@@ -439,15 +439,15 @@ pub unsafe extern "C" fn leafless_mesh_defects(
     })
 }
 
-/// Checks that a mesh has no hole, so that every point that is not on it is clearly inside or outside: an
-/// even number of triangles meet on every edge, and but for LEAFLESS_FILL_EVEN_ODD half of them run in each
-/// direction. Self-intersections, overlaps, nested and inside-out bodies are all allowed. Solids need not
-/// pass this.
+/// Checks that a mesh has no hole, so that every point off the surface is inside or outside. An even number
+/// of triangles must meet at every edge and, except for LEAFLESS_FILL_EVEN_ODD, half of them must use it in
+/// each direction. Self-intersections, overlaps, nested and inside-out bodies are all allowed. The mesh of a
+/// solid need not pass this check.
 ///
 /// - Buffers: none. `fill` is a leafless_fill.
-/// - Result: LEAFLESS_OK if it is so.
-/// - Errors: LEAFLESS_E_MESH if the mesh is empty, not closed, or (but for LEAFLESS_FILL_EVEN_ODD) not
-///   consistently oriented; LEAFLESS_E_ARGUMENT if `fill` is no leafless_fill; LEAFLESS_E_NO_MEMORY.
+/// - Result: LEAFLESS_OK if the mesh passes.
+/// - Errors: LEAFLESS_E_MESH if the mesh is empty, not closed, or (except for LEAFLESS_FILL_EVEN_ODD) not
+///   consistently oriented; LEAFLESS_E_ARGUMENT if `fill` is not a leafless_fill; LEAFLESS_E_NO_MEMORY.
 /// - Untrusted input: any mesh.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn leafless_mesh_check_closed(
@@ -460,14 +460,15 @@ pub unsafe extern "C" fn leafless_mesh_check_closed(
     })
 }
 
-/// The mesh with hair cracks closed: vertices at open edges become one if they lie no further apart than 2^-24
-/// of the longest extent of the larger one of their pieces. (A piece is all triangles that hang together by
-/// common vertices.) Verdicts about solids made of it stay proven: the distance is added outward.
+/// Returns the mesh with hair cracks closed. Two vertices at open edges are merged if their distance is at
+/// most 2^-24 of the longest extent of the larger of their pieces. (A piece is a set of triangles that are
+/// connected by common vertices.) Verdicts about solids made of the mesh stay proven, because they allow for
+/// the displacement.
 ///
 /// - Buffers: `sewn`, one pointer.
-/// - Result: `*sewn`; leafless_mesh_inspect tells how many vertices moved and how far.
+/// - Result: `*sewn`; leafless_mesh_inspect reports how many vertices moved and how far.
 /// - Errors: LEAFLESS_E_NO_MEMORY.
-/// - Ownership: `mesh` stays as it is; give `*sewn` back with leafless_mesh_free.
+/// - Ownership: `mesh` is unchanged; release `*sewn` with leafless_mesh_free.
 /// - Untrusted input: any mesh.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn leafless_mesh_sewn(
@@ -481,23 +482,25 @@ pub unsafe extern "C" fn leafless_mesh_sewn(
     })
 }
 
-/// The same mesh, of which it is known only that the true boundary lies within a distance of it, as the boundary of
-/// a part lies beside a tessellation with that deflection. It takes the place of a deviation that was stated before.
+/// Returns the same mesh with a stated deviation: the true boundary is known only to lie within this distance
+/// of the mesh, as the boundary of a part lies near a tessellation with that deflection. The new deviation
+/// replaces an earlier one.
 ///
-/// The true solid is bounded by the mesh's surface, of which each point was moved by that distance at the most,
-/// continuously, and no part of which was turned over. A dent, a hole or a body that the mesh does not have at all
-/// is not covered, however small it is. Whatever is proven of solids made of the mesh is then proven of the true
-/// solid: cells near to the triangles are undecided, intervals contain the truth, and nothing is told of a point that
-/// is too near. The area of the true boundary is not known. Placements and set operations carry the deviation along,
-/// and leafless_proof tells it. What is no proof, as a sampled octree, a tri-dexel model, a picture,
-/// leafless_mesh_bounds and leafless_mesh_volume, is that of the mesh.
+/// The assumption: the boundary of the true solid is the mesh's surface after a continuous displacement of
+/// each point by at most this distance, without inverting any part. A dent, a hole or a body that the mesh
+/// lacks is not covered, however small it is. Everything proven about solids made of the mesh is then proven
+/// about the true solid: cells near the triangles are undecided, intervals contain the truth, and a point too
+/// close to the surface gets no verdict. The area of the true boundary is not known. Placements and set
+/// operations keep the deviation, and leafless_proof reports it. Results that are not proofs describe the
+/// mesh itself: a sampled octree, a tri-dexel model, a picture, leafless_mesh_bounds and
+/// leafless_mesh_volume.
 ///
 /// - Buffers: `stated`, one pointer.
-/// - Result: `*stated`; leafless_mesh_describe tells its deviation. A solid of it needs a closed mesh, and is refused
-///   with LEAFLESS_E_MESH otherwise.
+/// - Result: `*stated`; leafless_mesh_describe returns its deviation. A solid of it needs a closed mesh, and
+///   is refused with LEAFLESS_E_MESH otherwise.
 /// - Errors: LEAFLESS_E_ARGUMENT unless `deviation_model` is finite, not negative, and at most 2^256;
 ///   LEAFLESS_E_NO_MEMORY.
-/// - Ownership: `mesh` stays as it is; give `*stated` back with leafless_mesh_free.
+/// - Ownership: `mesh` is unchanged; release `*stated` with leafless_mesh_free.
 /// - Untrusted input: any number.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn leafless_mesh_with_deviation(
@@ -512,15 +515,15 @@ pub unsafe extern "C" fn leafless_mesh_with_deviation(
     })
 }
 
-/// The mesh under an affine map: x' = M x + t, rounded. A reflection turns it inside out. The moved vertices
-/// count as the truth, whatever cracks were closed before, and whatever deviation was stated:
+/// Returns the mesh under an affine map: x' = M x + t, rounded. A reflection turns the mesh inside out. The
+/// moved vertices count as exact: the displacement of closed cracks and a stated deviation are dropped.
 /// leafless_solid_placed keeps both.
 ///
 /// - Buffers: `matrix`, 12 numbers: three rows of M and t, (m00 m01 m02 t0, m10 …); `moved`, one pointer.
 /// - Result: `*moved`, welded as by leafless_mesh_new.
 /// - Errors: LEAFLESS_E_ARGUMENT if a number of the matrix is not finite; LEAFLESS_E_MESH if a vertex leaves
 ///   ±2^256; LEAFLESS_E_NO_MEMORY.
-/// - Ownership: `mesh` stays as it is; give `*moved` back with leafless_mesh_free.
+/// - Ownership: `mesh` is unchanged; release `*moved` with leafless_mesh_free.
 /// - Untrusted input: any numbers.
 ///
 /// cbindgen:ptrs-as-arrays=[[matrix; 12]]
@@ -540,13 +543,14 @@ pub unsafe extern "C" fn leafless_mesh_transformed(
     })
 }
 
-/// The mesh moved by a vector, rounded. What leafless_mesh_sewn has found stays known, and so does a deviation.
+/// Returns the mesh moved by a vector, rounded. The displacement found by leafless_mesh_sewn and a stated
+/// deviation are kept.
 ///
 /// - Buffers: `offset_model`, 3 numbers; `moved`, one pointer.
 /// - Result: `*moved`.
 /// - Errors: LEAFLESS_E_ARGUMENT if a number of the offset is not finite; LEAFLESS_E_MESH if a vertex leaves
 ///   ±2^256; LEAFLESS_E_NO_MEMORY.
-/// - Ownership: `mesh` stays as it is; give `*moved` back with leafless_mesh_free.
+/// - Ownership: `mesh` is unchanged; release `*moved` with leafless_mesh_free.
 /// - Untrusted input: any numbers.
 ///
 /// cbindgen:ptrs-as-arrays=[[offset_model; 3]]
@@ -565,7 +569,7 @@ pub unsafe extern "C" fn leafless_mesh_translated(
     })
 }
 
-/// Refuses numbers that are none; what becomes of the others is another matter.
+/// Refuses numbers that are not finite. Ranges are checked elsewhere.
 fn finite(name: &'static str, values: &[f64]) -> Result<(), Failure> {
     if values.iter().all(|value| value.is_finite()) {
         return Ok(());

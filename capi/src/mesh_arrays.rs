@@ -1,4 +1,4 @@
-//! Triangle meshes from arrays as host programs have them.
+//! Triangle meshes from the host's arrays.
 
 use super::boundary::{Failure, Sized32, Strided, guard, out, sized, strided};
 use super::mesh::{give, leafless_mesh};
@@ -28,7 +28,7 @@ enumeration! {
     }
 }
 
-/// What the coordinates of vertices are.
+/// The type of the coordinates of vertices.
 #[derive(Clone, Copy)]
 #[repr(u32)]
 pub enum leafless_vertex_type {
@@ -38,7 +38,7 @@ pub enum leafless_vertex_type {
     LEAFLESS_VERTEX_TYPE_F32 = 1,
 }
 
-/// What the indices of vertices are.
+/// The type of the indices of vertices.
 #[derive(Clone, Copy)]
 #[repr(u32)]
 pub enum leafless_index_type {
@@ -51,8 +51,8 @@ pub enum leafless_index_type {
 }
 
 /// The arrays that a mesh is made of: vertices of three coordinates, and triangles of three indices. They
-/// need not be aligned, and may lie among other data, such as normals, which are not read. All fields but the
-/// first may be zero, which is their default.
+/// need not be aligned, and may lie among other data, such as normals, which are not read. Zero is the
+/// default of every field but the first.
 #[derive(Clone, Copy)]
 #[repr(C)]
 pub struct leafless_mesh_arrays {
@@ -66,16 +66,16 @@ pub struct leafless_mesh_arrays {
     pub vertex_count: u64,
     /// Bytes from one vertex to the next; 0 means that they follow each other without a gap.
     pub vertex_stride: u64,
-    /// The first triangle: three indices, counted from 0. NULL if there is none, or if every three vertices
-    /// are one.
+    /// The first triangle: three indices, counted from 0. NULL if there is none, or if every three
+    /// consecutive vertices are a triangle.
     pub indices: *const c_void,
-    /// Number of triangles. Where every three vertices are one, this must be a third of `vertex_count`.
+    /// Number of triangles. If `indices` is NULL, this must be a third of `vertex_count`.
     pub triangle_count: u64,
     /// Bytes from one triangle to the next; 0 means that they follow each other without a gap.
     pub triangle_stride: u64,
     /// A leafless_index_type.
     pub index_type: Number<leafless_index_type>,
-    /// What the coordinates are multiplied by to become model units: 2^-256 to 2^256, or 0, which means 1.
+    /// Factor from coordinates to model units: 2^-256 to 2^256, or 0, which means 1.
     pub scale: f64,
 }
 
@@ -95,7 +95,7 @@ enum Numbers<'a> {
     F32(Strided<'a, [f32; 3]>),
 }
 
-/// What a host says of its vertices.
+/// A host's description of its vertices.
 pub(super) struct GivenVertices {
     pub start: *const c_void,
     pub count: u64,
@@ -106,7 +106,7 @@ pub(super) struct GivenVertices {
 
 impl<'a> Vertices<'a> {
     /// # Safety
-    /// The array is what `given` says, and does not change during the call.
+    /// The array is as `given` describes it, and does not change during the call.
     pub(super) unsafe fn new(given: GivenVertices) -> Result<Vertices<'a>, Failure> {
         let scale = match given.scale {
             0.0 => 1.0,
@@ -138,7 +138,7 @@ impl<'a> Vertices<'a> {
         }
     }
 
-    /// The vertex in model units.
+    /// Returns a vertex in model units.
     #[inline(always)]
     fn at(&self, index: usize) -> [f64; 3] {
         let vertex = match &self.numbers {
@@ -148,14 +148,14 @@ impl<'a> Vertices<'a> {
         vertex.map(|x| x * self.scale)
     }
 
-    /// A copy of all of them.
+    /// Returns a copy of all vertices.
     fn copied(&self) -> Result<Vec<[f64; 3]>, Error> {
         let mut own = memory::with_capacity(self.len())?;
         own.extend((0..self.len()).map(|index| self.at(index)));
         Ok(own)
     }
 
-    /// The host's own if the library would have them just so, or a copy.
+    /// Returns the host's array if it has the library's layout, else a copy.
     pub(super) fn get(&self) -> Result<Cow<'a, [[f64; 3]]>, Error> {
         match self.numbers {
             Numbers::F64(numbers) if self.scale == 1.0 => match numbers.as_slice() {
@@ -177,7 +177,7 @@ pub(super) enum Indices<'a, const N: usize> {
 
 impl<const N: usize> Indices<'_, N> {
     /// # Safety
-    /// `start`, `count` and `stride` as [`strided`] wants them; `kind` is what lies there.
+    /// `start`, `count` and `stride` as for [`strided`]; `kind` is the type of the elements there.
     pub(super) unsafe fn new(
         start: *const c_void,
         count: u64,
@@ -203,7 +203,7 @@ impl<const N: usize> Indices<'_, N> {
         }
     }
 
-    /// A group.
+    /// Returns a group.
     #[inline(always)]
     pub(super) fn at(&self, index: usize) -> [u64; N] {
         match self {
@@ -216,7 +216,7 @@ impl<const N: usize> Indices<'_, N> {
 
 impl leafless_mesh_arrays {
     /// # Safety
-    /// The arrays are what the fields say, and do not change during the call.
+    /// The arrays are as the fields describe them, and do not change during the call.
     unsafe fn mesh(&self) -> Result<TriangleMesh, Failure> {
         let given = GivenVertices {
             start: self.vertices,
@@ -253,26 +253,25 @@ impl leafless_mesh_arrays {
                 let triangle = triangle as u64;
                 return Err(MeshError::Index { triangle, vertex, vertices: count }.into());
             }
-            // Less than the number of vertices, which 32 bits can hold.
+            // The index is less than the number of vertices, which fits in 32 bits.
             triangles.push(corners.map(|vertex| vertex as u32));
         }
         Ok(TriangleMesh::new(vertices.copied()?, triangles)?)
     }
 }
 
-/// Makes a mesh of arrays. Equal vertices are welded, triangles with two corners at one place dropped and
-/// counted; coordinates below 2^-256 count as zero. Seen from outside of the solid the corners turn
-/// counter-clockwise.
+/// Makes a mesh from arrays. Equal vertices are welded. Triangles with two coincident corners are dropped and
+/// counted. Coordinates below 2^-256 in magnitude count as zero. Seen from outside the solid, the corners of
+/// a triangle turn counter-clockwise.
 ///
-/// - Buffers: `arrays`, one struct; what its pointers lead to must not change during the call. `mesh`, one
-///   pointer.
+/// - Buffers: `arrays`, one struct; its arrays must not change during the call. `mesh`, one pointer.
 /// - Result: `*mesh`; not checked to be closed.
 /// - Errors: LEAFLESS_E_MESH if a coordinate is infinite, not a number, or beyond ±2^256, or if an index is
 ///   out of range, with the index of the vertex or triangle in the message, or if there are more than 2^32 -
-///   1 vertices or triangles; LEAFLESS_E_ARGUMENT if a type, a stride or the scale is none, or `indices` NULL
-///   though there are triangles and not three vertices for each; LEAFLESS_E_NO_MEMORY.
-/// - Ownership: the arrays are only read during the call, once and in their order, and may be freed after it:
-///   the mesh has its own. Give `*mesh` back with leafless_mesh_free.
+///   1 vertices or triangles; LEAFLESS_E_ARGUMENT if a type, a stride or the scale is invalid, or if
+///   `indices` is NULL and `vertex_count` is not three times `triangle_count`; LEAFLESS_E_NO_MEMORY.
+/// - Ownership: the arrays are only read during the call, once and in their order, and may be freed after it,
+///   because the mesh has its own copies. Release `*mesh` with leafless_mesh_free.
 /// - Untrusted input: any values in the arrays.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn leafless_mesh_new(

@@ -1,4 +1,4 @@
-//! What triangles and corners of meshes bear: colours, materials, faces and bodies.
+//! Attributes of triangles and corners of meshes: colours, materials, faces and bodies.
 
 use super::attribute::{components, give, leafless_attribute};
 use super::boundary::{Failure, buffer, guard, out, shared, slice, text};
@@ -10,23 +10,23 @@ use leafless::TriangleMesh;
 use leafless::attribute::{SurfaceAttribute, sample_triangles};
 use leafless::mesh::{AttributeDomain, MeshAttribute};
 
-/// The attribute of a mesh with a place among all.
+/// Returns the attribute of a mesh with an index.
 fn at(mesh: &TriangleMesh, index: u64) -> Result<&MeshAttribute, Failure> {
     let missing = Failure::Argument { name: "index", problem: "is not below the number of attributes" };
     usize::try_from(index).ok().and_then(|index| mesh.attributes().get(index)).ok_or(missing)
 }
 
-/// What the triangles of a mesh bear, by its place among all: an array of values with a name. Files in PLY and 3MF
-/// give `colour` (red, green, blue and opacity from 0 to 255), 3MF `material` and `object` (numbers, which may have
-/// names); a mesh from a polyhedron has `face`, `shell` and `solid`, the numbers of the parts that a triangle belongs
-/// to.
+/// Returns an attribute of the triangles of a mesh, by its index: an array of values with a name. Files in
+/// PLY and 3MF provide `colour` (red, green, blue and opacity from 0 to 255); 3MF files also provide
+/// `material` and `object` (numbers, which may have names). A mesh from a polyhedron has `face`, `shell` and
+/// `solid`, the numbers of the parts that a triangle belongs to.
 ///
-/// - Buffers: `count`, one number; `name`, `name_length`, `components` and `per_corner`, one each, all NULL to ask for
-///   the count only.
-/// - Result: `*count`, the number of all attributes; the name in UTF-8, not NUL-terminated, with its length in bytes;
-///   `*components`, how many numbers a value has, 1 to 4; `*per_corner`, whether each corner of a triangle has a value,
-///   or each triangle one.
-/// - Errors: LEAFLESS_E_ARGUMENT if there is no attribute `index`, unless only the count is asked for.
+/// - Buffers: `count`, one number; `name`, `name_length`, `components` and `per_corner`, one each, all NULL
+///   to get only the count.
+/// - Result: `*count`, the number of all attributes; the name in UTF-8, not NUL-terminated, with its length
+///   in bytes; `*components`, the numbers per value, 1 to 4; `*per_corner`, true if each corner of a triangle
+///   has a value, false if each triangle has one.
+/// - Errors: LEAFLESS_E_ARGUMENT if there is no attribute `index`, unless only the count is requested.
 /// - Ownership: the name belongs to the mesh and lives as long as the reference `mesh`.
 /// - Untrusted input: any mesh.
 #[unsafe(no_mangle)]
@@ -57,13 +57,13 @@ pub unsafe extern "C" fn leafless_mesh_peek_attribute_at(
     })
 }
 
-/// What the value `value` of an attribute of a mesh is called: the name of a material or of an object.
+/// Returns the name of the value `value` of an attribute of a mesh: the name of a material or of an object.
 ///
-/// - Buffers: `count`, one number; `name` and `name_length`, one each, both NULL to ask for the count only.
-/// - Result: `*count`, how many values from 0 on have names; the name in UTF-8, not NUL-terminated, with its length in
-///   bytes.
-/// - Errors: LEAFLESS_E_ARGUMENT if there is no attribute `index`, or the value has no name, unless only the count is
-///   asked for.
+/// - Buffers: `count`, one number; `name` and `name_length`, one each, both NULL to get only the count.
+/// - Result: `*count`, the number of values, from 0 on, that have names; the name in UTF-8, not
+///   NUL-terminated, with its length in bytes.
+/// - Errors: LEAFLESS_E_ARGUMENT if there is no attribute `index`, or the value has no name, unless only the
+///   count is requested.
 /// - Ownership: the name belongs to the mesh and lives as long as the reference `mesh`.
 /// - Untrusted input: any mesh.
 #[unsafe(no_mangle)]
@@ -91,12 +91,13 @@ pub unsafe extern "C" fn leafless_mesh_peek_attribute_name_at(
     })
 }
 
-/// The values of an attribute of a mesh at the corners of all triangles.
+/// Returns the values of an attribute of a mesh at the corners of all triangles.
 ///
-/// - Buffers: `values`, room for `capacity` numbers, or NULL to ask for the count only; `count`, one number.
-/// - Result: `*count`, 3 · components · triangles; in `values` the numbers at the three corners of the first triangle,
-///   then of the second: NaN where there is no value.
-/// - Errors: LEAFLESS_E_ARGUMENT if there is no attribute `index`; LEAFLESS_E_BUFFER if the capacity is too small.
+/// - Buffers: `values`, room for `capacity` numbers, or NULL to get only the count; `count`, one number.
+/// - Result: `*count`, 3 · components · triangles; in `values` the numbers at the three corners of the first
+///   triangle, then of the second: NaN where there is no value.
+/// - Errors: LEAFLESS_E_ARGUMENT if there is no attribute `index`; LEAFLESS_E_BUFFER if the capacity is too
+///   small.
 /// - Untrusted input: any mesh.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn leafless_mesh_attribute_values(
@@ -122,12 +123,12 @@ pub unsafe extern "C" fn leafless_mesh_attribute_values(
     })
 }
 
-/// The body that each triangle of a mesh belongs to: a set of triangles that hang together over edges. Bodies are
-/// numbered from 0 by their first triangles. Shells that touch only in single vertices, or lie within each other, are
-/// different bodies.
+/// Returns the body of each triangle of a mesh. A body is a set of triangles that are connected by edges.
+/// Bodies are numbered from 0 by their first triangles. Shells that touch only in single vertices, or lie
+/// inside each other, are different bodies.
 ///
-/// - Buffers: `bodies`, room for `capacity` numbers, or NULL to ask for the count only; `count`, one number.
-/// - Result: `*count`, the number of triangles; in `bodies` one number for each.
+/// - Buffers: `bodies`, room for `capacity` numbers, or NULL to get only the count; `count`, one number.
+/// - Result: `*count`, the number of triangles; in `bodies` the number of each triangle's body.
 /// - Errors: LEAFLESS_E_BUFFER if the capacity is too small; LEAFLESS_E_NO_MEMORY.
 /// - Untrusted input: any mesh.
 #[unsafe(no_mangle)]
@@ -148,19 +149,20 @@ pub unsafe extern "C" fn leafless_mesh_bodies(
     })
 }
 
-/// The same mesh, whose triangles bear the values of an attribute under a name: that of a triangle is the value just inside of it,
-/// `depth_model` behind its centroid. If there is none, it is that at a quarter of the depth, at twice the depth, or at the centroid
-/// itself, and otherwise the triangle has no value. So a surface bears what channels of its solid say: half the edge of a
-/// channel's cells is a good depth. leafless_mesh_write writes colours as `colour`, and materials as `material`.
+/// Returns the same mesh with one more attribute with a name, whose values come from `attribute`. The value
+/// of a triangle is the value just inside it, `depth_model` behind its centroid. If there is none, it is the
+/// value at a quarter of the depth, at twice the depth, or at the centroid itself; otherwise the triangle has
+/// no value. So a surface takes values from the channels of its solid: half the edge of a channel's cells is
+/// a good depth. leafless_mesh_write writes colours as `colour`, and materials as `material`.
 ///
-/// O(t) questions. An attribute that the mesh bears under the name is replaced.
+/// O(t) queries. An attribute of the mesh with the same name is replaced.
 ///
 /// - Buffers: `name`, `name_length` bytes of UTF-8; `options`, one struct or NULL; `bearing`, one pointer.
-/// - Result: `*bearing`, the same for any number of threads.
-/// - Errors: LEAFLESS_E_ARGUMENT unless the depth is finite and not negative; LEAFLESS_E_UTF8; LEAFLESS_E_CALLBACK;
-///   LEAFLESS_E_DAMAGED; LEAFLESS_E_CANCELLED; LEAFLESS_E_NO_MEMORY.
-/// - Ownership: `mesh` and `attribute` stay as they are; give `*bearing` back with leafless_mesh_free.
-/// - Threads: any; uses as many as `options` says.
+/// - Result: `*bearing`, identical for any number of threads.
+/// - Errors: LEAFLESS_E_ARGUMENT unless the depth is finite and not negative; LEAFLESS_E_UTF8;
+///   LEAFLESS_E_CALLBACK; LEAFLESS_E_DAMAGED; LEAFLESS_E_CANCELLED; LEAFLESS_E_NO_MEMORY.
+/// - Ownership: `mesh` and `attribute` are unchanged; release `*bearing` with leafless_mesh_free.
+/// - Threads: any; runs on as many threads as `options` says.
 /// - Untrusted input: any mesh, any attribute, any text.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn leafless_mesh_with_values(
@@ -190,14 +192,15 @@ pub unsafe extern "C" fn leafless_mesh_with_values(
     })
 }
 
-/// The attribute that has at each point what a mesh bears at the point of its surface that is nearest: the value of
-/// the nearest triangle, or, with values for corners, what lies between them. Of triangles that are equally near the
-/// first one counts. Its ranges are proven.
+/// Makes an attribute from an attribute of a mesh. Its value at a point is the value at the nearest point of
+/// the mesh's surface: the value of the nearest triangle, or, with values for corners, the interpolated
+/// value. If several triangles are equally near, the first one counts. Its ranges are proven.
 ///
-/// - Buffers: `name`, `name_length` bytes of UTF-8: that of an attribute of the mesh; `attribute`, one pointer.
+/// - Buffers: `name`, `name_length` bytes of UTF-8: the name of an attribute of the mesh; `attribute`, one
+///   pointer.
 /// - Result: `*attribute`.
 /// - Errors: LEAFLESS_E_UTF8; LEAFLESS_E_ARGUMENT if the mesh has no such attribute; LEAFLESS_E_NO_MEMORY.
-/// - Ownership: the mesh is shared and may be freed; give `*attribute` back with leafless_attribute_free.
+/// - Ownership: the mesh is shared and may be freed; release `*attribute` with leafless_attribute_free.
 /// - Untrusted input: any mesh, any text.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn leafless_attribute_from_mesh(
@@ -214,14 +217,15 @@ pub unsafe extern "C" fn leafless_attribute_from_mesh(
     })
 }
 
-/// As leafless_attribute_from_mesh, of the host's own values: of bodies, faces, materials, or colours of corners.
+/// Like leafless_attribute_from_mesh, with the host's own values: of bodies, faces, materials, or colours of
+/// corners.
 ///
-/// - Buffers: `values`, `count` numbers: `components` for each triangle, or for each of its three corners, one behind
-///   the other; `attribute`, one pointer.
-/// - Result: `*attribute`. A value with a number that is not finite counts as none.
+/// - Buffers: `values`, `count` numbers: `components` for each triangle, or for each of its three corners,
+///   one after the other; `attribute`, one pointer.
+/// - Result: `*attribute`. A value with a number that is not finite counts as no value.
 /// - Errors: LEAFLESS_E_ARGUMENT unless `components` is 1 to 4, and there are values for all triangles;
 ///   LEAFLESS_E_NO_MEMORY.
-/// - Ownership: the values are copied, the mesh is shared and may be freed; give `*attribute` back with
+/// - Ownership: the values are copied, the mesh is shared and may be freed; release `*attribute` with
 ///   leafless_attribute_free.
 /// - Untrusted input: any mesh, any numbers.
 #[unsafe(no_mangle)]

@@ -1,4 +1,4 @@
-//! Mesh files.
+//! Reading of mesh files.
 
 use super::boundary::{Failure, Sized32, filled, guard, handle, out, output, shared, sized};
 use super::mesh::leafless_mesh;
@@ -14,14 +14,14 @@ use leafless_mesh_format::*;
 use leafless_unit::*;
 use std::sync::Arc;
 
-/// The formats of mesh files, which can be read and written.
+/// The formats of mesh files that can be read and written.
 #[derive(Clone, Copy, PartialEq)]
 #[repr(u32)]
 pub enum leafless_mesh_format {
-    /// To be found out: when reading from the file's content and, where that is not clear, its name; when writing
-    /// from its name.
+    /// To be detected: when reading, from the file's content and, if that is ambiguous, its name; when
+    /// writing, from its name.
     LEAFLESS_MESH_FORMAT_ANY = 0,
-    /// STL, binary or ASCII; which of the two is always found out.
+    /// STL, binary or ASCII; which of the two is always detected.
     LEAFLESS_MESH_FORMAT_STL = 1,
     /// Wavefront OBJ.
     LEAFLESS_MESH_FORMAT_OBJ = 2,
@@ -29,7 +29,7 @@ pub enum leafless_mesh_format {
     LEAFLESS_MESH_FORMAT_PLY = 3,
     /// Geomview OFF.
     LEAFLESS_MESH_FORMAT_OFF = 4,
-    /// 3MF, the 3D Manufacturing Format. What it means by its surfaces is LEAFLESS_FILL_POSITIVE.
+    /// 3MF, the 3D Manufacturing Format. Its surfaces follow LEAFLESS_FILL_POSITIVE.
     LEAFLESS_MESH_FORMAT_3MF = 5,
 }
 
@@ -44,7 +44,7 @@ enumeration! {
     }
 }
 
-/// Units of length. Coordinates have none: what an unknown unit means is up to the host.
+/// Units of length. Coordinates have no unit: the host decides the meaning of an unknown unit.
 #[derive(Clone, Copy, PartialEq)]
 #[repr(u32)]
 pub enum leafless_unit {
@@ -88,8 +88,7 @@ pub(super) fn unit_of(unit: Option<LengthUnit>) -> leafless_unit {
     }
 }
 
-/// How a mesh file is to be taken. NULL means the defaults. All fields but the first may be zero, which is
-/// their default.
+/// Options of reading a mesh file. NULL means the defaults. Zero is the default of every field but the first.
 #[derive(Clone, Copy)]
 #[repr(C)]
 pub struct leafless_mesh_options {
@@ -97,19 +96,19 @@ pub struct leafless_mesh_options {
     pub struct_size: u32,
     /// The file's format.
     pub format: Number<leafless_mesh_format>,
-    /// The unit of the numbers in the file. LEAFLESS_UNIT_UNKNOWN means what the file says, which only a 3MF does;
-    /// anything else overrides that.
+    /// The unit of the numbers in the file. LEAFLESS_UNIT_UNKNOWN means the unit that the file states (only
+    /// 3MF files do); any other value overrides it.
     pub unit: Number<leafless_unit>,
-    /// The unit that the mesh shall have. LEAFLESS_UNIT_UNKNOWN means that of the file.
+    /// The unit of the resulting mesh. LEAFLESS_UNIT_UNKNOWN means the unit of the file.
     pub target: Number<leafless_unit>,
-    /// What all coordinates are multiplied by besides: 2^-256 to 2^256, or 0, which means 1.
+    /// Additional factor for all coordinates: 2^-256 to 2^256, or 0, which means 1.
     pub scale: f64,
 }
 
 // SAFETY: numbers.
 unsafe impl Sized32 for leafless_mesh_options {}
 
-/// What a mesh file says besides the mesh.
+/// Facts that a mesh file states besides the mesh.
 #[derive(Clone, Copy)]
 #[repr(C)]
 pub struct leafless_mesh_file_info {
@@ -117,13 +116,14 @@ pub struct leafless_mesh_file_info {
     pub struct_size: u32,
     /// The file's format.
     pub format: leafless_mesh_format,
-    /// The unit of the mesh, converted but not scaled, if it is known.
+    /// The unit of the mesh after conversion and before scaling, if it is known.
     pub unit: leafless_unit,
-    /// Instances of objects that are not meant to be solid, such as supports in a 3MF, and that the mesh does
-    /// not contain.
+    /// Number of instances of objects that are not meant to be solid, such as supports in a 3MF. The mesh
+    /// does not contain them.
     pub skipped: u64,
-    /// How far, as the file says, the true boundary may lie from the mesh, converted and scaled; 0 if it does not say
-    /// so. It is not believed: leafless_mesh_with_deviation states it, for who does.
+    /// Largest distance between the true boundary and the mesh according to the file, converted and scaled; 0
+    /// if the file does not state it. The library does not rely on it; to rely on it, state it with
+    /// leafless_mesh_with_deviation.
     pub deviation_model: f64,
 }
 
@@ -161,13 +161,13 @@ impl From<&MeshFile> for leafless_mesh_file_info {
     }
 }
 
-/// The mesh of a file, with the warnings as texts.
+/// Returns the mesh of a file, with the warnings as texts.
 fn give(file: MeshFile) -> Result<*mut leafless_mesh, Failure> {
     let mut warnings = memory::with_capacity(file.warnings.len())?;
     for warning in &file.warnings {
         let mut text = String::new();
         text.try_reserve(256).map_err(Error::from)?;
-        // Writing to a string does not fail.
+        // Writing to a string cannot fail.
         let _ = write!(text, "{warning}");
         warnings.push(text);
     }
@@ -175,23 +175,23 @@ fn give(file: MeshFile) -> Result<*mut leafless_mesh, Failure> {
 }
 
 /// Reads a mesh file. Everything in it becomes one mesh, welded as by leafless_mesh_new; polygons become
-/// triangles. Hair cracks, which files have because their numbers are rounded, are closed as by
-/// leafless_mesh_sewn; leafless_mesh_inspect tells how many vertices moved and how far. Of bytes no name is known
-/// that could tell the format.
+/// triangles. Hair cracks, which come from rounded numbers in files, are closed as by leafless_mesh_sewn;
+/// leafless_mesh_inspect reports how many vertices moved and how far. Bytes in memory have no name, so their
+/// format is detected from the content only.
 ///
 /// - Buffers: `source`, one struct, with LEAFLESS_ACCESS_COPY; `options`, one struct, or NULL; `found`, one
 ///   struct, or NULL if it is not wanted; `mesh`, one pointer.
-/// - Result: `*mesh`, not checked to be closed; `*found`. leafless_mesh_peek_warning_at tells where the file
-///   departs from its format, though it could be read.
+/// - Result: `*mesh`, not checked to be closed; `*found`. leafless_mesh_peek_warning_at returns the
+///   violations of the format that did not prevent reading.
 /// - Errors: LEAFLESS_E_MESH_FILE, with the part, line, facet or byte in the message, if the file cannot be
-///   read, if its format is not known, or if `target` is given and nobody says from which unit;
+///   read, if its format is not known, or if `target` is given and neither `unit` nor the file states a unit;
 ///   LEAFLESS_E_MESH, with the vertex, if a coordinate is beyond ±2^256 once it is scaled;
-///   LEAFLESS_E_ARGUMENT if the format or a unit is none, or the scale out of range; LEAFLESS_E_IO;
+///   LEAFLESS_E_ARGUMENT if the format or a unit is invalid, or the scale is out of range; LEAFLESS_E_IO;
 ///   LEAFLESS_E_UTF8; LEAFLESS_E_NO_MEMORY.
-/// - Ownership: give `*mesh` back with leafless_mesh_free.
-/// - Untrusted input: any file. Memory is at most a small multiple of its length; of a 3MF, which is
-///   compressed, of 64 times its length and 16 MiB, and its instances may come to 2^25 vertices and 2^25
-///   triangles, or to as many as the file has.
+/// - Ownership: release `*mesh` with leafless_mesh_free.
+/// - Untrusted input: any file. Memory is at most a small multiple of its length. For a 3MF, which is
+///   compressed, it is at most a small multiple of 64 times its length plus 16 MiB, and its instances may
+///   have up to 2^25 vertices and 2^25 triangles, or as many as the file has.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn leafless_mesh_read(
     source: *const leafless_source,
@@ -215,13 +215,13 @@ pub unsafe extern "C" fn leafless_mesh_read(
     })
 }
 
-/// What a mesh file departs from its format in, though it could be read: a sentence in UTF-8 for each kind of
-/// departure, by its place among all. A mesh that was not read from a file, or was made from another mesh, has
-/// none.
+/// Returns one of the warnings from reading a mesh file, by its index: a sentence in UTF-8 for each kind of
+/// violation of the format that did not prevent reading. A mesh that was not read from a file, or was made
+/// from another mesh, has none.
 ///
-/// - Buffers: `count`, one number; `warning`, `warning_length`, one each, both NULL to ask for the count only.
+/// - Buffers: `count`, one number; `warning`, `warning_length`, one each, both NULL to get only the count.
 /// - Result: `*count`, the number of all warnings; the text, not NUL-terminated, with its length in bytes.
-/// - Errors: LEAFLESS_E_ARGUMENT if there is no warning `index`, unless only the count is asked for.
+/// - Errors: LEAFLESS_E_ARGUMENT if there is no warning `index`, unless only the count is requested.
 /// - Ownership: the text belongs to the mesh and lives as long as the reference `mesh`.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn leafless_mesh_peek_warning_at(

@@ -1,4 +1,4 @@
-//! Triangle meshes: volume, centroid and inertia from the triangles themselves, and triangles that intersect.
+//! Triangle meshes: volume, centroid and inertia from the triangles, and triangles that intersect.
 
 use super::boundary::{buffer, filled, guard, out, output, shared};
 use super::control::{controlled, leafless_options};
@@ -10,22 +10,23 @@ use super::status::leafless_status;
 use leafless::Interval;
 use leafless::mesh::{IntersectingPair, IntersectingPairs, MeshMoments};
 
-/// Whether the moments of what a mesh encloses are known from its triangles.
+/// Verdict on whether the moments of the enclosed volume are known from the triangles of a mesh.
 #[derive(Clone, Copy)]
 #[repr(u32)]
 pub enum leafless_moments_verdict {
-    /// They are, up to rounding and to the mesh's displacement.
+    /// The moments are known, up to rounding and to the mesh's displacement.
     LEAFLESS_MOMENTS_VERDICT_KNOWN = 0,
-    /// They are not: the mesh is empty, not closed, or not consistently oriented as the fill rule demands.
+    /// Not known: the mesh is empty, not closed, or not consistently oriented as the fill rule demands.
     LEAFLESS_MOMENTS_VERDICT_OPEN = 1,
-    /// They are not: too many triangles lie close to each other to find out, or all triangles of a body are slivers.
+    /// Not known: too many triangles lie too close to each other, or all triangles of a body are slivers.
     LEAFLESS_MOMENTS_VERDICT_UNDECIDED = 2,
-    /// They are not: two triangles intersect.
+    /// Not known: two triangles intersect.
     LEAFLESS_MOMENTS_VERDICT_INTERSECTING = 3,
 }
 use leafless_moments_verdict::*;
 
-/// Mass properties of what a mesh encloses, of density 1, as in leafless_measures: all numbers unless they are known.
+/// Mass properties of the volume that a mesh encloses, for density 1, as in leafless_measures. Unless they
+/// are known, each interval contains all numbers.
 #[derive(Clone, Copy)]
 #[repr(C)]
 pub struct leafless_mesh_moments {
@@ -33,15 +34,15 @@ pub struct leafless_mesh_moments {
     pub struct_size: u32,
     /// Volume.
     pub volume_model: leafless_interval,
-    /// Centroid; all numbers unless `has_centroid`.
+    /// Centroid; intervals of all numbers unless `has_centroid`.
     pub centroid_model: [leafless_interval; 3],
     /// Tensor of inertia about the model's origin, row by row.
     pub inertia_origin_model: [leafless_interval; 9],
     /// The same about the centroid.
     pub inertia_centroid_model: [leafless_interval; 9],
-    /// Two triangles that intersect, if `known` says so; else 0.
+    /// Indices of two triangles that intersect, if `known` is LEAFLESS_MOMENTS_VERDICT_INTERSECTING; else 0.
     pub triangles: [u32; 2],
-    /// Whether they are known, or why not.
+    /// Whether the moments are known, or why not.
     pub known: leafless_moments_verdict,
     /// Whether the volume is proven not to be 0.
     pub has_centroid: bool,
@@ -89,11 +90,11 @@ impl From<MeshMoments> for leafless_mesh_moments {
     }
 }
 
-/// Two triangles that have a point in common which is not on a common vertex or edge.
+/// Two triangles with a common point that is not on a common vertex or edge.
 #[derive(Clone, Copy)]
 #[repr(C)]
 pub struct leafless_intersecting_pair {
-    /// A box in which they meet: where the boxes around the two overlap.
+    /// Lower corner of a box in which they meet: the intersection of their bounding boxes.
     pub min_model: [f64; 3],
     /// Its upper corner.
     pub max_model: [f64; 3],
@@ -108,14 +109,15 @@ impl From<&IntersectingPair> for leafless_intersecting_pair {
     }
 }
 
-/// The volume and the moments of what a mesh encloses by a fill rule, exact up to rounding: usually to 14 digits.
-/// They are known if the mesh is closed and no two triangles intersect. leafless_solid_measure of a solid of such a
-/// mesh tells the same.
+/// Computes the volume and the moments of the region that a mesh encloses by a fill rule, exact up to
+/// rounding: usually to 14 digits. They are known if the mesh is closed and no two triangles intersect.
+/// leafless_solid_measure returns the same for a solid of such a mesh.
 ///
-/// - Buffers: `options`, one struct or NULL, of which the limits do not matter; `moments`, one struct. `fill` is
-///   a leafless_fill.
-/// - Result: `*moments`, whether they are known or not.
-/// - Errors: LEAFLESS_E_ARGUMENT if `fill` is no leafless_fill; LEAFLESS_E_CANCELLED; LEAFLESS_E_NO_MEMORY.
+/// - Buffers: `options`, one struct or NULL (its limits are ignored); `moments`, one struct. `fill` is a
+///   leafless_fill.
+/// - Result: `*moments`, written whether they are known or not.
+/// - Errors: LEAFLESS_E_ARGUMENT if `fill` is not a leafless_fill; LEAFLESS_E_CANCELLED;
+///   LEAFLESS_E_NO_MEMORY.
 /// - Threads: any; works in the calling thread. Each call analyses the mesh.
 /// - Untrusted input: any mesh; the work is limited.
 #[unsafe(no_mangle)]
@@ -133,15 +135,15 @@ pub unsafe extern "C" fn leafless_mesh_measure(
     })
 }
 
-/// The pairs of triangles that intersect: they cross, touch, or fold onto each other. Decided exactly. Triangles
-/// without area are left out.
+/// Finds the pairs of triangles that intersect: they cross, touch, or fold onto each other. The test is
+/// exact. Triangles without area are left out.
 ///
-/// - Buffers: `options`, one struct or NULL, of which the limits do not matter; `pairs`, room for `capacity` of
-///   them, or NULL to ask for their number only; `count`, one number; `is_complete`, one number.
-/// - Result: `*count`, how many were found; the first `capacity` of them in `pairs`, in ascending order of triangles;
-///   `*is_complete`, whether these are all: else the search was ended, because too many triangles lie close to each
+/// - Buffers: `options`, one struct or NULL (its limits are ignored); `pairs`, room for `capacity` of them,
+///   or NULL to get only their number; `count`, one number; `is_complete`, one number.
+/// - Result: `*count`, the number of pairs found; the first `capacity` of them in `pairs`, in ascending order
+///   of triangles; `*is_complete`, false if the search stopped because too many triangles lie close to each
 ///   other.
-/// - Errors: LEAFLESS_E_CANCELLED; LEAFLESS_E_NO_MEMORY. A `capacity` that is too small is none.
+/// - Errors: LEAFLESS_E_CANCELLED; LEAFLESS_E_NO_MEMORY. A `capacity` that is too small is not an error.
 /// - Threads: any; works in the calling thread. Each call analyses the mesh.
 /// - Untrusted input: any mesh; the work is limited.
 #[unsafe(no_mangle)]

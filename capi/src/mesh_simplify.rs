@@ -1,4 +1,4 @@
-//! Meshes with fewer triangles.
+//! Mesh simplification.
 
 use super::boundary::{filled, guard, out, output, shared};
 use super::control::{controlled, leafless_options};
@@ -6,39 +6,44 @@ use super::mesh::{give, leafless_mesh};
 use super::status::leafless_status;
 use leafless::surface::{SimplifiedReport, simplify};
 
-/// How a mesh was simplified.
+/// A report of leafless_mesh_simplify.
 #[derive(Clone, Copy)]
 #[repr(C)]
 pub struct leafless_simplified {
     /// sizeof(leafless_simplified).
     pub struct_size: u32,
-    /// No point of either mesh is further from the other one than that (model units). That is proven.
+    /// Proven bound of the distance between the two meshes, in model units: no point of either mesh is
+    /// further from the other mesh.
     pub deviation_model: f64,
-    /// Triangles that were taken away.
+    /// Triangles that were removed.
     pub removed: u64,
-    /// Pairs of triangles of the result that intersect each other. All of them did before.
+    /// Pairs of intersecting triangles of the result. All of them come from intersections of the input.
     pub intersecting_pairs: u64,
 }
 
 output!(leafless_simplified);
 
-/// The same mesh with fewer triangles, no point of which is further than `tolerance_model` from the mesh, and none of the mesh further
-/// from it: proven in both directions by the triangles of both.
+/// Returns the mesh with fewer triangles. No point of either mesh is further than `tolerance_model` from the
+/// other mesh; this is proven in both directions.
 ///
-/// Vertices are taken out, and none is moved. Edges between triangles whose normals differ by more than 30 degrees stay edges, and so
-/// do those between triangles that bear different values; along an edge vertices go as far as the tolerance allows, and corners stay.
-/// A mesh that is closed and a manifold stays so, with as many bodies and holes. Vertices on open edges, and those where more than two
-/// triangles meet in an edge, stay. No triangles intersect each other that did not before.
+/// Vertices are removed; no vertex is moved. Edges between triangles whose normals differ by more than 30
+/// degrees stay edges, and so do edges between triangles with different attribute values. Vertices along such
+/// an edge are removed as far as the tolerance allows; corners stay. A closed manifold mesh stays a closed
+/// manifold, with as many bodies and holes. Vertices on open edges, and vertices on edges of more than two
+/// triangles, stay. No new intersections of triangles arise.
 ///
-/// O(n log n) time for n triangles whose vertices have few: some 20 microseconds a triangle, and some 300 bytes. One thread takes vertices
-/// out, and all prove.
+/// O(n log n) time for n triangles if each vertex has few triangles: some 20 microseconds and some 300 bytes
+/// a triangle. One thread removes vertices; all threads prove the bound.
 ///
-/// - Buffers: `options`, one struct or NULL; `report`, one struct, or NULL if it is not wanted; `simple`, one pointer.
-/// - Result: `*simple`, with the values of triangles that are left and without those of corners, whose stated deviation is that of `mesh`
-///   with what is proven here; `*report`. The same for any number of threads.
-/// - Errors: LEAFLESS_E_ARGUMENT if `tolerance_model` is not between 2^-256 and 2^256; LEAFLESS_E_CANCELLED; LEAFLESS_E_NO_MEMORY.
-/// - Ownership: `mesh` stays as it is; give `*simple` back with leafless_mesh_free.
-/// - Threads: any; uses as many as `options` says.
+/// - Buffers: `options`, one struct or NULL; `report`, one struct, or NULL if it is not wanted; `simple`, one
+///   pointer.
+/// - Result: `*simple`, with the attribute values of the remaining triangles, without the values of corners;
+///   its stated deviation is that of `mesh` plus the bound proven here; `*report`. Both are identical for any
+///   number of threads.
+/// - Errors: LEAFLESS_E_ARGUMENT if `tolerance_model` is not between 2^-256 and 2^256; LEAFLESS_E_CANCELLED;
+///   LEAFLESS_E_NO_MEMORY.
+/// - Ownership: `mesh` is unchanged; release `*simple` with leafless_mesh_free.
+/// - Threads: any; runs on as many threads as `options` says.
 /// - Untrusted input: any mesh.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn leafless_mesh_simplify(

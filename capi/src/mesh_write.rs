@@ -1,4 +1,4 @@
-//! Mesh files, written.
+//! Writing of mesh files.
 
 use super::boundary::{Failure, Sized32, filled, guard, out, output, shared, sized};
 use super::control::{controlled, leafless_options};
@@ -12,26 +12,27 @@ use leafless::exchange::{MeshFormat, WriteOptions, write_mesh, write_polygons, w
 use std::borrow::Cow;
 use std::path::Path;
 
-/// How a mesh file is written. NULL means the defaults. All fields but the first may be zero, which is their
-/// default.
+/// Options of writing a mesh file. NULL means the defaults. Zero is the default of every field but the first.
 #[derive(Clone, Copy)]
 #[repr(C)]
 pub struct leafless_mesh_write_options {
     /// sizeof(leafless_mesh_write_options).
     pub struct_size: u32,
-    /// The file's format. LEAFLESS_MESH_FORMAT_ANY means what the extension of the
-    /// path says: .stl, .obj, .ply, .off or .3mf, in any letter case.
+    /// The file's format. LEAFLESS_MESH_FORMAT_ANY means the format of the path's extension: .stl, .obj,
+    /// .ply, .off or .3mf, in any letter case.
     pub format: Number<leafless_mesh_format>,
-    /// 1 to write STL and PLY as text, which is several times as long; OBJ and OFF always are text, and a 3MF
-    /// never is. Else 0.
+    /// 1 to write STL and PLY as text, which is several times as long; else 0. OBJ and OFF are always text;
+    /// 3MF never is.
     pub is_text: u32,
-    /// The unit of the coordinates, which only a 3MF tells. LEAFLESS_UNIT_UNKNOWN means the
-    /// millimetre. Nothing is converted.
+    /// The unit of the coordinates, which only a 3MF stores. LEAFLESS_UNIT_UNKNOWN means the millimetre.
+    /// Coordinates are not converted.
     pub unit: Number<leafless_unit>,
-    /// 1 to write PLY and OBJ with the normals that leafless_mesh_normals tells; other formats have none. Else 0.
+    /// 1 to write PLY and OBJ with the normals of leafless_mesh_normals, which other formats do not store;
+    /// else 0.
     pub has_normals: u32,
-    /// How far the true boundary may lie from the mesh, which a comment of PLY, OBJ and OFF and metadata of a 3MF
-    /// tell; an STL has no place for it. leafless_mesh_file_info has it when the file is read. 0 tells nothing.
+    /// Largest distance between the true boundary and the mesh; 0 means that it is not stated. It is stored
+    /// in a comment of PLY, OBJ and OFF files and in the metadata of a 3MF; an STL cannot store it. When the
+    /// file is read, leafless_mesh_file_info contains it.
     pub deviation_model: f64,
 }
 
@@ -57,7 +58,7 @@ unsafe fn options(
     Ok((given.format.known("options.format")?, WriteOptions { text, unit, normals, deviation }))
 }
 
-/// The format that a path's extension says.
+/// Returns the format of a path's extension.
 fn format_of(path: &Path) -> Result<MeshFormat, Failure> {
     let extension = path.extension().and_then(|extension| extension.to_str());
     let problem = "must be given for a path with none of the extensions .stl, .obj, .ply, .off and .3mf";
@@ -66,13 +67,13 @@ fn format_of(path: &Path) -> Result<MeshFormat, Failure> {
         .ok_or(Failure::Argument { name: "options.format", problem })
 }
 
-/// The format of a file that has no path must be given.
+/// Returns the given format, or an error, because the format of a file without a path must be given.
 fn format_given(format: Option<MeshFormat>) -> Result<MeshFormat, Failure> {
     let problem = "must be given for a file without a path";
     format.ok_or(Failure::Argument { name: "options.format", problem })
 }
 
-/// The format that is given, or else that of the path.
+/// Returns the given format, or else the format of the path.
 fn chosen(format: Option<MeshFormat>, path: Option<&Path>) -> Result<MeshFormat, Failure> {
     match (format, path) {
         (None, Some(path)) => format_of(path),
@@ -83,15 +84,16 @@ fn chosen(format: Option<MeshFormat>, path: Option<&Path>) -> Result<MeshFormat,
 /// Writes a mesh file: STL, PLY, OBJ, OFF or 3MF.
 ///
 /// Vertices and triangles keep their order. PLY (little-endian, of type double), OBJ and OFF hold the
-/// coordinates exactly; a 3MF has one object, which is the build's one item, and leaves out triangles that have a
-/// vertex twice. STL rounds coordinates to 32 bits without a word: what is small and far away loses triangles, up
-/// to all of them. leafless_mesh_written_form tells before, and leafless_mesh_in_single_precision mends what can be mended. O(n) time and memory.
+/// coordinates exactly; a 3MF has one object, which is the build's one item, and leaves out triangles that
+/// have a vertex twice. STL rounds coordinates to 32 bits silently: a mesh that is small and far from the
+/// origin loses triangles, up to all of them. leafless_mesh_written_form shows the loss beforehand, and
+/// leafless_mesh_in_single_precision avoids it as far as possible. O(n) time and memory.
 ///
 /// - Buffers: `options`, one struct, or NULL, with a format unless the sink has a path; `sink`, one struct.
-/// - Errors: LEAFLESS_E_ARGUMENT if the format or the unit is none, if the format is LEAFLESS_MESH_FORMAT_ANY
-///   and there is no path or it has none of the extensions, for an STL of coordinates beyond the range of float,
-///   or for an OBJ without vertices; LEAFLESS_E_IO; LEAFLESS_E_CALLBACK; LEAFLESS_E_BUFFER; LEAFLESS_E_UTF8;
-///   LEAFLESS_E_NO_MEMORY.
+/// - Errors: LEAFLESS_E_ARGUMENT if the format or the unit is invalid, if the format is
+///   LEAFLESS_MESH_FORMAT_ANY and there is no path or the path has none of the extensions, for an STL of
+///   coordinates beyond the range of float, or for an OBJ without vertices; LEAFLESS_E_IO;
+///   LEAFLESS_E_CALLBACK; LEAFLESS_E_BUFFER; LEAFLESS_E_UTF8; LEAFLESS_E_NO_MEMORY.
 /// - Untrusted input: any mesh.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn leafless_mesh_write(
@@ -108,45 +110,49 @@ pub unsafe extern "C" fn leafless_mesh_write(
     })
 }
 
-/// What became of a mesh in single precision.
+/// A report of leafless_mesh_in_single_precision.
 #[derive(Clone, Copy)]
 #[repr(C)]
 pub struct leafless_single_precision {
     /// sizeof(leafless_single_precision).
     pub struct_size: u32,
-    /// 0.
+    /// Reserved; 0.
     pub reserved: u32,
-    /// The farthest that rounding moves a vertex along an axis.
+    /// Largest displacement of a vertex along an axis by rounding, in model units.
     pub rounding_model: f64,
-    /// No point of the given mesh is further from the other one, and none of that further from the given one: proven.
+    /// Proven bound of the distance between the two meshes, in model units: no point of either mesh is
+    /// further from the other mesh.
     pub deviation_model: f64,
-    /// Triangles of which rounding made an edge or a point, and which are gone.
+    /// Triangles that rounding turned into an edge or a point; they were removed.
     pub collapsed: u64,
-    /// Triangles of which rounding made a line, and which were joined to their neighbours.
+    /// Triangles that rounding turned into a line; they were joined to their neighbours.
     pub flipped: u64,
-    /// Vertices that were moved, to places next to their nearest ones.
+    /// Vertices that were moved to representable positions next to their nearest ones.
     pub moved: u64,
-    /// Triangles without area that are left, and vertices that lie where others do.
+    /// Triangles without area and vertices at the position of another vertex that remain.
     pub degenerate: u64,
-    /// Pairs of triangles that intersect each other and are left.
+    /// Pairs of intersecting triangles that remain.
     pub intersecting_pairs: u64,
 }
 
 output!(leafless_single_precision);
 
-/// The mesh with coordinates that are 32-bit numbers, as an STL has them, without triangles that rounding makes degenerate and without pairs
-/// that it makes intersect, as far as that can be had: leafless_mesh_write then loses nothing. Edges whose ends meet are collapsed,
-/// triangles that become lines are joined to their neighbours, and vertices of what is degenerate or intersects after that go to places next to
-/// theirs, if these are no further than `tolerance_model` from where they were given. A closed mesh stays closed. A mesh whose coordinates
-/// are 32-bit numbers already is given back as it is, and of it nothing is counted.
+/// Returns the mesh with 32-bit coordinates, as in an STL. As far as possible, it removes the triangles that
+/// rounding makes degenerate and the intersections that rounding causes: leafless_mesh_write then loses
+/// nothing. Edges whose ends coincide are collapsed, and triangles that become lines are joined to their
+/// neighbours. Vertices of triangles that are then still degenerate or intersect move to neighbouring
+/// representable positions, if these are no further than `tolerance_model` from the given positions. A closed
+/// mesh stays closed. A mesh whose coordinates already are 32-bit numbers is returned unchanged, and nothing
+/// is counted.
 ///
-/// Time is that of leafless_mesh_intersecting_pairs, a few times.
+/// It takes a few times as long as leafless_mesh_intersecting_pairs.
 ///
-/// - Buffers: `options`, one struct or NULL; `report`, one struct, or NULL if it is not wanted; `single`, one pointer.
+/// - Buffers: `options`, one struct or NULL; `report`, one struct, or NULL if it is not wanted; `single`, one
+///   pointer.
 /// - Result: `*single`, without attributes; `*report`.
-/// - Errors: LEAFLESS_E_ARGUMENT if the tolerance is negative or not a number, or for coordinates beyond the range of float;
-///   LEAFLESS_E_CANCELLED; LEAFLESS_E_NO_MEMORY.
-/// - Ownership: `mesh` stays as it is; give `*single` back with leafless_mesh_free.
+/// - Errors: LEAFLESS_E_ARGUMENT if the tolerance is negative or not a number, or for coordinates beyond the
+///   range of float; LEAFLESS_E_CANCELLED; LEAFLESS_E_NO_MEMORY.
+/// - Ownership: `mesh` is unchanged; release `*single` with leafless_mesh_free.
 /// - Untrusted input: any mesh; the work is bounded.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn leafless_mesh_in_single_precision(
@@ -178,17 +184,19 @@ pub unsafe extern "C" fn leafless_mesh_in_single_precision(
     })
 }
 
-/// Writes solids of plane faces as a file of polygons: OBJ or OFF. A face with holes, which these formats do not have, is cut into a
-/// few polygons without; all other faces are as they are given. No vertex is added, and vertices keep their order.
+/// Writes solids with plane faces as a file of polygons: OBJ or OFF. A face with holes, which these formats
+/// cannot store, is cut into a few polygons without holes; all other faces are written as given. No vertex is
+/// added, and vertices keep their order.
 ///
-/// The faces are checked as leafless_mesh_from_polyhedron does, whose default tolerance is the only one here. O(n log n) time.
+/// The faces are checked as in leafless_mesh_from_polyhedron, always with its default tolerance. O(n log n)
+/// time.
 ///
-/// - Buffers: `arrays`, one struct, whose `tolerance_model` is 0; what its pointers lead to must not change during the call.
-///   `options`, one struct, or NULL, of which the format and the deviation count, with a format unless the sink has a path; `sink`,
-///   one struct.
-/// - Errors: those of leafless_mesh_from_polyhedron; LEAFLESS_E_ARGUMENT if the format is neither OBJ nor OFF, or is
-///   LEAFLESS_MESH_FORMAT_ANY and there is no path or it has none of the extensions; LEAFLESS_E_IO; LEAFLESS_E_CALLBACK;
-///   LEAFLESS_E_BUFFER; LEAFLESS_E_UTF8; LEAFLESS_E_NO_MEMORY.
+/// - Buffers: `arrays`, one struct, whose `tolerance_model` is 0; its arrays must not change during the call.
+///   `options`, one struct, or NULL (only the format and the deviation are used), with a format unless the
+///   sink has a path; `sink`, one struct.
+/// - Errors: those of leafless_mesh_from_polyhedron; LEAFLESS_E_ARGUMENT if the format is neither OBJ nor
+///   OFF, or is LEAFLESS_MESH_FORMAT_ANY and there is no path or the path has none of the extensions;
+///   LEAFLESS_E_IO; LEAFLESS_E_CALLBACK; LEAFLESS_E_BUFFER; LEAFLESS_E_UTF8; LEAFLESS_E_NO_MEMORY.
 /// - Ownership: the arrays are only read during the call, and may be freed after it.
 /// - Untrusted input: any values in the arrays.
 #[unsafe(no_mangle)]
@@ -213,15 +221,15 @@ pub unsafe extern "C" fn leafless_mesh_write_polygons(
     })
 }
 
-/// The mesh that a reader gets back from the file that leafless_mesh_write writes. An STL has 32-bit coordinates:
-/// vertices move, vertices that meet are one, and triangles of which two corners meet are dropped, so that the
-/// surface may be pinched, flat or gone. leafless_mesh_inspect of both meshes tells. All other formats keep
-/// vertices and triangles as they are. O(n) time and memory.
+/// Returns the mesh that a reader gets from the file that leafless_mesh_write writes. An STL has 32-bit
+/// coordinates: vertices move, vertices that coincide are merged, and triangles with coincident corners are
+/// dropped, so that the surface may be pinched, flat or empty. Compare leafless_mesh_inspect of both meshes
+/// to see the loss. All other formats keep vertices and triangles unchanged. O(n) time and memory.
 ///
 /// - Buffers: `options`, one struct, with a format; `kept`, one pointer.
 /// - Result: `*kept`.
 /// - Errors: LEAFLESS_E_ARGUMENT as leafless_mesh_write without a path; LEAFLESS_E_NO_MEMORY.
-/// - Ownership: `mesh` stays as it is; give `*kept` back with leafless_mesh_free.
+/// - Ownership: `mesh` is unchanged; release `*kept` with leafless_mesh_free.
 /// - Untrusted input: any mesh.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn leafless_mesh_written_form(

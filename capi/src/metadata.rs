@@ -1,11 +1,11 @@
-//! Key–value facts, as C reads and changes them: those of octrees and of channels.
+//! Key–value metadata of octrees and channels for C.
 
 use super::boundary::{Failure, out, text};
 use core::ffi::c_char;
 use leafless::Metadata;
 use leafless::octree::MetadataLimit;
 
-/// A copy of `metadata` with another fact, or another value of one.
+/// Returns a copy of `metadata` with one more fact, or with a new value of a fact.
 ///
 /// # Safety
 /// As [`text`].
@@ -20,7 +20,7 @@ pub(super) unsafe fn with(
     Ok(metadata.changed(key, Some(value), limit)?)
 }
 
-/// A copy of `metadata` with one fact less, or with none if `key` is NULL.
+/// Returns a copy of `metadata` with one fact less, or without facts if `key` is NULL.
 ///
 /// # Safety
 /// As [`text`].
@@ -37,7 +37,7 @@ pub(super) unsafe fn without(
     Ok(metadata.changed(key, None, MetadataLimit::SOLID)?)
 }
 
-/// The value of a fact; NULL if there is no such fact.
+/// Writes the value of a fact; NULL if there is no such fact.
 ///
 /// # Safety
 /// As [`text`] and [`out`].
@@ -56,7 +56,7 @@ pub(super) unsafe fn peek(
     value_length.write(found.map_or(0, str::len))
 }
 
-/// Where a fact is written, each part NULL if only the number of facts is asked for.
+/// The locations that a fact is written to; all NULL if only the number of facts is wanted.
 pub(super) struct Fact {
     pub key: *mut *const c_char,
     pub key_length: *mut usize,
@@ -64,7 +64,7 @@ pub(super) struct Fact {
     pub value_length: *mut usize,
 }
 
-/// The fact with a place among all.
+/// Writes the fact with an index.
 ///
 /// # Safety
 /// As [`out`].

@@ -1,14 +1,14 @@
-//! Numbers of the host that stand for a member of an enumeration.
+//! The host's numbers for members of enumerations.
 
 use super::boundary::Failure;
 use core::marker::PhantomData;
 
-/// A number that a host gives for a member of an enumeration; nobody has looked at it. In the header it has the
-/// enumeration's type, so that a compiler for C++ sees when it is another one's.
+/// A number that a host gives for a member of an enumeration, not checked yet. In the header it has the
+/// enumeration's type, so that a C++ compiler refuses members of other enumerations.
 #[repr(transparent)]
 pub struct Number<E>(u32, PhantomData<E>);
 
-/// As [`Number`], for an enumeration whose members have 8 bits.
+/// Like [`Number`], for an enumeration whose members have 8 bits.
 #[repr(transparent)]
 pub struct Byte<E>(pub(super) u8, PhantomData<E>);
 
@@ -20,28 +20,28 @@ impl<E> Clone for Number<E> {
 
 impl<E> Copy for Number<E> {}
 
-/// An enumeration, and what the library has for its members.
+/// An enumeration whose members stand for values of the library.
 pub trait Enumeration {
     type Known;
-    /// What is said of a number that is no member.
+    /// The error text for a number that is not a member.
     const PROBLEM: &'static str;
 
     fn known(number: u32) -> Option<Self::Known>;
 }
 
 impl<E> Number<E> {
-    /// The member that is zero, which every enumeration has.
+    /// The member with the number 0, which every enumeration has.
     pub(super) const ZERO: Number<E> = Number(0, PhantomData);
 }
 
 impl<E: Enumeration> Number<E> {
-    /// What the library has for the member. `name` is the parameter that the number was given for.
+    /// Returns the library's value of the member. `name` is the name of the parameter, for messages.
     pub(super) fn known(self, name: &'static str) -> Result<E::Known, Failure> {
         E::known(self.0).ok_or(Failure::Argument { name, problem: E::PROBLEM })
     }
 }
 
-/// Says what the library has for the members of an enumeration whose numbers have 32 bits.
+/// Maps the members of an enumeration with 32-bit numbers to values of the library.
 macro_rules! enumeration {
     ($enumeration:ident => $known:ty { $($member:ident => $value:expr,)+ }) => {
         impl $crate::number::Enumeration for $enumeration {

@@ -1,4 +1,4 @@
-//! Octrees: what they hold, and the facts that travel with them.
+//! Octrees: description, statistics, comparison and metadata.
 
 use super::boundary::{Failure, buffer, filled, guard, handle, out, output, refer, release, shared};
 use super::frame::{frame, leafless_frame, leafless_interval};
@@ -12,23 +12,23 @@ use leafless::{Octree, Proof, Tag};
 
 /// A leaf-free octree, in memory or mapped from a file.
 ///
-/// Immutable: all its functions may be called at once from any number of threads, but leafless_octree_free
-/// needs the reference that it gives back for itself.
+/// Immutable: all its functions may be called at once from any number of threads, but no other call may use
+/// the reference that leafless_octree_free releases.
 pub struct leafless_octree {
     pub(super) octree: Octree,
 }
 
-/// What is known of a cell.
+/// The tag of a cell: the cell's relation to the solid.
 #[derive(Clone, Copy)]
 #[repr(u8)]
 pub enum leafless_tag {
-    /// Proven outside of the solid.
+    /// Proven outside the solid.
     LEAFLESS_TAG_EMPTY = 0,
     /// Cut and split: the cell has a node.
     LEAFLESS_TAG_BRANCH = 1,
     /// Not decided.
     LEAFLESS_TAG_PARTIAL = 2,
-    /// Proven to lie in the solid.
+    /// Proven inside the solid.
     LEAFLESS_TAG_FULL = 3,
 }
 use leafless_tag::*;
@@ -44,7 +44,7 @@ impl From<Tag> for leafless_tag {
     }
 }
 
-/// The tag with this number, if it is EMPTY, PARTIAL or FULL.
+/// Returns the tag with this number, if it is EMPTY, PARTIAL or FULL.
 pub(super) fn settled_tag(tag: i64, name: &'static str) -> Result<Tag, Failure> {
     match tag {
         _ if tag == LEAFLESS_TAG_EMPTY as i64 => Ok(Tag::Empty),
@@ -54,18 +54,18 @@ pub(super) fn settled_tag(tag: i64, name: &'static str) -> Result<Tag, Failure> 
     }
 }
 
-/// What the cells of an octree prove of the solid that it was made from. Certified trees prove both, inner
-/// ones FULL, outer ones EMPTY, sampled ones nothing. Booleans prove what their operands do, and files keep
-/// it.
+/// The proofs that the cells of an octree give about the solid that it was made from. Certified octrees prove
+/// FULL and EMPTY, inner octrees FULL, outer octrees EMPTY, sampled octrees nothing. Results of set
+/// operations prove what their operands prove, and files store it.
 #[derive(Clone, Copy)]
 #[repr(C)]
 pub struct leafless_proof {
-    /// How far the surfaces that the cells speak of were moved from those that were handed in, in model
-    /// units: cracks that were sewn, vertices that were rounded, a stated deviation of a tessellation.
+    /// Displacement of the surfaces from the given surfaces, in model units: by sewn cracks, rounded
+    /// vertices, and a stated deviation of a tessellation.
     pub displacement_model: f64,
     /// A FULL cell is proven to lie in the solid.
     pub full: bool,
-    /// An EMPTY cell is proven to lie outside of it.
+    /// An EMPTY cell is proven to lie outside it.
     pub empty: bool,
 }
 
@@ -75,7 +75,7 @@ impl From<Proof> for leafless_proof {
     }
 }
 
-/// Which tags of an octree's cells are proven.
+/// The tags of an octree's cells that are proven.
 #[repr(u32)]
 pub enum leafless_proven {
     /// Neither.
@@ -97,13 +97,13 @@ enumeration! {
     }
 }
 
-/// What can be said of an octree at once.
+/// Basic facts about an octree.
 #[derive(Clone, Copy)]
 #[repr(C)]
 pub struct leafless_octree_info {
     /// sizeof(leafless_octree_info).
     pub struct_size: u32,
-    /// Where it lies, and its depth.
+    /// The frame: position, size and depth.
     pub frame: leafless_frame,
     /// Array elements without bricks; each holds two levels.
     pub elements: u64,
@@ -111,28 +111,28 @@ pub struct leafless_octree_info {
     pub bricks: u64,
     /// Channels, 0 to 256: leafless_octree_channel_at returns each.
     pub channels: u64,
-    /// Bytes that its arrays and its channels take: in memory, or where a file is mapped. What octrees share counts for
-    /// each of them.
+    /// Bytes of its arrays and its channels, in memory or in a mapped file. Memory that octrees share counts
+    /// for each of them.
     pub bytes: u64,
-    /// What the cells prove.
+    /// The proofs that the cells give.
     pub proof: leafless_proof,
-    /// The tag of the whole universe; BRANCH if it is cut.
+    /// The tag of the whole universe; BRANCH if it is split.
     pub root: leafless_tag,
-    /// What is known of the space outside of the universe; never BRANCH.
+    /// The tag of the space outside the universe; never BRANCH.
     pub exterior: leafless_tag,
-    /// Whether nothing is undecided.
+    /// Whether no cell is undecided.
     pub is_binary: bool,
-    /// Whether the solid is not known to end inside of the universe: volumes then concern the part inside.
+    /// Whether the solid may extend beyond the universe; then volumes are those of the part inside.
     pub is_clipped: bool,
 }
 
 output!(leafless_octree_info);
 
-/// Counts and certified volumes. The volume is that of the part inside of the universe.
+/// Counts and certified volumes. The volume is that of the part inside the universe.
 #[derive(Clone, Copy)]
 #[repr(C)]
 pub struct leafless_statistics {
-    /// Internal nodes: cells that are cut and split.
+    /// Internal nodes: cells that are split.
     pub nodes: u64,
     /// EMPTY cells.
     pub empty: u64,
@@ -140,11 +140,11 @@ pub struct leafless_statistics {
     pub full: u64,
     /// PARTIAL cells.
     pub partial: u64,
-    /// Volume that is surely solid, in finest cells.
+    /// Volume that is certainly solid, in finest cells.
     pub lower_cells: u64,
     /// Volume that is possibly solid, in finest cells.
     pub upper_cells: u64,
-    /// The same two in cubic model units, rounded outward.
+    /// Both volumes in cubic model units, rounded outward.
     pub volume_model: leafless_interval,
 }
 
@@ -181,13 +181,13 @@ pub(super) fn give(octree: Octree) -> *mut leafless_octree {
     handle(leafless_octree { octree })
 }
 
-/// The octree whose whole universe has one tag.
+/// Makes the octree whose whole universe has one tag.
 ///
-/// - Buffers: `frame`, one struct; `octree`, one pointer. `tag` and `exterior`, which are not BRANCH, say
-///   what is known of the universe, and of the space around it.
+/// - Buffers: `frame`, one struct; `octree`, one pointer. `tag` and `exterior`, which must not be BRANCH, are
+///   the tags of the universe and of the space around it.
 /// - Result: `*octree`.
 /// - Errors: LEAFLESS_E_ARGUMENT.
-/// - Ownership: give `*octree` back with leafless_octree_free.
+/// - Ownership: release `*octree` with leafless_octree_free.
 /// - Untrusted input: any numbers.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn leafless_octree_new_uniform(
@@ -205,11 +205,11 @@ pub unsafe extern "C" fn leafless_octree_new_uniform(
     })
 }
 
-/// One more reference to an octree.
+/// Returns one more reference to an octree.
 ///
 /// - Buffers: `octree`, a handle; `reference`, one pointer.
 /// - Result: `*reference`, equal to `octree`.
-/// - Ownership: give each reference back with leafless_octree_free.
+/// - Ownership: release each reference with leafless_octree_free.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn leafless_octree_ref(
     octree: *const leafless_octree,
@@ -218,11 +218,11 @@ pub unsafe extern "C" fn leafless_octree_ref(
     guard(|| unsafe { refer(octree, "octree", reference) })
 }
 
-/// Gives back a reference to an octree. With the last one the octree is gone, and with it the mapping of its
-/// file, unless a cursor, a solid, or an octree with other metadata still shares it.
+/// Releases a reference to an octree. The last release frees the octree. The mapping of its file ends too,
+/// unless a cursor, a solid, or an octree with other metadata still shares it.
 ///
 /// - Buffers: `octree`, a handle or NULL, which does nothing.
-/// - Ownership: the reference is gone.
+/// - Ownership: the reference is invalid afterwards.
 /// - Threads: any; no other call may use this reference.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn leafless_octree_free(octree: *mut leafless_octree) {
@@ -230,7 +230,7 @@ pub unsafe extern "C" fn leafless_octree_free(octree: *mut leafless_octree) {
     unsafe { release(octree) }
 }
 
-/// What can be said of an octree at once. O(1).
+/// Returns basic facts about an octree. O(1).
 ///
 /// - Buffers: `info`, one struct.
 /// - Result: `*info`.
@@ -259,15 +259,16 @@ pub unsafe extern "C" fn leafless_octree_describe(
     })
 }
 
-/// The same octree, of whose cells this is said; the arrays and the channels are shared. Octrees that other
-/// programs made prove what these know. If FULL and EMPTY are said to be proven, the cells themselves are taken
-/// for the solid: measures of a sampled octree then are those of its cells, and not of what was sampled.
+/// Returns the same octree with stated proofs; the arrays and the channels are shared. Use it for octrees
+/// whose proofs another program knows. If both FULL and EMPTY are stated to be proven, the cells themselves
+/// count as the solid: measures of a sampled octree are then measures of its cells, not of the sampled solid.
 ///
 /// - Buffers: `octree`, a handle; `proven`, a leafless_proven; `displacement_model` as in leafless_proof;
 ///   `result`, one pointer.
 /// - Result: `*result`.
-/// - Errors: LEAFLESS_E_ARGUMENT unless `proven` is one, and the displacement finite and not negative.
-/// - Ownership: give `*result` back with leafless_octree_free.
+/// - Errors: LEAFLESS_E_ARGUMENT if `proven` is not a leafless_proven, or the displacement is negative or not
+///   finite.
+/// - Ownership: release `*result` with leafless_octree_free.
 /// - Untrusted input: any octree, any numbers.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn leafless_octree_with_proof(
@@ -287,8 +288,8 @@ pub unsafe extern "C" fn leafless_octree_with_proof(
     })
 }
 
-/// Counts over all levels, and the volume of the cells. O(depth) once the counts are known, which for an
-/// octree from a file they are and for a new one takes one pass over its arrays.
+/// Returns counts over all levels, and the volume of the cells. O(depth) if the counts are known, as for an
+/// octree from a file; for a new octree the first call takes one pass over its arrays.
 ///
 /// - Buffers: `statistics`, one struct.
 /// - Result: `*statistics`.
@@ -304,10 +305,10 @@ pub unsafe extern "C" fn leafless_octree_statistics(
     })
 }
 
-/// Counts of each level, and the certified volumes of the tree cut there. Entry 0 is the universe, entry
-/// `depth` the finest cells.
+/// Returns the counts of each level, and the certified volumes of the octree cut off at that level. Entry 0
+/// is the universe, entry `depth` the finest cells.
 ///
-/// - Buffers: `levels`, room for `capacity` structs, or NULL to ask for the count only; `count`, one number.
+/// - Buffers: `levels`, room for `capacity` structs, or NULL to get only the count; `count`, one number.
 /// - Result: `*count`, depth + 1; the levels.
 /// - Errors: LEAFLESS_E_BUFFER if the capacity is too small.
 /// - Untrusted input: any octree; of one that was mapped unverified the numbers may be wrong.
@@ -328,11 +329,11 @@ pub unsafe extern "C" fn leafless_octree_levels(
     })
 }
 
-/// Checks that an octree is well-formed and canonical: O(n). Its channels are not looked at: see
-/// leafless_channel_check. Those that the library makes, opens or maps
-/// verified are; the bytes that checksums cover are not looked at here, see leafless_file_verify.
+/// Checks that an octree is well-formed and canonical: O(n). Octrees that the library makes, opens or maps
+/// verified always are. Channels are not checked; see leafless_channel_check. Checksums of files are not
+/// checked; see leafless_file_verify.
 ///
-/// - Result: LEAFLESS_OK if it is.
+/// - Result: LEAFLESS_OK if the octree passes.
 /// - Errors: LEAFLESS_E_DAMAGED, with the first damage in the message; LEAFLESS_E_NO_MEMORY.
 /// - Untrusted input: any octree.
 #[unsafe(no_mangle)]
@@ -340,9 +341,8 @@ pub unsafe extern "C" fn leafless_octree_check(octree: *const leafless_octree) -
     guard(|| unsafe { Ok(shared(octree, "octree")?.octree.view().check()?) })
 }
 
-/// Whether two octrees have the same cells with the same tags, and the same surfaces in them, on the same frame. Metadata does
-/// not count, nor do channels.
-/// O(n).
+/// Returns whether two octrees have the same cells with the same tags and the same surfaces, on the same
+/// frame. Metadata and channels are not compared. O(n).
 ///
 /// - Buffers: `equal`, one truth value.
 /// - Result: `*equal`.
@@ -359,16 +359,15 @@ pub unsafe extern "C" fn leafless_octree_equal(
     })
 }
 
-/// The octree with one more fact in its metadata, or with another value of one; the arrays and the channels are
-/// shared. Names in use: "name", "units", "source", "rule".
+/// Returns the octree with one more fact in its metadata, or with a new value of a fact; the arrays and the
+/// channels are shared. Names in use: "name", "units", "source", "rule".
 ///
 /// - Buffers: `key` and `value`, `key_length` and `value_length` bytes of UTF-8; `named`, one pointer.
 /// - Result: `*named`.
-/// - Errors: LEAFLESS_E_UTF8; LEAFLESS_E_ARGUMENT if all facts would take more than 1 MiB in a file, 8 bytes
-///   and the two texts each; LEAFLESS_E_NO_MEMORY.
-/// - Ownership: the texts are copied. `*named` shares the arrays of `octree`, which may be freed: what must
-///   outlive `octree`, such as bytes that it views, must outlive `*named` too. Give that back with
-///   leafless_octree_free.
+/// - Errors: LEAFLESS_E_UTF8; LEAFLESS_E_ARGUMENT if all facts would take more than 1 MiB in a file (each
+///   takes 8 bytes and its two texts); LEAFLESS_E_NO_MEMORY.
+/// - Ownership: the texts are copied. `*named` shares the arrays of `octree`, which may be freed. Bytes that
+///   `octree` views must outlive `*named` too. Release `*named` with leafless_octree_free.
 /// - Untrusted input: any texts.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn leafless_octree_with_metadata(
@@ -388,10 +387,11 @@ pub unsafe extern "C" fn leafless_octree_with_metadata(
     })
 }
 
-/// The octree with one fact less in its metadata, or with none; the arrays and the channels are shared.
+/// Returns the octree with one fact less in its metadata, or without metadata; the arrays and the channels
+/// are shared.
 ///
 /// - Buffers: `key`, `key_length` bytes of UTF-8, or NULL for all facts; `unnamed`, one pointer.
-/// - Result: `*unnamed`; a fact that is not there need not be.
+/// - Result: `*unnamed`; it is not an error if there is no such fact.
 /// - Errors: LEAFLESS_E_UTF8; LEAFLESS_E_NO_MEMORY.
 /// - Ownership: as leafless_octree_with_metadata.
 /// - Untrusted input: any texts.
@@ -409,7 +409,7 @@ pub unsafe extern "C" fn leafless_octree_without_metadata(
     })
 }
 
-/// The value of a fact in an octree's metadata.
+/// Returns the value of a fact in an octree's metadata.
 ///
 /// - Buffers: `key`, `key_length` bytes of UTF-8; `value` and `value_length`, one each.
 /// - Result: `*value`, not NUL-terminated; NULL if there is no such fact. `*value_length`, in bytes.
@@ -430,13 +430,13 @@ pub unsafe extern "C" fn leafless_octree_peek_metadata(
     })
 }
 
-/// A fact of an octree's metadata by its place among all, which stand by ascending key.
+/// Returns a fact of an octree's metadata by its index. Facts are sorted by key.
 ///
 /// - Buffers: `count`, one number; `key`, `key_length`, `value`, `value_length`, one each, all four NULL to
-///   ask for the count only.
+///   get only the count.
 /// - Result: `*count`, the number of all facts; key and value, not NUL-terminated, with their lengths in
 ///   bytes.
-/// - Errors: LEAFLESS_E_ARGUMENT if there is no fact `index`, unless only the count is asked for.
+/// - Errors: LEAFLESS_E_ARGUMENT if there is no fact `index`, unless only the count is requested.
 /// - Ownership: the texts belong to the octree and live as long as the reference `octree`.
 /// - Untrusted input: any octree.
 #[unsafe(no_mangle)]

@@ -11,17 +11,17 @@ use core::ffi::c_char;
 use leafless::attribute::{CarryRule, carry_channels};
 use leafless::memory;
 
-/// Whose value a point has that lies in several operands.
+/// The rule for the value of a point that lies in several operands.
 #[derive(Clone, Copy)]
 #[repr(u32)]
 pub enum leafless_carry {
-    /// The first operand's that has one.
+    /// The value of the first operand that has one.
     LEAFLESS_CARRY_LEFT = 0,
-    /// The last operand's that has one.
+    /// The value of the last operand that has one.
     LEAFLESS_CARRY_RIGHT = 1,
-    /// The greatest of all, number by number.
+    /// The greatest of all values, number by number.
     LEAFLESS_CARRY_MAX = 2,
-    /// The mean of all, number by number, rounded to the type.
+    /// The mean of all values, number by number, rounded to the type.
     LEAFLESS_CARRY_MEAN = 3,
 }
 
@@ -34,27 +34,27 @@ enumeration! {
     }
 }
 
-/// How channels of one name are carried.
+/// The rule for carrying channels of one name.
 #[derive(Clone, Copy)]
 #[repr(C)]
 pub struct leafless_carry_rule {
     /// The name of the channels, `name_length` bytes of UTF-8.
     pub name: *const c_char,
-    /// The length of the name.
+    /// Length of the name in bytes.
     pub name_length: usize,
     /// A leafless_carry.
     pub carry: Number<leafless_carry>,
 }
 
-/// The octree with one more channel, in the place of one of the same name, if there is one; the arrays of both are
-/// shared. A channel without a name has the empty one.
+/// Returns the octree with one more channel, which replaces a channel of the same name; the arrays of both
+/// are shared. A channel without a name has the empty name.
 ///
 /// - Buffers: `result`, one pointer.
 /// - Result: `*result`, with the metadata of `octree`.
-/// - Errors: LEAFLESS_E_FRAME if the channel lies in another cube than the octree; LEAFLESS_E_ARGUMENT if there are
-///   256 channels already; LEAFLESS_E_NO_MEMORY.
-/// - Ownership: `*result` shares the arrays of `octree` and `channel`, which may be freed: what must outlive these,
-///   such as bytes that they view, must outlive `*result` too. Give that back with leafless_octree_free.
+/// - Errors: LEAFLESS_E_FRAME if the channel lies in another cube than the octree; LEAFLESS_E_ARGUMENT if
+///   there are 256 channels already; LEAFLESS_E_NO_MEMORY.
+/// - Ownership: `*result` shares the arrays of `octree` and `channel`, which may be freed. Bytes that these
+///   view must outlive `*result` too. Release `*result` with leafless_octree_free.
 /// - Untrusted input: any octree, any channel.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn leafless_octree_with_channel(
@@ -70,10 +70,10 @@ pub unsafe extern "C" fn leafless_octree_with_channel(
     })
 }
 
-/// The octree without the channel of a name, or without any; the arrays are shared.
+/// Returns the octree without the channel of a name, or without all channels; the arrays are shared.
 ///
 /// - Buffers: `name`, `name_length` bytes of UTF-8, or NULL for all channels; `result`, one pointer.
-/// - Result: `*result`, with the metadata of `octree`; a channel that is not there need not be.
+/// - Result: `*result`, with the metadata of `octree`; it is not an error if there is no such channel.
 /// - Errors: LEAFLESS_E_UTF8; LEAFLESS_E_NO_MEMORY.
 /// - Ownership: as leafless_octree_with_channel.
 /// - Untrusted input: any octree, any text.
@@ -94,13 +94,13 @@ pub unsafe extern "C" fn leafless_octree_without_channel(
     })
 }
 
-/// A channel of an octree by its place among all, which stand in ascending order of their names.
+/// Returns a channel of an octree by its index. Channels are sorted by name.
 ///
 /// - Buffers: `channel`, one pointer.
 /// - Result: `*channel`.
 /// - Errors: LEAFLESS_E_ARGUMENT if there is no channel `index`.
-/// - Ownership: `*channel` shares the arrays of `octree`, which may be freed: what must outlive `octree`, such as
-///   bytes that it views, must outlive `*channel` too. Give that back with leafless_channel_free.
+/// - Ownership: `*channel` shares the arrays of `octree`, which may be freed. Bytes that `octree` views must
+///   outlive `*channel` too. Release `*channel` with leafless_channel_free.
 /// - Untrusted input: any octree.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn leafless_octree_channel_at(
@@ -117,7 +117,7 @@ pub unsafe extern "C" fn leafless_octree_channel_at(
     })
 }
 
-/// The channel of an octree with a name.
+/// Returns the channel of an octree with a name.
 ///
 /// - Buffers: `name`, `name_length` bytes of UTF-8; `channel`, one pointer.
 /// - Result: `*channel`; NULL if there is no such channel.
@@ -140,20 +140,22 @@ pub unsafe extern "C" fn leafless_octree_channel(
     })
 }
 
-/// An octree that was made of operands in the same cube, whatever the operation, with their channels. Channels of one
-/// name become one, in which at each point the values of those operands count that are not EMPTY there. A channel that
-/// only one operand has is shared as it is. The same bit for bit for any number of threads.
+/// Returns an octree with the channels of its operands. The octree was made by any operation from operands in
+/// the same cube. Channels of one name become one channel, in which, at each point, the values of the
+/// operands count that are not EMPTY there. A channel that only one operand has is shared unchanged. The
+/// result is identical, bit for bit, for any number of threads.
 ///
-/// - Buffers: `octree`, a handle; `operands`, `count` handles; `carry`, a leafless_carry, by which channels are joined
-///   that none of `rules` names; `rules`, `rule_count` structs, or NULL if that is 0; the first that names a channel
-///   counts. `options`, one struct or NULL, of which limits concern each channel; `result`, one pointer.
-/// - Result: `*result`: the cells and metadata of `octree`; its own channels, but those of names that operands have;
-///   each channel with the metadata of the first operand that has it.
-/// - Errors: LEAFLESS_E_ARGUMENT if channels of one name have values of two types, or there are more than 256;
-///   LEAFLESS_E_FRAME unless all lie in one cube; LEAFLESS_E_UTF8; LEAFLESS_E_DAMAGED; LEAFLESS_E_LIMIT;
+/// - Buffers: `octree`, a handle; `operands`, `count` handles; `carry`, a leafless_carry, the rule for
+///   channels that none of `rules` names; `rules`, `rule_count` structs, or NULL if that is 0; the first rule
+///   that names a channel applies. `options`, one struct or NULL, whose limits apply to each channel;
+///   `result`, one pointer.
+/// - Result: `*result`: the cells and metadata of `octree`; its own channels, except those whose name a
+///   channel of an operand has; each such channel with the metadata of the first operand that has it.
+/// - Errors: LEAFLESS_E_ARGUMENT if channels of one name have values of two types, or there are more than
+///   256; LEAFLESS_E_FRAME unless all lie in one cube; LEAFLESS_E_UTF8; LEAFLESS_E_DAMAGED; LEAFLESS_E_LIMIT;
 ///   LEAFLESS_E_CANCELLED; LEAFLESS_E_NO_MEMORY.
 /// - Ownership: as leafless_octree_with_channel.
-/// - Threads: any; uses as many as `options` says.
+/// - Threads: any; runs on as many threads as `options` says.
 /// - Untrusted input: any octrees, any texts.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn leafless_octree_carry_channels(

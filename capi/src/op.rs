@@ -1,4 +1,4 @@
-//! From solids to octrees, and from octrees to others: building, resolving, set algebra.
+//! Operations that make octrees: building, resolving, set algebra.
 
 use super::boundary::{guard, out, shared};
 use super::control::{controlled, leafless_options};
@@ -11,17 +11,17 @@ use super::status::leafless_status;
 use leafless::op::{difference_of, intersection_of, resolve, union_of, xor_of};
 use leafless::{Metadata, Rule, build, compact, memory};
 
-/// What becomes of finest cells that are not decided.
+/// The rule for finest cells that are not decided.
 #[derive(Clone, Copy)]
 #[repr(u32)]
 pub enum leafless_rule {
-    /// They stay PARTIAL: FULL is proven full, EMPTY proven empty.
+    /// They stay PARTIAL: FULL cells are proven full, EMPTY cells proven empty.
     LEAFLESS_RULE_CERTIFIED = 0,
-    /// Their centre decides.
+    /// The centre of the cell decides.
     LEAFLESS_RULE_SAMPLED = 1,
-    /// EMPTY: the result lies in the solid.
+    /// They become EMPTY: the result lies in the solid.
     LEAFLESS_RULE_INNER = 2,
-    /// FULL: the result covers the solid.
+    /// They become FULL: the result covers the solid.
     LEAFLESS_RULE_OUTER = 3,
 }
 
@@ -34,18 +34,18 @@ enumeration! {
     }
 }
 
-/// Builds the octree of a solid to the depth of a frame. The result is the same bit for bit for any number of
-/// threads.
+/// Builds the octree of a solid to the depth of a frame. The result is identical, bit for bit, for any number
+/// of threads.
 ///
 /// - Buffers: `frame`, one struct; `options`, one struct or NULL; `octree`, one pointer. `rule` is a
 ///   leafless_rule.
 /// - Result: `*octree`.
-/// - Errors: LEAFLESS_E_FRAME if the solid belongs to another frame; LEAFLESS_E_NOT_SAMPLED if
-///   LEAFLESS_RULE_SAMPLED is asked of a solid that cannot decide points; LEAFLESS_E_CALLBACK;
-///   LEAFLESS_E_DAMAGED; LEAFLESS_E_ARGUMENT; LEAFLESS_E_LIMIT; LEAFLESS_E_CANCELLED; LEAFLESS_E_NO_MEMORY.
-/// - Ownership: give `*octree` back with leafless_octree_free.
-/// - Threads: any; uses as many as `options` says.
-/// - Untrusted input: any solid; set `max_bytes` where the depth or the solid is not your own choice.
+/// - Errors: LEAFLESS_E_FRAME if the solid belongs to another frame; LEAFLESS_E_NOT_SAMPLED if `rule` is
+///   LEAFLESS_RULE_SAMPLED and the solid cannot decide points; LEAFLESS_E_CALLBACK; LEAFLESS_E_DAMAGED;
+///   LEAFLESS_E_ARGUMENT; LEAFLESS_E_LIMIT; LEAFLESS_E_CANCELLED; LEAFLESS_E_NO_MEMORY.
+/// - Ownership: release `*octree` with leafless_octree_free.
+/// - Threads: any; runs on as many threads as `options` says.
+/// - Untrusted input: any solid; set `max_bytes` if the depth or the solid is untrusted.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn leafless_octree_build(
     solid: *const leafless_solid,
@@ -63,17 +63,17 @@ pub unsafe extern "C" fn leafless_octree_build(
     })
 }
 
-/// The octree with its PARTIAL cells resolved: EMPTY under LEAFLESS_RULE_INNER, FULL under
+/// Returns the octree with its PARTIAL cells resolved: EMPTY under LEAFLESS_RULE_INNER, FULL under
 /// LEAFLESS_RULE_OUTER. An octree that keeps surfaces is refused, because its cells are few and large:
 /// leafless_octree_plain resolves it at a depth.
 ///
 /// - Buffers: `options`, one struct or NULL; `resolved`, one pointer. `rule` is a leafless_rule.
-/// - Result: `*resolved`, with the octree's facts "name" and "units" and no others, and with its channels.
+/// - Result: `*resolved`, with the octree's channels and, of its metadata, the facts "name" and "units".
 /// - Errors: LEAFLESS_E_NOT_SAMPLED under LEAFLESS_RULE_SAMPLED if a cell is PARTIAL, because a stored octree
-///   knows no more about it; LEAFLESS_E_ARGUMENT, also if the octree keeps surfaces; LEAFLESS_E_DAMAGED;
-///   LEAFLESS_E_LIMIT; LEAFLESS_E_CANCELLED; LEAFLESS_E_NO_MEMORY.
-/// - Ownership: `octree` stays as it is; give `*resolved` back with leafless_octree_free.
-/// - Threads: any; uses as many as `options` says.
+///   has no more information about the cell; LEAFLESS_E_ARGUMENT, also if the octree keeps surfaces;
+///   LEAFLESS_E_DAMAGED; LEAFLESS_E_LIMIT; LEAFLESS_E_CANCELLED; LEAFLESS_E_NO_MEMORY.
+/// - Ownership: `octree` is unchanged; release `*resolved` with leafless_octree_free.
+/// - Threads: any; runs on as many threads as `options` says.
 /// - Untrusted input: any octree.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn leafless_octree_resolve(
@@ -92,13 +92,13 @@ pub unsafe extern "C" fn leafless_octree_resolve(
     })
 }
 
-/// The same octree with its bricks encoded as a file would have them, through a dictionary where that is
-/// shorter. Everything works on it as on any other.
+/// Returns the same octree with its bricks encoded as in a file, through a dictionary where that is shorter.
+/// All functions accept it like any other octree.
 ///
 /// - Buffers: `compacted`, one pointer.
 /// - Result: `*compacted`, with the same metadata and channels.
 /// - Errors: LEAFLESS_E_DAMAGED if a brick cannot be read; LEAFLESS_E_NO_MEMORY.
-/// - Ownership: `octree` stays as it is; give `*compacted` back with leafless_octree_free.
+/// - Ownership: `octree` is unchanged; release `*compacted` with leafless_octree_free.
 /// - Untrusted input: any octree.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn leafless_octree_compact(
@@ -113,28 +113,31 @@ pub unsafe extern "C" fn leafless_octree_compact(
     })
 }
 
-/// What a set operation makes of octrees, at least one. Exact, and the same bit for bit for any number of threads. The
-/// result has no channels: leafless_octree_carry_channels gives it those of the operands.
+/// Combines octrees, at least one, by a set operation. The result is exact, and identical, bit for bit, for
+/// any number of threads. It has no channels: leafless_octree_carry_channels adds the channels of the
+/// operands.
 ///
-/// Octrees without surfaces are joined two by two: limits of `options` concern each of these steps, and the result is
-/// never larger than all operands together. If an octree keeps surfaces (leafless_octree_build_extended), the result keeps
-/// surfaces. Then all operands are walked at once, and no intermediate result is copied: pass the stock and all tools in one
-/// call, not one call a tool. A cell ends as soon as three surfaces are left in it. A cell that more surfaces cross at the
-/// frame's depth is given up, and nothing is known of it. An octree without surfaces takes part as a certified octree. Surfaces that are one
-/// in two octrees are one: A less A is LEAFLESS_TAG_EMPTY where nothing was given up. The result may be larger than the
-/// operands. Curved surfaces that nearly coincide may need very many cells: set `max_bytes` of `options`.
+/// Octrees without surfaces are combined in pairs: the limits of `options` apply to each of these steps, and
+/// the result is never larger than all operands together. If an octree keeps surfaces
+/// (leafless_octree_build_extended), the result keeps surfaces. Then all operands are walked at once, and no
+/// intermediate result is copied: pass the stock and all tools in one call, not one call a tool. A cell ends
+/// as soon as three surfaces are left in it. A cell that more surfaces cross at the frame's depth is given
+/// up: no function of surfaces is stored for it. An octree without surfaces takes part as a certified octree.
+/// Equal surfaces of two octrees are recognised: A minus A is LEAFLESS_TAG_EMPTY except in cells that were
+/// given up. The result may be larger than the operands. Curved surfaces that nearly coincide may need very
+/// many cells: set `max_bytes` of `options`.
 ///
-/// - Buffers: `octrees`, `count` handles; `options`, one struct or NULL; `result`, one pointer. `operation` is a
-///   leafless_operation.
-/// - Result: `*result`, with those of the facts "name" and "units" that all operands have with one value, and
-///   no other metadata.
-/// - Errors: LEAFLESS_E_FRAME if the frames differ; LEAFLESS_E_NULL, also of an element; LEAFLESS_E_ARGUMENT, also if
-///   `count` is 0; LEAFLESS_E_DAMAGED; LEAFLESS_E_LIMIT, also if the exact map of a surface's placements is too
-///   long; LEAFLESS_E_CANCELLED; LEAFLESS_E_NO_MEMORY.
-/// - Ownership: the operands stay as they are; give `*result` back with leafless_octree_free.
-/// - Threads: any; uses as many as `options` says.
-/// - Untrusted input: any octrees; damage in ones that were mapped unverified is an error or reads as
-///   PARTIAL. Set `max_bytes` if an octree keeps surfaces and is not your own choice.
+/// - Buffers: `octrees`, `count` handles; `options`, one struct or NULL; `result`, one pointer. `operation`
+///   is a leafless_operation.
+/// - Result: `*result`, with the facts "name" and "units" if all operands have the same value of them, and no
+///   other metadata.
+/// - Errors: LEAFLESS_E_FRAME if the frames differ; LEAFLESS_E_NULL, also of an element; LEAFLESS_E_ARGUMENT,
+///   also if `count` is 0; LEAFLESS_E_DAMAGED; LEAFLESS_E_LIMIT, also if the exact map of a surface's
+///   placements is too long; LEAFLESS_E_CANCELLED; LEAFLESS_E_NO_MEMORY.
+/// - Ownership: the operands are unchanged; release `*result` with leafless_octree_free.
+/// - Threads: any; runs on as many threads as `options` says.
+/// - Untrusted input: any octrees; damage in octrees that were mapped unverified is an error or reads as
+///   PARTIAL. Set `max_bytes` if an octree keeps surfaces and is untrusted.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn leafless_octree_combine(
     operation: Number<leafless_operation>,
@@ -159,13 +162,13 @@ pub unsafe extern "C" fn leafless_octree_combine(
     })
 }
 
-/// Everything but `octree`, inside of its universe and out. Surfaces are kept.
+/// Returns the complement of an octree, inside its universe and outside. Surfaces are kept.
 ///
 /// - Buffers: `options`, one struct or NULL; `result`, one pointer.
 /// - Result: as leafless_octree_combine.
 /// - Errors: LEAFLESS_E_DAMAGED; LEAFLESS_E_LIMIT; LEAFLESS_E_CANCELLED; LEAFLESS_E_NO_MEMORY.
 /// - Ownership: as leafless_octree_combine.
-/// - Threads: any; uses as many as `options` says.
+/// - Threads: any; runs on as many threads as `options` says.
 /// - Untrusted input: as leafless_octree_combine.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn leafless_octree_complement(

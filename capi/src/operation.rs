@@ -1,10 +1,10 @@
-//! The set operations, on operands of every kind.
+//! The set operations for operands of every kind.
 
 use super::boundary::{Failure, shared, slice};
 use super::number::enumeration;
 use leafless::memory;
 
-/// What is made of several operands.
+/// A set operation on several operands.
 #[derive(Clone, Copy)]
 #[repr(u32)]
 pub enum leafless_operation {
@@ -14,7 +14,7 @@ pub enum leafless_operation {
     LEAFLESS_OPERATION_INTERSECTION = 1,
     /// The points of the first operand that lie in none of the others.
     LEAFLESS_OPERATION_DIFFERENCE = 2,
-    /// The points that lie in an odd number of operands: of two, in just one.
+    /// The points that lie in an odd number of operands: for two operands, in exactly one.
     LEAFLESS_OPERATION_XOR = 3,
 }
 use leafless_operation::*;
@@ -28,7 +28,7 @@ enumeration! {
     }
 }
 
-/// What `part` makes of each operand.
+/// Returns the results of `part` for each operand.
 ///
 /// # Safety
 /// As [`slice`] and, for each element, [`shared`].

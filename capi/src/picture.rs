@@ -1,4 +1,4 @@
-//! Pictures: taken of layers into the host's buffers, written as PNG, with legends.
+//! Pictures of layers: rendering into the host's buffers, PNG files, legends.
 
 use super::boundary::{Failure, Out, Sized32, buffer, guard, out, shared, sized, slice, text};
 use super::camera::leafless_camera;
@@ -14,8 +14,8 @@ use leafless::render::{
     Clip, ClippedLayer, Layer, LegendBox, LegendSide, Picture, Shot, draw_colour_bar, draw_names, render,
 };
 
-/// How a picture is taken. The size and the camera must be set; all other fields but the first may be zero, which is
-/// their default.
+/// The parameters of a picture. The size and the camera must be set; zero is the default of all other fields
+/// but the first.
 #[derive(Clone, Copy)]
 #[repr(C)]
 pub struct leafless_shot {
@@ -25,20 +25,21 @@ pub struct leafless_shot {
     pub width: u32,
     /// Rows, 1 to 16384.
     pub height: u32,
-    /// Samples of a pixel: 1, 4, 9, 16, 25, 36, 49 or 64, on a grid; 0: 4.
+    /// Samples of a pixel, on a grid: 1, 4, 9, 16, 25, 36, 49 or 64; 0 means 4.
     pub samples: u32,
-    /// From where.
+    /// The camera.
     pub camera: leafless_camera,
     /// 4 · `clip_plane_count` numbers: a, b, c and d of each plane, which cuts away the points with
     /// a x + b y + c z + d < 0.
     pub clip_planes: *const f64,
-    /// How many clip planes there are.
+    /// Number of clip planes.
     pub clip_plane_count: u64,
-    /// 6 numbers, the least and the greatest corner of a box outside of which all is cut away; NULL: none.
+    /// 6 numbers, the least and the greatest corner of a box; everything outside it is cut away. NULL means
+    /// none.
     pub clip_box_model: *const f64,
-    /// What is seen where nothing is: red, green, blue (sRGB) and opacity. All zero: nothing, transparent.
+    /// The background colour: red, green, blue (sRGB) and opacity. All zero means transparent.
     pub background: [u8; 4],
-    /// 0.
+    /// Reserved; 0.
     pub reserved: u32,
 }
 
@@ -47,7 +48,7 @@ unsafe impl Sized32 for leafless_shot {}
 
 impl leafless_shot {
     /// # Safety
-    /// The pointers are NULL or misaligned, or point to as many numbers as they say.
+    /// The pointers are NULL or misaligned, or point to as many numbers as the fields say.
     unsafe fn check(&self) -> Result<Shot, Failure> {
         if self.reserved != 0 {
             return Err(Failure::Argument { name: "shot.reserved", problem: "must be 0" });
@@ -67,12 +68,12 @@ impl leafless_shot {
     }
 }
 
-/// The line of sight of a place in a picture, in pixels from its upper left corner: the middle of the first
-/// pixel is 0.5, 0.5. What is seen there at the depth d is at `from_model` + d · `direction`.
+/// Returns the line of sight of a position in a picture, in pixels from its upper left corner: the middle of
+/// the first pixel is 0.5, 0.5. A point visible there at the depth d is `from_model` + d · `direction`.
 ///
 /// - Buffers: `shot`, one struct; `from_model` and `direction`, 3 numbers each.
-/// - Result: `from_model`, the point from which one looks there; `direction`, one long along the view.
-/// - Errors: LEAFLESS_E_ARGUMENT if the camera is not as it must be, or the size is none.
+/// - Result: `from_model`, the start of the line of sight; `direction`, with the component 1 along the view.
+/// - Errors: LEAFLESS_E_ARGUMENT if the camera or the size is invalid.
 /// - Untrusted input: any numbers.
 ///
 /// cbindgen:ptrs-as-arrays=[[from_model; 3], [direction; 3]]
@@ -98,18 +99,20 @@ pub unsafe extern "C" fn leafless_shot_line_of_sight(
     })
 }
 
-/// Takes a picture of layers. Surfaces hide what lies behind them, whichever layer it is of; of two at one depth the
-/// first layer's is seen. The same bytes for any number of threads.
+/// Renders a picture of layers. Surfaces hide objects behind them in all layers; of two surfaces at one depth
+/// that of the first layer is visible. The bytes are identical for any number of threads.
 ///
-/// - Buffers: `shot`, one struct; `layers`, `layer_count` handles; `options`, one struct or NULL; `colours`, room for
-///   `colour_capacity` bytes, and `depths`, room for `depth_capacity` numbers, each NULL if it is not wanted.
-/// - Result: in `colours` 4 · width · height bytes: red, green, blue (sRGB, not multiplied by the opacity) and opacity of
-///   each pixel, row by row from the upper left corner without gaps. In `depths` width · height numbers: the distance
-///   from the plane of the eye to what is nearest and opaque, in model units; infinity where nothing is, or farther than
-///   a float tells.
-/// - Errors: LEAFLESS_E_ARGUMENT if the shot is not as it must be; LEAFLESS_E_BUFFER if a capacity is too small: nothing
-///   is written then; what solids and attributes of layers return; LEAFLESS_E_NO_MEMORY; LEAFLESS_E_CANCELLED.
-/// - Threads: any; uses as many as `options` says.
+/// - Buffers: `shot`, one struct; `layers`, `layer_count` handles; `options`, one struct or NULL; `colours`,
+///   room for `colour_capacity` bytes, and `depths`, room for `depth_capacity` numbers, each NULL if it is
+///   not wanted.
+/// - Result: in `colours` 4 · width · height bytes: red, green, blue (sRGB, not multiplied by the opacity)
+///   and opacity of each pixel, row by row from the upper left corner without gaps. In `depths` width ·
+///   height numbers: the distance from the plane of the eye to the nearest opaque point, in model units;
+///   infinity if there is none, or if it is beyond the range of float.
+/// - Errors: LEAFLESS_E_ARGUMENT if the shot is invalid; LEAFLESS_E_BUFFER if a capacity is too small:
+///   nothing is written then; the errors of solids and attributes of layers; LEAFLESS_E_NO_MEMORY;
+///   LEAFLESS_E_CANCELLED.
+/// - Threads: any; runs on as many threads as `options` says.
 /// - Untrusted input: any layers, any numbers.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn leafless_picture_render(
@@ -152,7 +155,7 @@ pub unsafe extern "C" fn leafless_picture_render(
     })
 }
 
-/// The host's colours as a picture.
+/// Returns the host's colours as a picture.
 ///
 /// # Safety
 /// As [`slice`] for 4 · width · height bytes.
@@ -163,9 +166,11 @@ unsafe fn picture(colours: *const u8, width: u32, height: u32) -> Result<Picture
     Ok(Picture::of_colours([width, height], memory::copied(colours)?)?)
 }
 
-/// Writes a picture as a PNG file: without opacity if all pixels are opaque. The same picture makes the same bytes.
+/// Writes a picture as a PNG file: without opacity if all pixels are opaque. The same picture makes the same
+/// bytes.
 ///
-/// - Buffers: `colours`, 4 · `width` · `height` bytes, as leafless_picture_render writes them; `sink`, one struct.
+/// - Buffers: `colours`, 4 · `width` · `height` bytes, as written by leafless_picture_render; `sink`, one
+///   struct.
 /// - Errors: LEAFLESS_E_ARGUMENT unless the sides are 1 to 16384 pixels; LEAFLESS_E_IO; LEAFLESS_E_CALLBACK;
 ///   LEAFLESS_E_BUFFER; LEAFLESS_E_UTF8; LEAFLESS_E_NO_MEMORY.
 /// - Untrusted input: any bytes.
@@ -183,7 +188,7 @@ pub unsafe extern "C" fn leafless_picture_write(
     })
 }
 
-/// At which side of a picture a legend lies.
+/// The side of a picture where a legend lies.
 #[derive(Clone, Copy)]
 #[repr(u32)]
 pub enum leafless_legend_side {
@@ -204,9 +209,9 @@ enumeration! {
 #[derive(Clone, Copy)]
 #[repr(C)]
 pub struct leafless_legend_box {
-    /// Pixels to the left of it.
+    /// Pixels to the left of the legend.
     pub left: u32,
-    /// Rows above it.
+    /// Rows above the legend.
     pub top: u32,
     /// Its width in pixels.
     pub width: u32,
@@ -214,7 +219,7 @@ pub struct leafless_legend_box {
     pub height: u32,
 }
 
-/// Draws a legend into the host's colours, and tells where.
+/// Draws a legend into the host's colours and returns its box.
 ///
 /// # Safety
 /// As [`super::boundary::exclusive`] for 4 · width · height bytes.
@@ -233,16 +238,16 @@ unsafe fn drawn(
     }
 }
 
-/// Draws a bar of the colours of values over a transfer function's range into a picture, with a title and numbers, on a
-/// light panel. Longer titles than find room are cut.
+/// Draws a bar of the colours of values over a transfer function's range into a picture, with a title and
+/// numbers, on a light panel. Titles that are too long are cut.
 ///
 /// - Buffers: `colours`, 4 · `width` · `height` bytes, as leafless_picture_render writes them; `title`,
 ///   `title_length` bytes of UTF-8; `transfer`, one struct; `covered`, one struct. `side` is a
 ///   leafless_legend_side.
-/// - Result: the picture with the legend; in `*covered` the box that it covers, all zero if the picture is smaller than
-///   160 x 120 pixels, which has no legend.
-/// - Errors: LEAFLESS_E_ARGUMENT unless the sides are 1 to 16384 pixels, or if the transfer function is not as it must
-///   be; LEAFLESS_E_UTF8; LEAFLESS_E_NO_MEMORY. The picture is then as it was.
+/// - Result: the picture with the legend; in `*covered` the box that it covers, all zero if the picture is
+///   smaller than 160 x 120 pixels, which has no legend.
+/// - Errors: LEAFLESS_E_ARGUMENT unless the sides are 1 to 16384 pixels, or if the transfer function is
+///   invalid; LEAFLESS_E_UTF8; LEAFLESS_E_NO_MEMORY. After an error the picture is unchanged.
 /// - Untrusted input: any bytes.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn leafless_picture_draw_bar(
@@ -268,25 +273,26 @@ pub unsafe extern "C" fn leafless_picture_draw_bar(
     })
 }
 
-/// A colour and what it stands for.
+/// A colour with its meaning in a legend.
 #[derive(Clone, Copy)]
 #[repr(C)]
 pub struct leafless_legend_name {
     /// The name in UTF-8; need not be NUL-terminated.
     pub name: *const c_char,
-    /// Its length in bytes.
+    /// Length of the name in bytes.
     pub name_length: usize,
     /// Red, green, blue (sRGB) and opacity.
     pub colour: [u8; 4],
-    /// 0.
+    /// Reserved; 0.
     pub reserved: u32,
 }
 
-/// Draws boxes of colours with their names into a picture, under a title, on a light panel. Names that find no room are
-/// left out, or cut.
+/// Draws boxes of colours with their names into a picture, under a title, on a light panel. Names that do not
+/// fit are left out or cut.
 ///
-/// - Buffers: `colours`, `title`, `side` and `covered` as leafless_picture_draw_bar; `names`, `name_count` structs.
-/// - Result: as leafless_picture_draw_bar; no legend either if there is neither a title nor a name.
+/// - Buffers: `colours`, `title`, `side` and `covered` as leafless_picture_draw_bar; `names`, `name_count`
+///   structs.
+/// - Result: as leafless_picture_draw_bar; there is also no legend if there is neither a title nor a name.
 /// - Errors: as leafless_picture_draw_bar.
 /// - Untrusted input: any bytes.
 #[unsafe(no_mangle)]

@@ -1,4 +1,4 @@
-//! Layouts: what stands where, and whether it may.
+//! Layouts: placing, moving and checking copies of items.
 
 use super::bay::leafless_bay;
 use super::boundary::{Failure, buffer, discard, filled, guard, out, output, shared};
@@ -12,15 +12,15 @@ use leafless::layout::{Beside, Layout, Neighbour, Placed, Standing};
 use leafless::query::GapVerdict;
 use std::sync::{RwLock, RwLockReadGuard, RwLockWriteGuard, TryLockError, TryLockResult};
 
-/// A container with obstacles, items, and the places of copies of these items. Solids are prepared once, when the layout is
-/// made. Copies are numbered from 0, in the order in which they were placed.
+/// A container with obstacles, items, and placed copies of these items. Solids are prepared once, when the
+/// layout is made. Copies are numbered from 0, in the order of placing.
 ///
-/// While one call changes it, every other call returns LEAFLESS_E_BUSY, from another thread as from the host's functions
-/// that are asked about a cell. While another call reads it, changing it returns LEAFLESS_E_BUSY. Calls that read it may
-/// be made at once from any number of threads.
+/// While one call changes a layout, every other call returns LEAFLESS_E_BUSY, both from another thread and
+/// from the host's functions inside the call. While a call reads it, calls that change it return
+/// LEAFLESS_E_BUSY. Any number of threads may read it at once.
 pub struct leafless_layout(RwLock<Layout>);
 
-/// To read a layout, unless another call changes it.
+/// Returns a layout for reading, unless another call changes it.
 ///
 /// # Safety
 /// As [`shared`].
@@ -31,7 +31,7 @@ pub(super) unsafe fn read<'a>(
     unlocked(unsafe { shared(layout, "layout")? }.0.try_read())
 }
 
-/// To change a layout, unless another call uses it.
+/// Returns a layout for changing, unless another call uses it.
 ///
 /// # Safety
 /// As [`shared`].
@@ -45,24 +45,24 @@ pub(super) unsafe fn change<'a>(
 fn unlocked<G>(held: TryLockResult<G>) -> Result<G, Failure> {
     match held {
         Ok(held) => Ok(held),
-        // A change that was cut off may have placed a copy without the box around it.
+        // A change that panicked may have placed a copy without its bounding box.
         Err(TryLockError::Poisoned(_)) => panic!("an earlier call left this layout by a panic"),
         Err(TryLockError::WouldBlock) => Err(Failure::Busy { name: "layout" }),
     }
 }
 
-/// A number of the host as an index; what is too large for one is no index of anything.
+/// Returns a number of the host as an index. A number that is too large becomes an index that does not exist.
 fn index(number: u64) -> usize {
     usize::try_from(number).unwrap_or(usize::MAX)
 }
 
-/// A copy of an item in its place.
+/// A placed copy of an item.
 #[derive(Clone, Copy)]
 #[repr(C)]
 pub struct leafless_placement {
     /// The number of the item.
     pub item: u64,
-    /// Where it stands: the rows of [M | t], where a point p of the item goes to M p + t.
+    /// The placement: the rows of [M | t], where a point p of the item goes to M p + t.
     pub matrix: [f64; 12],
 }
 
@@ -73,11 +73,11 @@ impl From<&Placed> for leafless_placement {
     }
 }
 
-/// What a copy may be too near to.
+/// The kinds of objects that a copy may be too near to.
 #[derive(Clone, Copy)]
 #[repr(u32)]
 pub enum leafless_beside {
-    /// What lies outside of the container.
+    /// The outside of the container.
     LEAFLESS_BESIDE_WALL = 0,
     /// An obstacle.
     LEAFLESS_BESIDE_OBSTACLE = 1,
@@ -86,7 +86,7 @@ pub enum leafless_beside {
 }
 use leafless_beside::*;
 
-/// What is known of a copy and something beside it.
+/// The relation of a copy to a neighbour.
 #[derive(Clone, Copy)]
 #[repr(C)]
 pub struct leafless_neighbour {
@@ -94,9 +94,9 @@ pub struct leafless_neighbour {
     pub gap_model: leafless_interval,
     /// The number of the obstacle or of the other copy; 0 for the wall.
     pub number: u64,
-    /// A leafless_beside: what is beside it.
+    /// A leafless_beside: the kind of the neighbour.
     pub beside: u32,
-    /// A leafless_gap_verdict: whether the two are proven to be as far apart as they should be, or not to be.
+    /// A leafless_gap_verdict: whether the two are proven to keep their clearance, or to violate it.
     pub verdict: u32,
 }
 
@@ -116,24 +116,24 @@ impl From<&Neighbour> for leafless_neighbour {
     }
 }
 
-/// How a copy stands, and what is next to it.
+/// The check of a copy, with its nearest neighbour.
 #[derive(Clone, Copy)]
 #[repr(C)]
 pub struct leafless_standing {
     /// sizeof(leafless_standing).
     pub struct_size: u32,
-    /// A leafless_gap_verdict. YES: the copy is proven to lie in the container, to overlap with nothing, and to be as far from
-    /// everything as it should be. NO: one of these is proven to be wrong.
+    /// A leafless_gap_verdict. YES: the copy is proven to lie in the container, to overlap nothing, and to
+    /// keep all clearances. NO: one of these is proven to be violated.
     pub verdict: u32,
-    /// How many neighbours are in the way, or may be: those of which YES is not proven. All are counted; no more than the first
-    /// 256 are told.
+    /// Number of conflicts: neighbours without a proven YES. All are counted; only the first 256 are
+    /// returned.
     pub conflict_count: u64,
     /// Cells that were split.
     pub splits: u64,
-    /// If `has_nearest`, what is next to the copy, but for the wall: the gap holds the least of all distances. Else it is UNDECIDED
-    /// about the wall.
+    /// If `has_nearest`, the nearest neighbour except the wall; its gap contains the least of all distances.
+    /// Otherwise the wall with the verdict UNDECIDED.
     pub nearest: leafless_neighbour,
-    /// Whether there is anything else in the container.
+    /// Whether the container holds anything else.
     pub has_nearest: bool,
 }
 
@@ -154,11 +154,11 @@ impl From<&Standing> for leafless_standing {
     }
 }
 
-/// How one of many copies stands.
+/// The check of one of many copies.
 #[derive(Clone, Copy)]
 #[repr(C)]
 pub struct leafless_placed_standing {
-    /// As leafless_standing has it.
+    /// As in leafless_standing.
     pub conflict_count: u64,
     /// Cells that were split.
     pub splits: u64,
@@ -176,14 +176,14 @@ impl From<&Standing> for leafless_placed_standing {
     }
 }
 
-/// A layout of what a bay holds, in which nothing is placed. It takes the time that its solids take to be prepared, once each.
+/// Makes a layout from a bay, with nothing placed. It takes the time to prepare each of its solids once.
 ///
 /// - Buffers: `options`, one struct or NULL; `layout`, one pointer.
 /// - Result: `*layout`.
-/// - Errors: LEAFLESS_E_ARGUMENT if the container or an obstacle has no bounds, or no extent along an axis; LEAFLESS_E_CALLBACK;
-///   LEAFLESS_E_DAMAGED; LEAFLESS_E_CANCELLED; LEAFLESS_E_NO_MEMORY.
-/// - Ownership: the layout shares the solids. The bay may be changed and freed, which does not concern the layout. Give
-///   `*layout` back with leafless_layout_free.
+/// - Errors: LEAFLESS_E_ARGUMENT if the container or an obstacle has no bounds, or no extent along an axis;
+///   LEAFLESS_E_CALLBACK; LEAFLESS_E_DAMAGED; LEAFLESS_E_CANCELLED; LEAFLESS_E_NO_MEMORY.
+/// - Ownership: the layout shares the solids. The bay may be changed and freed without effect on the layout.
+///   Release `*layout` with leafless_layout_free.
 /// - Untrusted input: any solids.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn leafless_layout_new(
@@ -199,10 +199,10 @@ pub unsafe extern "C" fn leafless_layout_new(
     })
 }
 
-/// Gives back a layout.
+/// Releases a layout.
 ///
 /// - Buffers: `layout`, a handle or NULL, which does nothing.
-/// - Ownership: the handle is gone.
+/// - Ownership: the handle is invalid afterwards.
 /// - Threads: no other call may use the handle.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn leafless_layout_free(layout: *mut leafless_layout) {
@@ -210,12 +210,14 @@ pub unsafe extern "C" fn leafless_layout_free(layout: *mut leafless_layout) {
     unsafe { discard(layout) }
 }
 
-/// Places a copy of an item, wherever that is. Nothing is checked, and the count of the item is not looked at.
+/// Places a copy of an item anywhere. Nothing is checked, and the count of the item is ignored.
 ///
-/// - Buffers: `matrix`, 12 numbers, the rows of [M | t], where a point p of the item goes to M p + t; `number`, one number.
-/// - Result: `*number`, the number of the copy, which is greater by one than that of the last.
-/// - Errors: LEAFLESS_E_ARGUMENT if there is no such item; if an entry is neither 0 nor of a magnitude between 2^-64 and 2^64; if
-///   M mirrors, or stretches lengths by more than 10^-9 of them; LEAFLESS_E_NO_MEMORY; LEAFLESS_E_BUSY.
+/// - Buffers: `matrix`, 12 numbers, the rows of [M | t], where a point p of the item goes to M p + t;
+///   `number`, one number.
+/// - Result: `*number`, the number of the copy, one greater than that of the previous copy.
+/// - Errors: LEAFLESS_E_ARGUMENT if there is no such item; if an entry is neither 0 nor of a magnitude
+///   between 2^-64 and 2^64; if M mirrors, or changes lengths by more than 10^-9 of them;
+///   LEAFLESS_E_NO_MEMORY; LEAFLESS_E_BUSY.
 /// - Threads: any; LEAFLESS_E_BUSY while another call uses the layout.
 /// - Untrusted input: any numbers.
 ///
@@ -235,10 +237,10 @@ pub unsafe extern "C" fn leafless_layout_place(
     })
 }
 
-/// Moves a copy to another place. Nothing is checked: leafless_layout_check does that.
+/// Moves a copy to another placement. Nothing is checked; leafless_layout_check does that.
 ///
 /// - Buffers: `matrix`, 12 numbers, as for leafless_layout_place.
-/// - Errors: as leafless_layout_place, and LEAFLESS_E_ARGUMENT if there is no copy of this number.
+/// - Errors: as leafless_layout_place, and LEAFLESS_E_ARGUMENT if there is no copy with this number.
 /// - Threads: any; LEAFLESS_E_BUSY while another call uses the layout.
 /// - Untrusted input: any numbers.
 ///
@@ -256,7 +258,7 @@ pub unsafe extern "C" fn leafless_layout_move_to(
     })
 }
 
-/// Takes a copy away. Copies that were placed later get numbers that are less by one.
+/// Removes a copy. The numbers of copies that were placed later decrease by one.
 ///
 /// - Errors: LEAFLESS_E_ARGUMENT if there is no copy of this number; LEAFLESS_E_BUSY.
 /// - Threads: any; LEAFLESS_E_BUSY while another call uses the layout.
@@ -272,9 +274,10 @@ pub unsafe extern "C" fn leafless_layout_remove(
     })
 }
 
-/// Which copies stand where, in the order of their numbers.
+/// Returns the placements of all copies, in the order of their numbers.
 ///
-/// - Buffers: `placements`, room for `capacity` structs, or NULL to ask for their number only; `count`, one number.
+/// - Buffers: `placements`, room for `capacity` structs, or NULL to get only their number; `count`, one
+///   number.
 /// - Result: `*count`; `placements`.
 /// - Errors: LEAFLESS_E_BUFFER if the capacity is too small; LEAFLESS_E_BUSY.
 /// - Threads: any; LEAFLESS_E_BUSY while another call changes the layout.
@@ -294,7 +297,7 @@ pub unsafe extern "C" fn leafless_layout_placements(
     })
 }
 
-/// Where one copy stands.
+/// Returns the placement of one copy.
 ///
 /// - Buffers: `placement`, one struct.
 /// - Result: `*placement`.
@@ -318,17 +321,18 @@ pub unsafe extern "C" fn leafless_layout_placement_at(
     })
 }
 
-/// Whether a copy may stand where it does, what is in its way, and what is next to it. Only what is near is looked at: what boxes
-/// tell apart costs nothing.
+/// Checks the placement of a copy: whether it is valid, its conflicts, and its nearest neighbour. Only near
+/// objects are examined; disjoint bounding boxes cost almost nothing.
 ///
-/// A pair of closed meshes takes some ten microseconds. Other pairs take splits. `max_splits` limits their number for each pair,
-/// which is 4 096 if that is 0; once it is spent, the answer is UNDECIDED.
+/// A pair of closed meshes takes some ten microseconds. Other pairs take splits. `max_splits` limits their
+/// number for each pair, 0 meaning 4 096; when it is spent, the answer is UNDECIDED.
 ///
-/// - Buffers: `options`, one struct or NULL; `conflicts`, room for `capacity` structs, or NULL; `standing`, one struct.
-/// - Result: `*standing`; in `conflicts` the first `capacity` neighbours that are in the way, or may be, and no more than 256.
-/// - Errors: LEAFLESS_E_ARGUMENT if there is no copy of this number; LEAFLESS_E_FRAME if a solid belongs to another frame;
-///   LEAFLESS_E_CALLBACK; LEAFLESS_E_DAMAGED; LEAFLESS_E_CANCELLED; LEAFLESS_E_NO_MEMORY; LEAFLESS_E_BUSY. A `capacity` that is
-///   too small is no error.
+/// - Buffers: `options`, one struct or NULL; `conflicts`, room for `capacity` structs, or NULL; `standing`,
+///   one struct.
+/// - Result: `*standing`; in `conflicts` the first `capacity` neighbours without a proven YES, at most 256.
+/// - Errors: LEAFLESS_E_ARGUMENT if there is no copy of this number; LEAFLESS_E_FRAME if a solid belongs to
+///   another frame; LEAFLESS_E_CALLBACK; LEAFLESS_E_DAMAGED; LEAFLESS_E_CANCELLED; LEAFLESS_E_NO_MEMORY;
+///   LEAFLESS_E_BUSY. A `capacity` that is too small is not an error.
 /// - Threads: any; LEAFLESS_E_BUSY while another call changes the layout.
 /// - Untrusted input: any number; the default of `max_splits` bounds the work.
 #[unsafe(no_mangle)]
@@ -352,15 +356,16 @@ pub unsafe extern "C" fn leafless_layout_check(
     })
 }
 
-/// As leafless_layout_check for all copies, in the order of their numbers, but without what is next to them. The results are the
-/// same for any number of threads.
+/// Like leafless_layout_check for all copies, in the order of their numbers, but without their nearest
+/// neighbours. The results are identical for any number of threads.
 ///
-/// - Buffers: `options`, one struct or NULL; `standings`, room for `capacity` structs, or NULL to ask for their number only, for
-///   which nothing is checked; `count`, one number.
+/// - Buffers: `options`, one struct or NULL; `standings`, room for `capacity` structs, or NULL to get only
+///   their number, without checks; `count`, one number.
 /// - Result: `*count`, the number of copies; `standings`.
 /// - Errors: as leafless_layout_check, and LEAFLESS_E_BUFFER if the capacity is too small.
-/// - Threads: any; uses as many as `options` says; LEAFLESS_E_BUSY while another call changes the layout.
-/// - Untrusted input: none but the solids; the default of `max_splits` bounds the work for each pair.
+/// - Threads: any; runs on as many threads as `options` says; LEAFLESS_E_BUSY while another call changes the
+///   layout.
+/// - Untrusted input: only the solids; the default of `max_splits` bounds the work for each pair.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn leafless_layout_check_all(
     layout: *const leafless_layout,

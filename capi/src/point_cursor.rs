@@ -1,4 +1,4 @@
-//! Points asked of a stored octree many times: cursors that remember their way, and tables.
+//! Repeated point queries of a stored octree: cursors and tables.
 
 use super::boundary::{array, discard, exclusive, guard, out, share, shared, slice};
 use super::contains::{answers, leafless_membership};
@@ -8,17 +8,17 @@ use leafless::query::{PointCursor, PointTable};
 use std::sync::Arc;
 use yoke::Yoke;
 
-/// Point queries that remember the way to the last answer: for points that lie near each other, such as along
+/// A cursor for point queries that keeps the path to the last cell: for points near each other, such as along
 /// a line or in scan order.
 ///
-/// Every call changes it: only one thread may use a cursor at a time. Threads may have a cursor each.
+/// Every call changes the cursor: only one thread may use it at a time. Each thread may have its own cursor.
 pub struct leafless_point_cursor(Yoke<PointCursor<'static>, Arc<leafless_octree>>);
 
 /// Makes a point cursor.
 ///
 /// - Buffers: `cursor`, one pointer.
 /// - Result: `*cursor`.
-/// - Ownership: the cursor shares the octree, which may be freed; give `*cursor` back with
+/// - Ownership: the cursor shares the octree, which may be freed; release `*cursor` with
 ///   leafless_point_cursor_free.
 /// - Untrusted input: any octree.
 #[unsafe(no_mangle)]
@@ -34,10 +34,10 @@ pub unsafe extern "C" fn leafless_point_cursor_new(
     })
 }
 
-/// Gives back a point cursor.
+/// Releases a point cursor.
 ///
 /// - Buffers: `cursor`, a handle or NULL, which does nothing.
-/// - Ownership: the handle is gone.
+/// - Ownership: the handle is invalid afterwards.
 /// - Threads: no other call may use the handle.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn leafless_point_cursor_free(cursor: *mut leafless_point_cursor) {
@@ -45,7 +45,7 @@ pub unsafe extern "C" fn leafless_point_cursor_free(cursor: *mut leafless_point_
     unsafe { discard(cursor) }
 }
 
-/// As leafless_octree_contains.
+/// Like leafless_octree_contains, from the path to the last cell.
 ///
 /// - Buffers: `point_model`, 3 numbers; `membership`, one.
 /// - Result: `*membership`.
@@ -67,7 +67,7 @@ pub unsafe extern "C" fn leafless_point_cursor_contains(
     })
 }
 
-/// As leafless_octree_tag_at.
+/// Like leafless_octree_tag_at, from the path to the last cell.
 ///
 /// - Buffers: `cell`, 3 numbers; `tag`, one.
 /// - Result: `*tag`: EMPTY, FULL or PARTIAL; PARTIAL if a coordinate is not below 2^depth.
@@ -89,20 +89,21 @@ pub unsafe extern "C" fn leafless_point_cursor_tag_at(
     })
 }
 
-/// Point queries by way of a table of all cells of one level, where most points are decided: about twice as fast as
-/// leafless_octree_contains for points anywhere. The table takes 4 * 8^level bytes: 1 MiB for level 6, 64 MiB for
-/// level 8. Questions do not change it: any threads may ask at once.
+/// A table of all cells of one level, for point queries at random positions: about twice as fast as
+/// leafless_octree_contains, because the table decides most points. It takes 4 * 8^level bytes: 1 MiB for
+/// level 6, 64 MiB for level 8. Queries do not change the table: any threads may use it at once.
 pub struct leafless_point_table(Yoke<PointTable<'static>, Arc<leafless_octree>>);
 
 /// Makes a point table.
 ///
 /// - Buffers: `table`, one pointer; `table_level`, one.
-/// - Result: `*table`; `*table_level`: the level of the table's cells, `level` or the next coarser one that the
-///   octree's arrays lead to, which hold two levels each. Levels beyond 8, and beyond the octree's depth, count as these.
+/// - Result: `*table`; `*table_level`: the level of the table's cells, which is `level` or the next coarser
+///   level at which the octree's array elements, of two levels each, begin. A `level` beyond 8, or beyond the
+///   octree's depth, is reduced to it.
 /// - Errors: LEAFLESS_E_NO_MEMORY.
-/// - Ownership: the table shares the octree, which may be freed; give `*table` back with
+/// - Ownership: the table shares the octree, which may be freed; release `*table` with
 ///   leafless_point_table_free.
-/// - Untrusted input: any octree; work is bounded by 8^level.
+/// - Untrusted input: any octree; the work is bounded by 8^level.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn leafless_point_table_new(
     octree: *const leafless_octree,
@@ -120,10 +121,10 @@ pub unsafe extern "C" fn leafless_point_table_new(
     })
 }
 
-/// Gives back a point table.
+/// Releases a point table.
 ///
 /// - Buffers: `table`, a handle or NULL, which does nothing.
-/// - Ownership: the handle is gone.
+/// - Ownership: the handle is invalid afterwards.
 /// - Threads: no other call may use the handle.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn leafless_point_table_free(table: *mut leafless_point_table) {
@@ -131,7 +132,7 @@ pub unsafe extern "C" fn leafless_point_table_free(table: *mut leafless_point_ta
     unsafe { discard(table) }
 }
 
-/// As leafless_octree_contains.
+/// Like leafless_octree_contains, through a table.
 ///
 /// - Buffers: `point_model`, 3 numbers; `membership`, one.
 /// - Result: `*membership`.
@@ -151,7 +152,7 @@ pub unsafe extern "C" fn leafless_point_table_contains(
     })
 }
 
-/// As leafless_octree_contains_many.
+/// Like leafless_octree_contains_many, through a table.
 ///
 /// - Buffers: `points_model`, `count` points of 3 numbers; `memberships`, room for `count`. Both may be NULL
 ///   if `count` is 0.

@@ -11,14 +11,14 @@ use leafless::memory;
 use leafless::mesh::{MeshAttribute, Polyhedron, PolyhedronArrays, PolyhedronPart};
 use std::borrow::Cow;
 
-/// Solids that plane faces bound, as boundary representations have them: solids of shells of faces of loops
-/// of corners.
+/// Solids with plane faces, as in a boundary representation: solids consist of shells, shells of faces, faces
+/// of loops, and loops of corners.
 ///
-/// Each level is an array of offsets into the level below, one more than there are parts: part k goes from
-/// offset k up to, but not including, offset k + 1. So each array begins with 0, rises, and ends at the
-/// number of parts below. Loops turn counter-clockwise as seen from outside of the solid's material, and
-/// holes of a face against its outer loop. Corners and offsets are of one type, without gaps, and need not be
-/// aligned. All fields but the first may be zero, which is their default.
+/// Each level is an array of offsets into the level below, with one more offset than there are parts: part k
+/// goes from offset k up to, but not including, offset k + 1. So each array begins with 0, increases, and
+/// ends with the number of parts below. Loops turn counter-clockwise as seen from outside the solid's
+/// material, and holes of a face against its outer loop. Corners and offsets are of one type, without gaps,
+/// and need not be aligned. Zero is the default of every field but the first.
 #[derive(Clone, Copy)]
 #[repr(C)]
 pub struct leafless_polyhedron_arrays {
@@ -32,7 +32,7 @@ pub struct leafless_polyhedron_arrays {
     pub vertex_count: u64,
     /// Bytes from one vertex to the next; 0 means that they follow each other without a gap.
     pub vertex_stride: u64,
-    /// The corners of all loops, one loop behind the other: indices of vertices, counted from 0.
+    /// The corners of all loops, one loop after the other: indices of vertices, counted from 0.
     pub corners: *const c_void,
     /// Number of corners.
     pub corner_count: u64,
@@ -54,12 +54,12 @@ pub struct leafless_polyhedron_arrays {
     pub solids: *const c_void,
     /// Number of solids.
     pub solid_count: u64,
-    /// A leafless_index_type: that of corners and offsets.
+    /// A leafless_index_type: the type of corners and offsets.
     pub index_type: Number<leafless_index_type>,
-    /// What the coordinates are multiplied by to become model units: 2^-256 to 2^256, or 0, which means 1.
+    /// Factor from coordinates to model units: 2^-256 to 2^256, or 0, which means 1.
     pub scale: f64,
-    /// How far corners may lie beside the plane of their face, in model units: half the distance of two
-    /// planes parallel to the face that have all its corners between them. 0 means 10^-9 of the longest
+    /// Largest distance of corners from the plane of their face, in model units: half the distance between
+    /// two planes parallel to the face that have all its corners between them. 0 means 10^-9 of the longest
     /// extent.
     pub tolerance_model: f64,
 }
@@ -69,8 +69,8 @@ unsafe impl Sized32 for leafless_polyhedron_arrays {}
 
 output!(leafless_polyhedron_arrays);
 
-/// Indices as the library has them: the host's own if they are so, or a copy. `refused` says what is wrong
-/// with the one of the given index and value, if 32 bits cannot hold it.
+/// Returns the indices in the library's layout: the host's array if it has this layout, else a copy.
+/// `refused` makes the error for an index whose value does not fit in 32 bits, from its position and value.
 fn narrow<'a>(
     indices: Indices<'a, 1>,
     refused: impl Fn(u64, u64) -> PolyhedronError,
@@ -88,12 +88,12 @@ fn narrow<'a>(
     Ok(Cow::Owned(narrowed))
 }
 
-/// An array of offsets, which is there or not.
+/// An array of offsets, which may be absent.
 struct Level {
     start: *const c_void,
     count: u64,
     name: &'static str,
-    /// What the parts are, and what they consist of.
+    /// Names of the parts and of the parts below.
     parts: [&'static str; 2],
 }
 
@@ -103,7 +103,7 @@ impl Level {
     }
 
     /// # Safety
-    /// The array is NULL, or has `count` + 1 offsets of this kind, which do not change during the call.
+    /// The array is NULL, or has `count` + 1 offsets of this kind that do not change during the call.
     unsafe fn offsets<'a>(&self, kind: Number<leafless_index_type>) -> Result<Cow<'a, [u32]>, Failure> {
         if u32::try_from(self.count).is_err() {
             return Err(MeshError::TooMany.into());
@@ -115,7 +115,7 @@ impl Level {
     }
 }
 
-/// The offsets of one part that has all `count` parts below, if there are any.
+/// Returns the offsets of one part that consists of all `count` parts below, if there are any.
 fn whole(count: usize) -> Cow<'static, [u32]> {
     const NONE: [u32; 1] = [0];
     match u32::try_from(count) {
@@ -125,10 +125,10 @@ fn whole(count: usize) -> Cow<'static, [u32]> {
 }
 
 impl leafless_polyhedron_arrays {
-    /// What `take` makes of the arrays as the library has them.
+    /// Calls `take` with the arrays in the library's layout and returns its result.
     ///
     /// # Safety
-    /// The arrays are what the fields say, and do not change during the call.
+    /// The arrays are as the fields describe them, and do not change during the call.
     pub(super) unsafe fn taken<R>(
         &self,
         take: impl FnOnce(&PolyhedronArrays<'_>) -> Result<R, Failure>,
@@ -182,7 +182,7 @@ impl leafless_polyhedron_arrays {
         })
     }
 
-    /// The polyhedron of the arrays.
+    /// Returns the polyhedron of the arrays.
     ///
     /// # Safety
     /// As `taken`.
@@ -201,24 +201,24 @@ impl leafless_polyhedron_arrays {
     }
 }
 
-/// Checks solids of plane faces and makes a closed, consistently oriented mesh of them. Where a face is not
-/// plane to the last digit, its triangles say from then on where the surface is.
+/// Checks solids with plane faces and makes a closed, consistently oriented mesh from them. If a face is not
+/// exactly plane, its triangles define the surface.
 ///
-/// Each edge of a loop is run through once more in its shell, in the opposite direction; vertices at one
-/// place are two vertices there, so that shells may touch. The first shell of a solid encloses a positive
-/// volume, its voids negative ones within it. Faces that cut through each other and solids that overlap are
-/// let through: a mesh has a meaning for them.
+/// Requirements: each edge of a loop occurs exactly once more in its shell, in the opposite direction. The
+/// first shell of a solid encloses a positive volume; its voids enclose negative volumes inside it. Vertices
+/// at equal positions stay distinct, so shells may touch. Faces that intersect and solids that overlap are
+/// accepted, because a mesh is well-defined for them.
 ///
-/// - Buffers: `arrays`, one struct; what its pointers lead to must not change during the call.
-///   `deviation_model`, one number, or NULL if it is not wanted; `mesh`, one pointer.
-/// - Result: `*mesh`, with the attributes `face`, `shell` and `solid` (leafless_mesh_peek_attribute_at): the numbers of
-///   the parts that each triangle belongs to; `*deviation_model`, how far a corner lies beside the plane of its face at
-///   most.
+/// - Buffers: `arrays`, one struct; its arrays must not change during the call. `deviation_model`, one
+///   number, or NULL if it is not wanted; `mesh`, one pointer.
+/// - Result: `*mesh`, with the attributes `face`, `shell` and `solid` (leafless_mesh_peek_attribute_at): the
+///   numbers of the parts that each triangle belongs to; `*deviation_model`, the largest distance of a corner
+///   from the plane of its face.
 /// - Errors: LEAFLESS_E_MESH, with the numbers of loop, face, shell or vertices in the message, if the arrays
 ///   are not such solids, if a coordinate is infinite, not a number, or beyond ±2^256, if there is no solid,
 ///   or if there are more than 2^32 - 1 of anything; LEAFLESS_E_ARGUMENT if a type, a stride, the scale or
-///   the tolerance is none; LEAFLESS_E_NO_MEMORY.
-/// - Ownership: the arrays are only read during the call, and may be freed after it; give `*mesh` back with
+///   the tolerance is invalid; LEAFLESS_E_NO_MEMORY.
+/// - Ownership: the arrays are only read during the call, and may be freed after it; release `*mesh` with
 ///   leafless_mesh_free.
 /// - Untrusted input: any values in the arrays.
 #[unsafe(no_mangle)]

@@ -1,4 +1,4 @@
-//! Rays: where they meet octrees and solids, and whether two points see each other.
+//! Rays: hits and intervals in octrees and solids, and lines of sight.
 
 use super::boundary::{Failure, array, buffer, guard, out, shared, slice};
 use super::control::{controlled, leafless_options};
@@ -12,14 +12,14 @@ use leafless::memory;
 use leafless::query::{Obstacle, RayHit, RaySpans, Sight, line_of_sight, ray_spans};
 use leafless::{Ray, cast_rays};
 
-/// A half-line or a segment: the points origin + t · direction with 0 ≤ t ≤ t_last. A coordinate is zero or has
-/// a magnitude between 2^-256 and 2^256.
+/// A half-line or a segment: the points origin + t · direction with 0 ≤ t ≤ t_last. Each coordinate is 0 or
+/// has a magnitude between 2^-256 and 2^256.
 #[derive(Clone, Copy)]
 #[repr(C)]
 pub struct leafless_ray {
-    /// Where the ray starts.
+    /// The start of the ray.
     pub origin_model: [f64; 3],
-    /// Not zero, of any length. t is a distance if the length is 1.
+    /// The direction, not zero, of any length. t is a distance if the length is 1.
     pub direction_model: [f64; 3],
     /// The greatest t: INFINITY for a half-line, or between 2^-256 and 2^256; 1 for the segment from
     /// `origin_model` to `origin_model` + `direction_model`.
@@ -34,23 +34,24 @@ impl TryFrom<&leafless_ray> for Ray {
     }
 }
 
-/// Where a ray first meets a solid.
+/// The first hit of a ray with a solid.
 #[derive(Clone, Copy)]
 #[repr(C)]
 pub struct leafless_ray_hit {
-    /// The least t at which the ray is in the solid lies in this interval: before `lower` the ray is proven
-    /// outside, at `upper` inside. `upper` is INFINITY if the ray is nowhere proven inside; then it may miss the
-    /// solid. Both are INFINITY if nothing stops the ray.
+    /// The interval that contains the least t at which the ray is in the solid: before `lower` the ray is
+    /// proven outside, at `upper` inside. `upper` is INFINITY if the ray is nowhere proven inside; then it
+    /// may miss the solid. Both are INFINITY if nothing stops the ray.
     pub t: leafless_interval,
-    /// The outward normal of the face by which the ray enters the cell, or of the surface where the solid knows
-    /// it better. Its length is 1 but for rounding; zero if the ray starts in the cell, or nothing stops it.
+    /// The outward normal of the face through which the ray enters the cell, or of the surface if the solid
+    /// provides it. Its length is 1 up to rounding; it is zero if the ray starts in the cell, or nothing
+    /// stops it.
     pub normal: [f64; 3],
-    /// The place of the first cell that stops the ray among those of its level, per axis.
+    /// The index, on each axis, of the first cell that stops the ray among the cells of its level.
     pub cell: [u32; 3],
     /// The cell's level; 0 is the universe.
     pub level: u32,
-    /// The number of the surface that stops the ray, if the solid answers rays itself: of a mesh, the triangle's. Else, and
-    /// where the ray meets what closes a hole of a mesh, UINT32_MAX.
+    /// The number of the surface that stops the ray, if the solid answers rays itself: for a mesh, the
+    /// triangle's index. UINT32_MAX otherwise, and where the ray meets the closure of a hole of a mesh.
     pub surface: u32,
     /// Whether something stops the ray.
     pub is_hit: bool,
@@ -79,16 +80,16 @@ impl From<Option<RayHit>> for leafless_ray_hit {
     }
 }
 
-/// Which cells stop a ray.
+/// The cells that stop a ray.
 #[repr(u32)]
 pub enum leafless_obstacle {
-    /// What is proven to be solid: FULL cells.
+    /// Proven solid cells: FULL.
     LEAFLESS_OBSTACLE_FULL = 0,
-    /// What may be solid: FULL and PARTIAL cells.
+    /// Possibly solid cells: FULL and PARTIAL.
     LEAFLESS_OBSTACLE_UPPER = 1,
 }
 
-/// Whether two points see each other past a solid.
+/// The verdict on a line of sight between two points past a solid.
 #[derive(Clone, Copy)]
 #[repr(u8)]
 pub enum leafless_sight {
@@ -117,18 +118,19 @@ enumeration! {
     }
 }
 
-/// One of the host's rays.
+/// Returns one of the host's rays.
 fn ray(index: usize, ray: &leafless_ray) -> Result<Ray, Failure> {
     Ray::try_from(ray).map_err(|error| Failure::Element { name: "rays", index: index as u64, error })
 }
 
-/// Where rays first meet an octree's cells, whatever they prove of the solid that it was made from. What lies
-/// outside of the universe does not count. At most 3 · 2^depth cells a ray are looked at, about a dozen as a rule.
+/// Finds the first hits of rays with an octree's cells, regardless of their proofs about the original solid.
+/// Space outside the universe is ignored. A ray visits at most 3 · 2^depth cells, usually about a dozen.
 ///
 /// - Buffers: `rays`, `count` structs; `hits`, room for `count`. Both may be NULL if `count` is 0. `on` is a
 ///   leafless_obstacle.
 /// - Result: `hits[i]` for ray i.
-/// - Errors: LEAFLESS_E_ARGUMENT if `on` is none, or a ray is not as leafless_ray says.
+/// - Errors: LEAFLESS_E_ARGUMENT if `on` is not a leafless_obstacle, or a ray violates the ranges of
+///   leafless_ray.
 /// - Untrusted input: any octree, any numbers; damage reads as PARTIAL.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn leafless_octree_cast_rays(
@@ -139,7 +141,7 @@ pub unsafe extern "C" fn leafless_octree_cast_rays(
     hits: *mut leafless_ray_hit,
 ) -> leafless_status {
     guard(|| unsafe {
-        /// Rays that are cast together.
+        /// Number of rays that are cast together.
         const BATCH: usize = 64;
         let octree = &shared(octree, "octree")?.octree;
         let rays = slice(rays, count, "rays")?;
@@ -148,11 +150,11 @@ pub unsafe extern "C" fn leafless_octree_cast_rays(
             return Ok(());
         }
         out(hits, "hits")?;
-        // Nothing is written before all rays are known to be good.
+        // Nothing is written before all rays are checked.
         for (index, given) in rays.iter().enumerate() {
             ray(index, given)?;
         }
-        // What a batch prepares costs more than a ray.
+        // Preparing a batch costs more than a ray.
         if let [given] = rays {
             return out(hits, "hits")?.write(octree.cast_ray(&ray(0, given)?, on).into());
         }
@@ -174,20 +176,19 @@ pub unsafe extern "C" fn leafless_octree_cast_rays(
     })
 }
 
-/// Where rays first meet a solid, without an octree, as far as cells of the frame tell, and what the solid knows
-/// of the surface in the finest of them. What lies outside of the universe does not count. A ray splits the
-/// PARTIAL cells that it passes up to the first FULL one: O(depth) cells across a surface, up to O(2^depth)
-/// along one.
+/// Finds the first hits of rays with a solid, without an octree, as far as the cells of the frame decide it;
+/// in the finest cells the solid's own surfaces refine the hit. Space outside the universe is ignored. A ray
+/// splits the PARTIAL cells that it passes up to the first FULL one: O(depth) cells across a surface, up to
+/// O(2^depth) along one.
 ///
-/// - Buffers: `frame`, one struct; `rays`, `count` structs; `options`, one struct or NULL, of which
-///   `max_splits` counts for each ray by itself: cells that were not split count as PARTIAL; `hits`, room for
-///   `count`. `rays` and `hits` may be NULL if `count` is 0. `on` is a leafless_obstacle.
-/// - Result: `hits[i]` for ray i; the same for any number of threads.
-/// - Errors: LEAFLESS_E_ARGUMENT if `on` is none, or a ray is not as leafless_ray says; else as
-///   leafless_solid_contains_many.
-/// - Threads: any; uses as many as `options` says.
-/// - Untrusted input: any solid, any numbers; set `max_splits` where the depth or the solid is not your own
-///   choice.
+/// - Buffers: `frame`, one struct; `rays`, `count` structs; `options`, one struct or NULL (its limit
+///   `max_splits` applies to each ray separately: cells that were not split count as PARTIAL); `hits`, room
+///   for `count`. `rays` and `hits` may be NULL if `count` is 0. `on` is a leafless_obstacle.
+/// - Result: `hits[i]` for ray i; identical for any number of threads.
+/// - Errors: LEAFLESS_E_ARGUMENT if `on` is not a leafless_obstacle, or a ray violates the ranges of
+///   leafless_ray; otherwise as leafless_solid_contains_many.
+/// - Threads: any; runs on as many threads as `options` says.
+/// - Untrusted input: any solid, any numbers; set `max_splits` if the depth or the solid is untrusted.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn leafless_solid_cast_rays(
     solid: *const leafless_solid,
@@ -213,14 +214,14 @@ pub unsafe extern "C" fn leafless_solid_cast_rays(
         }
         let found = controlled(options, |control| cast_rays(solid, &frame, &rays, on, control))?;
         for (index, hit) in found.into_iter().enumerate() {
-            // There is one hit a ray, and room for as many.
+            // There is one hit for each ray, and room for that many.
             hits.add(index).write(hit.into());
         }
         Ok(())
     })
 }
 
-/// Writes the spans of a ray where the host wants them: both lists or none.
+/// Writes the spans of a ray to the host's buffers: both lists or none.
 ///
 /// # Safety
 /// As [`buffer`] and [`out`].
@@ -243,16 +244,15 @@ unsafe fn write_spans(
     }
 }
 
-/// Where a ray is in an octree's cells, whatever they prove of the solid that it was made from: intervals of t
-/// that ascend, of which no two of a list meet. What lies outside of the universe does not count. O(cells along
-/// the ray · depth).
+/// Returns the intervals of a ray in an octree's cells, regardless of their proofs about the original solid:
+/// ascending, disjoint intervals of t. Space outside the universe is ignored. O(cells along the ray · depth).
 ///
-/// - Buffers: `ray`, one struct; `inner` and `outer`, room for `inner_capacity` and `outer_capacity` structs, each
-///   NULL to ask for its count only; `inner_count` and `outer_count`, one number each.
-/// - Result: `inner`, where the ray is in FULL cells, rounded inward; `outer`, where it is in FULL or PARTIAL
+/// - Buffers: `ray`, one struct; `inner` and `outer`, room for `inner_capacity` and `outer_capacity` structs,
+///   each NULL to get only its count; `inner_count` and `outer_count`, one number each.
+/// - Result: `inner`, the intervals in FULL cells, rounded inward; `outer`, the intervals in FULL or PARTIAL
 ///   cells, rounded outward; their counts.
-/// - Errors: LEAFLESS_E_ARGUMENT if the ray is not as leafless_ray says; LEAFLESS_E_BUFFER if a capacity is too
-///   small: nothing is written then; LEAFLESS_E_NO_MEMORY.
+/// - Errors: LEAFLESS_E_ARGUMENT if the ray violates the ranges of leafless_ray; LEAFLESS_E_BUFFER if a
+///   capacity is too small: nothing is written then; LEAFLESS_E_NO_MEMORY.
 /// - Untrusted input: any octree, any numbers; damage reads as PARTIAL.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn leafless_octree_ray_spans(
@@ -273,19 +273,18 @@ pub unsafe extern "C" fn leafless_octree_ray_spans(
     })
 }
 
-/// Where a ray is in a solid, without an octree, as far as cells of the frame tell: intervals of t that ascend, of
-/// which no two of a list meet. What lies outside of the universe does not count. The ray splits all PARTIAL cells
-/// that it passes: O(depth) cells where it crosses a surface, up to O(2^depth) along one. Asking for the counts
-/// costs as much as asking for the intervals.
+/// Returns the intervals of a ray in a solid, without an octree, as far as the cells of the frame decide it:
+/// ascending, disjoint intervals of t. Space outside the universe is ignored. The ray splits all PARTIAL
+/// cells that it passes: O(depth) cells where it crosses a surface, up to O(2^depth) along one. Returning
+/// only the counts costs as much as returning the intervals.
 ///
-/// - Buffers: as leafless_octree_ray_spans; `frame`, one struct; `options`, one struct or NULL, of which
-///   `max_splits` counts: cells that were not split count as PARTIAL.
-/// - Result: `inner`, where the ray is proven inside, rounded inward; `outer`, where it is not proven outside,
+/// - Buffers: as leafless_octree_ray_spans; `frame`, one struct; `options`, one struct or NULL (with its
+///   limit `max_splits`: cells that were not split count as PARTIAL).
+/// - Result: `inner`, the intervals proven inside, rounded inward; `outer`, the intervals not proven outside,
 ///   rounded outward; their counts.
-/// - Errors: LEAFLESS_E_ARGUMENT if the ray is not as leafless_ray says; LEAFLESS_E_BUFFER if a capacity is too
-///   small: nothing is written then; else as leafless_solid_contains_many.
-/// - Untrusted input: any solid, any numbers; set `max_splits` where the depth or the solid is not your own
-///   choice.
+/// - Errors: LEAFLESS_E_ARGUMENT if the ray violates the ranges of leafless_ray; LEAFLESS_E_BUFFER if a
+///   capacity is too small: nothing is written then; otherwise as leafless_solid_contains_many.
+/// - Untrusted input: any solid, any numbers; set `max_splits` if the depth or the solid is untrusted.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn leafless_solid_ray_spans(
     solid: *const leafless_solid,
@@ -308,17 +307,16 @@ pub unsafe extern "C" fn leafless_solid_ray_spans(
     })
 }
 
-/// Whether two points see each other past a solid, without an octree, as far as cells of the frame tell. If the
-/// solid may go on outside of the universe and a point lies there, the answer is not LEAFLESS_SIGHT_CLEAR. Costs
-/// as much as one ray of leafless_solid_cast_rays.
+/// Returns whether two points see each other past a solid, without an octree, as far as the cells of the
+/// frame decide it. If the solid may extend beyond the universe and a point lies there, the answer is not
+/// LEAFLESS_SIGHT_CLEAR. Costs as much as one ray of leafless_solid_cast_rays.
 ///
-/// - Buffers: `frame`, one struct; `from_model` and `to_model`, 3 numbers each; `options`, one struct or NULL,
-///   of which `max_splits` counts: cells that were not split count as PARTIAL; `sight`, one.
+/// - Buffers: `frame`, one struct; `from_model` and `to_model`, 3 numbers each; `options`, one struct or NULL
+///   (with its limit `max_splits`: cells that were not split count as PARTIAL); `sight`, one.
 /// - Result: `*sight`.
-/// - Errors: LEAFLESS_E_ARGUMENT if the points are equal, or a coordinate is not zero and not of a magnitude
-///   between 2^-256 and 2^256; else as leafless_solid_contains_many.
-/// - Untrusted input: any solid, any numbers; set `max_splits` where the depth or the solid is not your own
-///   choice.
+/// - Errors: LEAFLESS_E_ARGUMENT if the points are equal, or a coordinate is neither 0 nor of a magnitude
+///   between 2^-256 and 2^256; otherwise as leafless_solid_contains_many.
+/// - Untrusted input: any solid, any numbers; set `max_splits` if the depth or the solid is untrusted.
 ///
 /// cbindgen:ptrs-as-arrays=[[from_model; 3], [to_model; 3]]
 #[unsafe(no_mangle)]

@@ -13,31 +13,31 @@ use core::ffi::c_char;
 use leafless::scene::{Facets, Scene, SceneMesh, SceneOptions};
 use std::path::Path;
 
-/// What a text describes: set operations on primitives, swept figures, meshes and octrees.
+/// A scene that a text describes: set operations on primitives, swept figures, meshes and octrees.
 ///
-/// The language is that of the CSG dumps which OpenSCAD exports (group union difference intersection
+/// The language is that of the CSG dumps that OpenSCAD exports (group union difference intersection
 /// multmatrix color render cube sphere cylinder polyhedron linear_extrude rotate_extrude square circle
-/// polygon, and import of meshes), with these calls besides: halfspace([a, b, c, d]), which is a x + b y + c
-/// z + d ≥ 0, quadric([10 numbers]), power([A, a, n1], [B, b, n2], [C, c, n3], R), torus(major, minor),
-/// mesh("file.stl") and octree("file.lfl"). Curved shapes are exact, but for those with a $fn of 12 or less,
-/// which are the polygons, prisms and polyhedra that OpenSCAD draws; leafless_scene_options ask for others. What
-/// is not supported (hull, minkowski, text, projection and others) is refused by name.
+/// polygon, and import of meshes), with these additional calls: halfspace([a, b, c, d]), which is a x + b y +
+/// c z + d ≥ 0, quadric([10 numbers]), power([A, a, n1], [B, b, n2], [C, c, n3], R), torus(major, minor),
+/// mesh("file.stl") and octree("file.lfl"). Curved shapes are exact, except shapes with a $fn of 12 or less,
+/// which are the polygons, prisms and polyhedra that OpenSCAD draws; leafless_scene_options can change this.
+/// Unsupported calls (hull, minkowski, text, projection and others) are refused by name.
 ///
-/// Immutable: all its functions may be called at once from any number of threads, but leafless_scene_free
-/// needs the reference that it gives back for itself.
+/// Immutable: all its functions may be called at once from any number of threads, but no other call may use
+/// the reference that leafless_scene_free releases.
 pub struct leafless_scene {
     scene: Scene,
 }
 
-/// Which circles, balls, cylinders and solids of revolution are drawn as polygons, prisms and polyhedra.
+/// The circles, balls, cylinders and solids of revolution that are drawn as polygons, prisms and polyhedra.
 #[derive(Clone, Copy)]
 #[repr(u32)]
 pub enum leafless_facets {
-    /// Those with a $fn of 12 or less; all others are exact.
+    /// Curves with a $fn of 12 or less; all others are exact.
     LEAFLESS_FACETS_AUTO = 0,
-    /// None: circles are round.
+    /// None: all curves are exact.
     LEAFLESS_FACETS_EXACT = 1,
-    /// All, with as many sides as OpenSCAD gives them, which must be 1024 at most.
+    /// All, with as many sides as OpenSCAD draws, at most 1024.
     LEAFLESS_FACETS_POLYGON = 2,
 }
 
@@ -49,29 +49,28 @@ enumeration! {
     }
 }
 
-/// How a scene is to be read. NULL means the defaults. All fields but the first may be zero, which is their
-/// default.
+/// Options of reading a scene. NULL means the defaults. Zero is the default of every field but the first.
 #[derive(Clone, Copy)]
 #[repr(C)]
 pub struct leafless_scene_options {
     /// sizeof(leafless_scene_options).
     pub struct_size: u32,
-    /// Which curves are drawn as polygons.
+    /// A leafless_facets: the curves that are drawn as polygons.
     pub facets: Number<leafless_facets>,
-    /// Where files are looked for that a text in memory names, UTF-8; NULL if it may name none. NULL for a
-    /// scene with a path, whose files are looked for beside it.
+    /// The folder of the files that a text in memory names, UTF-8; NULL if it must not name files. NULL for a
+    /// scene with a path, whose files are in the scene's folder.
     pub folder: *const c_char,
-    /// Its length in bytes. An empty one that is not NULL is the folder that the process is in.
+    /// Length of `folder` in bytes. An empty folder that is not NULL is the current directory of the process.
     pub folder_length: usize,
 }
 
 // SAFETY: numbers and a pointer.
 unsafe impl Sized32 for leafless_scene_options {}
 
-/// The options, and the folder.
+/// Returns the options and the folder.
 ///
 /// # Safety
-/// `options` is NULL or points to valid options, of which the folder stays as long as the result is used.
+/// `options` is NULL or points to valid options, whose folder lives as long as the result is used.
 unsafe fn options<'a>(
     options: *const leafless_scene_options,
 ) -> Result<(SceneOptions, Option<&'a Path>), Failure> {
@@ -83,19 +82,20 @@ unsafe fn options<'a>(
     Ok((SceneOptions::with_facets(facets), (!given.folder.is_null()).then_some(Path::new(folder))))
 }
 
-/// Reads a scene, a text in UTF-8. Files that it names are looked for beside it, or in the folder of the options
-/// for a text in memory.
+/// Reads a scene, a text in UTF-8. Files that it names are read from the scene's folder or, for a text in
+/// memory, from the folder of the options.
 ///
 /// - Buffers: `source`, one struct, with LEAFLESS_ACCESS_COPY; `options`, one struct, or NULL; `scene`, one
 ///   pointer.
 /// - Result: `*scene`.
-/// - Errors: LEAFLESS_E_SCENE, with line and column in the message, for whatever is wrong with the text or a
-///   file that it names, also if there is no folder; LEAFLESS_E_ARGUMENT if there are a path and a folder; LEAFLESS_E_IO if the file itself cannot be read;
-///   LEAFLESS_E_UTF8; LEAFLESS_E_NO_MEMORY.
-/// - Ownership: give `*scene` back with leafless_scene_free.
+/// - Errors: LEAFLESS_E_SCENE, with line and column in the message, if the text or a file that it names
+///   cannot be used, also if a file is named and there is no folder; LEAFLESS_E_ARGUMENT if both a path and a
+///   folder are given; LEAFLESS_E_IO if the file itself cannot be read; LEAFLESS_E_UTF8;
+///   LEAFLESS_E_NO_MEMORY.
+/// - Ownership: release `*scene` with leafless_scene_free.
 /// - Untrusted input: any text; nesting costs memory, not stack, and memory is linear in the text and in the
 ///   files that it names; with LEAFLESS_FACETS_POLYGON a ball may take memory for half a million half-spaces.
-///   It may name any file, by absolute paths too, which is then read as a mesh or an octree.
+///   The text may name any file, also by an absolute path; the file is then read as a mesh or an octree.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn leafless_scene_read(
     source: *const leafless_source,
@@ -118,7 +118,7 @@ pub unsafe extern "C" fn leafless_scene_read(
     })
 }
 
-/// What was found while a scene was read.
+/// A report of the reading of a scene.
 #[derive(Clone, Copy)]
 #[repr(C)]
 pub struct leafless_scene_info {
@@ -126,19 +126,20 @@ pub struct leafless_scene_info {
     pub struct_size: u32,
     /// Calls of circle, sphere, cylinder and rotate_extrude that were drawn as polygons.
     pub polygons: u64,
-    /// Calls of these that are exact. OpenSCAD draws them as polygons.
+    /// Calls of the same functions that are exact. OpenSCAD draws them as polygons.
     pub exact: u64,
-    /// Calls of linear_extrude of which `slices` has no effect though it has one in OpenSCAD.
+    /// Calls of linear_extrude whose `slices` has no effect here, but has one in OpenSCAD.
     pub ignored_slices: u64,
-    /// Meshes and polyhedra that have triangles: leafless_scene_describe_mesh_at tells of each.
+    /// Meshes and polyhedra that have triangles: leafless_scene_describe_mesh_at describes each.
     pub meshes: u64,
-    /// Whether the scene is known to be empty: there is nothing in it, or what is intersected lies apart.
+    /// Whether the scene is known to be empty: it has no objects, or the operands of an intersection are
+    /// disjoint.
     pub is_empty: bool,
 }
 
 output!(leafless_scene_info);
 
-/// What is told of a mesh or polyhedron in a scene.
+/// Facts about a mesh or polyhedron in a scene.
 #[derive(Clone, Copy)]
 #[repr(C)]
 pub struct leafless_scene_mesh_info {
@@ -148,13 +149,13 @@ pub struct leafless_scene_mesh_info {
     pub line: u64,
     /// Column of the call in characters, counted from 1.
     pub column: u64,
-    /// Triangles that face the other way than most of those that they hang together with.
+    /// Triangles whose orientation differs from that of most triangles that they are connected with.
     pub turned: u64,
 }
 
 output!(leafless_scene_mesh_info);
 
-/// What was found while a scene was read.
+/// Returns the report of the reading of a scene.
 ///
 /// - Buffers: `report`, one struct.
 /// - Result: `*report`.
@@ -179,7 +180,7 @@ pub unsafe extern "C" fn leafless_scene_describe(
 }
 
 /// # Safety
-/// `scene` is NULL or a scene.
+/// `scene` is NULL or a valid scene.
 unsafe fn mesh<'a>(scene: *const leafless_scene, index: u64) -> Result<&'a SceneMesh, Failure> {
     // SAFETY: the caller's promise.
     let meshes = unsafe { &shared(scene, "scene")?.scene.report().meshes };
@@ -187,11 +188,11 @@ unsafe fn mesh<'a>(scene: *const leafless_scene, index: u64) -> Result<&'a Scene
     found.ok_or(Failure::Argument { name: "index", problem: "must be less than the number of meshes" })
 }
 
-/// What was found while a mesh or polyhedron of a scene was taken in.
+/// Returns facts about a mesh or polyhedron of a scene, and the report of its import.
 ///
 /// - Buffers: `mesh`, one struct; `report`, one struct, or NULL if it is not wanted. `index`, in the order of
 ///   the text, is less than `meshes` of leafless_scene_info.
-/// - Result: `*mesh`; `*report`, the report of the mesh as it was taken in.
+/// - Result: `*mesh`; `*report`, the report of the mesh as it was imported.
 /// - Errors: LEAFLESS_E_ARGUMENT if there is no such mesh.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn leafless_scene_describe_mesh_at(
@@ -215,10 +216,10 @@ pub unsafe extern "C" fn leafless_scene_describe_mesh_at(
     })
 }
 
-/// The file of a mesh in a scene, as the text names it, in UTF-8 and not terminated by NUL; nothing for a
-/// polyhedron.
+/// Returns the file name of a mesh in a scene, as written in the text, in UTF-8 and not terminated by NUL;
+/// empty for a polyhedron.
 ///
-/// - Buffers: `bytes`, room for `capacity` bytes, or NULL to ask for the length only; `length`, one number.
+/// - Buffers: `bytes`, room for `capacity` bytes, or NULL to get only the length; `length`, one number.
 ///   `index`, in the order of the text, is less than `meshes` of leafless_scene_info.
 /// - Result: `*length`, the length of the name in bytes; the name in `bytes`.
 /// - Errors: LEAFLESS_E_BUFFER if the capacity is too small; LEAFLESS_E_ARGUMENT if there is no such mesh.
@@ -239,11 +240,11 @@ pub unsafe extern "C" fn leafless_scene_mesh_file_at(
     })
 }
 
-/// One more reference to a scene.
+/// Returns one more reference to a scene.
 ///
 /// - Buffers: `scene`, a handle; `reference`, one pointer.
 /// - Result: `*reference`, equal to `scene`.
-/// - Ownership: give each reference back with leafless_scene_free.
+/// - Ownership: release each reference with leafless_scene_free.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn leafless_scene_ref(
     scene: *const leafless_scene,
@@ -252,10 +253,10 @@ pub unsafe extern "C" fn leafless_scene_ref(
     guard(|| unsafe { refer(scene, "scene", reference) })
 }
 
-/// Gives back a reference to a scene; with the last one the scene is gone. Solids made of it stay.
+/// Releases a reference to a scene; the last release frees the scene. Solids made of it stay.
 ///
 /// - Buffers: `scene`, a handle or NULL, which does nothing.
-/// - Ownership: the reference is gone.
+/// - Ownership: the reference is invalid afterwards.
 /// - Threads: any; no other call may use this reference.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn leafless_scene_free(scene: *mut leafless_scene) {
@@ -263,11 +264,11 @@ pub unsafe extern "C" fn leafless_scene_free(scene: *mut leafless_scene) {
     unsafe { release(scene) }
 }
 
-/// A box that holds the solid of a scene. It may be larger than the solid.
+/// Returns a box that contains the solid of a scene. It may be larger than the solid.
 ///
 /// - Buffers: `min_model` and `max_model`, 3 numbers each.
 /// - Result: both.
-/// - Errors: LEAFLESS_E_ARGUMENT if none is known: the scene is empty, or may be unbounded;
+/// - Errors: LEAFLESS_E_ARGUMENT if no box is known: the scene is empty, or may be unbounded;
 ///   LEAFLESS_E_NO_MEMORY.
 ///
 /// cbindgen:ptrs-as-arrays=[[min_model; 3], [max_model; 3]]
@@ -290,14 +291,14 @@ pub unsafe extern "C" fn leafless_scene_bounds(
     })
 }
 
-/// The solid of a scene, to be built on this frame. If there are neither meshes nor octrees in it, it can be
-/// built on any.
+/// Makes the solid of a scene, to be built on this frame. If it contains neither meshes nor octrees, it can
+/// be built on any frame.
 ///
 /// - Buffers: `frame`, one struct; `solid`, one pointer.
 /// - Result: `*solid`.
 /// - Errors: LEAFLESS_E_ARGUMENT as leafless_frame_check; LEAFLESS_E_LIMIT if a mesh or octree is within more
 ///   than 256 matrices; LEAFLESS_E_NO_MEMORY.
-/// - Ownership: give `*solid` back with leafless_solid_free.
+/// - Ownership: release `*solid` with leafless_solid_free.
 /// - Untrusted input: any scene.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn leafless_solid_from_scene(

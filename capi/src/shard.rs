@@ -1,4 +1,4 @@
-//! Octrees in parts: built, cut, joined, counted, and asked as one solid.
+//! Shards, the parts of octrees: building, cutting, joining, counting, and use as one solid.
 
 use super::boundary::{Failure, buffer, guard, out, shared, slice};
 use super::control::{controlled, leafless_options};
@@ -16,13 +16,13 @@ use leafless::op::{build_extended_shard, join};
 use leafless::solid::ShardedOctree;
 use leafless::{Cell, Error, Frame, Shard, build_shard, memory, op};
 
-/// Which cells a shard knows.
+/// The kind of a shard: which cells it contains.
 #[derive(Clone, Copy)]
 #[repr(u32)]
 pub enum leafless_shard_kind {
-    /// The cells down to a level. What would be split there stays PARTIAL.
+    /// The cells down to a level. Cells of the last level that would be split stay PARTIAL.
     LEAFLESS_SHARD_KIND_TOP = 0,
-    /// The cells in one cell, and the cells that contain it.
+    /// The cells inside one cell, and the cells that contain it.
     LEAFLESS_SHARD_KIND_BELOW = 1,
 }
 use leafless_shard_kind::*;
@@ -34,14 +34,14 @@ enumeration! {
     }
 }
 
-/// The cells that a shard of an octree knows. The shard knows nothing of other cells: they are PARTIAL.
+/// The set of cells that a shard of an octree contains. All other cells of the shard are PARTIAL.
 ///
-/// An octree is cut at a level into its top, and into one shard for each cell of that level that the top leaves open
-/// (leafless_octree_open_cells). Every shard is an octree on the frame of the whole, and true of the whole solid.
-/// leafless_octree_join puts shards together again.
+/// An octree is cut at a level into its top, and into one shard for each cell of that level that the top
+/// leaves open (leafless_octree_open_cells). Every shard is an octree on the frame of the whole, and its
+/// verdicts hold for the whole solid. leafless_octree_join joins shards again.
 ///
-/// The code of a cell is its place in Morton order among the 8^level cells of its level. Bit 3k of the code is bit k of the cell's
-/// place along x, bit 3k + 1 is that along y, bit 3k + 2 that along z.
+/// The code of a cell is its index in Morton order among the 8^level cells of its level. Bit 3k of the code
+/// is bit k of the cell's index along x, bit 3k + 1 that along y, bit 3k + 2 that along z.
 #[derive(Clone, Copy)]
 #[repr(C)]
 pub struct leafless_shard {
@@ -53,14 +53,14 @@ pub struct leafless_shard {
     pub kind: Number<leafless_shard_kind>,
 }
 
-/// A level of a frame. `name` is the parameter that it was given for.
+/// Returns a level of a frame. `name` is the name of the parameter, for messages.
 fn level_of(frame: &Frame, level: u32, name: &'static str) -> Result<u8, Failure> {
     let problem = "must not be greater than the depth of the frame";
     let known = u8::try_from(level).ok().filter(|&level| level <= frame.depth());
     known.ok_or(Failure::Argument { name, problem })
 }
 
-/// The cell of a frame with this level and this code. `names` are those of both.
+/// Returns the cell of a frame with this level and this code. `names` are the names of both parameters.
 pub(super) fn cell_of(
     frame: &Frame,
     level: u32,
@@ -72,7 +72,7 @@ pub(super) fn cell_of(
     Cell::from_morton(level, code).ok_or(Failure::Argument { name: names[1], problem })
 }
 
-/// The failure with the name that a refused argument has in the header.
+/// Returns the failure with the name of the refused argument in the header.
 pub(super) fn renamed(failure: Failure, name: &'static str) -> Failure {
     match failure {
         Failure::Library(Error::Argument { problem, .. }) => Failure::Argument { name, problem },
@@ -80,7 +80,7 @@ pub(super) fn renamed(failure: Failure, name: &'static str) -> Failure {
     }
 }
 
-/// The shard of a frame at `pointer`.
+/// Returns the shard of a frame at `pointer`.
 ///
 /// # Safety
 /// As [`shared`].
@@ -99,18 +99,21 @@ unsafe fn shard_of(frame: &Frame, pointer: *const leafless_shard) -> Result<Shar
     }
 }
 
-/// Builds one shard of the octree of a solid: the cells of the shard are those that leafless_octree_build makes. All other cells are
-/// PARTIAL, whatever the rule. Time and memory are linear in the cells of the shard and on the way to it.
+/// Builds one shard of the octree of a solid: the cells of the shard are those that leafless_octree_build
+/// makes. All other cells are PARTIAL under every rule. Time and memory are linear in the cells of the shard
+/// and the cells that contain it.
 ///
-/// Joining the top and the shards of all cells that it leaves open (leafless_octree_join) makes the octree that leafless_octree_build
-/// makes, byte for byte.
+/// Joining the top and the shards of all cells that it leaves open (leafless_octree_join) makes the octree
+/// that leafless_octree_build makes, byte for byte.
 ///
-/// - Buffers: `frame` and `shard`, one struct each; `options`, one struct or NULL; `octree`, one pointer. `rule` is a leafless_rule.
+/// - Buffers: `frame` and `shard`, one struct each; `options`, one struct or NULL; `octree`, one pointer.
+///   `rule` is a leafless_rule.
 /// - Result: `*octree`.
-/// - Errors: as leafless_octree_build; LEAFLESS_E_ARGUMENT also if the frame does not have the cells of the shard.
-/// - Ownership: give `*octree` back with leafless_octree_free.
-/// - Threads: any; uses as many as `options` says.
-/// - Untrusted input: any solid, any numbers; set `max_bytes` where the depth or the solid is not your own choice.
+/// - Errors: as leafless_octree_build; LEAFLESS_E_ARGUMENT also if the frame does not have the cells of the
+///   shard.
+/// - Ownership: release `*octree` with leafless_octree_free.
+/// - Threads: any; runs on as many threads as `options` says.
+/// - Untrusted input: any solid, any numbers; set `max_bytes` if the depth or the solid is untrusted.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn leafless_octree_build_shard(
     solid: *const leafless_solid,
@@ -130,15 +133,17 @@ pub unsafe extern "C" fn leafless_octree_build_shard(
     })
 }
 
-/// Builds one shard of the extended octree of a solid: the cells of the shard are those that leafless_octree_build_extended makes. All
-/// other cells are PARTIAL, and nothing is known of them.
+/// Builds one shard of the extended octree of a solid: the cells of the shard are those that
+/// leafless_octree_build_extended makes. All other cells are PARTIAL, without surfaces.
 ///
-/// - Buffers: `frame` and `shard`, one struct each; `cuts`, one struct or NULL; `options`, one struct or NULL; `octree`, one pointer.
+/// - Buffers: `frame` and `shard`, one struct each; `cuts`, one struct or NULL; `options`, one struct or
+///   NULL; `octree`, one pointer.
 /// - Result: `*octree`.
-/// - Errors: as leafless_octree_build_extended; LEAFLESS_E_ARGUMENT also if the frame does not have the cells of the shard.
-/// - Ownership: give `*octree` back with leafless_octree_free.
-/// - Threads: any; uses as many as `options` says.
-/// - Untrusted input: any solid, any numbers; set `max_bytes` where the depth or the solid is not your own choice.
+/// - Errors: as leafless_octree_build_extended; LEAFLESS_E_ARGUMENT also if the frame does not have the cells
+///   of the shard.
+/// - Ownership: release `*octree` with leafless_octree_free.
+/// - Threads: any; runs on as many threads as `options` says.
+/// - Untrusted input: any solid, any numbers; set `max_bytes` if the depth or the solid is untrusted.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn leafless_octree_build_extended_shard(
     solid: *const leafless_solid,
@@ -160,16 +165,17 @@ pub unsafe extern "C" fn leafless_octree_build_extended_shard(
     })
 }
 
-/// Cuts a shard off an octree. The shard is the octree that leafless_octree_build_shard or leafless_octree_build_extended_shard makes of
-/// the solid that the octree was built from.
+/// Cuts a shard off an octree. The shard is the octree that leafless_octree_build_shard or
+/// leafless_octree_build_extended_shard makes of the solid that the octree was built from.
 ///
 /// - Buffers: `shard`, one struct; `options`, one struct or NULL; `result`, one pointer.
 /// - Result: `*result`, without metadata and channels.
-/// - Errors: LEAFLESS_E_ARGUMENT if the octree's frame does not have the cells of the shard; LEAFLESS_E_DAMAGED; LEAFLESS_E_LIMIT;
-///   LEAFLESS_E_CANCELLED; LEAFLESS_E_NO_MEMORY.
-/// - Ownership: `octree` stays as it is; give `*result` back with leafless_octree_free.
-/// - Threads: any; uses as many as `options` says.
-/// - Untrusted input: any octree, any numbers; damage in an octree that was mapped unverified is an error or reads as PARTIAL.
+/// - Errors: LEAFLESS_E_ARGUMENT if the octree's frame does not have the cells of the shard;
+///   LEAFLESS_E_DAMAGED; LEAFLESS_E_LIMIT; LEAFLESS_E_CANCELLED; LEAFLESS_E_NO_MEMORY.
+/// - Ownership: `octree` is unchanged; release `*result` with leafless_octree_free.
+/// - Threads: any; runs on as many threads as `options` says.
+/// - Untrusted input: any octree, any numbers; damage in an octree that was mapped unverified is an error or
+///   reads as PARTIAL.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn leafless_octree_shard(
     octree: *const leafless_octree,
@@ -185,22 +191,26 @@ pub unsafe extern "C" fn leafless_octree_shard(
     })
 }
 
-/// Puts together what several octrees on one frame know of one solid. A cell is FULL or EMPTY if one of the octrees says so. It is
-/// PARTIAL where all octrees leave it open. Surfaces of a PARTIAL cell are kept if one of the octrees keeps them.
+/// Joins several octrees of one solid on one frame. A cell is FULL or EMPTY if one of the octrees decides it,
+/// and PARTIAL if all octrees leave it open. Surfaces of a PARTIAL cell are kept if one of the octrees keeps
+/// them.
 ///
-/// This is the reverse of cutting an octree into shards: the result is the whole, byte for byte. The cell of a missing shard is PARTIAL.
-/// The octrees may overlap. Where two of them keep surfaces of one cell, the surfaces of the first one are kept.
+/// This is the reverse of cutting an octree into shards: the result is the whole, byte for byte. The cell of
+/// a missing shard is PARTIAL. The octrees may overlap. If two of them keep surfaces of one cell, the
+/// surfaces of the first octree are kept.
 ///
-/// Time is linear in the cells that are cut in one octree and known in another one, plus the memory traffic of what is copied.
+/// Time is linear in the cells that are split in one octree and not open in another one, plus the
+/// memory traffic of copied parts.
 ///
 /// - Buffers: `octrees`, `count` handles; `options`, one struct or NULL; `result`, one pointer.
 /// - Result: `*result`, without metadata and channels.
-/// - Errors: LEAFLESS_E_FRAME if the frames differ; LEAFLESS_E_NULL, also of an element; LEAFLESS_E_ARGUMENT if `count` is 0, or if one
-///   octree says FULL where another one says EMPTY: they are not of one solid; LEAFLESS_E_DAMAGED; LEAFLESS_E_LIMIT;
-///   LEAFLESS_E_CANCELLED; LEAFLESS_E_NO_MEMORY.
-/// - Ownership: the octrees stay as they are; give `*result` back with leafless_octree_free.
-/// - Threads: any; uses as many as `options` says.
-/// - Untrusted input: any octrees; damage in ones that were mapped unverified is an error or reads as PARTIAL.
+/// - Errors: LEAFLESS_E_FRAME if the frames differ; LEAFLESS_E_NULL, also of an element; LEAFLESS_E_ARGUMENT
+///   if `count` is 0, or if a cell is FULL in one octree and EMPTY in another one, so that they are not of
+///   one solid; LEAFLESS_E_DAMAGED; LEAFLESS_E_LIMIT; LEAFLESS_E_CANCELLED; LEAFLESS_E_NO_MEMORY.
+/// - Ownership: the octrees are unchanged; release `*result` with leafless_octree_free.
+/// - Threads: any; runs on as many threads as `options` says.
+/// - Untrusted input: any octrees; damage in octrees that were mapped unverified is an error or reads as
+///   PARTIAL.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn leafless_octree_join(
     octrees: *const *const leafless_octree,
@@ -217,14 +227,15 @@ pub unsafe extern "C" fn leafless_octree_join(
     })
 }
 
-/// The codes of the cells of a level of which an octree knows nothing. Each of them is PARTIAL, or lies in a PARTIAL cell, and no
-/// surfaces are kept there. If the octree is a top of that level, each of these cells needs a shard. O(cells of the levels above, and
-/// of the result).
+/// Returns the codes of the open cells of a level: the cells that an octree leaves open. Each is PARTIAL, or
+/// lies in a PARTIAL cell, and keeps no surfaces. If the octree is a top of that level, each of these cells
+/// needs a shard. O(cells of the levels above, and of the result).
 ///
-/// - Buffers: `codes`, room for `capacity` numbers, or NULL to ask for the count only; `count`, one number.
+/// - Buffers: `codes`, room for `capacity` numbers, or NULL to get only the count; `count`, one number.
 /// - Result: `codes`, ascending, as in leafless_shard; `*count`.
-/// - Errors: LEAFLESS_E_ARGUMENT if `level` is greater than the octree's depth; LEAFLESS_E_BUFFER if the capacity is too small;
-///   LEAFLESS_E_LIMIT if there are more than 2^24 cells; LEAFLESS_E_DAMAGED; LEAFLESS_E_NO_MEMORY.
+/// - Errors: LEAFLESS_E_ARGUMENT if `level` is greater than the octree's depth; LEAFLESS_E_BUFFER if the
+///   capacity is too small; LEAFLESS_E_LIMIT if there are more than 2^24 cells; LEAFLESS_E_DAMAGED;
+///   LEAFLESS_E_NO_MEMORY.
 /// - Untrusted input: any octree, any number.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn leafless_octree_open_cells(
@@ -248,21 +259,23 @@ pub unsafe extern "C" fn leafless_octree_open_cells(
     })
 }
 
-/// The statistics of the octree that leafless_octree_join makes of a top and its shards, level by level. Nothing is joined: a shard is
-/// told by its counts, which leafless_octree_levels gives on the machine that has the shard. The cell of a missing shard is PARTIAL.
-/// O(cells × depth).
+/// Computes the statistics of the octree that leafless_octree_join would make of a top and its shards, level
+/// by level, without joining. Each shard is represented by its counts, which leafless_octree_levels returns
+/// on the machine that has the shard. The cell of a missing shard is PARTIAL. O(cells × depth).
 ///
 /// Only `nodes`, `full` and `partial` of the counts are read.
 ///
-/// - Buffers: `codes`, `code_count` numbers as in leafless_shard, which ascend: the cells of the shards, all of level `level`; `levels`,
-///   `level_count` structs: depth + 1 of the first shard, from the universe on, then those of the second one, and so on; `joined`,
-///   room for `capacity` structs, or NULL to ask for the count only; `count`, one number.
-/// - Result: `*count`, depth + 1; `joined`, the levels of the whole as leafless_octree_levels gives them. The last one has the volume.
-/// - Errors: LEAFLESS_E_ARGUMENT if `level` is not less than the depth, a code is not less than 8^level, the codes do not ascend,
-///   `level_count` is not `code_count` × (depth + 1), a cell is not open in `octree`, or a shard does not split its cell: join
-///   such a shard and the top (leafless_octree_join), and pass the result as the top; LEAFLESS_E_BUFFER if the capacity is too small;
-///   LEAFLESS_E_NO_MEMORY.
-/// - Untrusted input: any octree, any numbers; of wrong counts the statistics are wrong.
+/// - Buffers: `codes`, `code_count` numbers as in leafless_shard, ascending: the cells of the shards, all of
+///   level `level`; `levels`, `level_count` structs: depth + 1 of the first shard, from the universe on, then
+///   those of the second one, and so on; `joined`, room for `capacity` structs, or NULL to get only the
+///   count; `count`, one number.
+/// - Result: `*count`, depth + 1; `joined`, the levels of the whole as from leafless_octree_levels. The last
+///   level has the volume.
+/// - Errors: LEAFLESS_E_ARGUMENT if `level` is not less than the depth, a code is not less than 8^level, the
+///   codes do not ascend, `level_count` is not `code_count` × (depth + 1), a cell is not open in `octree`, or
+///   a shard does not split its cell: join such a shard and the top (leafless_octree_join), and pass the
+///   result as the top; LEAFLESS_E_BUFFER if the capacity is too small; LEAFLESS_E_NO_MEMORY.
+/// - Untrusted input: any octree, any numbers; wrong counts give wrong statistics.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn leafless_octree_statistics_with(
     octree: *const leafless_octree,
@@ -305,19 +318,21 @@ pub unsafe extern "C" fn leafless_octree_statistics_with(
     })
 }
 
-/// A top and its shards as a solid on their universe. The solid answers as the joined octree does (leafless_octree_join,
-/// leafless_solid_from_octree), and nothing is joined. The library looks at a shard when one of its cells is asked for, so that a file
-/// that is mapped is not read before. The cell of a missing shard is PARTIAL.
+/// Makes a solid from a top and its shards, on their universe. The solid answers like the joined octree
+/// (leafless_octree_join, leafless_solid_from_octree), without joining. The library reads a shard only when
+/// one of its cells is queried, so that a mapped file is not read before. The cell of a missing shard is
+/// PARTIAL.
 ///
 /// The solid keeps no list of surfaces. To build its extended octree, join the shards.
 ///
-/// - Buffers: `codes`, `count` numbers as in leafless_shard, in any order: the cells of the shards, all of level `level`; `octrees`,
-///   `count` handles: the shards; `solid`, one pointer.
+/// - Buffers: `codes`, `count` numbers as in leafless_shard, in any order: the cells of the shards, all of
+///   level `level`; `octrees`, `count` handles: the shards; `solid`, one pointer.
 /// - Result: `*solid`. O(shards).
-/// - Errors: LEAFLESS_E_FRAME if the frames differ; LEAFLESS_E_NULL, also of an element; LEAFLESS_E_ARGUMENT if `level` is greater than
-///   the depth, a code is not less than 8^level, or two shards have one cell; LEAFLESS_E_NO_MEMORY. Asking the solid returns
-///   LEAFLESS_E_DAMAGED if an octree was mapped unverified and its links are damaged.
-/// - Ownership: the solid shares the octrees, which may be freed; give `*solid` back with leafless_solid_free.
+/// - Errors: LEAFLESS_E_FRAME if the frames differ; LEAFLESS_E_NULL, also of an element; LEAFLESS_E_ARGUMENT
+///   if `level` is greater than the depth, a code is not less than 8^level, or two shards have the same cell;
+///   LEAFLESS_E_NO_MEMORY. Queries of the solid return LEAFLESS_E_DAMAGED if an octree was mapped unverified
+///   and its links are damaged.
+/// - Ownership: the solid shares the octrees, which may be freed; release `*solid` with leafless_solid_free.
 /// - Untrusted input: any octrees, any numbers.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn leafless_solid_from_shards(

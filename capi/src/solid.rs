@@ -1,4 +1,4 @@
-//! Solids: everything that can split a cell.
+//! Solids: shapes that can split a cell.
 
 use super::boundary::{filled, guard, handle, out, output, refer, release, shared};
 use super::mesh::{leafless_fill, leafless_mesh};
@@ -8,52 +8,53 @@ use super::status::leafless_status;
 use leafless::solid::{Erasable, Prepared};
 use leafless::{AnySolid, Csg, MeshSolid, Solid};
 
-/// Anything that has a shape: it can split a cell of space into eight classified ones.
+/// A shape that can split a cell of space into eight classified cells.
 ///
-/// To answer about cells of a frame a solid is prepared for it, which takes time in proportion to the model:
-/// a mesh is brought onto the lattice, an expression is written out, all links of an octree are checked. It
-/// keeps the last frame that it was prepared for, so that a second question on the same frame costs none of
-/// that; another frame takes its place. (It keeps the last frame of its own only: what is made of it prepares
-/// it anew.)
+/// Before a solid can classify cells of a frame, the library prepares it for the frame. This takes time in
+/// proportion to the model: a mesh is brought onto the lattice, an expression is expanded, all links of an
+/// octree are checked. The solid keeps the last preparation, so that a second query on the same frame costs
+/// none of that time; another frame replaces it. (Solids made from this solid do not share its preparation.)
 ///
-/// Immutable otherwise: all its functions may be called at once from any number of threads, but
-/// leafless_solid_free needs the reference that it gives back for itself. Threads that ask on different
-/// frames at the same time prepare it again and again: give each a solid of its own.
+/// Otherwise a solid is immutable: all its functions may be called at once from any number of threads, but no
+/// other call may use the reference that leafless_solid_free releases. Threads that query different frames at
+/// the same time prepare the solid again and again: give each thread a solid of its own.
 pub struct leafless_solid {
     pub(super) solid: Prepared,
 }
 
-/// A handle of a solid.
+/// Returns a handle of a solid.
 pub(super) fn give<S: Erasable>(solid: S) -> *mut leafless_solid {
     give_any(AnySolid::new(solid))
 }
 
-/// A handle of a solid of any kind.
+/// Returns a handle of a solid of any kind.
 pub(super) fn give_any(solid: AnySolid) -> *mut leafless_solid {
     handle(leafless_solid { solid: Prepared::new(solid) })
 }
 
-/// What a mesh encloses. On a frame whose universe it reaches beyond it is clipped by that.
+/// Makes a solid from the region that a mesh encloses. On a frame whose universe does not hold the mesh, the
+/// solid is clipped by the universe.
 ///
-/// Where the mesh is closed, what it encloses is exact. Around holes leafless_fill says by which convention a
-/// point is inside: a cell is FULL or EMPTY if that is proven for all of its points, and others are PARTIAL
-/// though no triangle cuts them. leafless_mesh_inspect tells whether to expect them.
+/// For a closed mesh, the inside is exact. Around holes, the convention of leafless_fill decides whether a
+/// point is inside: a cell is FULL or EMPTY if that is proven for all of its points; other cells are PARTIAL
+/// though no triangle cuts them. leafless_mesh_inspect reports whether to expect such cells.
 ///
-/// Rays, points, boxes and distances are told without cells: in some microseconds each. A mesh with holes looks
-/// at all edges of its holes for a question, which takes some nanoseconds an edge, and asks its cells of rays
-/// that come very near to such an edge, of distances and boxes next to a hole, and of all but points if there
-/// are more than 16384 edges. The first such question makes what that takes, and the solid keeps it: a tree over
-/// the triangles (O(t log t): 0.1 to 0.3 microseconds a triangle; 36 bytes a triangle, which leafless_solid_info
-/// tells), and for distances of a closed mesh, on which sides of its triangles the solid lies (about twice that
-/// time, and 1 byte), or the edges of holes (48 bytes an edge).
-/// So ask one question beforehand if the first is not to take longer than others. Placed solids take over the
-/// order of the tree, and make its boxes anew. Threads that ask first at the same time may each make it once.
+/// Queries of rays, points, boxes and distances need no cells and take some microseconds each. For a mesh
+/// with holes a query visits all edges of the holes, at some nanoseconds an edge. It uses cells for rays that
+/// come very near to such an edge, for distances and boxes next to a hole, and, if there are more than 16384
+/// such edges, for all queries except points. The first query builds data that the solid keeps: a tree over
+/// the triangles (O(t log t): 0.1 to 0.3 microseconds a triangle; 36 bytes a triangle, which
+/// leafless_solid_info includes); for distances of a closed mesh also the sides of its triangles on which the
+/// solid lies (about twice that time, and 1 byte a triangle); or the edges of holes (48 bytes an edge). If
+/// the first query must not take longer than others, make one query beforehand. Placed solids take over the
+/// order of the tree and compute its boxes anew. Threads that make the first query at the same time may each
+/// build the data once.
 ///
 /// - Buffers: `solid`, one pointer. `fill` is a leafless_fill.
 /// - Result: `*solid`. Time is linear in the mesh (n log n in the edges of its boundary).
 /// - Errors: LEAFLESS_E_MESH if the mesh is empty, or (LEAFLESS_FILL_EVEN_ODD) an odd number of triangles
-///   meet on an edge; LEAFLESS_E_ARGUMENT if `fill` is no leafless_fill; LEAFLESS_E_NO_MEMORY.
-/// - Ownership: the solid shares the mesh, which may be freed; give `*solid` back with leafless_solid_free.
+///   meet on an edge; LEAFLESS_E_ARGUMENT if `fill` is not a leafless_fill; LEAFLESS_E_NO_MEMORY.
+/// - Ownership: the solid shares the mesh, which may be freed; release `*solid` with leafless_solid_free.
 /// - Untrusted input: any mesh.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn leafless_solid_from_mesh(
@@ -69,14 +70,14 @@ pub unsafe extern "C" fn leafless_solid_from_mesh(
     })
 }
 
-/// A stored octree as a solid on its own universe. Built to fewer levels it is cut there, built to more its
-/// PARTIAL cells stay undecided.
+/// Makes a solid from a stored octree, on the octree's universe. An octree built from it to fewer levels is
+/// cut off there; in one built to more levels its PARTIAL cells stay undecided.
 ///
 /// - Buffers: `solid`, one pointer.
 /// - Result: `*solid`.
-/// - Errors: only the general ones; building it returns LEAFLESS_E_DAMAGED if the octree was mapped
+/// - Errors: only the general ones; building from it returns LEAFLESS_E_DAMAGED if the octree was mapped
 ///   unverified and its links are damaged.
-/// - Ownership: the solid shares the octree, which may be freed; give `*solid` back with leafless_solid_free.
+/// - Ownership: the solid shares the octree, which may be freed; release `*solid` with leafless_solid_free.
 /// - Untrusted input: any octree.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn leafless_solid_from_octree(
@@ -90,25 +91,27 @@ pub unsafe extern "C" fn leafless_solid_from_octree(
     })
 }
 
-/// What can be said of a solid at once.
+/// Basic facts about a solid.
 #[derive(Clone, Copy)]
 #[repr(C)]
 pub struct leafless_solid_info {
     /// sizeof(leafless_solid_info).
     pub struct_size: u32,
-    /// Half-spaces that were evaluated so far, each at a point or over a box, for a solid that is made of half-spaces (see
-    /// leafless_solid_new_halfspace and what follows it) and perhaps others: by calls that have returned, and by lazy octrees
-    /// and the like that are given back. What else is made of the solid counts for itself. 0 for solids of other kinds.
+    /// Number of evaluations of half-spaces so far, each at a point or over a box, for a solid that contains
+    /// half-spaces (see leafless_solid_new_halfspace and the functions after it). It counts calls that have
+    /// returned, and lazy octrees and similar objects that were freed. Solids made from this solid count
+    /// separately. 0 for solids of other kinds.
     pub evaluations: u64,
-    /// About how many bytes of memory (or of mapped files) the solid keeps alive: its own, those of the meshes, octrees and
-    /// samples that it shares, and those of the last frame that it was prepared for. An expression counts each of its parts
-    /// once, but two parts that share a mesh count the mesh twice. Objects of the host are not counted.
+    /// Approximate number of bytes of memory (or of mapped files) that the solid keeps alive: its own, those
+    /// of the meshes, octrees and samples that it shares, and those of the last frame that it was prepared
+    /// for. An expression counts each of its parts once, but two parts that share a mesh count the mesh
+    /// twice. Objects of the host are not counted.
     pub bytes: u64,
 }
 
 output!(leafless_solid_info);
 
-/// What can be said of a solid at once. O(1), but O(n) in the parts of an expression.
+/// Returns basic facts about a solid. O(1), but O(n) in the parts of an expression.
 ///
 /// - Buffers: `info`, one struct.
 /// - Result: `*info`.
@@ -128,11 +131,11 @@ pub unsafe extern "C" fn leafless_solid_describe(
     })
 }
 
-/// One more reference to a solid.
+/// Returns one more reference to a solid.
 ///
 /// - Buffers: `solid`, a handle; `reference`, one pointer.
 /// - Result: `*reference`, equal to `solid`.
-/// - Ownership: give each reference back with leafless_solid_free.
+/// - Ownership: release each reference with leafless_solid_free.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn leafless_solid_ref(
     solid: *const leafless_solid,
@@ -141,10 +144,10 @@ pub unsafe extern "C" fn leafless_solid_ref(
     guard(|| unsafe { refer(solid, "solid", reference) })
 }
 
-/// Gives back a reference to a solid; with the last one the solid is gone. Octrees built from it stay.
+/// Releases a reference to a solid; the last release frees the solid. Octrees built from it stay.
 ///
 /// - Buffers: `solid`, a handle or NULL, which does nothing.
-/// - Ownership: the reference is gone.
+/// - Ownership: the reference is invalid afterwards.
 /// - Threads: any; no other call may use this reference.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn leafless_solid_free(solid: *mut leafless_solid) {

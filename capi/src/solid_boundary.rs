@@ -1,4 +1,4 @@
-//! Boundaries of solids that know their surfaces: meshes, faces, and the surfaces that these lie on.
+//! Boundaries of solids that provide their surfaces: meshes, faces, and the faces' surfaces.
 
 use super::boundary::{buffer, filled, guard, handle, out, output, refer, release, shared};
 use super::control::{controlled, leafless_options};
@@ -15,14 +15,15 @@ use leafless::surface::{BoundaryFaces, BoundaryRegion, BoundaryReport, boundary}
 use leafless_surface_kind::*;
 use std::sync::Arc;
 
-/// The boundary of a solid: a mesh whose triangles know their surfaces, and its faces.
+/// The boundary of a solid: a mesh whose triangles refer to their surfaces, and its faces.
 ///
-/// A region is what hangs together on one surface, over edges of the mesh. On a plane it is one face: an outer loop, which runs
-/// counter-clockwise as seen from outside of the solid, and a loop around each hole, which runs the other way. On a curved surface its
-/// triangles are the faces. Two faces that meet in an edge have the same vertices there.
+/// A region is a part of the boundary on one surface that is connected by edges of the mesh. On a plane it is
+/// one face: an outer loop, counter-clockwise as seen from outside the solid, and a clockwise loop around
+/// each hole. On a curved surface its triangles are the faces. Two faces that meet in an edge have the same
+/// vertices there.
 ///
-/// Immutable: all its functions may be called at once from any number of threads, but leafless_boundary_free
-/// needs the reference that it gives back for itself.
+/// Immutable: all its functions may be called at once from any number of threads, but no other call may use
+/// the reference that leafless_boundary_free releases.
 pub struct leafless_boundary {
     mesh: Arc<TriangleMesh>,
     report: BoundaryReport,
@@ -30,21 +31,23 @@ pub struct leafless_boundary {
     faces: BoundaryFaces,
 }
 
-/// What a surface is.
+/// The kind of a surface.
 #[derive(Clone, Copy)]
 #[repr(u32)]
 pub enum leafless_surface_kind {
-    /// Anything without numbers of its own: a sum of powers, a torus that is stretched.
+    /// A surface without numbers of its own: a sum of powers, a stretched torus.
     LEAFLESS_SURFACE_KIND_OTHER = 0,
     /// A plane: the points p with `direction` · p = `offset_model`.
     LEAFLESS_SURFACE_KIND_PLANE = 1,
-    /// The points that are `radius_model` away from `point_model`.
+    /// A ball: the points at the distance `radius_model` from `point_model`.
     LEAFLESS_SURFACE_KIND_BALL = 2,
-    /// The points that are `radius_model` away from the line through `point_model` along `direction`.
+    /// A cylinder: the points at the distance `radius_model` from the line through `point_model` along
+    /// `direction`.
     LEAFLESS_SURFACE_KIND_CYLINDER = 3,
-    /// The lines through `point_model` at an angle of `half_angle_radians` to `direction`.
+    /// A cone: the lines through `point_model` at the angle `half_angle_radians` to `direction`.
     LEAFLESS_SURFACE_KIND_CONE = 4,
-    /// The points that are `minor_model` away from the circle of radius `radius_model` around `point_model`, across `direction`.
+    /// A torus: the points at the distance `minor_model` from the circle of radius `radius_model` around
+    /// `point_model`, perpendicular to `direction`.
     LEAFLESS_SURFACE_KIND_TORUS = 5,
     /// Any other surface of degree two.
     LEAFLESS_SURFACE_KIND_QUADRIC = 6,
@@ -52,29 +55,31 @@ pub enum leafless_surface_kind {
 
 /// A surface in model space. Fields that the kind does not use are 0.
 ///
-/// The numbers are those of the exact surface, rounded. A surface of degree two has the name of a ball, a cylinder or a cone if its
-/// coefficients are those of one to 10^-9 of their size.
+/// The numbers are those of the exact surface, rounded. A surface of degree two has the kind of a ball, a
+/// cylinder or a cone if its coefficients match one to a relative 10^-9.
 #[derive(Clone, Copy)]
 #[repr(C)]
 pub struct leafless_boundary_surface {
     /// A leafless_surface_kind.
     pub kind: leafless_surface_kind,
-    /// 0.
+    /// Reserved; 0.
     pub reserved: u32,
-    /// Of a ball and a torus the centre, of a cylinder the point of the axis that is nearest to the origin, of a cone the apex.
+    /// Ball and torus: the centre. Cylinder: the point of the axis that is nearest to the origin. Cone: the
+    /// apex.
     pub point_model: [f64; 3],
-    /// Of a plane the normal, which points out of the half-space that it bounds; of a cylinder, a cone and a torus the axis. Of length 1.
+    /// Plane: the normal, which points out of the half-space that it bounds. Cylinder, cone and torus: the
+    /// axis. The length is 1.
     pub direction: [f64; 3],
-    /// Of a plane: its distance from the origin, along the normal.
+    /// Plane: its distance from the origin, along the normal.
     pub offset_model: f64,
-    /// Of a ball and a cylinder, and of the circle of a torus.
+    /// Ball, cylinder, and circle of a torus: the radius.
     pub radius_model: f64,
-    /// Of a torus.
+    /// Torus: the radius of the tube.
     pub minor_model: f64,
-    /// Of a cone: the angle between axis and surface, between 0 and π/2.
+    /// Cone: the angle between axis and surface, between 0 and π/2.
     pub half_angle_radians: f64,
-    /// Of a quadric: the factors of x², y², z², xy, yz, zx, x, y, z and 1, as leafless_solid_new_quadric takes them. The largest
-    /// one is between 1/2 and 1.
+    /// Quadric: the coefficients of x², y², z², xy, yz, zx, x, y, z and 1, as for leafless_solid_new_quadric.
+    /// The largest magnitude is between 1/2 and 1.
     pub coefficients: [f64; 10],
 }
 
@@ -134,22 +139,24 @@ impl From<SurfaceShape> for leafless_boundary_surface {
     }
 }
 
-/// A part of a boundary that hangs together on one surface.
+/// A connected part of a boundary on one surface.
 #[derive(Clone, Copy)]
 #[repr(C)]
 pub struct leafless_boundary_region {
-    /// The number of its surface among those of leafless_boundary_surfaces; UINT32_MAX where the boundary is known to a cell only.
+    /// The index of its surface in leafless_boundary_surfaces; UINT32_MAX if the boundary is known only to a
+    /// cell.
     pub surface: u32,
-    /// Its first face. The others follow.
+    /// Index of its first face. The others follow.
     pub first_face: u32,
-    /// How many faces it has.
+    /// Number of its faces.
     pub face_count: u32,
-    /// How many triangles of the mesh.
+    /// Number of its triangles in the mesh.
     pub triangle_count: u32,
-    /// The area of these triangles.
+    /// The area of these triangles, in square model units.
     pub area_model: f64,
-    /// Whether the normal of the surface points into the solid: that of a plane as `direction` says, that of a ball, a cylinder, a cone
-    /// and a torus away from its centre, axis or circle. So a bore is turned, and a pin is not.
+    /// Whether the normal of the surface points into the solid. The normal of a plane is `direction`; that of
+    /// a ball, a cylinder, a cone and a torus points away from the centre, axis or circle. So it is true for
+    /// a bore, and false for a pin.
     pub is_turned: bool,
 }
 
@@ -166,53 +173,56 @@ impl From<&BoundaryRegion> for leafless_boundary_region {
     }
 }
 
-/// What is known of the boundary of a solid.
+/// Facts about the boundary of a solid.
 #[derive(Clone, Copy)]
 #[repr(C)]
 pub struct leafless_boundary_report {
     /// sizeof(leafless_boundary_report).
     pub struct_size: u32,
-    /// No point of the mesh is further from the boundary of the solid than that, and no point of the boundary from the mesh
-    /// (model units). That is proven; infinite if nothing is.
+    /// Proven bound of the distance between the mesh and the boundary of the solid, in both directions, in
+    /// model units; infinite if nothing is proven.
     pub deviation_model: f64,
-    /// Pairs of triangles that intersect each other: 0 but where cells of the frame's depth do not tell surfaces apart.
+    /// Pairs of triangles that intersect each other: 0 unless cells of the frame's depth do not separate
+    /// surfaces.
     pub intersecting_pairs: u64,
-    /// Cells that the boundary passes through.
+    /// Cells that the boundary crosses.
     pub cells: u64,
     /// Cells that were split.
     pub splits: u64,
-    /// Surfaces that the solid is made of.
+    /// Number of surfaces that the solid is made of.
     pub surfaces: u64,
-    /// Regions.
+    /// Number of regions.
     pub regions: u64,
-    /// Faces.
+    /// Number of faces.
     pub faces: u64,
 }
 
 output!(leafless_boundary_report);
 
-/// The boundary of a solid that knows its surfaces, as solids of half-spaces do, and octrees that keep theirs: its plane faces as they
-/// are, with triangles between their corners alone, and curved ones in chords that are no further from them than about
-/// `tolerance_model`. Edges are sharp, and corners are exact to rounding. The solid must end inside of the universe of the frame.
+/// Makes the boundary of a solid that provides its surfaces, such as solids of half-spaces, and octrees that
+/// keep their surfaces. Plane faces are exact, with triangles only between their corners. Curved faces become
+/// chords at a distance of about `tolerance_model` at most. Edges are sharp, and corners are exact up to
+/// rounding. The solid must end inside the universe of the frame.
 ///
-/// The mesh is closed, and exactly two triangles meet in each edge; where the solid touches itself, vertices lie at one place. Cells are
-/// split until at most three surfaces in each have a simple arrangement. Where more meet in a point, and where surfaces touch, they are
-/// split as far as the depth of the frame, which costs little: 12 to 16 is good for parts.
+/// The mesh is closed, and exactly two triangles meet at each edge; where the solid touches itself, vertices
+/// have equal positions. Cells are split until at most three surfaces in each have a simple arrangement.
+/// Where more surfaces meet in a point, and where surfaces touch, cells are split to the depth of the frame,
+/// which costs little: a depth of 12 to 16 is good for parts.
 ///
-/// How far the mesh and the boundary are from each other is proven by the surfaces. Where that is more than the tolerance, cells are
-/// split, as far as the depth of the frame.
+/// The surfaces prove a bound of the distance between mesh and boundary. Where it exceeds the tolerance,
+/// cells are split, down to the depth of the frame.
 ///
-/// About 50 microseconds and 500 bytes a cell; threads share the proof.
+/// It takes about 50 microseconds and 500 bytes a cell; threads share the proof.
 ///
 /// - Buffers: `frame`, one struct; `options`, one struct or NULL; `boundary`, one pointer.
 /// - Result: `*boundary`.
-/// - Errors: LEAFLESS_E_ARGUMENT if the solid is not known to end inside of the universe, or consists of something else than
-///   surfaces, as a mesh or a host program's function does, or `tolerance_model` is not between 2^-256 and 2^256;
-///   LEAFLESS_E_MESH if there would be more than 2^32 - 1 vertices, triangles or corners; LEAFLESS_E_DAMAGED;
-///   LEAFLESS_E_LIMIT; LEAFLESS_E_CANCELLED; LEAFLESS_E_NO_MEMORY.
-/// - Ownership: `solid` stays as it is; give `*boundary` back with leafless_boundary_free.
+/// - Errors: LEAFLESS_E_ARGUMENT if the solid is not known to end inside the universe, or does not consist of
+///   surfaces only (a mesh and a host program's function do not), or if `tolerance_model` is not between
+///   2^-256 and 2^256; LEAFLESS_E_MESH if there would be more than 2^32 - 1 vertices, triangles or corners;
+///   LEAFLESS_E_DAMAGED; LEAFLESS_E_LIMIT; LEAFLESS_E_CANCELLED; LEAFLESS_E_NO_MEMORY.
+/// - Ownership: `solid` is unchanged; release `*boundary` with leafless_boundary_free.
 /// - Threads: any.
-/// - Untrusted input: any solid; set `max_nodes` where the depth or the solid is not your own choice.
+/// - Untrusted input: any solid; set `max_nodes` if the depth or the solid is untrusted.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn leafless_solid_boundary(
     solid: *const leafless_solid,
@@ -222,7 +232,7 @@ pub unsafe extern "C" fn leafless_solid_boundary(
     boundary: *mut *mut leafless_boundary,
 ) -> leafless_status {
     guard(|| unsafe {
-        // The cells lie on a lattice of their own, for which nothing is kept.
+        // The cells lie on a lattice of their own, so no preparation is kept for the solid.
         let solid = shared(solid, "solid")?.solid.solid();
         let frame = self::frame(frame)?;
         let to = out(boundary, "boundary")?;
@@ -236,11 +246,11 @@ pub unsafe extern "C" fn leafless_solid_boundary(
     })
 }
 
-/// One more reference to a boundary.
+/// Returns one more reference to a boundary.
 ///
 /// - Buffers: `boundary`, a handle; `reference`, one pointer.
 /// - Result: `*reference`, equal to `boundary`.
-/// - Ownership: give each reference back with leafless_boundary_free.
+/// - Ownership: release each reference with leafless_boundary_free.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn leafless_boundary_ref(
     boundary: *const leafless_boundary,
@@ -249,10 +259,11 @@ pub unsafe extern "C" fn leafless_boundary_ref(
     guard(|| unsafe { refer(boundary, "boundary", reference) })
 }
 
-/// Gives back a reference to a boundary; with the last one the boundary is gone. Its mesh stays if it was asked for.
+/// Releases a reference to a boundary; the last release frees the boundary. References to its mesh stay
+/// valid.
 ///
 /// - Buffers: `boundary`, a handle or NULL, which does nothing.
-/// - Ownership: the reference is gone.
+/// - Ownership: the reference is invalid afterwards.
 /// - Threads: any; no other call may use this reference.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn leafless_boundary_free(boundary: *mut leafless_boundary) {
@@ -260,7 +271,7 @@ pub unsafe extern "C" fn leafless_boundary_free(boundary: *mut leafless_boundary
     unsafe { release(boundary) }
 }
 
-/// What is known of a boundary. O(1).
+/// Returns facts about a boundary. O(1).
 ///
 /// - Buffers: `report`, one struct.
 /// - Result: `*report`.
@@ -285,11 +296,11 @@ pub unsafe extern "C" fn leafless_boundary_describe(
     })
 }
 
-/// The mesh of a boundary. O(1).
+/// Returns the mesh of a boundary. O(1).
 ///
 /// - Buffers: `mesh`, one pointer.
 /// - Result: `*mesh`.
-/// - Ownership: the mesh is shared, and `boundary` may be freed; give `*mesh` back with leafless_mesh_free.
+/// - Ownership: the mesh is shared, and `boundary` may be freed; release `*mesh` with leafless_mesh_free.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn leafless_boundary_mesh(
     boundary: *const leafless_boundary,
@@ -302,9 +313,10 @@ pub unsafe extern "C" fn leafless_boundary_mesh(
     })
 }
 
-/// The surfaces that a solid is made of, by their kinds and numbers. Some may bound nothing.
+/// Returns the surfaces that a solid is made of, with their kinds and numbers. Some of them may bound
+/// nothing.
 ///
-/// - Buffers: `surfaces`, room for `capacity` structs, or NULL to ask for the count only; `count`, one number.
+/// - Buffers: `surfaces`, room for `capacity` structs, or NULL to get only the count; `count`, one number.
 /// - Result: `*count`; the surfaces.
 /// - Errors: LEAFLESS_E_BUFFER if the capacity is too small.
 #[unsafe(no_mangle)]
@@ -323,9 +335,9 @@ pub unsafe extern "C" fn leafless_boundary_surfaces(
     })
 }
 
-/// The regions of a boundary, in the order of their faces.
+/// Returns the regions of a boundary, in the order of their faces.
 ///
-/// - Buffers: `regions`, room for `capacity` structs, or NULL to ask for the count only; `count`, one number.
+/// - Buffers: `regions`, room for `capacity` structs, or NULL to get only the count; `count`, one number.
 /// - Result: `*count`; the regions.
 /// - Errors: LEAFLESS_E_BUFFER if the capacity is too small.
 #[unsafe(no_mangle)]
@@ -344,10 +356,10 @@ pub unsafe extern "C" fn leafless_boundary_regions(
     })
 }
 
-/// The region of each triangle of the mesh of a boundary.
+/// Returns the region of each triangle of the mesh of a boundary.
 ///
-/// - Buffers: `regions`, room for `capacity` numbers, or NULL to ask for the count only; `count`, one number.
-/// - Result: `*count`, the number of triangles; in `regions` the number of the region of each.
+/// - Buffers: `regions`, room for `capacity` numbers, or NULL to get only the count; `count`, one number.
+/// - Result: `*count`, the number of triangles; in `regions` the index of each triangle's region.
 /// - Errors: LEAFLESS_E_BUFFER if the capacity is too small.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn leafless_boundary_triangle_regions(
@@ -365,12 +377,13 @@ pub unsafe extern "C" fn leafless_boundary_triangle_regions(
     })
 }
 
-/// The faces of a boundary where they lie, without a copy, as leafless_mesh_write_polygons and leafless_mesh_from_polyhedron take them:
-/// vertices of type double, which are those of the mesh, and indices of 32 bits.
+/// Returns the faces of a boundary in place, without a copy, in the form for leafless_mesh_write_polygons and
+/// leafless_mesh_from_polyhedron: vertices of type double, which are those of the mesh, and indices of 32
+/// bits.
 ///
-/// A plane region is triangles, too, if its loops touch each other along edges, as they do where the solid touches itself, or if its
-/// corners lie further beside one plane than 10^-9 of the solid's extent. A shell around a void belongs to the smallest solid
-/// in which it lies.
+/// A plane region consists of triangles, too, if its loops touch each other along edges, as where the solid
+/// touches itself, or if its corners lie off one plane by more than 10^-9 of the solid's extent. A shell
+/// around a void belongs to the smallest solid that contains it.
 ///
 /// - Buffers: `arrays`, one struct.
 /// - Result: `*arrays`.
@@ -385,7 +398,7 @@ pub unsafe extern "C" fn leafless_boundary_peek_faces(
         let parts = |offsets: &[u32]| offsets.len() as u64 - 1;
         filled(arrays, "arrays")?.write(leafless_polyhedron_arrays {
             struct_size: size_of::<leafless_polyhedron_arrays>() as u32,
-            // Doubles, and below indices of 32 bits.
+            // Vertices are doubles; the indices below have 32 bits.
             vertex_type: Number::ZERO,
             vertices: faces.vertices.as_ptr().cast(),
             vertex_count: faces.vertices.len() as u64,

@@ -11,21 +11,21 @@ use std::borrow::Cow;
 use std::io::{self, Write};
 use std::path::Path;
 
-/// How a source is used. Octrees, tri-dexel models and samples in memory can be used where they lie; everything else is
-/// read with LEAFLESS_ACCESS_COPY.
+/// The way in which a source is accessed. Octrees, tri-dexel models and samples in memory can be used in
+/// place; everything else is read with LEAFLESS_ACCESS_COPY.
 #[derive(Clone, Copy, PartialEq)]
 #[repr(u32)]
 pub enum leafless_access {
-    /// It is read into memory, and all of it is verified: the plain way, and the one for files that may not be
-    /// trusted. Later changes of the file or of the bytes do not matter. Bytes may lie on any address.
+    /// Reads the source into memory and verifies all of it. This is the default, and the way for untrusted
+    /// files. Later changes of the file or of the bytes do not matter. Bytes may have any address.
     LEAFLESS_ACCESS_COPY = 0,
-    /// It is used where it lies: a file is mapped into memory, bytes are viewed. Only its header, section table,
-    /// bounds, level table or windows, and metadata are checked: some microseconds for any length. What queries
-    /// touch is read when they do. Of what is damaged elsewhere queries answer undecided or wrong, but stay in
-    /// bounds and end.
+    /// Uses the source in place: a file is mapped into memory, bytes are viewed. Only the header, the section
+    /// table, the bounds, the level table or windows, and the metadata are checked, in some microseconds for
+    /// any length. The rest is read when queries touch it. If the rest is damaged, queries may answer
+    /// undecided or wrong, but they stay in bounds and end.
     LEAFLESS_ACCESS_MAP = 1,
-    /// As LEAFLESS_ACCESS_MAP, but all of it is verified first, in one scan. Who writes to it afterwards undoes
-    /// that.
+    /// As LEAFLESS_ACCESS_MAP, but all of the source is verified first, in one scan. Writing to the source
+    /// afterwards invalidates the verification.
     LEAFLESS_ACCESS_MAP_VERIFIED = 2,
 }
 
@@ -37,106 +37,109 @@ enumeration! {
     }
 }
 
-/// What is read: a file by its path, or the bytes of a whole file in memory. One of the two is given, and the
-/// fields of the other are zero, else functions return LEAFLESS_E_ARGUMENT. leafless_from_file and
-/// leafless_from_bytes make it.
+/// The input of a reading function: a file by its path, or the bytes of a whole file in memory. Exactly one
+/// of the two is given, and the fields of the other are zero, else functions return LEAFLESS_E_ARGUMENT.
+/// leafless_from_file and leafless_from_bytes make this struct.
 ///
-/// A file that is mapped must be a regular one. While the object that was read lives, or one that shares the
-/// file with it, nobody may make the file shorter: reading beyond its new end raises SIGBUS, which by default
-/// ends the process. Nobody may write to it either: answers may then be wrong, and nothing more is promised.
-/// Removing the file, or replacing it by renaming another over it, as a leafless_sink does, is harmless.
+/// A mapped file must be a regular file. While the object that was read lives, or an object that shares the
+/// file with it, the file must not become shorter: reading beyond its new end raises SIGBUS, which by default
+/// ends the process. The file must not be written to either: answers may then be wrong, and nothing more is
+/// promised. Removing the file, or replacing it by renaming another file over it, as a leafless_sink does, is
+/// harmless.
 ///
-/// Bytes that are viewed begin on an address that is a multiple of 8, and stay the host's. They must stay,
-/// unchanged, until the last reference is given back to the object that was read, and to all that was made of
-/// it and shares them: cursors, solids, channels, models with other metadata, and all that was made of these.
-/// They are for files that are part of a program, or that the host maps itself.
+/// Viewed bytes begin at an address that is a multiple of 8, and belong to the host. They must stay in place,
+/// unchanged, until the last reference is released to the object that was read and to every object that
+/// shares the bytes: cursors, solids, channels, models with other metadata, and objects made from these.
+/// Viewed bytes are for files that are part of a program, or that the host maps itself.
 ///
-/// Untrusted input: with LEAFLESS_ACCESS_COPY any file and any bytes, and memory is at most a small multiple of
-/// their length, unless the function says more. With the other two any content too, but only where nobody else
-/// can change it.
+/// Untrusted input: with LEAFLESS_ACCESS_COPY any file and any bytes; memory is at most a small multiple of
+/// their length, unless the function says more. With the other two any content too, but only if no other
+/// program can change it.
 #[derive(Clone, Copy)]
 #[repr(C)]
 pub struct leafless_source {
     /// sizeof(leafless_source).
     pub struct_size: u32,
-    /// How it is used.
+    /// A leafless_access.
     pub access: Number<leafless_access>,
     /// The file's path, UTF-8; NULL if bytes are given.
     pub path: *const c_char,
-    /// Its length in bytes.
+    /// Length of the path in bytes.
     pub path_length: usize,
-    /// All bytes of a file; NULL if a path is given, or if there are none.
+    /// All bytes of a file; NULL if a path is given, or if the file is empty.
     pub bytes: *const u8,
-    /// Their number.
+    /// Number of bytes.
     pub length: u64,
 }
 
 // SAFETY: numbers and pointers.
 unsafe impl Sized32 for leafless_source {}
 
-/// Takes bytes of a file in order: all `count` of them, and returns 0; anything else ends the writing with
-/// LEAFLESS_E_CALLBACK. It is called in the calling thread. It must return: no exception, no longjmp. It may
-/// call this library.
+/// Receives the bytes of a file in order. It takes all `count` bytes and returns 0; any other value ends the
+/// writing with LEAFLESS_E_CALLBACK. It is called in the calling thread. It must return: no exception, no
+/// longjmp. It may call this library.
 pub type leafless_write_fn =
     Option<unsafe extern "C" fn(ctx: *mut c_void, bytes: *const u8, count: u64) -> i32>;
 
-/// Where a file is written to: a path, a function of the host, or a buffer. Just one of `path`, `write` and
+/// The destination of a file: a path, a function of the host, or a buffer. Exactly one of `path`, `write` and
 /// `length` is given, and the fields of the others are zero, else functions return LEAFLESS_E_ARGUMENT.
-/// leafless_to_file, leafless_to_function and leafless_to_buffer make it.
+/// leafless_to_file, leafless_to_function and leafless_to_buffer make this struct.
 ///
-/// A path. At any moment, also after a crash or a power failure, there is the old file or the new one, each
-/// complete; after LEAFLESS_OK the new one is on the disk. The bytes go to a temporary file in the same
-/// directory, which is synchronised with the disk and then renamed over the old file. On Linux the temporary
-/// file has no name until it is complete, so that nothing is left of it when the process is killed, where the
-/// file system has such files. Elsewhere a file `.leafless-….tmp` may stay behind. A file that is replaced keeps
-/// its permissions, its other hard links keep the old contents. A symbolic link is followed. What is no regular
-/// file, such as a pipe, is written to directly; a pipe that nobody reads raises SIGPIPE, and a file beyond the
-/// process's limit SIGXFSZ, if the host has not ignored them. A pipe that nobody has opened for reading is
-/// waited for, also if signal handlers run meanwhile. After an error, LEAFLESS_E_IO or another, the old file is
-/// as it was; only if the very last step fails, synchronising the directory, the new one is in place.
+/// A path. At any moment, also after a crash or a power failure, the old file or the new file exists,
+/// complete; after LEAFLESS_OK the new file is on the disk. The bytes go to a temporary file in the same
+/// directory, which is synchronised with the disk and then renamed over the old file. On Linux, if the file
+/// system supports it, the temporary file has no name until it is complete, so that nothing is left of it
+/// when the process is killed. Elsewhere a file `.leafless-….tmp` may stay behind. A replaced file keeps its
+/// permissions; its other hard links keep the old contents. A symbolic link is followed. A file that is not
+/// regular, such as a pipe, is written to directly. A pipe without a reader raises SIGPIPE, and a file beyond
+/// the process's size limit raises SIGXFSZ, unless the host ignores these signals. The call waits until a
+/// pipe is opened for reading, also if signal handlers run meanwhile. After an error, LEAFLESS_E_IO or
+/// another, the old file is unchanged; only if the last step fails, synchronising the directory, the new file
+/// is in place.
 ///
-/// A function. It is called with a few large pieces, from the first byte to the last. LEAFLESS_E_CALLBACK has
-/// what it returned in the message. Other errors come before anything is written.
+/// A function. It is called with a few large pieces, from the first byte to the last. The message of
+/// LEAFLESS_E_CALLBACK contains the function's return value. Other errors occur before anything is written.
 ///
-/// A buffer. Asking for the length takes as long as filling. LEAFLESS_E_BUFFER if the capacity is too small.
+/// A buffer. Computing only the length takes as long as filling the buffer. LEAFLESS_E_BUFFER if the capacity
+/// is too small.
 #[derive(Clone, Copy)]
 #[repr(C)]
 pub struct leafless_sink {
     /// sizeof(leafless_sink).
     pub struct_size: u32,
-    /// Zero.
+    /// Reserved; must be 0.
     pub reserved: u32,
     /// The file's path, UTF-8.
     pub path: *const c_char,
-    /// Its length in bytes.
+    /// Length of the path in bytes.
     pub path_length: usize,
-    /// Takes the bytes.
+    /// The function that receives the bytes.
     pub write: leafless_write_fn,
-    /// What `write` is called with.
+    /// The context that `write` is called with.
     pub write_ctx: *mut c_void,
-    /// Room for `capacity` bytes, or NULL to ask for the length only.
+    /// Room for `capacity` bytes, or NULL to get only the length.
     pub bytes: *mut u8,
-    /// How many bytes there is room for.
+    /// Capacity of the buffer in bytes.
     pub capacity: u64,
-    /// Where the length of the file is written to: the number of bytes.
+    /// Receives the length of the file in bytes.
     pub length: *mut u64,
 }
 
 // SAFETY: numbers, pointers, and an optional function.
 unsafe impl Sized32 for leafless_sink {}
 
-/// What the source's parameter and its fields are called in messages.
+/// Names of the source's parameter and of its fields in messages.
 const SOURCE: [&str; 4] = ["source", "source.access", "source.path", "source.bytes"];
 const DATA: [&str; 4] = ["data", "data.access", "data.path", "data.bytes"];
 
-/// What a source has.
+/// The input that a source names.
 pub(super) enum Source<'a> {
     Path(&'a str),
     Bytes(&'a [u8]),
 }
 
 impl<'a> Source<'a> {
-    /// All bytes of the file.
+    /// Returns all bytes of the file.
     pub(super) fn whole(&self) -> Result<Cow<'a, [u8]>, Error> {
         match *self {
             Source::Path(path) => {
@@ -149,8 +152,8 @@ impl<'a> Source<'a> {
 }
 
 /// # Safety
-/// `source` is NULL or misaligned, or a struct as it is declared, of which path and bytes stay and do not change
-/// as long as the result is used.
+/// `source` is NULL or misaligned, or a valid struct whose path and bytes live and do not change as long as
+/// the result is used.
 unsafe fn named<'a>(
     source: *const leafless_source,
     names: [&'static str; 4],
@@ -173,7 +176,7 @@ unsafe fn named<'a>(
     Ok((found, access))
 }
 
-/// What can only be read by a copy.
+/// Returns the input of a source that can only be copied.
 ///
 /// # Safety
 /// As [`named`].
@@ -188,10 +191,11 @@ unsafe fn named_copy<'a>(
     }
 }
 
-/// A source, and how it is to be used.
+/// Returns the input of a source and its access.
 ///
 /// # Safety
-/// As [`named`]. With other access than a copy they stay as long as anything that is made of the result.
+/// As [`named`]. With access other than a copy, path and bytes live as long as every object made from the
+/// result.
 pub(super) unsafe fn source<'a>(
     source: *const leafless_source,
 ) -> Result<(Source<'a>, leafless_access), Failure> {
@@ -199,7 +203,7 @@ pub(super) unsafe fn source<'a>(
     unsafe { named(source, SOURCE) }
 }
 
-/// A source of what can only be read by a copy.
+/// Returns the input of a source that can only be copied, the parameter `source`.
 ///
 /// # Safety
 /// As [`named`].
@@ -208,7 +212,7 @@ pub(super) unsafe fn copy<'a>(source: *const leafless_source) -> Result<Source<'
     unsafe { named_copy(source, SOURCE) }
 }
 
-/// A second file that belongs to a source; `None` if `data` is NULL.
+/// Returns a second file that belongs to a source; `None` if `data` is NULL.
 ///
 /// # Safety
 /// As [`named`].
@@ -217,7 +221,7 @@ pub(super) unsafe fn data<'a>(data: *const leafless_source) -> Result<Option<Sou
     (!data.is_null()).then(|| unsafe { named_copy(data, DATA) }).transpose()
 }
 
-/// Hands bytes to the host.
+/// Passes bytes to the host.
 pub(super) struct Writer {
     write: unsafe extern "C" fn(*mut c_void, *const u8, u64) -> i32,
     ctx: *mut c_void,
@@ -237,7 +241,7 @@ impl Write for Writer {
 }
 
 impl Writer {
-    /// What the host's function returned is the error, if it ended the work.
+    /// If the host's function ended the work, its return value is the error.
     fn run(mut self, work: impl FnOnce(&mut Writer) -> Result<(), Error>) -> Result<(), Failure> {
         match work(&mut self) {
             Err(Error::Io(_)) if self.code != 0 => Err(Error::Callback { code: self.code }.into()),
@@ -246,10 +250,10 @@ impl Writer {
     }
 }
 
-/// Bytes of a piece that a function of the host gets of a file in memory.
+/// Size in bytes of the pieces of a file in memory that are passed to a function of the host.
 const PIECE: usize = 1 << 20;
 
-/// Where a file goes.
+/// The destination of a file.
 pub(super) enum Sink<'a> {
     Path(&'a str),
     Function(Writer),
@@ -257,8 +261,7 @@ pub(super) enum Sink<'a> {
 }
 
 /// # Safety
-/// `sink` is NULL or misaligned, or a struct as it is declared, of which path and buffers stay as long as the
-/// result is used.
+/// `sink` is NULL or misaligned, or a valid struct whose path and buffers live as long as the result is used.
 pub(super) unsafe fn sink<'a>(sink: *const leafless_sink) -> Result<Sink<'a>, Failure> {
     if sink.is_null() {
         return Err(Failure::Null { name: "sink" });
@@ -293,7 +296,7 @@ pub(super) unsafe fn sink<'a>(sink: *const leafless_sink) -> Result<Sink<'a>, Fa
 }
 
 impl Sink<'_> {
-    /// The path, if the file gets one.
+    /// Returns the path, if the file has one.
     pub(super) fn path(&self) -> Option<&Path> {
         match self {
             Sink::Path(path) => Some(Path::new(path)),
@@ -301,7 +304,7 @@ impl Sink<'_> {
         }
     }
 
-    /// Hands a file over, made in the way that suits the sink: saved, written in pieces, or whole.
+    /// Writes a file in the way that suits the sink: saved to a path, written in pieces, or whole.
     pub(super) fn put(
         self,
         save: impl FnOnce(&str) -> Result<(), Error>,
@@ -315,7 +318,7 @@ impl Sink<'_> {
         }
     }
 
-    /// Hands over a file that is in memory.
+    /// Writes a file that is in memory.
     pub(super) fn put_whole(self, file: &[u8]) -> Result<(), Failure> {
         match self {
             Sink::Path(path) => Ok(replace(path, |to| Ok(to.write_all(file)?))?),

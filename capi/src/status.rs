@@ -4,52 +4,54 @@ use core::ffi::{CStr, c_char};
 use core::fmt::{self, Display, Write};
 use std::cell::RefCell;
 
-/// What a function returns. Codes are never renumbered and never used for something else; new ones may be
-/// added at the end.
+/// The status codes that functions return. A code is never renumbered or reused; new codes are added at the
+/// end.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 #[repr(i32)]
 pub enum leafless_status {
-    /// Done.
+    /// Success.
     LEAFLESS_OK = 0,
-    /// A pointer that must not be NULL is.
+    /// A pointer that must not be NULL is NULL.
     LEAFLESS_E_NULL = 1,
     /// An argument is out of its range, not a number, or misaligned.
     LEAFLESS_E_ARGUMENT = 2,
     /// A text is not UTF-8, or a path holds a NUL.
     LEAFLESS_E_UTF8 = 3,
-    /// A buffer is too small for what would be written to it.
+    /// A buffer is too small for the result.
     LEAFLESS_E_BUFFER = 4,
     /// Operands lie on different frames, or a solid belongs to another frame.
     LEAFLESS_E_FRAME = 5,
-    /// The sampled rule was asked of a solid that cannot decide single points.
+    /// The sampled rule was requested for a solid that cannot decide single points.
     LEAFLESS_E_NOT_SAMPLED = 6,
     /// A mesh does not bound a solid.
     LEAFLESS_E_MESH = 7,
     /// A mesh file cannot be read.
     LEAFLESS_E_MESH_FILE = 8,
-    /// The bytes are no Leafless file, or a damaged one.
+    /// The bytes are not a Leafless file, or the file is damaged.
     LEAFLESS_E_FORMAT = 9,
     /// The file needs a newer version of the library.
     LEAFLESS_E_VERSION = 10,
     /// The arrays of an octree or of a tri-dexel model contradict each other.
     LEAFLESS_E_DAMAGED = 11,
-    /// More nodes or bytes than leafless_options allows.
+    /// The result would need more nodes or bytes than leafless_options allows.
     LEAFLESS_E_LIMIT = 12,
     /// An allocation failed.
     LEAFLESS_E_NO_MEMORY = 13,
-    /// The host asked to stop, through a control or from a function that hears of progress.
+    /// The host cancelled the operation, through a control or from its progress function.
     LEAFLESS_E_CANCELLED = 14,
-    /// A function of the host, other than one that hears of progress, ended the work by what it returned.
+    /// A function of the host, other than the progress function, ended the operation by its return value.
     LEAFLESS_E_CALLBACK = 15,
     /// The operating system refused to read or write.
     LEAFLESS_E_IO = 16,
-    /// A defect of the library, please report it with the message. What the function worked on is as before.
+    /// The library has a defect; please report it with the message. All objects stay usable, except an editor
+    /// or a layout that the call was changing.
     LEAFLESS_E_PANIC = 17,
-    /// An octree that is to be refined was made from another solid.
+    /// The octree to refine was made from another solid.
     LEAFLESS_E_SOURCE = 18,
     /// A scene cannot be read.
     LEAFLESS_E_SCENE = 19,
-    /// A lazy octree or an editor is in use by another call, in another thread or around this one. Nothing was done.
+    /// A lazy octree, an editor or a layout is in use by another call, in another thread or around this one.
+    /// Nothing was done.
     LEAFLESS_E_BUSY = 20,
     /// A volume file cannot be read.
     LEAFLESS_E_VOLUME_FILE = 21,
@@ -81,10 +83,10 @@ const ALL: [(leafless_status, &CStr); 22] = [
     (LEAFLESS_E_VOLUME_FILE, c"LEAFLESS_E_VOLUME_FILE"),
 ];
 
-/// The last failure of a thread. Of fixed size, so that a failure for want of memory can be told.
+/// The last failure of a thread. Its size is fixed, so that an out-of-memory failure can be recorded.
 struct Last {
     status: leafless_status,
-    /// What a function of the host returned, if that is why.
+    /// The value that a function of the host returned, if that value caused the failure.
     code: i32,
     length: usize,
     text: [u8; 511],
@@ -95,7 +97,7 @@ std::thread_local! {
         const { RefCell::new(Last { status: leafless_status::LEAFLESS_OK, code: 0, length: 0, text: [0; 511] }) };
 }
 
-/// The largest length up to `most` at which `text` can be cut between characters.
+/// Returns the largest length up to `most` at which `text` can be cut between characters.
 fn cut(text: &str, most: usize) -> usize {
     (0..=most.min(text.len())).rev().find(|&length| text.is_char_boundary(length)).unwrap_or(0)
 }
@@ -113,14 +115,14 @@ pub(super) fn keep(status: leafless_status, code: i32, text: &dyn Display) {
     // Nothing below fails in this thread, so the cell is not borrowed twice.
     LAST.with_borrow_mut(|last| {
         (last.status, last.code, last.length) = (status, code, 0);
-        // What does not fit is cut off.
+        // Text that does not fit is cut off.
         let _ = write!(last, "{text}");
     });
 }
 
-/// The name of a status, such as "LEAFLESS_E_NULL".
+/// Returns the name of a status, such as "LEAFLESS_E_NULL".
 ///
-/// - Result: a NUL-terminated text, never NULL; "LEAFLESS_E_UNKNOWN" for a number that is no status.
+/// - Result: a NUL-terminated text, never NULL; "LEAFLESS_E_UNKNOWN" for a number that is not a status.
 /// - Ownership: the text is static; do not free it.
 /// - Untrusted input: any number.
 #[unsafe(no_mangle)]
@@ -129,19 +131,19 @@ pub extern "C" fn leafless_status_name(status: i32) -> *const c_char {
     named.map_or(c"LEAFLESS_E_UNKNOWN", |(_, name)| name).as_ptr()
 }
 
-/// The message of the last failure in the calling thread: a sentence that a user can act on, in UTF-8. If it
-/// is about a file, the message begins with the path, or with the end of a long one. Calls that succeed leave
-/// it as it is; before the first failure it is empty.
+/// Copies the message of the last failure in the calling thread: a sentence in UTF-8 for the user. If the
+/// failure is about a file, the message begins with the path, or with the end of a long path. A call that
+/// succeeds leaves the message unchanged. Before the first failure the message is empty.
 ///
 /// - Buffers: `message`, `capacity` bytes; may be NULL if `capacity` is 0.
-/// - Result: the message's length in bytes, without the terminating NUL, also if not all of it was written;
-///   at most 511. What is written is cut at a character and NUL-terminated.
+/// - Result: the message's length in bytes, without the terminating NUL, also if the buffer is too small; at
+///   most 511. The text in the buffer is cut between characters and NUL-terminated.
 /// - Ownership: the message is copied.
 /// - Threads: any; every thread has its own message.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn leafless_last_error(message: *mut c_char, capacity: usize) -> usize {
     LAST.with_borrow(|last| {
-        // Texts are cut between characters.
+        // The text is cut between characters.
         let text = core::str::from_utf8(&last.text[..last.length]).unwrap_or_default();
         if !message.is_null() && capacity > 0 {
             let length = cut(text, capacity - 1);
@@ -155,7 +157,7 @@ pub unsafe extern "C" fn leafless_last_error(message: *mut c_char, capacity: usi
     })
 }
 
-/// The status of the last failure in the calling thread, LEAFLESS_OK before the first.
+/// Returns the status of the last failure in the calling thread; LEAFLESS_OK before the first failure.
 ///
 /// - Result: the status.
 /// - Threads: any; every thread has its own status.
@@ -164,8 +166,9 @@ pub extern "C" fn leafless_last_status() -> leafless_status {
     LAST.with_borrow(|last| last.status)
 }
 
-/// What a function of the host returned that ended the work, if that was the last failure in the calling thread
-/// (LEAFLESS_E_CALLBACK); else 0. So the host knows which of its functions it was, and why.
+/// Returns the value with which a function of the host ended the operation, if that was the last failure in
+/// the calling thread (LEAFLESS_E_CALLBACK); else 0. Distinct values tell the host which of its functions
+/// failed, and why.
 ///
 /// - Result: the number.
 /// - Threads: any; every thread has its own number.

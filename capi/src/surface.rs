@@ -1,4 +1,4 @@
-//! Surfaces: closed triangle meshes of octrees and of solids.
+//! Surfaces: closed triangle meshes of octrees and solids.
 
 use super::boundary::{Failure, Sized32, guard, out, shared, sized};
 use super::control::{controlled, leafless_options};
@@ -18,29 +18,30 @@ use leafless::surface::{
 use leafless_resolve::*;
 use leafless_surface_method::*;
 
-/// How a surface is made.
+/// The method that makes a surface.
 #[derive(Clone, Copy)]
 #[repr(u32)]
 pub enum leafless_surface_method {
     /// Marching cubes: vertices on the edges between inside and outside samples. Exactly two triangles meet
-    /// on every edge.
+    /// at every edge.
     LEAFLESS_SURFACE_METHOD_MARCHING_CUBES = 0,
-    /// Simple marching cubes: all vertices are samples, all normals have one of 13 directions up to sign. The
-    /// mesh is closed, but where its sheets touch, more than two triangles meet on an edge.
+    /// Simple marching cubes: all vertices are samples, and all normals have one of 13 directions up to sign.
+    /// The mesh is closed, but where its sheets touch, more than two triangles meet at an edge.
     LEAFLESS_SURFACE_METHOD_SIMPLE_MARCHING_CUBES = 1,
-    /// Coplanar shrink: the surface of simple marching cubes with far fewer triangles where it has plane parts.
-    /// All that lies in one plane becomes one region with straight edges. There are no cracks; triangles may be
-    /// long and thin.
+    /// Coplanar shrink: the surface of simple marching cubes with far fewer triangles where it has plane
+    /// parts. All triangles in one plane become one region with straight edges. There are no cracks;
+    /// triangles may be long and thin.
     LEAFLESS_SURFACE_METHOD_SHRINK = 2,
-    /// Coplanar shrink in its published form, to compare with. It has cracks, so that the mesh is open where
+    /// Coplanar shrink in its published form, for comparison. It has cracks, so that the mesh is open where
     /// merged cells of several sizes meet.
     LEAFLESS_SURFACE_METHOD_SHRINK_PUBLISHED = 3,
-    /// Dual contouring, of solids alone: edges and corners stay sharp. Samples are the centres of cells. It is
-    /// leafless_tridexel_surface of a tri-dexel model with normals, which is made and dropped; that function also reports
-    /// what the mesh does not show.
+    /// Dual contouring, for solids only: edges and corners stay sharp. Samples are the centres of cells. It
+    /// is leafless_tridexel_surface of a temporary tri-dexel model with normals; that function also reports
+    /// features that the mesh does not represent.
     LEAFLESS_SURFACE_METHOD_DUAL_CONTOURING = 4,
-    /// Surface nets, of octrees alone: a vertex in each cube between samples that do not all lie on one side, in the middle of
-    /// where the surface crosses it. Steps of the cells are smoothed; exactly two triangles meet on every edge.
+    /// Surface nets, for octrees only: a vertex in each cube between samples that do not all lie on one side,
+    /// in the middle of the surface's crossings with the cube. Steps of the cells are smoothed; exactly two
+    /// triangles meet at every edge.
     LEAFLESS_SURFACE_METHOD_SURFACE_NETS = 5,
 }
 
@@ -55,14 +56,14 @@ enumeration! {
     }
 }
 
-/// To which end of an edge between an inside and an outside sample simple marching cubes and coplanar shrink move the
-/// vertex.
+/// The end of an edge between an inside and an outside sample to which simple marching cubes and coplanar
+/// shrink move the vertex.
 #[derive(Clone, Copy)]
 #[repr(u32)]
 pub enum leafless_snap {
-    /// The outer one: the mesh contains all inside samples.
+    /// The outer end: the mesh contains all inside samples.
     LEAFLESS_SNAP_FAT = 0,
-    /// The inner one: inside samples are vertices. What is one cell thick has no thickness then.
+    /// The inner end: inside samples are vertices. Parts that are one cell thick then have no thickness.
     LEAFLESS_SNAP_THIN = 1,
 }
 
@@ -73,18 +74,18 @@ enumeration! {
     }
 }
 
-/// On which side of the surface the PARTIAL cells of an octree lie, which have no sign of their own.
+/// The side of the surface for the PARTIAL cells of an octree, which have no sign of their own.
 #[derive(Clone, Copy)]
 #[repr(u32)]
 pub enum leafless_resolve {
-    /// Nobody says, which is an error if there are such cells.
+    /// Not given, which is an error if there are PARTIAL cells.
     LEAFLESS_RESOLVE_NONE = 0,
-    /// Outside: the surface is that of the FULL cells, of what is surely solid.
+    /// Outside: the surface is that of the FULL cells, which are certainly solid.
     LEAFLESS_RESOLVE_INNER = 1,
-    /// Inside: the surface is that of the FULL and PARTIAL cells, of what is possibly solid.
+    /// Inside: the surface is that of the FULL and PARTIAL cells, which are possibly solid.
     LEAFLESS_RESOLVE_OUTER = 2,
-    /// Where the solid `source` says that the octree was made from: each cell's centre decides, as under
-    /// LEAFLESS_RULE_SAMPLED. It is built anew on the octree's frame.
+    /// Decided by `source`, the solid that the octree was made from: each cell's centre decides, as under
+    /// LEAFLESS_RULE_SAMPLED. The solid is built anew on the octree's frame.
     LEAFLESS_RESOLVE_SOURCE = 3,
 }
 
@@ -97,16 +98,16 @@ enumeration! {
     }
 }
 
-/// Where marching cubes puts a vertex on an edge between an inside and an outside sample.
+/// The position of a vertex of marching cubes on an edge between an inside and an outside sample.
 #[derive(Clone, Copy)]
 #[repr(u32)]
 pub enum leafless_vertex_placement {
-    /// Half-way. The mesh has steps, and is as far from the surface as half a cell.
+    /// Half-way. The mesh has steps, and is up to half a cell away from the surface.
     LEAFLESS_VERTEX_PLACEMENT_MIDPOINT = 0,
-    /// Where the edge crosses the solid's surface; if it does so several times, at one of the crossings.
-    /// Half-spaces, meshes and solids made of them tell the crossing to rounding. For a solid that only tells
-    /// about boxes, cells along the edge are split down to the depth of 20, and the crossing is known to a
-    /// cell of that depth.
+    /// Where the edge crosses the solid's surface; if it crosses several times, at one of the crossings.
+    /// Half-spaces, meshes and solids made of them provide the crossing up to rounding. For a solid that only
+    /// classifies boxes, cells along the edge are split down to depth 20, and the crossing is known to a cell
+    /// of that depth.
     LEAFLESS_VERTEX_PLACEMENT_CROSSING = 1,
 }
 
@@ -117,8 +118,8 @@ enumeration! {
     }
 }
 
-/// How a surface is extracted. NULL means the defaults. All fields but the first may be zero, which is their
-/// default. A field that the method does not use must be zero.
+/// Options of extracting a surface. NULL means the defaults. Zero is the default of every field but the
+/// first. A field that the method does not use must be zero.
 #[derive(Clone, Copy)]
 #[repr(C)]
 pub struct leafless_surface_options {
@@ -126,16 +127,17 @@ pub struct leafless_surface_options {
     pub struct_size: u32,
     /// A leafless_surface_method.
     pub method: Number<leafless_surface_method>,
-    /// Of LEAFLESS_SURFACE_METHOD_SIMPLE_MARCHING_CUBES and of both kinds of LEAFLESS_SURFACE_METHOD_SHRINK: a leafless_snap.
+    /// A leafless_snap, for LEAFLESS_SURFACE_METHOD_SIMPLE_MARCHING_CUBES and both kinds of
+    /// LEAFLESS_SURFACE_METHOD_SHRINK.
     pub snap: Number<leafless_snap>,
-    /// Of octrees: a leafless_resolve. Solids decide all samples themselves.
+    /// A leafless_resolve, for octrees. Solids decide all samples themselves.
     pub resolve: Number<leafless_resolve>,
-    /// Of LEAFLESS_SURFACE_METHOD_MARCHING_CUBES of solids: a leafless_vertex_placement. Octrees do not know where
-    /// their solid's surface is.
+    /// A leafless_vertex_placement, for LEAFLESS_SURFACE_METHOD_MARCHING_CUBES of solids. Octrees do not
+    /// store the position of their solid's surface.
     pub placement: Number<leafless_vertex_placement>,
-    /// 0.
+    /// Reserved; 0.
     pub reserved: u32,
-    /// Of LEAFLESS_RESOLVE_SOURCE: the solid that the octree was made from.
+    /// The solid that the octree was made from, for LEAFLESS_RESOLVE_SOURCE.
     pub source: *const leafless_solid,
 }
 
@@ -152,7 +154,7 @@ enum Method {
     SurfaceNets,
 }
 
-/// Refuses a field that should be zero, and is not.
+/// Refuses a field that should be zero and is not.
 fn zero(is_zero: bool, name: &'static str, problem: &'static str) -> Result<(), Failure> {
     if is_zero { Ok(()) } else { Err(Failure::Argument { name, problem }) }
 }
@@ -184,7 +186,7 @@ impl leafless_surface_options {
     }
 
     /// # Safety
-    /// `source` is NULL or misaligned, or a living handle.
+    /// `source` is NULL or misaligned, or a handle that is alive.
     unsafe fn resolve<'a>(&self) -> Result<Option<Resolve<'a>>, Failure> {
         let resolve = self.resolve.known("surface.resolve")?;
         if let LEAFLESS_RESOLVE_SOURCE = resolve {
@@ -201,32 +203,35 @@ impl leafless_surface_options {
     }
 }
 
-/// The surface of an octree: a closed mesh between the centres of finest cells that lie inside and those that
-/// lie outside. Everything around the universe counts as outside, so that the mesh is closed there, too.
+/// Extracts the surface of an octree: a closed mesh between the centres of finest cells that lie inside and
+/// those that lie outside. The space around the universe counts as outside, so that the mesh is closed there,
+/// too.
 ///
-/// Every edge is run along as often in one direction as in the other, but for
-/// LEAFLESS_SURFACE_METHOD_SHRINK_PUBLISHED. Triangles turn counter-clockwise as seen from outside; no two vertices
-/// are equal, and no triangle has a vertex twice. The order of vertices and triangles is always the same:
-/// that of the cells in Morton order, or for coplanar shrink that of places and planes. leafless_mesh_describe
-/// and leafless_mesh_copy hand the arrays out, leafless_mesh_inspect and leafless_mesh_area tell about them,
-/// leafless_mesh_intersecting_pairs finds triangles that meet, and leafless_mesh_write writes them.
+/// Every edge is used as often in one direction as in the other, except for
+/// LEAFLESS_SURFACE_METHOD_SHRINK_PUBLISHED. Triangles turn counter-clockwise as seen from outside; no two
+/// vertices are equal, and no triangle has a vertex twice. The order of vertices and triangles is always the
+/// same: the Morton order of the cells, or, for coplanar shrink, the order of positions and planes.
+/// leafless_mesh_describe and leafless_mesh_copy return the arrays, leafless_mesh_inspect and
+/// leafless_mesh_area analyse them, leafless_mesh_intersecting_pairs finds triangles that intersect, and
+/// leafless_mesh_write writes them.
 ///
 /// Time is linear in the octree's array elements and the mesh: it grows with the surface, not with the
-/// volume. (Coplanar shrink takes O(n log n + n w) for n cells at the surface of which at most w lie along a
-/// line in a plane region.) Beside the mesh it takes 56 bytes (simple marching cubes: up to 128) for each
-/// block of 4³ cells at the surface, and coplanar shrink up to 200 bytes for each cell at a curved surface.
+/// volume. (Coplanar shrink takes O(n log n + n w) for n cells at the surface, with at most w of them along a
+/// line in a plane region.) In addition to the mesh, memory is 56 bytes (simple marching cubes: up to 128)
+/// for each block of 4³ cells at the surface, and for coplanar shrink up to 200 bytes for each cell at a
+/// curved surface.
 ///
-/// - Buffers: `surface`, one struct or NULL; `options`, one struct or NULL, of which `max_nodes` and
-///   `max_bytes` count for LEAFLESS_RESOLVE_SOURCE only; `mesh`, one pointer.
-/// - Result: `*mesh`, the same for any number of threads; it has no triangles if nothing is inside.
-/// - Errors: LEAFLESS_E_ARGUMENT if the octree has PARTIAL cells and `resolve` does not say what they count
-///   as, if a field of `surface` is none of its enum, or is set though the method does not use it, or if the
-///   frame lies so far from the origin that doubles cannot tell its cells apart; LEAFLESS_E_NULL if
+/// - Buffers: `surface`, one struct or NULL; `options`, one struct or NULL (`max_nodes` and `max_bytes` apply
+///   to LEAFLESS_RESOLVE_SOURCE only); `mesh`, one pointer.
+/// - Result: `*mesh`, identical for any number of threads; it has no triangles if no sample is inside.
+/// - Errors: LEAFLESS_E_ARGUMENT if the octree has PARTIAL cells and `resolve` is LEAFLESS_RESOLVE_NONE, if a
+///   field of `surface` is not a member of its enumeration, or is set though the method does not use it, or
+///   if the frame is so far from the origin that doubles cannot distinguish its cells; LEAFLESS_E_NULL if
 ///   LEAFLESS_RESOLVE_SOURCE has no `source`; LEAFLESS_E_MESH if there would be more than 2^32 - 1 vertices
 ///   or triangles; LEAFLESS_E_DAMAGED; LEAFLESS_E_CANCELLED; LEAFLESS_E_NO_MEMORY; and those of
 ///   leafless_octree_build for the source.
-/// - Ownership: `octree` stays as it is; give `*mesh` back with leafless_mesh_free.
-/// - Threads: any; uses as many as `options` says.
+/// - Ownership: `octree` is unchanged; release `*mesh` with leafless_mesh_free.
+/// - Threads: any; runs on as many threads as `options` says.
 /// - Untrusted input: any octree; damage is LEAFLESS_E_DAMAGED or another surface.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn leafless_octree_surface(
@@ -258,28 +263,28 @@ pub unsafe extern "C" fn leafless_octree_surface(
     })
 }
 
-/// The surface of a solid, which is sampled at the corners of the cells of a frame: 2^depth + 1 to an axis. Dual
-/// contouring samples at the centres.
-/// Else as leafless_octree_surface. What the solid has outside of the universe is cut off.
+/// Extracts the surface of a solid, sampled at the corners of the cells of a frame: 2^depth + 1 on each axis.
+/// Dual contouring samples at the centres. Otherwise as leafless_octree_surface. Parts of the solid outside
+/// the universe are cut off.
 ///
 /// Time is that of leafless_octree_build with LEAFLESS_RULE_SAMPLED on as many cells as there are corners,
-/// and for LEAFLESS_VERTEX_PLACEMENT_CROSSING a few questions to the solid for each vertex; memory as well. With
-/// crossings, vertices that lie at one place are one, and triangles without area are dropped. Where the solid
-/// has no thickness at a sample, more than two triangles may then meet on an edge.
+/// and for LEAFLESS_VERTEX_PLACEMENT_CROSSING a few more queries of the solid for each vertex; memory as
+/// well. With crossings, vertices at equal positions are merged, and triangles without area are dropped.
+/// Where the solid has no thickness at a sample, more than two triangles may then meet at an edge.
 ///
 /// - Buffers: `frame`, one struct; `surface`, one struct or NULL, whose `resolve` and `source` are 0;
 ///   `options`, one struct or NULL; `mesh`, one pointer.
-/// - Result: `*mesh`, the same for any number of threads; it has no triangles if nothing is inside.
+/// - Result: `*mesh`, identical for any number of threads; it has no triangles if no sample is inside.
 /// - Errors: LEAFLESS_E_ARGUMENT if the depth is 20, which leaves no level for corners, if a field of
-///   `surface` is none of its enum, or is set though it is not used, or if the frame lies so far from the
-///   origin that doubles cannot tell its corners apart; LEAFLESS_E_NOT_SAMPLED if the solid cannot decide
-///   points; LEAFLESS_E_FRAME for the solid of leafless_solid_from_octree, which has samples of its own, and
-///   for others that belong to another frame; LEAFLESS_E_MESH if there would be more than 2^32 - 1 vertices
-///   or triangles; LEAFLESS_E_CALLBACK; LEAFLESS_E_DAMAGED; LEAFLESS_E_LIMIT; LEAFLESS_E_CANCELLED;
+///   `surface` is not a member of its enumeration, or is set though it is not used, or if the frame is so far
+///   from the origin that doubles cannot distinguish its corners; LEAFLESS_E_NOT_SAMPLED if the solid cannot
+///   decide points; LEAFLESS_E_FRAME for a solid of leafless_solid_from_octree, which has samples of its own,
+///   and for other solids that belong to another frame; LEAFLESS_E_MESH if there would be more than 2^32 - 1
+///   vertices or triangles; LEAFLESS_E_CALLBACK; LEAFLESS_E_DAMAGED; LEAFLESS_E_LIMIT; LEAFLESS_E_CANCELLED;
 ///   LEAFLESS_E_NO_MEMORY.
-/// - Ownership: give `*mesh` back with leafless_mesh_free.
-/// - Threads: any; uses as many as `options` says.
-/// - Untrusted input: any solid; set `max_bytes` where the depth or the solid is not your own choice.
+/// - Ownership: release `*mesh` with leafless_mesh_free.
+/// - Threads: any; runs on as many threads as `options` says.
+/// - Untrusted input: any solid; set `max_bytes` if the depth or the solid is untrusted.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn leafless_solid_surface(
     solid: *const leafless_solid,
@@ -289,7 +294,7 @@ pub unsafe extern "C" fn leafless_solid_surface(
     mesh: *mut *mut leafless_mesh,
 ) -> leafless_status {
     guard(|| unsafe {
-        // The corners lie on a frame of their own, for which nothing is kept.
+        // The corners lie on a frame of their own, so no preparation is kept for the solid.
         let solid = shared(solid, "solid")?.solid.solid();
         let frame = self::frame(frame)?;
         let surface = sized(surface, "surface")?;
@@ -318,22 +323,22 @@ pub unsafe extern "C" fn leafless_solid_surface(
     })
 }
 
-/// The surface of a volume by marching cubes: its samples are the centres of voxels, which need not be cubes,
-/// and its vertices lie where the samples, interpolated between two voxels, leave the band. For samples of a
-/// smooth function that is on the surface to second order in the spacing. Between bits, and beside a sample
-/// that is infinite or not a number, they lie half-way.
+/// Extracts the surface of a volume by marching cubes. Its samples are the centres of voxels, which need not
+/// be cubes. Its vertices lie where the values, interpolated between two voxels, leave the band. For samples
+/// of a smooth function the vertices lie on the surface to second order in the spacing. Between bits, and
+/// next to a sample that is infinite or not a number, they lie half-way.
 ///
-/// Else as leafless_octree_surface; vertices that lie at one place are one, and there more than two triangles
-/// may meet on an edge. Time is linear in the samples, and in the surface.
+/// Otherwise as leafless_octree_surface. Vertices at equal positions are merged; there more than two
+/// triangles may meet at an edge. Time is linear in the samples, and in the surface.
 ///
-/// - Buffers: `band`, one struct, or NULL, as for leafless_solid_from_volume; `options`, one struct or NULL, of
-///   which limits do not matter; `mesh`, one pointer.
-/// - Result: `*mesh`, the same for any number of threads, where the file says that the volume lies.
-/// - Errors: those of leafless_solid_from_volume; LEAFLESS_E_ARGUMENT if the volume lies so far from the origin
-///   that doubles cannot tell its voxels apart; LEAFLESS_E_MESH if there would be more than 2^32 - 1 vertices
-///   or triangles.
-/// - Ownership: `volume` stays as it is; give `*mesh` back with leafless_mesh_free.
-/// - Threads: any; uses as many as `options` says.
+/// - Buffers: `band`, one struct, or NULL, as for leafless_solid_from_volume; `options`, one struct or NULL
+///   (its limits are ignored); `mesh`, one pointer.
+/// - Result: `*mesh`, identical for any number of threads, at the position that the volume's file states.
+/// - Errors: those of leafless_solid_from_volume; LEAFLESS_E_ARGUMENT if the volume is so far from the origin
+///   that doubles cannot distinguish its voxels; LEAFLESS_E_MESH if there would be more than 2^32 - 1
+///   vertices or triangles.
+/// - Ownership: `volume` is unchanged; release `*mesh` with leafless_mesh_free.
+/// - Threads: any; runs on as many threads as `options` says.
 /// - Untrusted input: any volume.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn leafless_volume_surface(

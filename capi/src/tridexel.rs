@@ -1,4 +1,4 @@
-//! Tri-dexel models: made of solids, described, and the facts that travel with them.
+//! Tri-dexel models: building from solids, description, comparison and metadata.
 
 use super::boundary::{Failure, Sized32, filled, guard, handle, out, output, refer, release, shared, sized};
 use super::control::{controlled, leafless_options};
@@ -18,14 +18,14 @@ use leafless::op::DexelOptions;
 use leafless_dexel_ends::*;
 use leafless_dexel_normals::*;
 
-/// A solid as intervals along the rays of a lattice, in one to three directions: a tri-dexel model.
+/// A tri-dexel model: a solid as intervals along the rays of a lattice, in one to three directions.
 ///
-/// Rays run through the centres of the finest cells of a frame. Each has the sorted, disjoint intervals in which it
-/// runs inside of the solid. An interval holds its start and not its end, so that set algebra is exact. All directions
-/// agree about the centres of cells.
+/// Rays run through the centres of the finest cells of a frame. Each ray has the sorted, disjoint intervals
+/// of its points inside the solid. An interval is half-open: it contains its start and not its end, so that
+/// set algebra is exact. All directions agree about the centres of cells.
 ///
-/// Immutable: all its functions may be called at once from any number of threads, but leafless_tridexel_free
-/// needs the reference that it gives back for itself. A leafless_tridexel_editor changes a copy in place.
+/// Immutable: all its functions may be called at once from any number of threads, but no other call may use
+/// the reference that leafless_tridexel_free releases. A leafless_tridexel_editor changes a copy in place.
 pub struct leafless_tridexel {
     pub(super) model: TriDexel,
 }
@@ -43,26 +43,26 @@ pub enum leafless_axes {
     LEAFLESS_AXES_ALL = 7,
 }
 
-/// How the ends of intervals are stored.
+/// The storage format of the ends of intervals.
 #[derive(Clone, Copy)]
 #[repr(u32)]
 pub enum leafless_dexel_ends {
-    /// Start and length in units of 2^-31 edges of the universe, 8 bytes an interval. An end is off by at most one
-    /// unit.
+    /// Start and length in units of 2^-31 edges of the universe, 8 bytes an interval. An end is off by at
+    /// most one unit.
     LEAFLESS_DEXEL_ENDS_FIXED = 0,
     /// Start and end as doubles, 16 bytes an interval.
     LEAFLESS_DEXEL_ENDS_DOUBLE = 1,
 }
 
-/// How the unit normals at the ends of intervals are stored: in an octahedral code.
+/// The storage format of the unit normals at the ends of intervals, an octahedral code.
 #[derive(Clone, Copy)]
 #[repr(u32)]
 pub enum leafless_dexel_normals {
-    /// Not at all.
+    /// Normals are not stored.
     LEAFLESS_DEXEL_NORMALS_NONE = 0,
-    /// In 16 bits, 4 bytes an interval, within a degree.
+    /// 16 bits a normal, 4 bytes an interval, within a degree.
     LEAFLESS_DEXEL_NORMALS_16 = 1,
-    /// In 32 bits, 8 bytes an interval, within 0.005 degrees.
+    /// 32 bits a normal, 8 bytes an interval, within 0.005 degrees.
     LEAFLESS_DEXEL_NORMALS_32 = 2,
 }
 
@@ -85,28 +85,28 @@ impl From<DexelNormals> for leafless_dexel_normals {
     }
 }
 
-/// The sum of axes.
+/// Returns the sum of axes.
 pub(super) fn axes(directions: [bool; 3]) -> u32 {
     (0..3).map(|axis| u32::from(directions[axis]) << axis).sum()
 }
 
-/// What a tri-dexel model stores. NULL means the defaults. All fields but the first may be zero, which is their
-/// default.
+/// The format of a tri-dexel model: which data it stores. NULL means the defaults. Zero is the default of
+/// every field but the first.
 #[derive(Clone, Copy)]
 #[repr(C)]
 pub struct leafless_tridexel_format {
     /// sizeof(leafless_tridexel_format).
     pub struct_size: u32,
-    /// The axes that rays run along, a sum of leafless_axes; 0 means those of the operand if there is one, else
-    /// LEAFLESS_AXES_ALL.
+    /// The axes that rays run along, a sum of leafless_axes; 0 means the axes of the operand if there is one,
+    /// else LEAFLESS_AXES_ALL.
     pub directions: u32,
     /// A leafless_dexel_ends.
     pub ends: u32,
     /// A leafless_dexel_normals.
     pub normals: u32,
-    /// 1 to store on which of the source's surfaces the ends lie, 8 bytes an interval. Else 0.
+    /// 1 to store the source's surface of each end, 8 bytes an interval; else 0.
     pub has_surfaces: u32,
-    /// 1 to store what intervals are made of, 4 bytes an interval. Else 0.
+    /// 1 to store the material of each interval, 4 bytes an interval; else 0.
     pub has_materials: u32,
 }
 
@@ -114,7 +114,7 @@ pub struct leafless_tridexel_format {
 unsafe impl Sized32 for leafless_tridexel_format {}
 
 impl leafless_tridexel_format {
-    /// The directions, if some are named, and what is stored.
+    /// Returns the directions, if they are given, and the storage format.
     pub(super) fn parts(&self) -> Result<(Option<[bool; 3]>, DexelFormat), Failure> {
         let refused = |name, problem| Err(Failure::Argument { name, problem });
         if self.directions > leafless_axes::LEAFLESS_AXES_ALL as u32 {
@@ -144,7 +144,7 @@ impl leafless_tridexel_format {
     }
 }
 
-/// What can be said of a tri-dexel model at once.
+/// Basic facts about a tri-dexel model.
 #[derive(Clone, Copy)]
 #[repr(C)]
 pub struct leafless_tridexel_info {
@@ -154,50 +154,51 @@ pub struct leafless_tridexel_info {
     pub frame: leafless_frame,
     /// The axes that rays run along, a sum of leafless_axes.
     pub directions: u32,
-    /// How the ends of intervals are stored.
+    /// The storage format of the ends of intervals.
     pub ends: leafless_dexel_ends,
-    /// How unit normals are stored.
+    /// The storage format of unit normals.
     pub normals: leafless_dexel_normals,
-    /// 1 if it is stored on which surfaces the ends lie, else 0.
+    /// 1 if the surfaces of the ends are stored, else 0.
     pub has_surfaces: u32,
-    /// 1 if it is stored what intervals are made of, else 0.
+    /// 1 if the materials of intervals are stored, else 0.
     pub has_materials: u32,
-    /// Bytes that an interval takes.
+    /// Bytes of an interval.
     pub bytes_per_interval: u32,
-    /// Intervals in all directions.
+    /// Number of intervals in all directions.
     pub interval_count: u64,
-    /// Bytes that the arrays take.
+    /// Bytes of the arrays.
     pub bytes: u64,
 }
 
 output!(leafless_tridexel_info);
 
-/// A handle of a tri-dexel model.
+/// Returns a handle of a tri-dexel model.
 pub(super) fn give(model: TriDexel) -> *mut leafless_tridexel {
     handle(leafless_tridexel { model })
 }
 
-/// Makes the tri-dexel model of a solid on the lattice of a frame. O(rays + crossings). The result is the same bit for
-/// bit for any number of threads.
+/// Makes the tri-dexel model of a solid on the lattice of a frame. O(rays + crossings). The result is
+/// identical, bit for bit, for any number of threads.
 ///
-/// Under LEAFLESS_RULE_SAMPLED intervals are those of the solid on each ray. An end says of the centres of cells beside
-/// it just what the solid does; apart from that it is off by at most 2^-31 of the universe's edge, or 2^-36 with
-/// LEAFLESS_DEXEL_ENDS_DOUBLE. So it is with closed meshes, with half-spaces and expressions of them, and with octrees.
-/// Solids of other kinds, and open meshes around their holes, are sampled: an end between centres on different sides is
-/// narrowed down by cells to a depth of 20, and a wall between two neighbouring centres is missed. Under
-/// LEAFLESS_RULE_INNER and LEAFLESS_RULE_OUTER intervals are those of the solid's FULL cells, and of all that are not
-/// EMPTY.
+/// Under LEAFLESS_RULE_SAMPLED the intervals are those of the solid on each ray. The centres of cells next to
+/// an end lie on the same side of it as in the solid; otherwise an end is off by at most 2^-31 of the
+/// universe's edge, or 2^-36 with LEAFLESS_DEXEL_ENDS_DOUBLE. This holds for closed meshes, for half-spaces
+/// and expressions of them, and for octrees. Solids of other kinds, and open meshes around their holes, are
+/// sampled: an end between centres on different sides is located by cells to a depth of 20, and a wall
+/// between two neighbouring centres is missed. Under LEAFLESS_RULE_INNER the intervals are those of the
+/// solid's FULL cells, under LEAFLESS_RULE_OUTER those of all cells that are not EMPTY.
 ///
-/// - Buffers: `frame`, one struct; `format`, one struct or NULL; `options`, one struct or NULL; `tridexel`, one
-///   pointer. `rule` is a leafless_rule.
+/// - Buffers: `frame`, one struct; `format`, one struct or NULL; `options`, one struct or NULL; `tridexel`,
+///   one pointer. `rule` is a leafless_rule.
 /// - Result: `*tridexel`.
-/// - Errors: LEAFLESS_E_ARGUMENT also for LEAFLESS_RULE_CERTIFIED, because an interval cannot be undecided, and if a
-///   field of `format` is wrong; LEAFLESS_E_FRAME if the solid belongs to another frame; LEAFLESS_E_NOT_SAMPLED if
-///   LEAFLESS_RULE_SAMPLED is asked of a solid that cannot decide points; LEAFLESS_E_CALLBACK; LEAFLESS_E_DAMAGED;
-///   LEAFLESS_E_LIMIT, also for 2^32 rays or intervals along one axis; LEAFLESS_E_CANCELLED; LEAFLESS_E_NO_MEMORY.
-/// - Ownership: nothing is kept of the solid; give `*tridexel` back with leafless_tridexel_free.
-/// - Threads: any; uses as many as `options` says.
-/// - Untrusted input: any solid; set `max_bytes` where the depth or the solid is not your own choice.
+/// - Errors: LEAFLESS_E_ARGUMENT also for LEAFLESS_RULE_CERTIFIED, because an interval cannot be undecided,
+///   and if a field of `format` is wrong; LEAFLESS_E_FRAME if the solid belongs to another frame;
+///   LEAFLESS_E_NOT_SAMPLED if `rule` is LEAFLESS_RULE_SAMPLED and the solid cannot decide points;
+///   LEAFLESS_E_CALLBACK; LEAFLESS_E_DAMAGED; LEAFLESS_E_LIMIT, also for 2^32 rays or intervals along one
+///   axis; LEAFLESS_E_CANCELLED; LEAFLESS_E_NO_MEMORY.
+/// - Ownership: the model keeps no reference to the solid; release `*tridexel` with leafless_tridexel_free.
+/// - Threads: any; runs on as many threads as `options` says.
+/// - Untrusted input: any solid; set `max_bytes` if the depth or the solid is untrusted.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn leafless_tridexel_build(
     solid: *const leafless_solid,
@@ -219,11 +220,11 @@ pub unsafe extern "C" fn leafless_tridexel_build(
     })
 }
 
-/// One more reference to a tri-dexel model.
+/// Returns one more reference to a tri-dexel model.
 ///
 /// - Buffers: `tridexel`, a handle; `reference`, one pointer.
 /// - Result: `*reference`, equal to `tridexel`.
-/// - Ownership: give each reference back with leafless_tridexel_free.
+/// - Ownership: release each reference with leafless_tridexel_free.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn leafless_tridexel_ref(
     tridexel: *const leafless_tridexel,
@@ -232,11 +233,11 @@ pub unsafe extern "C" fn leafless_tridexel_ref(
     guard(|| unsafe { refer(tridexel, "tridexel", reference) })
 }
 
-/// Gives back a reference to a tri-dexel model. With the last one the model is gone, and with it the mapping of its file,
-/// unless a model with other metadata still shares its arrays.
+/// Releases a reference to a tri-dexel model. The last release frees the model. The mapping of its file ends
+/// too, unless a model with other metadata still shares its arrays.
 ///
 /// - Buffers: `tridexel`, a handle or NULL, which does nothing.
-/// - Ownership: the reference is gone.
+/// - Ownership: the reference is invalid afterwards.
 /// - Threads: any; no other call may use this reference.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn leafless_tridexel_free(tridexel: *mut leafless_tridexel) {
@@ -244,7 +245,7 @@ pub unsafe extern "C" fn leafless_tridexel_free(tridexel: *mut leafless_tridexel
     unsafe { release(tridexel) }
 }
 
-/// What can be said of a tri-dexel model at once. O(1).
+/// Returns basic facts about a tri-dexel model. O(1).
 ///
 /// - Buffers: `info`, one struct.
 /// - Result: `*info`.
@@ -283,11 +284,11 @@ pub(super) fn described(
     }
 }
 
-/// Checks that a tri-dexel model is well-formed: intervals are in order, disjoint and inside of the universe. O(n).
-/// Whether the directions agree is not checked. Models that the library makes,
-/// opens or maps verified are well-formed.
+/// Checks that a tri-dexel model is well-formed: intervals are in order, disjoint and inside the universe.
+/// O(n). Whether the directions agree is not checked. Models that the library makes, opens or maps verified
+/// are well-formed.
 ///
-/// - Result: LEAFLESS_OK if it is.
+/// - Result: LEAFLESS_OK if the check passes.
 /// - Errors: LEAFLESS_E_DAMAGED, with the first damage in the message.
 /// - Untrusted input: any model.
 #[unsafe(no_mangle)]
@@ -295,7 +296,8 @@ pub unsafe extern "C" fn leafless_tridexel_check(tridexel: *const leafless_tride
     guard(|| unsafe { Ok(shared(tridexel, "tridexel")?.model.view().check()?) })
 }
 
-/// Whether two tri-dexel models store the same, bit for bit, on the same frame. Metadata does not count. O(n).
+/// Returns whether two tri-dexel models store the same data, bit for bit, on the same frame. Metadata is not
+/// compared. O(n).
 ///
 /// - Buffers: `equal`, one truth value.
 /// - Result: `*equal`.
@@ -312,15 +314,15 @@ pub unsafe extern "C" fn leafless_tridexel_equal(
     })
 }
 
-/// The tri-dexel model with one more fact in its metadata, or with another value of one; the arrays are shared. Names in
-/// use: "name", "units".
+/// Returns the tri-dexel model with one more fact in its metadata, or with a new value of a fact; the arrays
+/// are shared. Names in use: "name", "units".
 ///
 /// - Buffers: `key` and `value`, `key_length` and `value_length` bytes of UTF-8; `named`, one pointer.
 /// - Result: `*named`.
-/// - Errors: LEAFLESS_E_UTF8; LEAFLESS_E_ARGUMENT if all facts would take more than 1 MiB in a file, 8 bytes
-///   and the two texts each; LEAFLESS_E_NO_MEMORY.
-/// - Ownership: the texts are copied. `*named` shares the arrays of `tridexel`, which may be freed: what must outlive
-///   `tridexel`, such as bytes that it views, must outlive `*named` too. Give that back with leafless_tridexel_free.
+/// - Errors: LEAFLESS_E_UTF8; LEAFLESS_E_ARGUMENT if all facts would take more than 1 MiB in a file (each
+///   takes 8 bytes and its two texts); LEAFLESS_E_NO_MEMORY.
+/// - Ownership: the texts are copied. `*named` shares the arrays of `tridexel`, which may be freed. Bytes
+///   that `tridexel` views must outlive `*named` too. Release `*named` with leafless_tridexel_free.
 /// - Untrusted input: any texts.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn leafless_tridexel_with_metadata(
@@ -340,10 +342,11 @@ pub unsafe extern "C" fn leafless_tridexel_with_metadata(
     })
 }
 
-/// The tri-dexel model with one fact less in its metadata, or with none; the arrays are shared.
+/// Returns the tri-dexel model with one fact less in its metadata, or without metadata; the arrays are
+/// shared.
 ///
 /// - Buffers: `key`, `key_length` bytes of UTF-8, or NULL for all facts; `unnamed`, one pointer.
-/// - Result: `*unnamed`; a fact that is not there need not be.
+/// - Result: `*unnamed`; it is not an error if there is no such fact.
 /// - Errors: LEAFLESS_E_UTF8; LEAFLESS_E_NO_MEMORY.
 /// - Ownership: as leafless_tridexel_with_metadata.
 /// - Untrusted input: any texts.
@@ -361,7 +364,7 @@ pub unsafe extern "C" fn leafless_tridexel_without_metadata(
     })
 }
 
-/// The value of a fact in a tri-dexel model's metadata, such as "name".
+/// Returns the value of a fact in a tri-dexel model's metadata, such as "name".
 ///
 /// - Buffers: `key`, `key_length` bytes of UTF-8; `value` and `value_length`, one each.
 /// - Result: `*value`, not NUL-terminated; NULL if there is no such fact. `*value_length`, in bytes.
@@ -382,13 +385,13 @@ pub unsafe extern "C" fn leafless_tridexel_peek_metadata(
     })
 }
 
-/// A fact of a tri-dexel model's metadata by its place among all, which stand by ascending key.
+/// Returns a fact of a tri-dexel model's metadata by its index. Facts are sorted by key.
 ///
 /// - Buffers: `count`, one number; `key`, `key_length`, `value`, `value_length`, one each, all four NULL to
-///   ask for the count only.
+///   get only the count.
 /// - Result: `*count`, the number of all facts; key and value, not NUL-terminated, with their lengths in
 ///   bytes.
-/// - Errors: LEAFLESS_E_ARGUMENT if there is no fact `index`, unless only the count is asked for.
+/// - Errors: LEAFLESS_E_ARGUMENT if there is no fact `index`, unless only the count is requested.
 /// - Ownership: the texts belong to the model and live as long as the reference `tridexel`.
 /// - Untrusted input: any model.
 #[unsafe(no_mangle)]

@@ -11,38 +11,39 @@ use leafless::TriDexel;
 use leafless::dexel::{Dexel, DexelEnd};
 use leafless::memory;
 
-/// Intervals of rays along one axis, as leafless_tridexel_copy hands them out.
+/// The intervals of rays along one axis, as written by leafless_tridexel_copy.
 #[derive(Clone, Copy)]
 #[repr(C)]
 pub struct leafless_tridexel_arrays {
     /// The axis that the rays run along: 0 for x, 1 for y, 2 for z.
     pub axis: u32,
-    /// Zero.
+    /// Reserved; must be 0.
     pub reserved: u32,
     /// The indices of the first ray's cells on the other two axes in the order x, y, z.
     pub first: [u32; 2],
-    /// The first beyond those of the last ray. Rays outside of the rectangle are empty.
+    /// The first indices beyond the last ray. Rays outside the rectangle are empty.
     pub end: [u32; 2],
-    /// The intervals of ray i are those from `offsets[i]` to before `offsets[i + 1]`: one number more than rays, in
-    /// ascending order. The ray at steps (u, v) from the first is i = v · width + u.
+    /// Offsets, one more than there are rays, ascending: the intervals of ray i are those from `offsets[i]`
+    /// up to, but not including, `offsets[i + 1]`. The ray at steps (u, v) from the first has the index i = v
+    /// · width + u.
     pub offsets: *const u64,
-    /// How many intervals there are, which is the last offset.
+    /// Number of intervals, which is the last offset.
     pub interval_count: u64,
-    /// Two coordinates for each interval, its start and its end. NULL if `ends_cells` says where they lie.
+    /// Two coordinates for each interval, its start and its end. NULL if `ends_cells` gives them.
     pub ends_model: *const f64,
-    /// Six numbers for each interval: the outward normals at its start and at its end, of any length; three zeros where none
-    /// is known. NULL if none is known at all.
+    /// Six numbers for each interval: the outward normals at its start and at its end, of any length; three
+    /// zeros for an unknown normal. NULL if no normal is known.
     pub normals: *const f64,
-    /// Two numbers for each interval: on which surfaces its start and its end lie; UINT32_MAX where it is not known. NULL if
-    /// none is known at all.
+    /// Two numbers for each interval: the surfaces of its start and its end; UINT32_MAX for an unknown
+    /// surface. NULL if no surface is known.
     pub surfaces: *const u32,
-    /// A number for each interval, what it is made of; 0 where nothing is said. NULL if nothing is said at all.
+    /// A number for each interval, its material; 0 if none is given. NULL if no material is given.
     pub materials: *const u32,
-    /// Two numbers for each interval: its start and its end in finest cells from the universe's lower face, as
-    /// leafless_tridexel_copy_cells hands them out; the centre of cell k lies at k + 1/2. An end counts by
-    /// this number if its coordinate in `ends_model` is the one that leafless_tridexel_copy would hand out
-    /// for it, else by the coordinate. If `ends_model` is NULL it counts always. NULL if coordinates alone
-    /// count.
+    /// Two numbers for each interval: its start and its end in finest cells from the universe's lower face,
+    /// as written by leafless_tridexel_copy_cells; the centre of cell k lies at k + 1/2. This number defines
+    /// an end if `ends_model` is NULL, or if the coordinate in `ends_model` is the one that
+    /// leafless_tridexel_copy would write for it; otherwise the coordinate defines the end. NULL if only
+    /// coordinates are given.
     pub ends_cells: *const f64,
 }
 
@@ -53,9 +54,9 @@ struct Arrays<'a> {
     offsets: &'a [u64],
     frame: &'a Frame,
     axis: usize,
-    /// Coordinates, or none at all.
+    /// The ends as coordinates, or an empty slice.
     ends: &'a [[f64; 2]],
-    /// Places in cells, or none at all.
+    /// The ends in cells, or an empty slice.
     cells: &'a [[f64; 2]],
     normals: &'a [[[f64; 3]; 2]],
     surfaces: &'a [[u32; 2]],
@@ -82,7 +83,7 @@ impl leafless_tridexel_arrays {
         let size = [0, 1].map(|i| u64::from(self.end[i] - self.first[i]));
         let count = self.interval_count;
         let optional = |is_null: bool| if is_null { 0 } else { count };
-        // (One of the two arrays of ends there must be.)
+        // (One of the two arrays of ends is required.)
         let ends = if self.ends_cells.is_null() { count } else { optional(self.ends_model.is_null()) };
         // SAFETY: the caller's promise.
         let arrays = unsafe {
@@ -114,14 +115,14 @@ impl leafless_tridexel_arrays {
 }
 
 impl Arrays<'_> {
-    /// The numbers of a ray's intervals.
+    /// Returns the indices of a ray's intervals.
     fn range(&self, ray: [u32; 2]) -> Range<usize> {
         if (0..2).any(|i| ray[i] < self.first[i] || ray[i] >= self.end[i]) {
             return 0..0;
         }
         let [u, v] = [0, 1].map(|i| (ray[i] - self.first[i]) as usize);
         let index = v * (self.end[0] - self.first[0]) as usize + u;
-        // (They ascend, and the last is a length in memory.)
+        // (Offsets ascend, and the last is a length in memory.)
         self.offsets[index] as usize..self.offsets[index + 1] as usize
     }
 
@@ -141,23 +142,25 @@ impl Arrays<'_> {
     }
 }
 
-/// Makes a tri-dexel model of intervals that another program or a machine has. O(rays of the universe + intervals).
+/// Makes a tri-dexel model from intervals of another program or a machine. O(rays of the universe +
+/// intervals).
 ///
-/// The intervals of a ray ascend and are disjoint. What reaches beyond the universe is cut off; what `format` does not
-/// store is left out. Ends are rounded as `format` says, and keep their side of every centre of a cell, which is the real
-/// number origin + (k + 1/2) edge / 2^depth; that is decided exactly. Intervals that are empty after rounding
-/// are left out; those that touch are joined, unless both have materials and these differ. The directions are
-/// not compared with each other. All that leafless_tridexel_copy and leafless_tridexel_copy_cells hand out of
-/// a model makes an equal one on the same frame.
+/// The intervals of a ray ascend and are disjoint. Parts beyond the universe are cut off; data that `format`
+/// does not store are left out. Ends are rounded to `format`, and keep their side of every cell centre, which
+/// is the real number origin + (k + 1/2) edge / 2^depth; the side is decided exactly. Intervals that are
+/// empty after rounding are left out; intervals that touch are joined, unless both have materials and these
+/// differ. The directions are not compared with each other. The complete output of leafless_tridexel_copy and
+/// leafless_tridexel_copy_cells for a model makes an equal model on the same frame.
 ///
-/// - Buffers: `frame`, one struct; `format`, one struct or NULL, whose `directions` are 0 or the axes of `rays`; `rays`,
-///   `count` structs, 1 to 3, each for another axis; `options`, one struct or NULL; `tridexel`, one pointer.
+/// - Buffers: `frame`, one struct; `format`, one struct or NULL, whose `directions` are 0 or the axes of
+///   `rays`; `rays`, `count` structs, 1 to 3, each for another axis; `options`, one struct or NULL;
+///   `tridexel`, one pointer.
 /// - Result: `*tridexel`.
-/// - Errors: LEAFLESS_E_ARGUMENT also if offsets do not ascend, if an end of an interval is not a number or not behind its
-///   start, if an end in cells does not lie in the universe, or if an interval begins before the one before
-///   it ends; LEAFLESS_E_LIMIT for 2^32 rays or intervals along one axis, which is a depth of 16;
-///   LEAFLESS_E_CANCELLED; LEAFLESS_E_NO_MEMORY.
-/// - Ownership: the arrays are not kept; give `*tridexel` back with leafless_tridexel_free.
+/// - Errors: LEAFLESS_E_ARGUMENT also if offsets do not ascend, if an end of an interval is not a number or
+///   not greater than its start, if an end in cells does not lie in the universe, or if an interval begins
+///   before the end of the previous interval; LEAFLESS_E_LIMIT for 2^32 rays or intervals along one axis,
+///   which is a depth of 16; LEAFLESS_E_CANCELLED; LEAFLESS_E_NO_MEMORY.
+/// - Ownership: the arrays are copied and may be freed; release `*tridexel` with leafless_tridexel_free.
 /// - Untrusted input: any numbers.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn leafless_tridexel_new(

@@ -1,4 +1,4 @@
-//! Tri-dexel models that are changed in place.
+//! Editors: tri-dexel models that are changed in place.
 
 use super::boundary::{Failure, discard, filled, guard, out, output, shared};
 use super::control::{controlled, leafless_options};
@@ -12,15 +12,16 @@ use leafless::Error;
 use leafless::dexel::{DexelChange, DexelEditor};
 use std::sync::{RwLock, RwLockReadGuard, RwLockWriteGuard, TryLockError, TryLockResult};
 
-/// A copy of a tri-dexel model that is changed in place, in time proportional to what the second operand's rays touch: for
-/// machining. It takes 12 bytes for each ray of the lattice beside the intervals.
+/// A copy of a tri-dexel model that is changed in place, for machining. The time of a change is proportional
+/// to the rays and intervals that the second operand touches. It takes 12 bytes for each ray of the lattice
+/// in addition to the intervals.
 ///
-/// While one call changes it, every other call returns LEAFLESS_E_BUSY, from another thread as from the host's functions
-/// that are asked about a cell. While another call reads it, changing it returns LEAFLESS_E_BUSY. Calls that read it may
-/// be made at once from any number of threads.
+/// While one call changes an editor, every other call returns LEAFLESS_E_BUSY, both from another thread and
+/// from the host's functions inside the call. While a call reads it, calls that change it return
+/// LEAFLESS_E_BUSY. Any number of threads may read it at once.
 pub struct leafless_tridexel_editor(RwLock<DexelEditor>);
 
-/// To read the model, unless another call changes it.
+/// Returns the model for reading, unless another call changes it.
 ///
 /// # Safety
 /// As [`shared`].
@@ -31,7 +32,7 @@ unsafe fn read<'a>(
     unlocked(unsafe { shared(editor, "editor")? }.0.try_read())
 }
 
-/// To change the model, unless another call uses it.
+/// Returns the model for changing, unless another call uses it.
 ///
 /// # Safety
 /// As [`shared`].
@@ -45,28 +46,28 @@ unsafe fn change<'a>(
 fn unlocked<G>(held: TryLockResult<G>) -> Result<G, Failure> {
     match held {
         Ok(held) => Ok(held),
-        // A change that was cut off may have left intervals half-written.
+        // A change that panicked may have left intervals half-written.
         Err(TryLockError::Poisoned(_)) => panic!("an earlier call left this editor by a panic"),
         Err(TryLockError::WouldBlock) => Err(Failure::Busy { name: "editor" }),
     }
 }
 
-/// What a change of an editor did to its rays.
+/// A report of a change of an editor.
 ///
-/// Volumes are sums of the lengths along the rays of one axis, each times the area of a cell's face. So they are
-/// estimates, not bounds, and differ from axis to axis by what rays beside each other do not see.
+/// Volumes are sums of lengths along the rays of one axis times the area of a cell's face. So they are
+/// estimates, not bounds, and differ between axes by the parts between neighbouring rays.
 #[derive(Clone, Copy)]
 #[repr(C)]
 pub struct leafless_dexel_change {
     /// sizeof(leafless_dexel_change).
     pub struct_size: u32,
-    /// Rays of all directions whose intervals begin or end elsewhere than before.
+    /// Number of rays, in all directions, whose intervals changed their start or end.
     pub rays: u64,
     /// The volume that the rays along x, y and z lost, in cubic model units; 0 for an axis without rays.
     pub removed_model: [f64; 3],
-    /// The volume that the rays along x, y and z gained.
+    /// The volume that the rays along x, y and z gained, in cubic model units; 0 for an axis without rays.
     pub added_model: [f64; 3],
-    /// The box of finest cells that the changed parts of rays run through: its first cell.
+    /// First cell of the box of finest cells that the changed parts of rays pass through.
     pub min_cell: [u32; 3],
     /// The first cell beyond that box on each axis; both corners are zero if no ray changed.
     pub max_cell: [u32; 3],
@@ -89,7 +90,7 @@ impl From<DexelChange> for leafless_dexel_change {
 }
 
 /// # Safety
-/// `options` and `change` are as the functions below demand.
+/// `options` and `change` are as for the functions below.
 unsafe fn changed(
     options: *const leafless_options,
     change: *mut leafless_dexel_change,
@@ -103,13 +104,14 @@ unsafe fn changed(
     }
 }
 
-/// A copy of a tri-dexel model that can be changed. O(rays of the universe + intervals).
+/// Makes an editor: a copy of a tri-dexel model that can be changed. O(rays of the universe + intervals).
 ///
 /// - Buffers: `editor`, one pointer.
-/// - Result: `*editor`, which stores what `tridexel` does.
-/// - Errors: LEAFLESS_E_DAMAGED if the model was mapped unverified and is damaged; LEAFLESS_E_LIMIT for 2^32 rays along
-///   one axis, which is a depth of 16; LEAFLESS_E_NO_MEMORY.
-/// - Ownership: nothing is kept of `tridexel`; give `*editor` back with leafless_tridexel_editor_free.
+/// - Result: `*editor`, with the storage format of `tridexel`.
+/// - Errors: LEAFLESS_E_DAMAGED if the model was mapped unverified and is damaged; LEAFLESS_E_LIMIT for 2^32
+///   rays along one axis, which is a depth of 16; LEAFLESS_E_NO_MEMORY.
+/// - Ownership: the library keeps no reference to `tridexel`; release `*editor` with
+///   leafless_tridexel_editor_free.
 /// - Untrusted input: any model; memory is needed for each ray of its universe.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn leafless_tridexel_editor_new(
@@ -124,10 +126,10 @@ pub unsafe extern "C" fn leafless_tridexel_editor_new(
     })
 }
 
-/// Gives back an editor. Tri-dexel models that it froze stay.
+/// Releases an editor. Tri-dexel models that were frozen from it stay.
 ///
 /// - Buffers: `editor`, a handle or NULL, which does nothing.
-/// - Ownership: the handle is gone.
+/// - Ownership: the handle is invalid afterwards.
 /// - Threads: no other call may use the handle.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn leafless_tridexel_editor_free(editor: *mut leafless_tridexel_editor) {
@@ -135,10 +137,10 @@ pub unsafe extern "C" fn leafless_tridexel_editor_free(editor: *mut leafless_tri
     unsafe { discard(editor) }
 }
 
-/// What can be said of an editor at once. O(rays of the universe).
+/// Returns basic facts about an editor. O(rays of the universe).
 ///
 /// - Buffers: `info`, one struct.
-/// - Result: `*info`; `bytes` are those that the editor takes.
+/// - Result: `*info`; `bytes` is the memory of the editor.
 /// - Errors: LEAFLESS_E_BUSY.
 /// - Threads: any; LEAFLESS_E_BUSY while another call changes the editor.
 #[unsafe(no_mangle)]
@@ -154,19 +156,20 @@ pub unsafe extern "C" fn leafless_tridexel_editor_describe(
     })
 }
 
-/// Makes the editor what a set operation makes of it and of a tri-dexel model: LEAFLESS_OPERATION_DIFFERENCE takes the
-/// model away. O(rays of the model's window + intervals there), for LEAFLESS_OPERATION_INTERSECTION O(rays of the
-/// universe). What the model stores beyond what the editor does is left out.
+/// Combines the editor with a tri-dexel model in place by a set operation: LEAFLESS_OPERATION_DIFFERENCE
+/// subtracts the model. O(rays of the model's window + intervals there); for LEAFLESS_OPERATION_INTERSECTION
+/// O(rays of the universe). Data of the model that the editor does not store are left out.
 ///
-/// - Buffers: `options`, one struct or NULL; `change`, one struct or NULL. `operation` is a leafless_operation.
+/// - Buffers: `options`, one struct or NULL; `change`, one struct or NULL. `operation` is a
+///   leafless_operation.
 /// - Result: the editor is changed; `*change`, what was removed and added.
-/// - Errors: LEAFLESS_E_FRAME if the frames differ; LEAFLESS_E_ARGUMENT also if the model has rays along other axes;
-///   LEAFLESS_E_DAMAGED if the model was mapped unverified and is damaged; LEAFLESS_E_LIMIT for 2^32 intervals along one
-///   axis; LEAFLESS_E_CANCELLED; LEAFLESS_E_NO_MEMORY; LEAFLESS_E_BUSY.
-///   After LEAFLESS_E_LIMIT, LEAFLESS_E_CANCELLED and LEAFLESS_E_NO_MEMORY some rays may be changed and others not; the
-///   same call can be made again, but for LEAFLESS_OPERATION_XOR.
-/// - Ownership: nothing is kept of `tridexel`.
-/// - Threads: any; LEAFLESS_E_BUSY while another call uses the editor; uses the calling thread alone.
+/// - Errors: LEAFLESS_E_FRAME if the frames differ; LEAFLESS_E_ARGUMENT also if the model has rays along
+///   other axes; LEAFLESS_E_DAMAGED if the model was mapped unverified and is damaged; LEAFLESS_E_LIMIT for
+///   2^32 intervals along one axis; LEAFLESS_E_CANCELLED; LEAFLESS_E_NO_MEMORY; LEAFLESS_E_BUSY. After
+///   LEAFLESS_E_LIMIT, LEAFLESS_E_CANCELLED and LEAFLESS_E_NO_MEMORY some rays may be changed and others not;
+///   the same call can be made again, except for LEAFLESS_OPERATION_XOR.
+/// - Ownership: the library keeps no reference to `tridexel`.
+/// - Threads: any; LEAFLESS_E_BUSY while another call uses the editor; works in the calling thread.
 /// - Untrusted input: any model.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn leafless_tridexel_editor_combine(
@@ -189,15 +192,18 @@ pub unsafe extern "C" fn leafless_tridexel_editor_combine(
     })
 }
 
-/// As leafless_tridexel_editor_combine, with a solid: LEAFLESS_OPERATION_DIFFERENCE is one step of a tool. The
-/// solid's intervals are those of leafless_tridexel_build under LEAFLESS_RULE_SAMPLED, in the directions and with the
-/// contents of the editor. Only rays through the solid's bounding box are looked at.
+/// Like leafless_tridexel_editor_combine, with a solid: LEAFLESS_OPERATION_DIFFERENCE is one step of a tool.
+/// The solid's intervals are those of leafless_tridexel_build under LEAFLESS_RULE_SAMPLED, in the directions
+/// and the storage format of the editor. Only rays through the solid's bounding box are visited.
 ///
-/// - Buffers: `options`, one struct or NULL; `change`, one struct or NULL. `operation` is a leafless_operation.
+/// - Buffers: `options`, one struct or NULL; `change`, one struct or NULL. `operation` is a
+///   leafless_operation.
 /// - Result: the editor is changed; `*change`, what was removed and added.
-/// - Errors: as leafless_tridexel_build, and nothing is changed; as leafless_tridexel_editor_combine.
-/// - Ownership: nothing is kept of the solid.
-/// - Threads: any; LEAFLESS_E_BUSY while another call uses the editor; uses as many as `options` says.
+/// - Errors: those of leafless_tridexel_build, after which nothing is changed; those of
+///   leafless_tridexel_editor_combine.
+/// - Ownership: the library keeps no reference to the solid.
+/// - Threads: any; LEAFLESS_E_BUSY while another call uses the editor; runs on as many threads as `options`
+///   says.
 /// - Untrusted input: any solid.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn leafless_tridexel_editor_combine_solid(
@@ -220,13 +226,14 @@ pub unsafe extern "C" fn leafless_tridexel_editor_combine_solid(
     })
 }
 
-/// The tri-dexel model as it is now. O(rays of the universe + intervals). The editor can be changed further.
+/// Returns the current tri-dexel model. O(rays of the universe + intervals). The editor can be changed
+/// further.
 ///
 /// - Buffers: `options`, one struct or NULL; `tridexel`, one pointer.
 /// - Result: `*tridexel`, without metadata.
 /// - Errors: LEAFLESS_E_CANCELLED; LEAFLESS_E_NO_MEMORY; LEAFLESS_E_BUSY.
-/// - Ownership: the editor stays as it is; give `*tridexel` back with leafless_tridexel_free.
-/// - Threads: any; LEAFLESS_E_BUSY while another call changes the editor; uses the calling thread alone.
+/// - Ownership: the editor is unchanged; release `*tridexel` with leafless_tridexel_free.
+/// - Threads: any; LEAFLESS_E_BUSY while another call changes the editor; works in the calling thread.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn leafless_tridexel_editor_freeze(
     editor: *const leafless_tridexel_editor,

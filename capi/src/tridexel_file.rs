@@ -7,18 +7,18 @@ use super::status::leafless_status;
 use super::tridexel::{give, leafless_tridexel};
 use leafless::file::{self, dexels};
 
-/// Reads a tri-dexel model, with its metadata. Of a file that is damaged where LEAFLESS_ACCESS_MAP does not look,
-/// intervals are read as they stand there, in bounds; set algebra, editors and writing check all of it first and
-/// return LEAFLESS_E_DAMAGED.
+/// Reads a tri-dexel model, with its metadata. If a file is damaged in parts that LEAFLESS_ACCESS_MAP does
+/// not check, queries return the damaged intervals, and stay in bounds; set algebra, editors and writing
+/// check the whole model first and return LEAFLESS_E_DAMAGED.
 ///
 /// - Buffers: `source`, one struct; `tridexel`, one pointer.
 /// - Result: `*tridexel`.
-/// - Errors: LEAFLESS_E_FORMAT; LEAFLESS_E_VERSION; LEAFLESS_E_DAMAGED; LEAFLESS_E_ARGUMENT if the file holds an
-///   octree, if there is no regular file that could be mapped, or if bytes that shall be viewed are misaligned;
-///   LEAFLESS_E_IO; LEAFLESS_E_UTF8; LEAFLESS_E_NO_MEMORY.
-/// - Ownership: how long a file or bytes must stay as they are, leafless_source tells. Give `*tridexel` back with
-///   leafless_tridexel_free.
-/// - Untrusted input: as leafless_source tells.
+/// - Errors: LEAFLESS_E_FORMAT; LEAFLESS_E_VERSION; LEAFLESS_E_DAMAGED; LEAFLESS_E_ARGUMENT if the file holds
+///   an octree, if the file to map is not a regular file, or if bytes to view are misaligned; LEAFLESS_E_IO;
+///   LEAFLESS_E_UTF8; LEAFLESS_E_NO_MEMORY.
+/// - Ownership: leafless_source describes how long a file or bytes must stay unchanged. Release `*tridexel`
+///   with leafless_tridexel_free.
+/// - Untrusted input: as described in leafless_source.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn leafless_tridexel_read(
     source: *const leafless_source,
@@ -27,7 +27,7 @@ pub unsafe extern "C" fn leafless_tridexel_read(
     guard(|| unsafe {
         let source = self::source(source)?;
         let tridexel = out(tridexel, "tridexel")?;
-        // What is used in place stays, as the host promises.
+        // The host promises that data used in place stays unchanged.
         let found = match source {
             (Source::Path(path), LEAFLESS_ACCESS_COPY) => dexels::open(path)?,
             (Source::Path(path), LEAFLESS_ACCESS_MAP) => dexels::map(path)?,
@@ -44,8 +44,8 @@ pub unsafe extern "C" fn leafless_tridexel_read(
     })
 }
 
-/// Writes a tri-dexel model's file. Equal models with equal metadata give equal bytes. Only for a buffer is the
-/// file in memory as a whole.
+/// Writes a tri-dexel model's file. Equal models with equal metadata give equal bytes. The whole file is in
+/// memory only if the sink is a buffer.
 ///
 /// - Buffers: `sink`, one struct.
 /// - Errors: LEAFLESS_E_DAMAGED if the model was mapped unverified and is damaged; LEAFLESS_E_IO;

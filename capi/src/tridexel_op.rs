@@ -1,4 +1,4 @@
-//! Set algebra of tri-dexel models, and what they store.
+//! Set algebra and storage formats of tri-dexel models.
 
 use super::boundary::{Failure, guard, out, shared, sized};
 use super::control::{controlled, leafless_options};
@@ -8,22 +8,23 @@ use super::status::leafless_status;
 use super::tridexel::{give, leafless_tridexel, leafless_tridexel_format};
 use leafless::{Metadata, TriDexel, memory};
 
-/// What a set operation makes of tri-dexel models, at least one. Exact: all laws of sets hold. O(rays + intervals · log
-/// models), and the same bit for bit for any number of threads. The result stores what any operand does; ends are doubles if
-/// those of one operand are. An end keeps its surface and its normal, turned about where a subtraction shows its other side.
-/// Where several operands hold a place, the material of the first one counts. Operands are joined two by two: limits of
-/// `options` concern each of these steps.
+/// Combines tri-dexel models, at least one, by a set operation. The result is exact: all laws of sets hold.
+/// It takes O(rays + intervals · log models), and is identical, bit for bit, for any number of threads. The
+/// result stores the data that any operand stores; ends are doubles if those of one operand are. An end keeps
+/// its surface and its normal, which is reversed where a subtraction exposes the other side. Where several
+/// operands overlap, the material of the first one counts. Operands are combined in pairs: the limits of
+/// `options` apply to each of these steps.
 ///
-/// - Buffers: `tridexels`, `count` handles; `options`, one struct or NULL; `result`, one pointer. `operation` is a
-///   leafless_operation.
-/// - Result: `*result`, with those of the facts "name" and "units" that all operands have with one value, and
-///   no other metadata.
-/// - Errors: LEAFLESS_E_FRAME if the frames differ; LEAFLESS_E_NULL, also of an element; LEAFLESS_E_ARGUMENT, also if
-///   `count` is 0 or the operands have rays along different axes; LEAFLESS_E_DAMAGED if an operand was mapped unverified
-///   and is damaged; LEAFLESS_E_LIMIT, also for 2^32 intervals along one axis; LEAFLESS_E_CANCELLED;
-///   LEAFLESS_E_NO_MEMORY.
-/// - Ownership: the operands stay as they are; give `*result` back with leafless_tridexel_free.
-/// - Threads: any; uses as many as `options` says.
+/// - Buffers: `tridexels`, `count` handles; `options`, one struct or NULL; `result`, one pointer. `operation`
+///   is a leafless_operation.
+/// - Result: `*result`, with the facts "name" and "units" if all operands have the same value of them, and no
+///   other metadata.
+/// - Errors: LEAFLESS_E_FRAME if the frames differ; LEAFLESS_E_NULL, also of an element; LEAFLESS_E_ARGUMENT,
+///   also if `count` is 0 or the operands have rays along different axes; LEAFLESS_E_DAMAGED if an operand
+///   was mapped unverified and is damaged; LEAFLESS_E_LIMIT, also for 2^32 intervals along one axis;
+///   LEAFLESS_E_CANCELLED; LEAFLESS_E_NO_MEMORY.
+/// - Ownership: the operands are unchanged; release `*result` with leafless_tridexel_free.
+/// - Threads: any; runs on as many threads as `options` says.
 /// - Untrusted input: any models.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn leafless_tridexel_combine(
@@ -49,15 +50,15 @@ pub unsafe extern "C" fn leafless_tridexel_combine(
     })
 }
 
-/// The points of the universe that do not lie in `tridexel`. O(rays of the universe + intervals).
+/// Returns the complement of a tri-dexel model inside its universe. O(rays of the universe + intervals).
 ///
 /// - Buffers: `options`, one struct or NULL; `result`, one pointer.
 /// - Result: as leafless_tridexel_combine.
 /// - Errors: LEAFLESS_E_DAMAGED; LEAFLESS_E_LIMIT, also for 2^32 rays along one axis; LEAFLESS_E_CANCELLED;
 ///   LEAFLESS_E_NO_MEMORY.
 /// - Ownership: as leafless_tridexel_combine.
-/// - Threads: any; uses as many as `options` says.
-/// - Untrusted input: any model; set `max_bytes` where its depth is not your own choice.
+/// - Threads: any; runs on as many threads as `options` says.
+/// - Untrusted input: any model; set `max_bytes` if its depth is untrusted.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn leafless_tridexel_complement(
     tridexel: *const leafless_tridexel,
@@ -72,15 +73,16 @@ pub unsafe extern "C" fn leafless_tridexel_complement(
     })
 }
 
-/// The same tri-dexel model with other things stored. What `tridexel` does not store is unknown in the result: no surface,
-/// no normal, material 0. Doubles become fixed-point numbers and back; an interval that this makes empty is left out.
+/// Returns the same tri-dexel model in another storage format. Data that `tridexel` does not store are
+/// unknown in the result: no surface, no normal, material 0. Doubles become fixed-point numbers and vice
+/// versa; an interval that becomes empty by rounding is left out.
 ///
 /// - Buffers: `format`, one struct or NULL; `options`, one struct or NULL; `result`, one pointer.
 /// - Result: `*result`, with the metadata of `tridexel`.
-/// - Errors: LEAFLESS_E_ARGUMENT if a field of `format` is wrong, or `directions` are neither 0 nor those of `tridexel`;
-///   LEAFLESS_E_DAMAGED; LEAFLESS_E_LIMIT; LEAFLESS_E_CANCELLED; LEAFLESS_E_NO_MEMORY.
-/// - Ownership: `tridexel` stays as it is; give `*result` back with leafless_tridexel_free.
-/// - Threads: any; uses as many as `options` says.
+/// - Errors: LEAFLESS_E_ARGUMENT if a field of `format` is wrong, or `directions` are neither 0 nor those of
+///   `tridexel`; LEAFLESS_E_DAMAGED; LEAFLESS_E_LIMIT; LEAFLESS_E_CANCELLED; LEAFLESS_E_NO_MEMORY.
+/// - Ownership: `tridexel` is unchanged; release `*result` with leafless_tridexel_free.
+/// - Threads: any; runs on as many threads as `options` says.
 /// - Untrusted input: any model.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn leafless_tridexel_with_format(
@@ -102,13 +104,13 @@ pub unsafe extern "C" fn leafless_tridexel_with_format(
     })
 }
 
-/// The same tri-dexel model, all of it of one material.
+/// Returns the same tri-dexel model with one material for all intervals.
 ///
 /// - Buffers: `options`, one struct or NULL; `result`, one pointer. `material` is any number.
 /// - Result: `*result`, which stores materials, with the metadata of `tridexel`.
 /// - Errors: LEAFLESS_E_DAMAGED; LEAFLESS_E_LIMIT; LEAFLESS_E_CANCELLED; LEAFLESS_E_NO_MEMORY.
-/// - Ownership: `tridexel` stays as it is; give `*result` back with leafless_tridexel_free.
-/// - Threads: any; uses as many as `options` says.
+/// - Ownership: `tridexel` is unchanged; release `*result` with leafless_tridexel_free.
+/// - Threads: any; runs on as many threads as `options` says.
 /// - Untrusted input: any model, any number.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn leafless_tridexel_with_material(

@@ -1,4 +1,4 @@
-//! What tri-dexel models hold: cells, rays, intervals in the host's arrays, statistics.
+//! Reading tri-dexel models: cells, rays, intervals in the host's arrays, statistics.
 
 use super::boundary::{Buffer, Failure, array, buffer, filled, guard, out, output, shared};
 use super::status::leafless_status;
@@ -11,28 +11,28 @@ use leafless::dexel::{Dexel, DexelEnd, DexelRays, DexelStatistics};
 #[derive(Clone, Copy)]
 #[repr(C)]
 pub struct leafless_dexel_end {
-    /// The coordinate along the ray. It lies on the side of every centre of a cell that is stored, as far as
-    /// there is a double between two centres.
+    /// The coordinate along the ray. It is on the stored side of every cell centre, as far as there is a
+    /// double between two centres.
     pub at_model: f64,
-    /// The same in finest cells from the universe's lower face, exactly as it is stored; the centre of cell k
-    /// lies at k + 1/2.
+    /// The same coordinate in finest cells from the universe's lower face, exactly as stored; the centre of
+    /// cell k lies at k + 1/2.
     pub at_cells: f64,
     /// The outward unit normal of the surface there; three zeros if it is not known.
     pub normal: [f64; 3],
-    /// On which of the source's surfaces it lies: a triangle of a mesh, a half-space in the order of the expression
-    /// written out. UINT32_MAX if it is not known.
+    /// The source's surface at this end: the triangle of a mesh, or the half-space in the order of the
+    /// expanded expression. UINT32_MAX if it is not known.
     pub surface: u32,
 }
 
-/// An interval of a ray that lies inside of the solid.
+/// An interval of a ray that lies inside the solid.
 #[derive(Clone, Copy)]
 #[repr(C)]
 pub struct leafless_dexel {
-    /// Where it begins.
+    /// The start of the interval.
     pub start: leafless_dexel_end,
-    /// Where it ends, which is behind its start.
+    /// The end of the interval, greater than the start.
     pub end: leafless_dexel_end,
-    /// What it is made of; 0 where nothing was said.
+    /// The material; 0 if none was given.
     pub material: u32,
 }
 
@@ -53,24 +53,24 @@ impl From<&Dexel> for leafless_dexel {
     }
 }
 
-/// What the rays along one axis hold.
+/// Statistics of the rays along one axis.
 #[derive(Clone, Copy)]
 #[repr(C)]
 pub struct leafless_dexel_statistics {
     /// sizeof(leafless_dexel_statistics).
     pub struct_size: u32,
-    /// Rays that cross the solid.
+    /// Number of rays that cross the solid.
     pub rays: u64,
-    /// Intervals.
+    /// Number of intervals.
     pub intervals: u64,
     /// Bytes of the arrays.
     pub bytes: u64,
-    /// The lengths of all intervals, each times the area of a cell's face: an estimate of the volume in cubic model
-    /// units, no bound.
+    /// Sum of the lengths of all intervals times the area of a cell's face: an estimate of the volume in
+    /// cubic model units, not a bound.
     pub volume_model: f64,
-    /// The least coordinates of what the rays cross; INFINITY if they cross nothing.
+    /// The least coordinates of all intervals; INFINITY if there are none.
     pub min_model: [f64; 3],
-    /// The greatest coordinates of what the rays cross; -INFINITY if they cross nothing.
+    /// The greatest coordinates of all intervals; -INFINITY if there are none.
     pub max_model: [f64; 3],
 }
 
@@ -90,7 +90,7 @@ impl From<&DexelStatistics> for leafless_dexel_statistics {
     }
 }
 
-/// The rays along an axis.
+/// Returns the rays along an axis.
 fn rays(model: &TriDexel, axis: u32) -> Result<DexelRays<'_>, Failure> {
     if axis > 2 {
         return Err(Failure::Argument { name: "axis", problem: "must be 0, 1 or 2" });
@@ -99,7 +99,7 @@ fn rays(model: &TriDexel, axis: u32) -> Result<DexelRays<'_>, Failure> {
     model.view().rays(axis as usize).ok_or(missing)
 }
 
-/// What the rays along an axis hold. O(n).
+/// Returns statistics of the rays along an axis. O(n).
 ///
 /// - Buffers: `statistics`, one struct. `axis` is 0 for x, 1 for y, 2 for z.
 /// - Result: `*statistics`.
@@ -120,11 +120,11 @@ pub unsafe extern "C" fn leafless_tridexel_statistics(
     })
 }
 
-/// Whether the centre of a finest cell lies inside. O(log intervals of a ray).
+/// Returns whether the centre of a finest cell lies inside. O(log intervals of a ray).
 ///
 /// - Buffers: `cell`, 3 numbers; `inside`, one truth value.
-/// - Result: `*inside`; false if a coordinate is not below 2^depth. Where the directions differ, as those of arrays from
-///   elsewhere may, the highest axis decides.
+/// - Result: `*inside`; false if a coordinate is not below 2^depth. Where the directions disagree, as can
+///   happen with arrays of other programs, the highest axis decides.
 /// - Untrusted input: any model, any numbers.
 ///
 /// cbindgen:ptrs-as-arrays=[[cell; 3]]
@@ -143,10 +143,11 @@ pub unsafe extern "C" fn leafless_tridexel_contains_cell(
     })
 }
 
-/// The smallest rectangle of rays along an axis that holds all rays that cross the solid.
+/// Returns the window: the smallest rectangle of rays along an axis that contains all rays that cross the
+/// solid.
 ///
-/// - Buffers: `first` and `end`, 2 numbers each: the indices of the first ray's cells on the other two axes in the order
-///   x, y, z, and the first beyond the last one's. `axis` is 0 for x, 1 for y, 2 for z.
+/// - Buffers: `first` and `end`, 2 numbers each: the indices of the first ray's cells on the other two axes
+///   in the order x, y, z, and the first indices beyond the last ray. `axis` is 0 for x, 1 for y, 2 for z.
 /// - Result: `first` and `end`; equal to each other if no ray crosses the solid.
 /// - Errors: LEAFLESS_E_ARGUMENT if the model has no rays along `axis`.
 /// - Untrusted input: any model, any number.
@@ -167,13 +168,14 @@ pub unsafe extern "C" fn leafless_tridexel_window(
     })
 }
 
-/// The intervals of one ray, in ascending order.
+/// Returns the intervals of one ray, in ascending order.
 ///
-/// - Buffers: `ray`, 2 numbers, the indices of the ray's cells on the other two axes in the order x, y, z; `dexels`,
-///   room for `capacity` structs, or NULL to ask for the count only; `count`, one number. `axis` is 0 for x, 1 for y, 2
-///   for z.
-/// - Result: `*count`; the intervals. A ray outside of the universe has none.
-/// - Errors: LEAFLESS_E_ARGUMENT if the model has no rays along `axis`; LEAFLESS_E_BUFFER if the capacity is too small.
+/// - Buffers: `ray`, 2 numbers, the indices of the ray's cells on the other two axes in the order x, y, z;
+///   `dexels`, room for `capacity` structs, or NULL to get only the count; `count`, one number. `axis` is 0
+///   for x, 1 for y, 2 for z.
+/// - Result: `*count`; the intervals. A ray outside the universe has none.
+/// - Errors: LEAFLESS_E_ARGUMENT if the model has no rays along `axis`; LEAFLESS_E_BUFFER if the capacity is
+///   too small.
 /// - Untrusted input: any model, any numbers.
 ///
 /// cbindgen:ptrs-as-arrays=[[ray; 2]]
@@ -202,7 +204,7 @@ pub unsafe extern "C" fn leafless_tridexel_ray(
     })
 }
 
-/// The rays in a rectangle with these corners, or in the window.
+/// Returns the rays in a rectangle with these corners, or in the window.
 ///
 /// # Safety
 /// As [`array`] for a corner that is not NULL.
@@ -256,21 +258,23 @@ impl Arrays {
     }
 }
 
-/// The intervals of many rays along one axis, in compressed rows: those of ray i are the elements `offsets[i]` to before
-/// `offsets[i + 1]` of each array. The ray at steps (u, v) from the first is i = v · width + u, of a rectangle that is
-/// `width` rays wide along the first of the other two axes. O(rays + intervals).
+/// Copies the intervals of many rays along one axis, in compressed rows: the intervals of ray i are the
+/// elements from `offsets[i]` up to, but not including, `offsets[i + 1]` of each array. In a rectangle that
+/// is `width` rays wide along the first of the other two axes, the ray at steps (u, v) from the first has the
+/// index i = v · width + u. O(rays + intervals).
 ///
-/// - Buffers: `first` and `end`, 2 numbers each, or NULL both for the rectangle of leafless_tridexel_window: the indices
-///   of the first ray's cells on the other two axes in the order x, y, z, and the first beyond the last one's.
-///   `offsets`, room for `offset_capacity` numbers; for each of `interval_capacity` intervals `ends_model` has room for 2
-///   numbers, `normals` for 6, `surfaces` for 2, `materials` for 1. Each of the five may be NULL, if it is not wanted.
-///   `offset_count` and `interval_count`, one number each. `axis` is 0 for x, 1 for y, 2 for z.
-/// - Result: `offsets`, one more than rays. For each interval: the coordinates of its start and its end, on the sides of
-///   centres that are stored, as far as there are doubles between two centres; the outward unit normals
-///   there, three zeros where none is known; the surfaces there, UINT32_MAX where none is known; the
-///   material, 0 where nothing was said. The counts of offsets and intervals.
-/// - Errors: LEAFLESS_E_ARGUMENT if the model has no rays along `axis`, `first` lies beyond `end`, or the rays reach beyond
-///   the universe; LEAFLESS_E_BUFFER if a capacity is too small: nothing is written then.
+/// - Buffers: `first` and `end`, 2 numbers each, or both NULL for the rectangle of leafless_tridexel_window:
+///   the indices of the first ray's cells on the other two axes in the order x, y, z, and the first indices
+///   beyond the last ray. `offsets`, room for `offset_capacity` numbers; for each of `interval_capacity`
+///   intervals, `ends_model` has room for 2 numbers, `normals` for 6, `surfaces` for 2, `materials` for 1.
+///   Each of the five may be NULL if it is not wanted. `offset_count` and `interval_count`, one number each.
+///   `axis` is 0 for x, 1 for y, 2 for z.
+/// - Result: `offsets`, one more than there are rays. For each interval: the coordinates of its start and its
+///   end, on the stored sides of cell centres, as far as there are doubles between two centres; the outward
+///   unit normals there, three zeros if unknown; the surfaces there, UINT32_MAX if unknown; the material, 0
+///   if none was given. The counts of offsets and intervals.
+/// - Errors: LEAFLESS_E_ARGUMENT if the model has no rays along `axis`, `first` lies beyond `end`, or the
+///   rays reach beyond the universe; LEAFLESS_E_BUFFER if a capacity is too small: nothing is written then.
 /// - Untrusted input: any model, any numbers.
 ///
 /// cbindgen:ptrs-as-arrays=[[first; 2], [end; 2]]
@@ -295,7 +299,7 @@ pub unsafe extern "C" fn leafless_tridexel_copy(
         let rays = rays(model, axis)?;
         let [columns, rows] = rectangle(model, &rays, first, end)?;
         let offsets = buffer(offsets, offset_capacity, "offsets")?;
-        // An array that is absent has no elements, whatever the others have.
+        // An absent array has no elements, whatever the capacity of the others.
         let capacity = |is_null: bool| if is_null { 0 } else { interval_capacity };
         let arrays = Arrays {
             ends: buffer(ends_model.cast(), capacity(ends_model.is_null()), "ends_model")?,
@@ -328,13 +332,13 @@ pub unsafe extern "C" fn leafless_tridexel_copy(
     })
 }
 
-/// Where the intervals of many rays along one axis start and end, exactly as it is stored: in finest cells from the
-/// universe's lower face, of which the centre of cell k lies at k + 1/2. The intervals are those of
+/// Copies the starts and ends of the intervals of many rays along one axis, exactly as stored: in finest
+/// cells from the universe's lower face; the centre of cell k lies at k + 1/2. The intervals are those of
 /// leafless_tridexel_copy, in the same order. O(rays + intervals).
 ///
-/// - Buffers: `first` and `end`, 2 numbers each, or NULL both, as leafless_tridexel_copy has them; `ends_cells`, room for 2
-///   numbers for each of `interval_capacity` intervals, or NULL to ask for the count only; `interval_count`, one number.
-///   `axis` is 0 for x, 1 for y, 2 for z.
+/// - Buffers: `first` and `end`, 2 numbers each, or both NULL, as for leafless_tridexel_copy; `ends_cells`,
+///   room for 2 numbers for each of `interval_capacity` intervals, or NULL to get only the count;
+///   `interval_count`, one number. `axis` is 0 for x, 1 for y, 2 for z.
 /// - Result: `ends_cells`, 0 to 2^depth; `*interval_count`.
 /// - Errors: as leafless_tridexel_copy.
 /// - Untrusted input: any model, any numbers.

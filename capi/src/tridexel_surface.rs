@@ -1,4 +1,4 @@
-//! What tri-dexel models become: meshes, octrees, solids, voxels.
+//! Conversion of tri-dexel models: meshes, octrees, solids, voxels.
 
 use super::boundary::{buffer, filled, guard, out, output, shared, slice};
 use super::control::{controlled, leafless_options};
@@ -16,15 +16,16 @@ use leafless::voxel::{LongVoxel, VoxelKind, dexel_voxels};
 use leafless::{Control, Error, Metadata, Octree, TriDexel};
 use leafless_dexel_surface_method::*;
 
-/// How the surface of a tri-dexel model is extracted.
+/// The method that extracts the surface of a tri-dexel model.
 #[derive(Clone, Copy)]
 #[repr(u32)]
 pub enum leafless_dexel_surface_method {
-    /// Marching cubes: a vertex where a ray crosses the surface between two neighbouring centres of cells. Edges and
-    /// corners of the solid are cut off by up to a cell.
+    /// Marching cubes: a vertex where a ray crosses the surface between two neighbouring centres of cells.
+    /// Edges and corners of the solid are cut off by up to one cell.
     LEAFLESS_DEXEL_SURFACE_METHOD_MARCHING_CUBES = 0,
-    /// Dual contouring: a vertex for each sheet of the surface in a cube between eight centres, where the planes at its
-    /// crossings fit best. Edges and corners of the solid stay, if the model stores normals.
+    /// Dual contouring: a vertex for each sheet of the surface in a cube between eight centres, at the best
+    /// fit of the planes at its crossings. Edges and corners of the solid are kept if the model stores
+    /// normals.
     LEAFLESS_DEXEL_SURFACE_METHOD_DUAL_CONTOURING = 1,
 }
 
@@ -35,31 +36,36 @@ enumeration! {
     }
 }
 
-/// How exactly a surface of a tri-dexel model follows its rays.
+/// A report of how exactly a surface of a tri-dexel model follows its rays.
 #[derive(Clone, Copy)]
 #[repr(C)]
 pub struct leafless_dexel_surface_report {
     /// sizeof(leafless_dexel_surface_report).
     pub struct_size: u32,
-    /// Edges between neighbouring centres of cells of which one lies inside: places where a ray crosses the surface.
+    /// Edges between two neighbouring cell centres of which one lies inside: places where a ray crosses the
+    /// surface.
     pub crossings: u64,
-    /// Crossings on edges that the ray crosses more than once: what is thinner than a cell is lost there.
+    /// Crossings on edges where the ray crosses the surface more than once: details thinner than a cell are
+    /// lost there.
     pub several: u64,
-    /// Crossings that were put in the middle of their edges, because the model has no rays along these.
+    /// Crossings that were put in the middle of their edges, because the model has no rays along these edges.
     pub without_rays: u64,
-    /// Crossings that were put in the middle of their edges, because the directions of the model disagree there.
+    /// Crossings that were put in the middle of their edges, because the directions of the model disagree
+    /// there.
     pub disagreeing: u64,
-    /// Crossings of which no normal is known. (By dual contouring alone.)
+    /// Crossings without a known normal. (Only for dual contouring.)
     pub without_normals: u64,
-    /// Vertices with no normal at any of their crossings, which are the mean of these. (By dual contouring alone.)
+    /// Vertices with no normal at any of their crossings, placed at the mean of the crossings. (Only for dual
+    /// contouring.)
     pub means: u64,
-    /// Vertices that would fit their planes better outside of their cells. (By dual contouring alone.)
+    /// Vertices that were kept inside their cells though they would fit their planes better outside. (Only
+    /// for dual contouring.)
     pub clamped: u64,
-    /// Bodies that the mesh does not show at all: sets of centres of cells that lie inside and hang together along axes,
-    /// none of whose crossings has a triangle, because the surface lies nearer to them than doubles can tell.
+    /// Bodies that are missing in the mesh: sets of inside cell centres, connected along axes, whose
+    /// crossings have no triangle, because the surface is nearer to the centres than doubles can resolve.
     pub vanished: u64,
-    /// Intervals in all directions that hold no centre of a cell, those that touch counted as one: what is thinner than the
-    /// lattice there is not in the mesh.
+    /// Intervals in all directions that contain no cell centre, where touching intervals count as one:
+    /// details thinner than the lattice that are missing in the mesh.
     pub without_centres: u64,
 }
 
@@ -82,16 +88,16 @@ impl From<DexelSurfaceReport> for leafless_dexel_surface_report {
     }
 }
 
-/// A row of voxels along y that are all of one kind and of one material.
+/// A row of voxels along y with the same kind and material.
 #[derive(Clone, Copy)]
 #[repr(C)]
 pub struct leafless_long_voxel {
-    /// Its first voxel. The voxel (x, y, z) lies between the centres of the cells x - 1 and x, and likewise on the other
-    /// axes: its indices go from 0 to the cells of an axis, that number included.
+    /// Indices of the first voxel. The voxel (x, y, z) lies between the centres of the cells x - 1 and x, and
+    /// likewise on the other axes: each index is from 0 to the number of cells of an axis, inclusive.
     pub first: [u32; 3],
-    /// How many voxels it consists of.
+    /// Number of voxels.
     pub length: u32,
-    /// What it is made of; 0 where nothing was said.
+    /// The material; 0 if none was given.
     pub material: u32,
     /// The material's colour: red, green, blue and opacity, 0 to 255.
     pub colour: [u8; 4],
@@ -114,25 +120,26 @@ impl From<&LongVoxel> for leafless_long_voxel {
     }
 }
 
-/// The surface of a tri-dexel model: a closed mesh. Samples are the centres of cells; everything outside of the universe
-/// is outside.
+/// Extracts the surface of a tri-dexel model: a closed mesh. Samples are the centres of cells; space outside
+/// the universe counts as outside.
 ///
-/// Triangles turn counter-clockwise as seen from outside. Every edge belongs to exactly two triangles, but where vertices
-/// lie at one place: these are one vertex, and triangles without area are dropped. Where a ray does not tell a crossing,
-/// because the model has no rays along an axis or its directions disagree, the crossing lies half-way between the two
-/// centres; the report counts such places.
+/// Triangles turn counter-clockwise as seen from outside. Every edge belongs to exactly two triangles, except
+/// where vertices coincide: these are merged, and triangles without area are dropped. Where no ray gives the
+/// crossing, because the model has no rays along an axis or its directions disagree, the crossing lies
+/// half-way between the two centres; the report counts such places.
 ///
 /// O(rays + intervals + octree + mesh), with the octree of leafless_octree_from_tridexel.
 ///
-/// - Buffers: `options`, one struct or NULL; `report`, one struct, or NULL if it is not wanted; `mesh`, one pointer.
-///   `method` is a leafless_dexel_surface_method.
-/// - Result: `*mesh`, the same for any number of threads; it has no triangles if no centre lies inside, or if all bodies
-///   vanish. `*report`.
-/// - Errors: LEAFLESS_E_ARGUMENT also if the frame lies so far from the origin that doubles cannot tell its cells apart;
-///   LEAFLESS_E_MESH if there would be more than 2^32 - 1 vertices or triangles; LEAFLESS_E_CANCELLED; LEAFLESS_E_NO_MEMORY.
-/// - Ownership: `tridexel` stays as it is; give `*mesh` back with leafless_mesh_free.
-/// - Threads: any; uses as many as `options` says.
-/// - Untrusted input: any model; a damaged one is refused (LEAFLESS_E_DAMAGED).
+/// - Buffers: `options`, one struct or NULL; `report`, one struct, or NULL if it is not wanted; `mesh`, one
+///   pointer. `method` is a leafless_dexel_surface_method.
+/// - Result: `*mesh`, identical for any number of threads; it has no triangles if no centre lies inside, or
+///   if all bodies vanish. `*report`.
+/// - Errors: LEAFLESS_E_ARGUMENT also if the frame is so far from the origin that doubles cannot distinguish
+///   its cells; LEAFLESS_E_MESH if there would be more than 2^32 - 1 vertices or triangles;
+///   LEAFLESS_E_CANCELLED; LEAFLESS_E_NO_MEMORY.
+/// - Ownership: `tridexel` is unchanged; release `*mesh` with leafless_mesh_free.
+/// - Threads: any; runs on as many threads as `options` says.
+/// - Untrusted input: any model; a damaged model is refused (LEAFLESS_E_DAMAGED).
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn leafless_tridexel_surface(
     tridexel: *const leafless_tridexel,
@@ -157,16 +164,18 @@ pub unsafe extern "C" fn leafless_tridexel_surface(
     })
 }
 
-/// The octree of a tri-dexel model: a finest cell is FULL if its centre lies inside, else EMPTY. It proves nothing.
+/// Makes the octree of a tri-dexel model by the centres of cells: a finest cell is FULL if its centre lies
+/// inside, else EMPTY. The octree proves nothing.
 ///
 /// - Buffers: `options`, one struct or NULL; `octree`, one pointer.
-/// - Result: `*octree`, with the model's facts "name" and "units" and no others, and, if the model stores materials, a channel
-///   "material" with the number of the material at the centre of each cell (U32); the same for any number of threads.
+/// - Result: `*octree`, with the model's facts "name" and "units" and no others; if the model stores
+///   materials, with a channel "material" of type U32, the material's number at the centre of each cell;
+///   identical for any number of threads.
 /// - Errors: LEAFLESS_E_LIMIT; LEAFLESS_E_CANCELLED; LEAFLESS_E_NO_MEMORY.
-/// - Ownership: `tridexel` stays as it is; give `*octree` back with leafless_octree_free.
-/// - Threads: any; uses as many as `options` says.
-/// - Untrusted input: any model, of which a damaged one is refused (LEAFLESS_E_DAMAGED); set `max_bytes`
-///   where its depth is not your own choice.
+/// - Ownership: `tridexel` is unchanged; release `*octree` with leafless_octree_free.
+/// - Threads: any; runs on as many threads as `options` says.
+/// - Untrusted input: any model; a damaged model is refused (LEAFLESS_E_DAMAGED); set `max_bytes` if its
+///   depth is untrusted.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn leafless_octree_from_tridexel(
     tridexel: *const leafless_tridexel,
@@ -183,20 +192,21 @@ pub unsafe extern "C" fn leafless_octree_from_tridexel(
     })
 }
 
-/// The octree of a tri-dexel model by the ends of its intervals: a finest cell is FULL if all rays through it are inside all the
-/// way, EMPTY if all are outside all the way, and PARTIAL if an end lies in it or the directions disagree.
+/// Makes the octree of a tri-dexel model by the ends of its intervals: a finest cell is FULL if all rays
+/// through it are entirely inside, EMPTY if all are entirely outside, and PARTIAL if an end lies in the cell
+/// or the directions disagree.
 ///
-/// A decided cell agrees with every ray through it; what is thinner than a cell is undecided where a ray meets it, and not lost.
-/// Between the rays nothing is known: the cells prove nothing of the solid that the rays came from, and the volumes of FULL and
-/// of PARTIAL cells are no proven bounds.
+/// A decided cell agrees with every ray through it. Details thinner than a cell are undecided where a ray
+/// meets them, and not lost. Nothing is known between the rays: the cells prove nothing about the solid that
+/// the rays came from, and the volumes of FULL and PARTIAL cells are not proven bounds.
 ///
 /// - Buffers: `options`, one struct or NULL; `octree`, one pointer.
 /// - Result: `*octree`, with facts and a channel as from leafless_octree_from_tridexel.
 /// - Errors: LEAFLESS_E_LIMIT; LEAFLESS_E_CANCELLED; LEAFLESS_E_NO_MEMORY.
-/// - Ownership: `tridexel` stays as it is; give `*octree` back with leafless_octree_free.
-/// - Threads: any; uses as many as `options` says.
-/// - Untrusted input: any model, of which a damaged one is refused (LEAFLESS_E_DAMAGED); set `max_bytes`
-///   where its depth is not your own choice.
+/// - Ownership: `tridexel` is unchanged; release `*octree` with leafless_octree_free.
+/// - Threads: any; runs on as many threads as `options` says.
+/// - Untrusted input: any model; a damaged model is refused (LEAFLESS_E_DAMAGED); set `max_bytes` if its
+///   depth is untrusted.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn leafless_octree_from_tridexel_ends(
     tridexel: *const leafless_tridexel,
@@ -213,7 +223,7 @@ pub unsafe extern "C" fn leafless_octree_from_tridexel_ends(
     })
 }
 
-/// An octree of a model, with the model's materials as a channel.
+/// Returns an octree of a model with the model's materials as a channel.
 fn with_materials(octree: Octree, model: &TriDexel, control: &Control<'_>) -> Result<Octree, Error> {
     let quiet = Control { progress: None, ..*control };
     match dexel_materials(model.view(), octree.view(), &quiet)? {
@@ -222,17 +232,18 @@ fn with_materials(octree: Octree, model: &TriDexel, control: &Control<'_>) -> Re
     }
 }
 
-/// A tri-dexel model as a solid on any frame: the inside of its surface by marching cubes.
+/// Makes a solid from a tri-dexel model, for any frame: the inside of its surface by marching cubes.
 ///
-/// That surface is near the one that the model was made from, not on it. So what is built of the solid proves nothing,
-/// and measures of it are not bounded; with `is_truth` the surface is taken for the truth, and both are as of any mesh.
+/// That surface is near the surface that the model was made from, not on it. So octrees of the solid prove
+/// nothing, and its measures are not bounds. With `is_truth` the surface counts as the truth, and both are as
+/// for any mesh.
 ///
 /// - Buffers: `options`, one struct or NULL; `solid`, one pointer.
 /// - Result: `*solid`.
 /// - Errors: as leafless_tridexel_surface, and LEAFLESS_E_MESH if no centre of a cell lies inside.
-/// - Ownership: nothing is kept of `tridexel`; give `*solid` back with leafless_solid_free.
-/// - Threads: any; uses as many as `options` says.
-/// - Untrusted input: any model; a damaged one is refused (LEAFLESS_E_DAMAGED).
+/// - Ownership: the library keeps no reference to `tridexel`; release `*solid` with leafless_solid_free.
+/// - Threads: any; runs on as many threads as `options` says.
+/// - Untrusted input: any model; a damaged model is refused (LEAFLESS_E_DAMAGED).
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn leafless_solid_from_tridexel(
     tridexel: *const leafless_tridexel,
@@ -248,19 +259,21 @@ pub unsafe extern "C" fn leafless_solid_from_tridexel(
     })
 }
 
-/// The voxels of a tri-dexel model, whose corners are the centres of cells: a voxel lies inside if all of its eight
-/// corners do, outside if none does, and else on the boundary. Those that do not lie outside are merged along y, as far as
-/// kind and material are the same. A voxel has the material at its first corner that lies inside, x running fastest and z
-/// slowest, and the colour that `colours` has at the place of the material's number; materials beyond are grey (128, 128,
-/// 128, 255). Call it once for the count, and then with a buffer.
+/// Lists the voxels of a tri-dexel model. The corners of a voxel are cell centres: it is inside if all of its
+/// eight corners are inside, outside if none is, and otherwise on the boundary. Inside and boundary voxels
+/// are merged along y where kind and material are the same. A voxel has the material of its first inside
+/// corner, with x varying fastest and z slowest, and the colour in `colours` at the index of the material's
+/// number; materials beyond are grey (128, 128, 128, 255). Call it once for the count, and then with a
+/// buffer.
 ///
 /// O(rays of the window + blocks + rows), for blocks of 64 x 64 x 64 cells in which centres lie inside.
 ///
-/// - Buffers: `options`, one struct or NULL; `colours`, `colour_count` colours of four bytes (red, green, blue, opacity), or
-///   NULL for none; `voxels`, room for `capacity` structs, or NULL to ask for the count only; `count`, one number.
+/// - Buffers: `options`, one struct or NULL; `colours`, `colour_count` colours of four bytes (red, green,
+///   blue, opacity), or NULL for none; `voxels`, room for `capacity` structs, or NULL to get only the count;
+///   `count`, one number.
 /// - Result: `*count`; the rows of voxels by z, then by x, then by y.
 /// - Errors: LEAFLESS_E_BUFFER if the capacity is too small; LEAFLESS_E_CANCELLED; LEAFLESS_E_NO_MEMORY.
-/// - Untrusted input: any model; a damaged one is refused (LEAFLESS_E_DAMAGED).
+/// - Untrusted input: any model; a damaged model is refused (LEAFLESS_E_DAMAGED).
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn leafless_tridexel_voxels(
     tridexel: *const leafless_tridexel,

@@ -8,8 +8,8 @@ pub const LEAFLESS_VERSION_MAJOR: u32 = 0;
 pub const LEAFLESS_VERSION_MINOR: u32 = 0;
 /// Patch level of the library that this header belongs to.
 pub const LEAFLESS_VERSION_PATCH: u32 = 1;
-/// Number of the binary interface: programs and libraries of one number fit together. 0 until the release
-/// 0.1, which means that nothing is promised yet.
+/// Number of the binary interface. Programs and libraries with the same number are compatible. It is 0 until
+/// the release 0.1, which means that nothing is promised yet.
 pub const LEAFLESS_ABI: u32 = 0;
 
 const TEXT: &CStr = {
@@ -19,7 +19,8 @@ const TEXT: &CStr = {
     }
 };
 
-/// The version of the library that is linked: major · 1 000 000 + minor · 1000 + patch, as LEAFLESS_VERSION.
+/// Returns the version of the library that is linked: major · 1 000 000 + minor · 1000 + patch, as
+/// LEAFLESS_VERSION.
 ///
 /// - Result: the number.
 #[unsafe(no_mangle)]
@@ -27,7 +28,7 @@ pub extern "C" fn leafless_version() -> u32 {
     LEAFLESS_VERSION_MAJOR * 1_000_000 + LEAFLESS_VERSION_MINOR * 1000 + LEAFLESS_VERSION_PATCH
 }
 
-/// The version of the library that is linked, as a text such as "0.1.0".
+/// Returns the version of the library that is linked, as a text such as "0.1.0".
 ///
 /// - Result: a NUL-terminated text, never NULL.
 /// - Ownership: the text is static; do not free it.
@@ -36,8 +37,8 @@ pub extern "C" fn leafless_version_string() -> *const c_char {
     TEXT.as_ptr()
 }
 
-/// The number of the binary interface of the library that is linked; compare it with LEAFLESS_ABI, or use
-/// LEAFLESS_COMPATIBLE, which compares the version too.
+/// Returns the number of the binary interface of the library that is linked. Compare it with LEAFLESS_ABI, or
+/// use LEAFLESS_COMPATIBLE, which compares the version too.
 ///
 /// - Result: the number.
 #[unsafe(no_mangle)]

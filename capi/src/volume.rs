@@ -1,4 +1,4 @@
-//! Volumes: bitmaps and arrays of samples, and the solids that they are.
+//! Volumes: bitmaps and arrays of samples, and solids made from them.
 
 use super::boundary::{Failure, array, filled, guard, out, output, refer, release, shared};
 use super::control::{controlled, leafless_options};
@@ -17,26 +17,26 @@ use leafless::{AnySolid, Volume};
 use leafless_sample_type::*;
 use std::sync::OnceLock;
 
-/// A three-dimensional bitmap or array of samples, and where it lies. Each sample stands for the closed box
+/// A three-dimensional bitmap or array of samples, with its position. Each sample stands for the closed box
 /// around it, its voxel: on each axis voxel i reaches from corner + i·spacing to corner + (i + 1)·spacing.
-/// leafless_solid_from_volume makes a solid of those whose samples lie in a band.
+/// leafless_solid_from_volume makes a solid from the voxels whose samples lie in a band.
 ///
-/// Immutable: all its functions may be called at once from any number of threads, but leafless_volume_free
-/// needs the reference that it gives back for itself.
+/// Immutable: all its functions may be called at once from any number of threads, but no other call may use
+/// the reference that leafless_volume_free releases.
 pub struct leafless_volume {
     pub(super) samples: Samples<'static>,
     pub(super) grid: VoxelGrid,
-    /// Moves the grid to where the file says, if its axes are not x, y and z.
+    /// The map that moves the grid to the file's axes, if these are not x, y and z.
     pub(super) placement: Option<Affine>,
     pub(super) unit: Option<LengthUnit>,
     pub(super) format: leafless_volume_format,
     pub(super) file_type: leafless_sample_type,
     pub(super) rounded: u64,
-    /// What all bands share, once it was asked for.
+    /// The data that all bands share, once it was computed.
     pub(super) ranges: OnceLock<Volume<'static>>,
 }
 
-/// The type of samples. The arrays of a volume are of the first five types. Samples of other types are
+/// The type of samples. The arrays of a volume have one of the first five types. Samples of other types are
 /// converted to one of these when they are copied.
 #[derive(Clone, Copy, PartialEq)]
 #[repr(u32)]
@@ -47,18 +47,18 @@ pub enum leafless_sample_type {
     LEAFLESS_SAMPLE_TYPE_U16 = 1,
     /// int16_t, as the Hounsfield units of tomography.
     LEAFLESS_SAMPLE_TYPE_I16 = 2,
-    /// float. One that is not a number is never inside.
+    /// float. A sample that is not a number is never inside.
     LEAFLESS_SAMPLE_TYPE_F32 = 3,
     /// Bits with the values 0 and 1, in uint64_t: each row along x begins with a word of its own, and the bit
-    /// of the sample (x, y, z) is bit x mod 64 of word x / 64 + w (y + ny z), where w = ⌈nx / 64⌉. Other bits
-    /// of a row's last word do not count. leafless_octree_bitmap writes the same.
+    /// of the sample (x, y, z) is bit x mod 64 of word x / 64 + w (y + ny z), where w = ⌈nx / 64⌉. The other
+    /// bits of a row's last word are ignored. leafless_octree_bitmap writes the same layout.
     LEAFLESS_SAMPLE_TYPE_BITS = 4,
     /// Bits in bytes, eight to a byte, the lowest first: each row along x begins with a byte of its own. They
     /// become LEAFLESS_SAMPLE_TYPE_BITS.
     LEAFLESS_SAMPLE_TYPE_BITS_IN_BYTES = 5,
     /// int8_t. It becomes int16_t.
     LEAFLESS_SAMPLE_TYPE_I8 = 6,
-    /// int32_t. It becomes float, and so do all that follow.
+    /// int32_t. It becomes float, as do all following types.
     LEAFLESS_SAMPLE_TYPE_I32 = 7,
     /// uint32_t.
     LEAFLESS_SAMPLE_TYPE_U32 = 8,
@@ -74,13 +74,13 @@ pub enum leafless_sample_type {
 #[derive(Clone, Copy, PartialEq)]
 #[repr(u32)]
 pub enum leafless_volume_format {
-    /// The samples alone. A leafless_volume_layout tells what must be known to read them.
+    /// The samples alone. A leafless_volume_layout describes them for reading.
     LEAFLESS_VOLUME_FORMAT_RAW = 0,
-    /// NRRD, `.nrrd` or `.nhdr`. When written, with samples as they are.
+    /// NRRD, `.nrrd` or `.nhdr`. When written, samples are uncompressed.
     LEAFLESS_VOLUME_FORMAT_NRRD = 1,
-    /// MetaImage, `.mha` or `.mhd`, which can be read only.
+    /// MetaImage, `.mha` or `.mhd`, for reading only.
     LEAFLESS_VOLUME_FORMAT_METAIMAGE = 2,
-    /// To be written: NRRD with samples compressed by DEFLATE. (A file that is read is
+    /// For writing only: NRRD with samples compressed by DEFLATE. (A NRRD file that was read has
     /// LEAFLESS_VOLUME_FORMAT_NRRD, compressed or not.)
     LEAFLESS_VOLUME_FORMAT_NRRD_GZIP = 3,
 }
@@ -94,40 +94,39 @@ enumeration! {
     }
 }
 
-/// What can be said of a volume at once.
+/// Basic facts about a volume.
 #[derive(Clone, Copy)]
 #[repr(C)]
 pub struct leafless_volume_info {
     /// sizeof(leafless_volume_info).
     pub struct_size: u32,
-    /// How many samples there are along x, y and z.
+    /// Number of samples along x, y and z.
     pub extents: [u32; 3],
-    /// Their type in memory: one of the first five.
+    /// Type of the samples in memory: one of the first five.
     pub sample_type: leafless_sample_type,
-    /// Their type in the file or array that the volume was made from.
+    /// Type of the samples in the file or array that the volume was made from.
     pub file_type: leafless_sample_type,
     /// The file's format; LEAFLESS_VOLUME_FORMAT_RAW for arrays.
     pub format: leafless_volume_format,
-    /// The unit of all lengths, if the file says it.
+    /// The unit of all lengths, if the file states it.
     pub unit: leafless_unit,
     /// Whether the file's axes are not x, y and z: then `placement` moves the voxels.
     pub is_placed: bool,
     /// The number of samples.
     pub sample_count: u64,
-    /// How many of them single precision had to round.
+    /// Number of samples that were rounded to single precision.
     pub rounded: u64,
-    /// The least value that is inside if nobody says which: the middle of the range of `file_type`. 0.5 for
-    /// bits, 127.5 for uint8_t, 32767.5 for uint16_t, -0.5 for integers with a sign, 0 for float and double.
+    /// The least value that is inside by default: the middle of the range of `file_type`. 0.5 for bits, 127.5
+    /// for uint8_t, 32767.5 for uint16_t, -0.5 for integers with a sign, 0 for float and double.
     pub default_threshold: f64,
     /// The lower corner of the first voxel, before `placement` moves it.
     pub corner_model: [f64; 3],
     /// The edges of a voxel.
     pub spacing_model: [f64; 3],
-    /// The affine map x' = M x + t that moves the voxels to where the file says: three rows of M and t. Its
-    /// directions are rounded. The map that moves nothing unless `is_placed`.
+    /// The affine map x' = M x + t that moves the voxels to the position of the file: three rows of M and t.
+    /// Its directions are rounded. The identity unless `is_placed`.
     pub placement: [f64; 12],
-    /// Bytes that the samples take, in memory or where the host has them, and what was found out about them
-    /// for solids.
+    /// Bytes of the samples, in memory or in the host's memory, and of the index for solids.
     pub bytes: u64,
 }
 
@@ -148,13 +147,13 @@ pub(super) const TYPES: [(leafless_sample_type, SampleKind); 12] = [
     (LEAFLESS_SAMPLE_TYPE_F64, SampleKind::F64),
 ];
 
-/// The type of a file's samples.
+/// Returns the type of a file's samples.
 pub(super) fn type_of(kind: SampleKind) -> leafless_sample_type {
     TYPES.iter().find(|(_, known)| *known == kind).map_or(LEAFLESS_SAMPLE_TYPE_U8, |(named, _)| *named)
 }
 
 impl leafless_volume {
-    /// The band of a caller, or that from the default threshold on.
+    /// Returns the band of a caller, or the band from the default threshold on.
     ///
     /// # Safety
     /// `band` is NULL or misaligned, or points to a struct.
@@ -177,19 +176,19 @@ impl leafless_volume {
         }
     }
 
-    /// The least value that is inside if nobody says which.
+    /// Returns the least value that is inside by default.
     fn threshold(&self) -> f64 {
         let known = TYPES.iter().find(|(named, _)| *named == self.file_type);
         known.map_or(0.0, |(_, kind)| kind.half_range())
     }
 
-    /// The voxels that are inside. The samples are read by the first call only.
+    /// Returns the voxels that are inside. Only the first call reads the samples.
     pub(super) fn voxels(&self, band: Band, control: &Control<'_>) -> Result<Volume<'static>, Error> {
         match self.ranges.get() {
             Some(volume) => volume.with_band(band, control),
             None => {
                 let volume = Volume::new(self.samples.clone(), &self.grid, band, control)?;
-                // If another thread was faster, its ranges are the same.
+                // If another thread was faster, its ranges are equal.
                 let _ = self.ranges.set(volume.clone());
                 Ok(volume)
             }
@@ -197,11 +196,11 @@ impl leafless_volume {
     }
 }
 
-/// One more reference to a volume.
+/// Returns one more reference to a volume.
 ///
 /// - Buffers: `volume`, a handle; `reference`, one pointer.
 /// - Result: `*reference`, equal to `volume`.
-/// - Ownership: give each reference back with leafless_volume_free.
+/// - Ownership: release each reference with leafless_volume_free.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn leafless_volume_ref(
     volume: *const leafless_volume,
@@ -210,11 +209,11 @@ pub unsafe extern "C" fn leafless_volume_ref(
     guard(|| unsafe { refer(volume, "volume", reference) })
 }
 
-/// Gives back a reference to a volume; with the last one the volume is gone. Solids made of it stay, and keep
-/// its samples.
+/// Releases a reference to a volume; the last release frees the volume. Solids made of it stay, and keep its
+/// samples.
 ///
 /// - Buffers: `volume`, a handle or NULL, which does nothing.
-/// - Ownership: the reference is gone.
+/// - Ownership: the reference is invalid afterwards.
 /// - Threads: any; no other call may use this reference.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn leafless_volume_free(volume: *mut leafless_volume) {
@@ -222,7 +221,7 @@ pub unsafe extern "C" fn leafless_volume_free(volume: *mut leafless_volume) {
     unsafe { release(volume) }
 }
 
-/// What can be said of a volume at once. O(1).
+/// Returns basic facts about a volume. O(1).
 ///
 /// - Buffers: `info`, one struct.
 /// - Result: `*info`.
@@ -253,11 +252,11 @@ pub unsafe extern "C" fn leafless_volume_describe(
     })
 }
 
-/// The samples of a volume where they lie, without a copy: x fastest, of the `sample_type` of
+/// Returns the address of a volume's samples, without a copy: x varies fastest, in the `sample_type` of
 /// leafless_volume_describe.
 ///
 /// - Buffers: `samples` and `length`, one each.
-/// - Result: `*samples`, the address of the first one; `*length`, their bytes.
+/// - Result: `*samples`, the address of the first sample; `*length`, their size in bytes.
 /// - Ownership: the samples belong to the volume, or to the host if it uses the host's array, and
 ///   live as long as the reference `volume`.
 #[unsafe(no_mangle)]
@@ -284,13 +283,13 @@ pub unsafe extern "C" fn leafless_volume_peek_samples(
     })
 }
 
-/// The frame whose finest cells are the voxels of a volume: of the least depth that holds all of them. On
-/// this frame a solid of the volume has no PARTIAL cell, and its octree is the bitmap, bit for bit.
+/// Makes the frame whose finest cells are the voxels of a volume, with the least depth that holds all voxels.
+/// On this frame a solid of the volume has no PARTIAL cell, and its octree is the bitmap, bit for bit.
 ///
 /// - Buffers: `frame`, one struct.
 /// - Result: `*frame`.
-/// - Errors: LEAFLESS_E_ARGUMENT if voxels are no cubes, or their axes not x, y and z: take a frame around
-///   leafless_volume_bounds.
+/// - Errors: LEAFLESS_E_ARGUMENT if voxels are not cubes, or their axes are not x, y and z; use a frame
+///   around leafless_volume_bounds then.
 /// - Untrusted input: any volume.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn leafless_volume_frame(
@@ -308,7 +307,7 @@ pub unsafe extern "C" fn leafless_volume_frame(
     })
 }
 
-/// A box that contains all voxels of a volume, where the file says that they lie; rounded outward.
+/// Returns a box that contains all voxels of a volume at the position that the file states, rounded outward.
 ///
 /// - Buffers: `min_model` and `max_model`, room for 3 numbers each.
 /// - Result: both corners.
@@ -337,12 +336,12 @@ pub unsafe extern "C" fn leafless_volume_bounds(
     })
 }
 
-/// The least and the greatest sample of a volume. O(n), and O(n / 64) once a solid or a range was asked for.
+/// Returns the least and the greatest sample of a volume. O(n); O(n / 64) after the first solid or range.
 ///
-/// - Buffers: `options`, one struct or NULL, of which limits do not matter; `range`, one struct.
-/// - Result: `*range`: of bits 0 to 1, and all numbers if a sample is not a number.
+/// - Buffers: `options`, one struct or NULL (its limits are ignored); `range`, one struct.
+/// - Result: `*range`: 0 to 1 for bits; all numbers if a sample is not a number.
 /// - Errors: LEAFLESS_E_CANCELLED; LEAFLESS_E_NO_MEMORY.
-/// - Threads: any; uses as many as `options` says.
+/// - Threads: any; runs on as many threads as `options` says.
 /// - Untrusted input: any volume.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn leafless_volume_range(
@@ -366,26 +365,26 @@ pub unsafe extern "C" fn leafless_volume_range(
     })
 }
 
-/// The solid of a volume: the union of the closed voxels whose samples lie in a band, where the file says
-/// that they lie. What is beyond the voxels is outside. It is taken wherever solids are: it can be built,
-/// joined with others, measured, and have its surface extracted.
+/// Makes a solid from a volume: the union of the closed voxels whose samples lie in a band, at the position
+/// that the file states. Space beyond the voxels is outside. All functions for solids accept it: it can be
+/// built, combined, measured, and have its surface extracted.
 ///
-/// On the frame of leafless_volume_frame finest cells are voxels, and nothing is PARTIAL. On any other,
-/// however its cells lie to the voxels, PARTIAL cells are those that voxels of both kinds share.
+/// On the frame of leafless_volume_frame, finest cells are voxels and no cell is PARTIAL. On any other frame,
+/// a cell is PARTIAL if it meets both voxels inside the band and voxels outside it.
 ///
-/// The first solid of a volume reads all samples, in O(n); the next, with other bands, read only blocks of
-/// which the least and the greatest value do not tell. Beside the samples, which are shared, it takes about
-/// 1/32 of their memory for uint8_t.
+/// The first solid of a volume reads all samples, in O(n). Later solids, with other bands, read only the
+/// blocks that the block's least and greatest value do not decide. The samples are shared; for uint8_t the
+/// solid takes about 1/32 of their memory in addition.
 ///
 /// - Buffers: `band`, one struct: the least and the greatest value that are inside, which may be infinite; or
 ///   NULL, which means all values from the `default_threshold` of leafless_volume_describe on. `options`, one
-///   struct or NULL, of which limits do not matter; `solid`, one pointer.
+///   struct or NULL (its limits are ignored); `solid`, one pointer.
 /// - Result: `*solid`.
-/// - Errors: LEAFLESS_E_ARGUMENT if an end of the band is not a number, or the lower above the upper one;
-///   LEAFLESS_E_CANCELLED; LEAFLESS_E_NO_MEMORY.
-/// - Ownership: the solid shares the samples, and `volume` may be freed; give `*solid` back with
+/// - Errors: LEAFLESS_E_ARGUMENT if an end of the band is not a number, or the lower end exceeds the upper
+///   end; LEAFLESS_E_CANCELLED; LEAFLESS_E_NO_MEMORY.
+/// - Ownership: the solid shares the samples, and `volume` may be freed; release `*solid` with
 ///   leafless_solid_free.
-/// - Threads: any; uses as many as `options` says.
+/// - Threads: any; runs on as many threads as `options` says.
 /// - Untrusted input: any volume.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn leafless_solid_from_volume(

@@ -1,4 +1,4 @@
-//! Volumes from arrays as host programs have them.
+//! Volumes from the host's arrays.
 
 use super::boundary::{Failure, Sized32, guard, handle, out, sized, slice};
 use super::source::{Source, leafless_access::*, leafless_source, source};
@@ -19,7 +19,7 @@ use std::sync::OnceLock;
 #[derive(Clone, Copy)]
 #[repr(u32)]
 pub enum leafless_byte_order {
-    /// As this machine has them.
+    /// The order of this machine.
     LEAFLESS_BYTE_ORDER_NATIVE = 0,
     /// The byte of the lowest weight first.
     LEAFLESS_BYTE_ORDER_LITTLE = 1,
@@ -27,8 +27,8 @@ pub enum leafless_byte_order {
     LEAFLESS_BYTE_ORDER_BIG = 2,
 }
 
-/// How an array of samples is laid out, and where it lies: x varies fastest, then y, then z, without gaps.
-/// All fields but the first and `extents` may be zero, which is their default.
+/// The layout and the position of an array of samples: x varies fastest, then y, then z, without gaps. Zero
+/// is the default of every field but the first and `extents`.
 #[derive(Clone, Copy)]
 #[repr(C)]
 pub struct leafless_volume_layout {
@@ -36,14 +36,14 @@ pub struct leafless_volume_layout {
     pub struct_size: u32,
     /// A leafless_sample_type.
     pub sample_type: u32,
-    /// How many samples there are along x, y and z: 1 to 2^20 each. An octree's cube may reach beyond them;
-    /// nothing is stored there.
+    /// Number of samples along x, y and z: 1 to 2^20 each. An octree's cube may be larger; the space beyond
+    /// the samples takes no memory.
     pub extents: [u32; 3],
     /// A leafless_byte_order.
     pub byte_order: u32,
     /// Bytes before the first sample.
     pub skip: u64,
-    /// The lower corner of the first voxel: the place of the first sample less half the spacing. Each
+    /// The lower corner of the first voxel: the position of the first sample minus half the spacing. Each
     /// coordinate is 0 or of a magnitude between 2^-256 and 2^256.
     pub corner_model: [f64; 3],
     /// The edges of a voxel, 2^-256 to 2^256; all three 0 means 1.
@@ -55,7 +55,8 @@ unsafe impl Sized32 for leafless_volume_layout {}
 
 /// A layout that was checked.
 pub(super) struct Layout {
-    /// The grid, the type and the bytes before it. Bits in words are of the same kind as those in bytes.
+    /// The grid, the type and the bytes before the samples. Bits in words have the same kind as bits in
+    /// bytes.
     pub(super) raw: RawVolume,
     pub(super) sample_type: leafless_sample_type,
 }
@@ -88,7 +89,7 @@ impl Layout {
         Ok(Layout { raw: RawVolume { grid, kind, big_endian, skip: given.skip }, sample_type })
     }
 
-    /// The samples in bytes, copied, and how many were rounded.
+    /// Returns a copy of the samples in `bytes`, and how many were rounded.
     pub(super) fn copied(&self, bytes: &[u8]) -> Result<(Samples<'static>, u64), Error> {
         let found = bytes.len() as u64;
         if self.raw.skip > found {
@@ -111,10 +112,10 @@ impl Layout {
         Ok((Samples::Bits(memory::collected(words.iter().map(word))?.into()), 0))
     }
 
-    /// The samples where they lie.
+    /// Returns the samples in place.
     ///
     /// # Safety
-    /// The bytes stay, unchanged, for as long as the volume or anything made of it lives.
+    /// The bytes stay in place, unchanged, as long as the volume or an object made from it lives.
     unsafe fn viewed(&self, bytes: &[u8]) -> Result<Samples<'static>, Failure> {
         /// # Safety
         /// As [`Layout::viewed`].
@@ -152,7 +153,7 @@ impl Layout {
         Ok(samples)
     }
 
-    /// The volume of samples in this layout.
+    /// Returns the volume of samples in this layout.
     pub(super) fn volume(&self, (samples, rounded): (Samples<'static>, u64)) -> leafless_volume {
         leafless_volume {
             samples,
@@ -167,23 +168,25 @@ impl Layout {
     }
 }
 
-/// Makes a volume of an array of samples without a header, in memory or in a file.
+/// Makes a volume from an array of samples without a header, in memory or in a file.
 ///
-/// With LEAFLESS_ACCESS_COPY the samples are copied: O(n); bytes may lie on any address. With LEAFLESS_ACCESS_MAP, which
-/// is for bytes only, they are used where they lie: O(1). The layout's type is then LEAFLESS_SAMPLE_TYPE_U8, _U16, _I16, _F32
-/// or _BITS, its byte order is this machine's, it has nothing to skip, and the bytes are aligned for their type.
-/// LEAFLESS_ACCESS_MAP_VERIFIED is the same: any samples are a volume.
+/// With LEAFLESS_ACCESS_COPY the samples are copied: O(n); bytes may have any address. With
+/// LEAFLESS_ACCESS_MAP, which is for bytes only, they are used in place: O(1). The layout's type must then be
+/// LEAFLESS_SAMPLE_TYPE_U8, _U16, _I16, _F32 or _BITS, the byte order this machine's, `skip` 0, and the bytes
+/// aligned for their type. LEAFLESS_ACCESS_MAP_VERIFIED is the same, because any samples are a valid volume.
 ///
 /// - Buffers: `layout`, one struct; `source`, one struct; `volume`, one pointer.
 /// - Result: `*volume`.
-/// - Errors: LEAFLESS_E_ARGUMENT if the type, the byte order, an extent, the corner or the spacing is none, if the layout
-///   or the source is not as the access demands, or if the number of bytes is not that of the samples and those to skip;
-///   LEAFLESS_E_VOLUME_FILE if that is so of a file; LEAFLESS_E_IO; LEAFLESS_E_UTF8; LEAFLESS_E_NO_MEMORY.
-/// - Ownership: samples that are copied may be freed after the call. Others stay the host's. They must stay, unchanged,
-///   until the last reference is given back to the volume, to every solid that is made of it, and to what is made of
-///   these, but for octrees and meshes, which have all of their own. Give `*volume` back with leafless_volume_free.
-/// - Untrusted input: any layout, any bytes, any file; memory is at most the file's length and as much again for the
-///   samples, twice as much for int8_t.
+/// - Errors: LEAFLESS_E_ARGUMENT if the type, the byte order, an extent, the corner or the spacing is
+///   invalid, if the layout or the source does not fit the access, or if the number of bytes is not `skip`
+///   plus the size of the samples; LEAFLESS_E_VOLUME_FILE if a file has a wrong number of bytes;
+///   LEAFLESS_E_IO; LEAFLESS_E_UTF8; LEAFLESS_E_NO_MEMORY.
+/// - Ownership: samples that are copied may be freed after the call. Samples used in place belong to the
+///   host. They must stay in place, unchanged, until the last reference is released to the volume, to every
+///   solid made from it, and to every object made from these, except octrees and meshes, which have their own
+///   data. Release `*volume` with leafless_volume_free.
+/// - Untrusted input: any layout, any bytes, any file; memory is at most the file's length and as much again
+///   for the samples, twice as much for int8_t.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn leafless_volume_new(
     layout: *const leafless_volume_layout,

@@ -1,4 +1,4 @@
-//! Volume files.
+//! Reading and writing of volume files.
 
 use super::boundary::{Failure, buffer, guard, handle, out, shared, slice};
 use super::number::Number;
@@ -45,24 +45,27 @@ impl leafless_volume {
     }
 }
 
-/// Reads a volume file, NRRD or MetaImage; the content tells which. If it names another file for its samples,
-/// that is read from the same folder or below it, or given as `data`.
+/// Reads a volume file, NRRD or MetaImage, detected from the content. If it names another file for its
+/// samples, that file is read from the same folder or below it, or is given as `data`.
 ///
 /// NRRD: versions 1 to 5, attached and detached, raw, gzip and ascii. MetaImage: binary, ASCII and
-/// compressed. All types of single numbers, both byte orders. What is neither 8 nor 16 bits wide becomes
-/// float, and int8_t becomes int16_t. O(n); the samples are copied once.
+/// compressed. All scalar sample types and both byte orders are supported. Samples that are neither 8 nor 16
+/// bits wide become float, and int8_t becomes int16_t. O(n); the samples are copied once.
 ///
-/// Samples in another file must lie in the header's folder or below it, by their real path: links are followed
-/// before that is judged. The header's folder is the one that the path names and, if the header is a link, also
-/// the one in which the header really lies, which is searched second. For bytes no file is looked for.
+/// Samples in another file must lie in the header's folder or below it, by their real path: links are
+/// followed before this check. The header's folder is the folder of the given path and, if the header is a
+/// link, also the folder of the link's target, which is searched second. For bytes in memory no other file is
+/// read.
 ///
-/// - Buffers: `source`, one struct, with LEAFLESS_ACCESS_COPY. `data`, one struct of the same kind: the file of
-///   the samples, which is then not looked for; else NULL, and of bytes that need one LEAFLESS_E_VOLUME_FILE.
-///   leafless_volume_data_file tells its name. `volume`, one pointer.
-/// - Result: `*volume`; leafless_volume_describe tells what the file says.
-/// - Errors: LEAFLESS_E_VOLUME_FILE, with what is wrong where in the message, if the file is neither, is
-///   damaged, or uses something that cannot be read; LEAFLESS_E_IO; LEAFLESS_E_UTF8; LEAFLESS_E_NO_MEMORY.
-/// - Ownership: give `*volume` back with leafless_volume_free.
+/// - Buffers: `source`, one struct, with LEAFLESS_ACCESS_COPY. `data`, one struct of the same kind: the file
+///   of the samples, which replaces the file that the header names; or NULL. Bytes in memory whose samples
+///   are in another file need `data`, else the result is LEAFLESS_E_VOLUME_FILE. leafless_volume_data_file
+///   returns the name of that file. `volume`, one pointer.
+/// - Result: `*volume`; leafless_volume_describe returns the facts that the file states.
+/// - Errors: LEAFLESS_E_VOLUME_FILE, with the problem and its position in the message, if the file has
+///   neither format, is damaged, or uses an unsupported feature; LEAFLESS_E_IO; LEAFLESS_E_UTF8;
+///   LEAFLESS_E_NO_MEMORY.
+/// - Ownership: release `*volume` with leafless_volume_free.
 /// - Untrusted input: any file. A header that asks for more samples than its data can hold is refused before
 ///   anything is allocated; compressed samples become at most 1032 times as long as the file.
 #[unsafe(no_mangle)]
@@ -84,11 +87,11 @@ pub unsafe extern "C" fn leafless_volume_read(
     })
 }
 
-/// The name of the file that has the samples of a volume file, relative to that.
+/// Returns the name of the file that contains the samples of a volume file, relative to the volume file.
 ///
-/// - Buffers: `bytes`, `length` bytes: the file, or all of its header; may be NULL if there are none. `name`,
-///   room for `capacity` bytes, or NULL to ask for the length only; `name_length`, one number.
-/// - Result: `*name_length`, in bytes; 0 if the samples stand behind the header. The name, in UTF-8, not
+/// - Buffers: `bytes`, `length` bytes: the file, or all of its header; may be NULL if `length` is 0. `name`,
+///   room for `capacity` bytes, or NULL to get only the length; `name_length`, one number.
+/// - Result: `*name_length`, in bytes; 0 if the samples follow the header. The name, in UTF-8, not
 ///   NUL-terminated. It may be any text: check it before you open such a file.
 /// - Errors: LEAFLESS_E_VOLUME_FILE; LEAFLESS_E_BUFFER if the capacity is too small; LEAFLESS_E_NO_MEMORY.
 /// - Untrusted input: any bytes.
@@ -112,14 +115,14 @@ pub unsafe extern "C" fn leafless_volume_data_file(
 
 /// Writes a volume file.
 ///
-/// The byte of the lowest weight comes first, and bits become bytes 0 and 1. A NRRD holds the place of the
-/// first sample, corner + spacing / 2, rounded so that the same corner is read again; where no double does that,
-/// near a power of two, the volume lies half a last place beside. It holds no unit. A raw file holds no place at all.
-/// O(n) time and memory.
+/// The byte order is little-endian, and bits become bytes 0 and 1. A NRRD stores the position of the first
+/// sample, corner + spacing / 2, rounded so that reading restores the same corner. Near a power of two no
+/// such double may exist; then the position is off by half a unit in the last place. It stores no unit. A raw
+/// file stores no position. O(n) time and memory.
 ///
 /// - Buffers: `sink`, one struct.
-/// - Errors: LEAFLESS_E_ARGUMENT if `format` is none that can be written, or if the volume has other axes
-///   than x, y and z and shall become a NRRD; LEAFLESS_E_IO; LEAFLESS_E_CALLBACK; LEAFLESS_E_BUFFER;
+/// - Errors: LEAFLESS_E_ARGUMENT if `format` is not a format that can be written, or if a volume with axes
+///   other than x, y and z is written as NRRD; LEAFLESS_E_IO; LEAFLESS_E_CALLBACK; LEAFLESS_E_BUFFER;
 ///   LEAFLESS_E_UTF8; LEAFLESS_E_NO_MEMORY.
 /// - Untrusted input: any volume.
 #[unsafe(no_mangle)]

@@ -1,4 +1,4 @@
-//! Voxel records: the voxels of an octree in arrays of the host, found, put in order, and given triangles.
+//! Voxel records: the voxels of an octree in arrays of the host; searching, ordering, moving, and triangles.
 
 use super::attribute::leafless_attribute;
 use super::boundary::{Buffer, Failure, Sized32, array, buffer, guard, handle, out, shared, sized, slice};
@@ -14,26 +14,27 @@ use leafless::attribute::{Attribute, Detail};
 use leafless::voxel::{Symmetry, Viewpoint, VoxelBoundary, VoxelOptions, VoxelRecords, VoxelRecordsRef};
 use leafless::{Cell, Frame, memory};
 
-/// What a voxel is: a number in the array `kinds`.
+/// The kind of a voxel: a number in the array `kinds`.
 #[derive(Clone, Copy)]
 #[repr(u8)]
 pub enum leafless_voxel_kind {
-    /// It lies outside of the solid.
+    /// The voxel lies outside the solid.
     LEAFLESS_VOXEL_KIND_OUTSIDE = 0,
-    /// It lies inside.
+    /// The voxel lies inside the solid.
     LEAFLESS_VOXEL_KIND_INSIDE = 1,
-    /// The boundary of the solid goes through it, or along it.
+    /// The boundary of the solid passes through the voxel, or along it.
     LEAFLESS_VOXEL_KIND_BOUNDARY = 2,
-    /// It consists of the smaller voxels that follow it.
+    /// The voxel consists of the smaller voxels that follow it.
     LEAFLESS_VOXEL_KIND_REFINED = 3,
 }
 
-/// Which voxels are boundary voxels.
+/// The rule for boundary voxels.
 #[repr(u32)]
 pub enum leafless_voxel_boundary {
-    /// Cells of the boundary depth that are cut further there, and cells that are not decided.
+    /// Cells of the boundary depth that are split further, and cells that are not decided.
     LEAFLESS_VOXEL_BOUNDARY_CUT = 0,
-    /// These, and inside cells of the boundary depth that touch an outside cell with a face.
+    /// The voxels of LEAFLESS_VOXEL_BOUNDARY_CUT, and inside cells of the boundary depth that share a face
+    /// with an outside cell.
     LEAFLESS_VOXEL_BOUNDARY_TOUCHING = 1,
 }
 
@@ -44,40 +45,42 @@ enumeration! {
     }
 }
 
-/// Which voxels are listed beside inside and boundary voxels: 0, one of these values, or both joined by `|`.
+/// The voxels that are listed in addition to inside and boundary voxels: 0, one of these values, or both
+/// joined by `|`.
 #[repr(u32)]
 pub enum leafless_voxel_lists {
     /// Outside voxels.
     LEAFLESS_VOXEL_LISTS_OUTSIDE = 1,
-    /// Voxels that are refined.
+    /// Refined voxels.
     LEAFLESS_VOXEL_LISTS_REFINED = 2,
 }
 
-/// Which voxels of an octree are listed, and how large they are. All fields but the first may be zero, which is
-/// their default.
+/// Options of listing voxels: which voxels of an octree are listed, and their sizes. Zero is the default of
+/// every field but the first.
 #[derive(Clone, Copy)]
 #[repr(C)]
 pub struct leafless_voxel_options {
     /// sizeof(leafless_voxel_options).
     pub struct_size: u32,
-    /// The level of boundary voxels; 0, and what is beyond, is the octree's depth.
+    /// The level of boundary voxels; 0, or more than the octree's depth, means the octree's depth.
     pub boundary_depth: u32,
     /// A leafless_voxel_boundary.
     pub boundary: Number<leafless_voxel_boundary>,
     /// 0, or leafless_voxel_lists.
     pub lists: u32,
-    /// The longest edge of inside voxels, in model units; 0: as long as the octree's cells.
+    /// The longest edge of inside voxels, in model units; 0 means the size of the octree's cells.
     pub coarse_model: f64,
-    /// Inside voxels of this edge are not split, with a criterion; 0: the coarse edge.
+    /// With a criterion, inside voxels of this edge (model units) are not split; 0 means the coarse edge.
     pub fine_model: f64,
-    /// How much the attribute may change in an inside voxel that is longer than the fine edge, with a criterion.
+    /// With a criterion, the tolerance for changes of the attribute in an inside voxel that is longer than
+    /// the fine edge.
     pub tolerance: f64,
     /// The attribute that inside voxels follow, and whose values are listed; optional.
     pub attribute: *const leafless_attribute,
-    /// A leafless_criterion: what makes an inside voxel fine enough that is longer than the fine edge and no longer
-    /// than the coarse one. Without one, all inside voxels have the coarse edge or less.
+    /// A leafless_criterion: decides whether an inside voxel between the fine and the coarse edge is fine
+    /// enough. Without a criterion, all inside voxels have the coarse edge or less.
     pub criterion: Number<leafless_criterion>,
-    /// Zero.
+    /// Reserved; must be 0.
     pub reserved: u32,
 }
 
@@ -116,21 +119,22 @@ impl leafless_voxel_options {
     }
 }
 
-/// Lists the voxels of an octree: inside and boundary voxels, and others that `voxel_options` asks for, sorted by
-/// linear octree code, of two with one code the larger one first. The code of a voxel is the Morton code of its
-/// minimum corner on the lattice `*lattice`: an octal digit for each level of it from the root on, of which as many
-/// count as the voxel's level says. Call it once for the count, and then with buffers.
+/// Lists the voxels of an octree: inside and boundary voxels, and others that `voxel_options` requests. They
+/// are sorted by linear octree code; of two voxels with the same code the larger comes first. The code of a
+/// voxel is the Morton code of its minimum corner on the lattice `*lattice`: one octal digit for each level
+/// of the lattice, from the root on; the first digits, as many as the voxel's level, are significant. Call it
+/// once for the count, and then with buffers.
 ///
-/// - Buffers: `voxel_options`, one struct or NULL; `options`, one struct or NULL, of which `max_bytes` counts;
-///   `lattice`, one struct; `codes`, `levels`, `kinds`, `corners_model` (3 numbers a record) and `values` (as many
-///   numbers a record as values have components), room for `capacity` records each, each of them NULL if it is not
-///   wanted; `count`, one number.
-/// - Result: `*lattice`, the octree's universe with the depth of the finest voxel that there may be; the arrays;
-///   `*count`, how many records there are. `kinds` are leafless_voxel_kind. Corners are rounded down where they are
-///   no doubles. Values are those at the centres of voxels, NaN where there is none.
-/// - Errors: LEAFLESS_E_ARGUMENT if an option is out of its range, or the universe would take more than 20 levels to
-///   the fine edge; LEAFLESS_E_BUFFER if `capacity` is too small: nothing is written then; LEAFLESS_E_CALLBACK;
-///   LEAFLESS_E_DAMAGED; LEAFLESS_E_LIMIT; LEAFLESS_E_NO_MEMORY; LEAFLESS_E_CANCELLED.
+/// - Buffers: `voxel_options`, one struct or NULL; `options`, one struct or NULL (only its limit `max_bytes`
+///   applies); `lattice`, one struct; `codes`, `levels`, `kinds`, `corners_model` (3 numbers a record) and
+///   `values` (as many numbers a record as values have components), room for `capacity` records each; each
+///   may be NULL if it is not wanted; `count`, one number.
+/// - Result: `*lattice`, the octree's universe with the depth of the finest possible voxel; the arrays;
+///   `*count`, the number of records. `kinds` are leafless_voxel_kind. Corners that are not doubles are
+///   rounded down. Values are those at the centres of voxels, NaN where there is no value.
+/// - Errors: LEAFLESS_E_ARGUMENT if an option is out of its range, or the universe would take more than 20
+///   levels to the fine edge; LEAFLESS_E_BUFFER if `capacity` is too small: nothing is written then;
+///   LEAFLESS_E_CALLBACK; LEAFLESS_E_DAMAGED; LEAFLESS_E_LIMIT; LEAFLESS_E_NO_MEMORY; LEAFLESS_E_CANCELLED.
 /// - Untrusted input: any octree: damage reads as boundary voxels.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn leafless_octree_voxels(
@@ -193,7 +197,7 @@ pub unsafe extern "C" fn leafless_octree_voxels(
     })
 }
 
-/// A buffer that may be absent, whatever the capacity that it shares with others.
+/// Returns a buffer that may be absent, for any capacity that it shares with other buffers.
 ///
 /// # Safety
 /// As [`buffer`].
@@ -202,7 +206,7 @@ unsafe fn present<T>(start: *mut T, capacity: u64, name: &'static str) -> Result
     unsafe { buffer(start, if start.is_null() { 0 } else { capacity }, name) }
 }
 
-/// The host's records, checked.
+/// Returns the host's records, checked.
 ///
 /// # Safety
 /// As [`slice`].
@@ -220,13 +224,13 @@ pub(super) unsafe fn records<'a>(
     Ok(VoxelRecordsRef::new(lattice, codes, levels, kinds, 0, &[])?)
 }
 
-/// The record, not of a refined voxel, that contains a cell. O(log count).
+/// Finds the record of an unrefined voxel that contains a cell. O(log count).
 ///
-/// - Buffers: `lattice`, one struct; `codes`, `levels` and `kinds`, `count` elements each, as leafless_octree_voxels
-///   writes them; `cell`, 3 numbers: the cell's place among those of its level; `index`, one number.
+/// - Buffers: `lattice`, one struct; `codes`, `levels` and `kinds`, `count` elements each, as written by
+///   leafless_octree_voxels; `cell`, 3 numbers: the cell's index on each axis; `index`, one number.
 /// - Result: `*index`, the index of the record, or UINT64_MAX if there is none.
 /// - Errors: LEAFLESS_E_ARGUMENT as leafless_frame_check.
-/// - Untrusted input: any numbers; the answer means something if the records are sorted.
+/// - Untrusted input: any numbers; the answer is meaningful only if the records are sorted.
 ///
 /// cbindgen:ptrs-as-arrays=[[cell; 3]]
 #[unsafe(no_mangle)]
@@ -254,16 +258,17 @@ pub unsafe extern "C" fn leafless_voxels_find(
     })
 }
 
-/// The indices of the records from front to back: a voxel comes before every other one of which it hides a part.
-/// Refined voxels are left out. No two records are compared; exact.
+/// Returns the indices of the records from front to back: a voxel comes before every other voxel that it
+/// hides in part. Refined voxels are left out. The order is exact, and computed without comparing records.
 ///
-/// - Buffers: `lattice`, `codes`, `levels` and `kinds` as leafless_voxels_find; `from`, 3 numbers: the direction of
-///   sight, or if `is_eye` the point (model units) from which voxels are seen; `options`, one struct or NULL; `order`,
-///   room for `capacity` numbers, or NULL to ask for their count; `order_count`, one number.
+/// - Buffers: `lattice`, `codes`, `levels` and `kinds` as leafless_voxels_find; `from`, 3 numbers: the
+///   direction of sight, or, if `is_eye`, the eye point (model units); `options`, one struct or NULL;
+///   `order`, room for `capacity` numbers, or NULL to get only their count; `order_count`, one number.
 /// - Result: `order`; `*order_count`, the number of records that are not refined.
-/// - Errors: LEAFLESS_E_ARGUMENT if the arrays are no records, the direction is zero, or a number is not finite (of an
-///   eye also one beyond ±2^256 or, but zero, below 2^-256); LEAFLESS_E_BUFFER if `capacity` is too small: nothing is
-///   written then; LEAFLESS_E_NO_MEMORY; LEAFLESS_E_CANCELLED.
+/// - Errors: LEAFLESS_E_ARGUMENT if the arrays are not valid records, the direction is zero, or a number is
+///   not finite (for an eye also if a nonzero coordinate has a magnitude beyond 2^256 or below 2^-256);
+///   LEAFLESS_E_BUFFER if `capacity` is too small: nothing is written then; LEAFLESS_E_NO_MEMORY;
+///   LEAFLESS_E_CANCELLED.
 /// - Untrusted input: any numbers.
 ///
 /// cbindgen:ptrs-as-arrays=[[from; 3]]
@@ -292,22 +297,24 @@ pub unsafe extern "C" fn leafless_voxels_order(
     })
 }
 
-/// The records under one of the 48 symmetries of the universe about its centre, and then an offset of whole finest cells
-/// of the lattice. Exact: the octree of the result is the octree of the records under the same map. Call it once for the
-/// count, and then with buffers.
+/// Returns the records under one of the 48 symmetries of the universe about its centre, followed by an offset
+/// of whole finest cells of the lattice. The map is exact: the octree of the result is the octree of the
+/// records under the same map. Call it once for the count, and then with buffers.
 ///
-/// A record whose image is no cell becomes the largest cells that make its image up. What is moved out of the universe is
-/// cut off; no record speaks of what comes in. A refined voxel is left out if its image is no cell of the universe.
+/// A record whose image is not a cell becomes the largest cells that compose its image. Parts that leave the
+/// universe are cut off; the space that enters has no records. A refined voxel is left out if its image is
+/// not a cell of the universe.
 ///
-/// - Buffers: `lattice`, `codes`, `levels` and `kinds` as leafless_voxels_find; `axes` and `offset_cells`, 3 numbers
-///   each; `options`, one struct or NULL, of which `max_bytes` counts; `moved_codes`, `moved_levels`, `moved_kinds` and
-///   `sources`, room for `capacity` elements each, each of them NULL if it is not wanted; `moved_count`, one number.
-///   `axes[i]` says which old axis becomes the new axis i: 1 for x, 2 for y, 3 for z, negative if it is turned round;
-///   1, 2, 3 moves nothing.
-/// - Result: the arrays, sorted as those of leafless_octree_voxels; `sources`, the index of the record that each comes
-///   from; `*moved_count`, how many there are.
-/// - Errors: LEAFLESS_E_ARGUMENT if the arrays are no records, or `axes` are not three different ones; LEAFLESS_E_BUFFER
-///   if `capacity` is too small: nothing is written then; LEAFLESS_E_LIMIT; LEAFLESS_E_NO_MEMORY; LEAFLESS_E_CANCELLED.
+/// - Buffers: `lattice`, `codes`, `levels` and `kinds` as leafless_voxels_find; `axes` and `offset_cells`, 3
+///   numbers each; `options`, one struct or NULL (only its limit `max_bytes` applies); `moved_codes`,
+///   `moved_levels`, `moved_kinds` and `sources`, room for `capacity` elements each; each may be NULL if it
+///   is not wanted; `moved_count`, one number. `axes[i]` is the old axis that becomes the new axis i: 1 for
+///   x, 2 for y, 3 for z, negative if its direction is reversed; 1, 2, 3 is the identity.
+/// - Result: the arrays, sorted as by leafless_octree_voxels; `sources`, the index of the record that each
+///   comes from; `*moved_count`, their number.
+/// - Errors: LEAFLESS_E_ARGUMENT if the arrays are not valid records, or `axes` are not three different axes;
+///   LEAFLESS_E_BUFFER if `capacity` is too small: nothing is written then; LEAFLESS_E_LIMIT;
+///   LEAFLESS_E_NO_MEMORY; LEAFLESS_E_CANCELLED.
 /// - Untrusted input: any numbers.
 ///
 /// cbindgen:ptrs-as-arrays=[[axes; 3], [offset_cells; 3]]
@@ -347,7 +354,8 @@ pub unsafe extern "C" fn leafless_voxels_moved(
             present(sources, capacity, "sources")?,
         );
         let moved_count = out(moved_count, "moved_count")?;
-        // Values tell where a record comes from. (Doubles hold more indices than there can be records.)
+        // Values carry the index of the source record. (Doubles can hold more indices than there can be
+        // records.)
         let indices = memory::collected((0..given.len()).map(|index| index as f64))?;
         let given =
             VoxelRecordsRef::new(&lattice, given.codes(), given.levels(), given.kinds(), 1, &indices)?;
@@ -373,16 +381,17 @@ pub unsafe extern "C" fn leafless_voxels_moved(
     })
 }
 
-/// For each boundary voxel the triangles of a mesh that meet it, in compressed rows: those of record i are
-/// `triangles[offsets[i]]` to before `triangles[offsets[i + 1]]`, and ascend. A triangle that only touches a voxel
-/// meets it. Exact.
+/// Finds the triangles of a mesh that meet each boundary voxel, in compressed rows: the triangles of record i
+/// are `triangles[offsets[i]]` up to, but not including, `triangles[offsets[i + 1]]`, ascending. A triangle
+/// that only touches a voxel meets it. The test is exact.
 ///
-/// - Buffers: `lattice`, `codes`, `levels` and `kinds` as leafless_voxels_find; `options`, one struct or NULL, of which
-///   `max_bytes` counts; `offsets`, room for `offset_capacity` numbers, and `triangles`, room for `triangle_capacity`,
-///   each NULL to ask for its count only; `offset_count` and `triangle_count`, one number each.
-/// - Result: `offsets`, one more than records; `triangles`, indices into the mesh; their counts.
-/// - Errors: LEAFLESS_E_ARGUMENT if the arrays are no records; LEAFLESS_E_BUFFER if a capacity is too small: nothing is
-///   written then; LEAFLESS_E_LIMIT; LEAFLESS_E_NO_MEMORY; LEAFLESS_E_CANCELLED.
+/// - Buffers: `lattice`, `codes`, `levels` and `kinds` as leafless_voxels_find; `options`, one struct or NULL
+///   (only its limit `max_bytes` applies); `offsets`, room for `offset_capacity` numbers, and `triangles`,
+///   room for `triangle_capacity`, each NULL to get only its count; `offset_count` and `triangle_count`, one
+///   number each.
+/// - Result: `offsets`, one more than there are records; `triangles`, indices into the mesh; their counts.
+/// - Errors: LEAFLESS_E_ARGUMENT if the arrays are not valid records; LEAFLESS_E_BUFFER if a capacity is too
+///   small: nothing is written then; LEAFLESS_E_LIMIT; LEAFLESS_E_NO_MEMORY; LEAFLESS_E_CANCELLED.
 /// - Untrusted input: any numbers, any mesh.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn leafless_voxels_triangles(
@@ -419,17 +428,17 @@ pub unsafe extern "C" fn leafless_voxels_triangles(
     })
 }
 
-/// The octree that records speak of, to the depth of their lattice: inside voxels are FULL, outside voxels and what no
-/// record speaks of EMPTY. Nothing is known of the space outside, and nothing is proven.
+/// Makes the octree of records, to the depth of their lattice: inside voxels are FULL; outside voxels and
+/// space without records are EMPTY. The space outside the universe is undecided, and nothing is proven.
 ///
-/// - Buffers: `lattice`, `codes`, `levels` and `kinds` as leafless_voxels_find; `options`, one struct or NULL; `octree`,
-///   one pointer. `boundary` is the tag of boundary voxels: LEAFLESS_TAG_EMPTY, LEAFLESS_TAG_PARTIAL or
-///   LEAFLESS_TAG_FULL.
+/// - Buffers: `lattice`, `codes`, `levels` and `kinds` as leafless_voxels_find; `options`, one struct or
+///   NULL; `octree`, one pointer. `boundary` is the tag of boundary voxels: LEAFLESS_TAG_EMPTY,
+///   LEAFLESS_TAG_PARTIAL or LEAFLESS_TAG_FULL.
 /// - Result: `*octree`.
-/// - Errors: LEAFLESS_E_ARGUMENT if the arrays are no records, or `boundary` is another tag; LEAFLESS_E_LIMIT;
-///   LEAFLESS_E_NO_MEMORY; LEAFLESS_E_CANCELLED.
-/// - Ownership: give `*octree` back with leafless_octree_free.
-/// - Threads: any; uses as many as `options` says.
+/// - Errors: LEAFLESS_E_ARGUMENT if the arrays are not valid records, or `boundary` is another tag;
+///   LEAFLESS_E_LIMIT; LEAFLESS_E_NO_MEMORY; LEAFLESS_E_CANCELLED.
+/// - Ownership: release `*octree` with leafless_octree_free.
+/// - Threads: any; runs on as many threads as `options` says.
 /// - Untrusted input: any numbers.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn leafless_octree_from_voxels(

@@ -1,9 +1,9 @@
-/* A part of two materials, one side of which is hot: materials and temperatures are channels of its octree. They are
- * carried through a Boolean, saved with the solid, and read from the file where they lie.
+/* A part of two materials with one hot side: materials and temperatures are channels of its octree. They are carried
+ * through a Boolean, saved with the solid, and read in place from the mapped file.
  *
  *     attributes [FILE]
  *
- * include/README.md tells how to build it.
+ * include/README.md describes how to build it.
  */
 #include <leafless.h>
 
@@ -13,10 +13,10 @@
 
 enum { DEPTH = 8, STEEL = 1, COPPER = 2 };
 
-/* The cube that all parts lie in, in millimetres. */
+/* The cube that contains all parts, in millimetres. */
 static const leafless_frame FRAME = {{-64, -64, -64}, 128, DEPTH};
 
-/* What the temperature depends on. */
+/* The parameters of the temperature. */
 typedef struct {
     double cold, hot, from, to;
 } gradient;
@@ -37,7 +37,7 @@ static int32_t temperatures(void *ctx, const double *points, uint64_t count, dou
     return 0;
 }
 
-/* It rises along x. So its ends are at the faces of a box; what is rounded is less than a millionth. */
+/* The temperature rises along x, so its extremes are at the faces of a box; rounding is less than a millionth. */
 static int32_t temperature_range(void *ctx, const double *min, const double *max, leafless_value_range *range) {
     range->kind = LEAFLESS_RANGE_KIND_WITHIN;
     range->values[0].lower = temperature((const gradient *)ctx, min[0]) - 1e-6;
@@ -45,7 +45,7 @@ static int32_t temperature_range(void *ctx, const double *min, const double *max
     return 0;
 }
 
-/* Fills a channel inside of an octree, and attaches it: `*octree` becomes the one that has it. */
+/* Fills a channel inside an octree and attaches it: `*octree` becomes the octree with the channel. */
 static leafless_status attach(leafless_octree **octree, const leafless_attribute *attribute,
                               leafless_channel_fill_options *fill, const char *name) {
     leafless_channel *channel = NULL;
@@ -64,12 +64,12 @@ static leafless_status attach(leafless_octree **octree, const leafless_attribute
     return s;
 }
 
-/* The octree of a solid, all of one material, with the temperature of each place. */
+/* Makes the octree of a solid of one material, with the temperature at each point. */
 static leafless_status part(const leafless_solid *solid, int number, const leafless_attribute *heat,
                             leafless_octree **octree) {
     const double value = number;
     leafless_channel_fill_options material = {.struct_size = sizeof material, .scalar = LEAFLESS_SCALAR_TYPE_U8};
-    /* A cell of the channel is fine enough if the temperature varies by no more than three degrees in it. */
+    /* A cell of the channel is fine enough if the temperature in it varies by at most three degrees. */
     leafless_channel_fill_options degrees = {.struct_size = sizeof degrees,
                                              .scalar = LEAFLESS_SCALAR_TYPE_F32,
                                              .criterion = LEAFLESS_CRITERION_RANGE,
@@ -83,7 +83,7 @@ static leafless_status part(const leafless_solid *solid, int number, const leafl
     return s;
 }
 
-/* What all channels of an octree are, and what they take. */
+/* Prints the channels of an octree and their sizes. */
 static leafless_status print_channels(const leafless_octree *octree) {
     static const char *const types[] = {"f32", "u8", "u16", "u32"};
     leafless_octree_info of_octree = LEAFLESS_INIT(leafless_octree_info);
@@ -106,7 +106,7 @@ static leafless_status print_channels(const leafless_octree *octree) {
     return s;
 }
 
-/* The values of both channels along the axis of the rod. */
+/* Prints the values of both channels along the axis of the rod. */
 static leafless_status print_values(const leafless_octree *octree) {
     enum { POINTS = 7 };
     double points[POINTS][3] = {{0}}, materials[POINTS], degrees[POINTS];
@@ -154,7 +154,7 @@ int main(int argc, char **argv) {
     if (!s) s = leafless_octree_combine(LEAFLESS_OPERATION_UNION, parts, 2, NULL, &both);
     if (!s) s = leafless_octree_carry_channels(both, parts, 2, LEAFLESS_CARRY_MEAN, rules, 1, NULL, &whole);
     if (!s) s = leafless_octree_write(whole, &file);
-    /* Mapped, channels are read from the file where they lie. */
+    /* Channels of a mapped file are read in place. */
     if (!s) s = leafless_octree_read(&in_place, &stored);
     if (!s) s = print_channels(stored);
     if (!s) s = print_values(stored);

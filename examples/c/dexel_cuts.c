@@ -1,9 +1,9 @@
-/* A pocket is milled into a block: a ball end mill runs along a spiral, and the block is cut in place, step by step, as
- * intervals along rays of three directions.
+/* A ball end mill runs along a spiral and mills a pocket into a block. The block is stored as intervals along rays of
+ * three directions, and is cut in place, step by step.
  *
  *     dexel_cuts [FILE.stl]
  *
- * include/README.md tells how to build it.
+ * include/README.md describes how to build it.
  */
 #include <leafless.h>
 
@@ -14,7 +14,7 @@ enum { DEPTH = 8, STEPS = 300 };
 
 static const double RADIUS = 4, TOP = 20;
 
-/* Where the centre of the mill is at a step: from the middle outward, and ever deeper. */
+/* Returns the centre of the mill at a step: from the middle outward, deeper at each step. */
 static void place(int step, double *centre) {
     const double t = (double)step / STEPS, angle = 8 * 2 * 3.14159265358979 * t;
     centre[0] = 22 * t * cos(angle);
@@ -22,7 +22,7 @@ static void place(int step, double *centre) {
     centre[2] = TOP - 6 * t;
 }
 
-/* Takes away what the mill touches at one place, and adds its volume. Only the rays through it are looked at. */
+/* Subtracts the mill at one position and adds the removed volume to the sum. Only rays through the mill are visited. */
 static leafless_status cut(leafless_tridexel_editor *part, int step, double *removed) {
     leafless_dexel_change change = LEAFLESS_INIT(leafless_dexel_change);
     double centre[3];
@@ -36,7 +36,7 @@ static leafless_status cut(leafless_tridexel_editor *part, int step, double *rem
     return s;
 }
 
-/* What the model holds along each axis. The volumes agree as well as rays can tell. */
+/* Prints statistics along each axis. The volumes agree within the resolution of the rays. */
 static leafless_status print_model(const char *name, const leafless_tridexel *model) {
     leafless_tridexel_info info = LEAFLESS_INIT(leafless_tridexel_info);
     leafless_dexel_statistics along = LEAFLESS_INIT(leafless_dexel_statistics);
@@ -55,7 +55,7 @@ static leafless_status print_model(const char *name, const leafless_tridexel *mo
     return s;
 }
 
-/* The height of the part above some points of the x axis: the end of the last interval along z. */
+/* Prints the height of the part above some points of the x axis: the end of the last interval along z. */
 static leafless_status print_heights(const leafless_tridexel *model) {
     leafless_tridexel_info info = LEAFLESS_INIT(leafless_tridexel_info);
     double x;

@@ -1,8 +1,8 @@
-/* A plate and twenty bores, one by one and at once: octrees that keep their surfaces, saved, mapped and measured.
+/* A plate with twenty bores, cut one by one and at once: octrees that keep their surfaces, saved, mapped and measured.
  *
  *     drilled_plate
  *
- * include/README.md tells how to build it.
+ * include/README.md describes how to build it.
  */
 #include <leafless.h>
 
@@ -10,7 +10,7 @@
 
 enum { BORES = 20 };
 
-/* The octree of a solid, whose undecided cells keep the surfaces that cross them. The solid is given back. */
+/* Makes the extended octree of a solid: undecided cells keep the surfaces that cross them. The solid is released. */
 static leafless_status extended(leafless_solid *solid, const leafless_frame *frame, leafless_octree **octree) {
     leafless_status s = leafless_octree_build_extended(solid, frame, NULL, NULL, octree);
     leafless_solid_free(solid);
@@ -44,7 +44,7 @@ int main(void) {
     bool same = false;
     int k;
 
-    /* Exact surfaces need no finest cell: the frame has the greatest depth, and cells end where three surfaces are left. */
+    /* The greatest depth costs little, because cells with at most three exact surfaces are not split. */
     leafless_status s = leafless_frame_around(low, high, 20, &frame);
     if (!s) s = leafless_solid_new_box(low, high, &block);
     if (!s) s = extended(block, &frame, &trees[0]);
@@ -66,11 +66,11 @@ int main(void) {
     }
     if (!s) s = leafless_octree_equal(part, at_once, &same);
 
-    /* Surfaces that are one are one: nothing is left of the part without itself. */
+    /* Equal surfaces are recognised: the part minus itself is empty. */
     if (!s) s = less(part, at_once, &nothing);
     if (!s) s = leafless_octree_describe(nothing, &empty);
 
-    /* The file is the arrays. Mapped, it is measured to a millionth. */
+    /* The file consists of the octree's arrays. The mapped octree is measured to a millionth. */
     if (!s) s = leafless_octree_write(part, &file);
     if (!s) s = leafless_octree_read(&in_place, &mapped);
     if (!s) s = leafless_octree_describe(mapped, &info);

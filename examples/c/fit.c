@@ -1,9 +1,9 @@
-/* Does the shaft go into the housing? Solids of half-spaces, asked without any octree: their volume and centre of mass,
- * whether they overlap at each of a row of positions, how far apart they are, and by how much they collide.
+/* Checks whether a shaft fits into a housing. The solids are expressions of half-spaces, and no octree is built. The
+ * program prints volume and centre of mass, and at a series of positions overlap, distance and collision volume.
  *
  *     fit
  *
- * include/README.md tells how to build it.
+ * include/README.md describes how to build it.
  */
 #include <leafless.h>
 
@@ -12,7 +12,7 @@
 
 enum { POSITIONS = 9, DEPTH = 12 };
 
-/* A block of 120 with a bore of radius 22, and below it a narrower one for the end of the shaft. */
+/* A block of 120 with a bore of radius 22, and below it a narrower bore for the end of the shaft. */
 static leafless_status housing(leafless_solid **result) {
     const double low[3] = {-60, -60, -60}, high[3] = {60, 60, 60};
     const double top[3] = {0, 0, 61}, step[3] = {0, 0, -20}, bottom[3] = {0, 0, -61};
@@ -53,7 +53,7 @@ int main(void) {
     leafless_options options = LEAFLESS_INIT(leafless_options);
     leafless_status s = LEAFLESS_OK;
     int i;
-    options.max_splits = 200000; /* for each question */
+    options.max_splits = 200000; /* for each query */
     if (!s) s = housing(&fixed);
     if (!s) s = leafless_solid_measure(fixed, &frame, 0.02, 0.0, NULL, &measures);
     if (!s) {
@@ -62,7 +62,7 @@ int main(void) {
                measures.centroid_model[2].upper);
     }
     for (i = 0; !s && i < POSITIONS; i++) {
-        /* Lowered until it rests on the step at z = -20, and beyond, a little askew in the end. */
+        /* The shaft is lowered to the step at z = -20, and beyond; in the end it is slightly tilted. */
         const double height = 60 - 10 * i, slope = i == POSITIONS - 2 ? 0.05 : 0;
         leafless_interference found;
         leafless_clearance near = LEAFLESS_INIT(leafless_clearance);

@@ -1,9 +1,9 @@
-/* A volume, as a tomograph makes it, becomes a solid, is measured, and its surface written as a PLY file.
+/* Makes a solid from a volume of a tomograph, measures it, and writes its surface as a PLY file.
  *
  *     isosurface [VOLUME [THRESHOLD]]
  *
  * reads a NRRD or MetaImage file; without one, it makes the scan of a block with two bores.
- * include/README.md tells how to build it.
+ * include/README.md describes how to build it.
  */
 #include <leafless.h>
 
@@ -13,7 +13,7 @@
 
 enum { NX = 96, NY = 64, NZ = 48 };
 
-/* What is dense is bright; each voxel is half a millimetre wide. */
+/* Dense material is bright; each voxel is half a millimetre wide. */
 static uint8_t samples[NX * NY * NZ];
 
 static double clamped(double x) {
@@ -25,13 +25,13 @@ static leafless_status scan(leafless_volume **volume) {
                                            .sample_type = LEAFLESS_SAMPLE_TYPE_U8,
                                            .extents = {NX, NY, NZ},
                                            .spacing_model = {0.5, 0.5, 0.5}};
-    /* The library uses the samples where they lie; they stay until the program ends. */
+    /* The library uses the samples in place; they stay until the program ends. */
     const leafless_source array = leafless_from_bytes(samples, sizeof samples, LEAFLESS_ACCESS_MAP);
     int x, y, z;
     for (z = 0; z < NZ; z++) {
         for (y = 0; y < NY; y++) {
             for (x = 0; x < NX; x++) {
-                /* How deep the voxel lies in the block, and how far it is from the bores' walls, in voxels. */
+                /* The depth of the voxel in the block, and its distance from the walls of the bores, in voxels. */
                 const double block = fmin(fmin(fmin(x - 6.0, 90.0 - x), fmin(y - 6.0, 58.0 - y)), fmin(z - 6.0, 42.0 - z));
                 const double first = sqrt((x - 28.0) * (x - 28.0) + (y - 32.0) * (y - 32.0)) - 11;
                 const double second = sqrt((x - 66.0) * (x - 66.0) + (z - 24.0) * (z - 24.0)) - 8;
@@ -56,7 +56,7 @@ static leafless_status print_volume(const leafless_volume *volume) {
     return s;
 }
 
-/* The frame of the voxels; if they are no cubes along the axes, one around them. */
+/* Makes the frame of the voxels, or a frame around them if they are not cubes along the axes. */
 static leafless_status frame_of(const leafless_volume *volume, leafless_frame *frame) {
     double min[3], max[3];
     leafless_status s = leafless_volume_frame(volume, frame);
@@ -98,7 +98,7 @@ int main(int argc, char **argv) {
     if (!s) s = frame_of(volume, &frame);
     /* Without a band the threshold is the middle of the samples' type. */
     if (!s) s = leafless_solid_from_volume(volume, argc > 2 ? &band : NULL, NULL, &solid);
-    /* From here on it is a solid as any other: it could be joined with others, or moved. */
+    /* The result is a solid like any other: it could be combined with others, or moved. */
     if (!s) s = leafless_octree_build(solid, &frame, LEAFLESS_RULE_SAMPLED, NULL, &octree);
     if (!s) s = leafless_octree_statistics(octree, &statistics);
     if (!s) printf("octree    %lu nodes, volume %.6g\n", (unsigned long)statistics.nodes, statistics.volume_model.lower);

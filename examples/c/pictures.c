@@ -1,9 +1,9 @@
-/* A bored block is shown three ways: its surface, cut open, with the axis of the bore as a line; a section with the cells of
- * its octree; its inside by temperature.
+/* Shows a bored block in three ways: its surface, cut open, with the axis of the bore as a line; a section with the
+ * cells of its octree; its inside coloured by temperature.
  *
  *     pictures
  *
- * writes surface.png, section.png and volume.png. include/README.md tells how to build it.
+ * writes surface.png, section.png and volume.png. include/README.md describes how to build it.
  */
 #include <leafless.h>
 
@@ -31,7 +31,7 @@ static leafless_status block(leafless_solid **solid) {
     return s;
 }
 
-/* Hot at one end. */
+/* The temperature: hot at one end. */
 static int32_t temperature(void *ctx, const double *point, double *value) {
     (void)ctx;
     value[0] = 50 + 40 * point[0];
@@ -66,7 +66,7 @@ static leafless_status save(const char *path) {
     return s;
 }
 
-/* The surface without what lies above z = 0.2, and the axis of the bore. */
+/* The surface without the part above z = 0.2, and the axis of the bore. */
 static leafless_status surface(const leafless_solid *solid, const leafless_frame *frame) {
     const double cut[4] = {0, 0, -1, 0.2}, axis[6] = {0.3, -0.9, 0, 0.3, 0.9, 0};
     const uint8_t red[4] = {200, 30, 30, 255};
@@ -101,7 +101,7 @@ static leafless_status section(const leafless_octree *octree) {
     return s;
 }
 
-/* Voxels that follow the temperature, of which 2 units let a tenth of the light through. */
+/* Voxels that follow the temperature; a path of 2 units transmits a tenth of the light. */
 static leafless_status volume(const leafless_octree *octree, const leafless_solid *solid) {
     const leafless_attribute_callbacks callbacks = {.struct_size = sizeof callbacks, .components = 1, .value = temperature};
     leafless_voxel_options options = {.struct_size = sizeof options};

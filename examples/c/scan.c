@@ -1,9 +1,9 @@
-/* A mesh as a scanner leaves it: what is wrong with it, where, and what solid it is all the same.
+/* A mesh from a scanner: its defects with their positions, and the solid that it encloses in spite of them.
  *
  *     scan [FILE]
  *
  * reads an STL, OBJ, PLY, OFF or 3MF file; without one, it makes a dome of coloured points without a bottom.
- * include/README.md tells how to build it.
+ * include/README.md describes how to build it.
  */
 #include <leafless.h>
 
@@ -12,13 +12,13 @@
 
 enum { AROUND = 48, UP = 12, DEPTH = 7, WORST = 10 };
 
-/* What scanners write: a place and a colour. */
+/* The output of scanners: a position and a colour. */
 typedef struct {
     float place[3];
     uint8_t colour[4];
 } point;
 
-/* Two triangles of a quadrilateral, and a label that the library does not look at. */
+/* A triangle, and a label that the library ignores. */
 typedef struct {
     uint16_t corners[3];
     uint16_t label;
@@ -33,7 +33,7 @@ static leafless_status dome(leafless_mesh **mesh) {
     for (ring = 0; ring <= UP; ring++) {
         for (i = 0; i < AROUND; i++) {
             const double up = 1.5707963 * ring / UP, around = 6.2831853 * i / AROUND;
-            /* At the top all points are one, and every second triangle is none. */
+            /* At the top all points coincide, and every second triangle is degenerate. */
             const double radius = ring < UP ? 50 * cos(up) : 0;
             point *p = &points[ring * AROUND + i];
             p->place[0] = (float)(radius * cos(around));
@@ -45,7 +45,7 @@ static leafless_status dome(leafless_mesh **mesh) {
                 const uint16_t a = (uint16_t)(low + i), b = (uint16_t)(low + next);
                 const uint16_t c = (uint16_t)(b + AROUND), d = (uint16_t)(a + AROUND);
                 const facet one = {{a, b, c}, 1}, other = {{a, c, d}, 1}, turned = {{a, d, c}, 1};
-                /* Where it was too dark, nothing was seen; and one facet is the wrong way round. */
+                /* A dark spot is missing in the scan, and one facet is inverted. */
                 if (ring != 6 || i != 10) {
                     facets[count++] = one;
                     facets[count++] = ring == 3 && i == 30 ? turned : other;
@@ -53,7 +53,7 @@ static leafless_status dome(leafless_mesh **mesh) {
             }
         }
     }
-    /* The library reads the host's own arrays during this call, and what lies between is left alone. */
+    /* The library reads the host's own arrays during this call, and ignores the bytes between elements. */
     arrays.vertices = points[0].place;
     arrays.vertex_type = LEAFLESS_VERTEX_TYPE_F32;
     arrays.vertex_count = sizeof points / sizeof *points;
@@ -109,8 +109,8 @@ int main(int argc, char **argv) {
     const leafless_source file = leafless_from_file(argc > 1 ? argv[1] : "", LEAFLESS_ACCESS_COPY);
     leafless_status s = argc > 1 ? leafless_mesh_read(&file, NULL, NULL, &mesh) : dome(&mesh);
     if (!s) s = print_report(mesh);
-    /* Around holes it is the winding number that says where inside is: at least one half. Whatever is certified
-       holds for each point of a cell; near the holes more cells stay undecided than the surface cuts. */
+    /* Around holes a point is inside if the winding number is at least one half. A certified tag holds for each
+       point of a cell; near the holes more cells stay undecided than the surface cuts. */
     if (!s) s = leafless_mesh_bounds(mesh, min, max);
     if (!s) s = leafless_frame_around(min, max, DEPTH, &frame);
     if (!s) s = leafless_solid_from_mesh(mesh, LEAFLESS_FILL_NON_ZERO, &solid);

@@ -1,6 +1,6 @@
-/* A mesh from arrays becomes an octree, is drilled, saved, mapped and queried.
+/* Makes an octree from a mesh in arrays, drills it, saves it, maps it and queries it.
  *
- * include/README.md tells how to build it:
+ * include/README.md describes how to build it:
  *
  *     gcc examples/c/voxelise.c -Iinclude target/release/libleafless.a -lgcc_s ... -o voxelise
  */
@@ -42,7 +42,7 @@ int main(void) {
     double min[3], max[3];
     int i, exit_code = 1;
 
-    /* Everything that is to be combined lies on one frame: here 2^8 cells along the edge of the wedge's cube. */
+    /* All octrees to combine must have the same frame: here 2^8 cells along the edge of the wedge's cube. */
     if (leafless_mesh_new(&arrays, &mesh) != LEAFLESS_OK ||
         leafless_mesh_bounds(mesh, min, max) != LEAFLESS_OK ||
         leafless_frame_around(min, max, 8, &frame) != LEAFLESS_OK ||
@@ -63,7 +63,7 @@ int main(void) {
     print_row("hole", hole);
     print_row("drilled", drilled);
 
-    /* The file is the octree's arrays: mapped, it is ready at once, however large it is. */
+    /* The file consists of the octree's arrays: a mapped file is ready at once, at any size. */
     if (leafless_octree_with_metadata(drilled, "units", 5, "mm", 2, &named) != LEAFLESS_OK ||
         leafless_octree_write(named, &file) != LEAFLESS_OK ||
         leafless_octree_read(&in_place, &mapped) != LEAFLESS_OK ||
@@ -81,7 +81,7 @@ failed:
         leafless_last_error(message, sizeof message);
         fprintf(stderr, "%s: %s\n", leafless_status_name(leafless_last_status()), message);
     }
-    /* In any order, and whichever were never made. */
+    /* In any order; objects that were never made are NULL. */
     leafless_octree_free(mapped);
     leafless_octree_free(named);
     leafless_octree_free(drilled);

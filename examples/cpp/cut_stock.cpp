@@ -1,6 +1,7 @@
-// A ball-nosed tool cuts a groove into a block of stock: what is left, step by step, as a certified volume.
+// A ball-nosed tool cuts a groove into a block of stock. The program prints the certified volume of the rest, step by
+// step.
 //
-// include/README.md tells how to build it:
+// include/README.md describes how to build it:
 //
 //     g++ -std=c++17 examples/cpp/cut_stock.cpp -Iinclude target/release/libleafless.a -lgcc_s ... -o cut_stock
 
@@ -17,7 +18,7 @@ namespace {
 
 constexpr double RADIUS = 0.3;
 
-// The tool's tip at one place. What is close to a call is left undecided, so that rounding cannot make it wrong.
+// The tool's tip at one position. Close decisions are left undecided, so that rounding cannot make them wrong.
 leafless::solid tool_at(const point &centre) {
     const auto classify = [centre](const point &min, const point &max) {
         double near = 0.0, far = 0.0;

@@ -1,6 +1,7 @@
-// A drilled plate as a CAD program takes it over: plane faces as polygons with holes, and the bore as a cylinder with its radius.
+// A drilled plate in a form for CAD programs: plane faces as polygons with holes, and the bore as a cylinder with its
+// radius.
 //
-// include/README.md tells how to build it; it leaves faces.obj where it runs.
+// include/README.md describes how to build it; it writes faces.obj to the current folder.
 
 #include <leafless.hpp>
 
@@ -9,7 +10,7 @@
 
 namespace {
 
-// Part `part` of what `offsets` divides.
+// The elements of part `part` of an array that `offsets` divides.
 leafless::span<const uint32_t> offsets_of(const void *offsets, uint64_t part) {
     return leafless::span<const uint32_t>(static_cast<const uint32_t *>(offsets) + part, 2);
 }

@@ -1,7 +1,8 @@
-// A part is dragged through a box, step by step, as with a mouse. After each step the program asks whether the part may stand
-// there, what is in its way, and how far the next part is. At last the program is told to put the rest where there is room.
+// A part is dragged through a box, step by step, as with a mouse. After each step the program checks whether the
+// placement is valid, which objects conflict with it, and how far the nearest part is. At last it places the remaining
+// parts where there is room.
 //
-// include/README.md tells how to build it.
+// include/README.md describes how to build it.
 
 #include <leafless.hpp>
 
@@ -37,7 +38,7 @@ void print(double x, const leafless_standing &standing, const leafless_neighbour
 }
 
 void drag() {
-    // A ring, a box with a post in it: 2 between parts, 1 to the walls.
+    // A ring, and a box with a post in it; clearances of 2 between parts and 1 to the walls.
     const solid ring = solid::new_torus({0, 0, 0}, {0, 0, 1}, 8, 2);
     leafless::bay bay = leafless::bay::make(solid::new_box({0, 0, 0}, {100, 40, 30}), 2, 1);
     bay.add_obstacle(solid::new_cylinder({80, 20, 0}, {80, 20, 30}, 3));
@@ -58,7 +59,7 @@ void drag() {
         print(x, standing, conflicts[0]);
         if (standing.verdict == LEAFLESS_GAP_VERDICT_YES) last = x;
     }
-    // It goes back to where it was last proven to be allowed to stand. (Where a distance is the clearance to the last digit,
+    // The part returns to its last placement that was proven valid. (If a distance is almost exactly the clearance,
     // nothing is proven.)
     layout.move_to(dragged, at(last));
     std::printf("let go at x = %.1f\n", last);

@@ -1,12 +1,14 @@
-// A CAD model by Open CASCADE: its STEP file becomes an octree by triangles, and another one by distances.
+// A CAD model from Open CASCADE: one octree of its STEP file from triangles, and another one from distances.
 //
-// CMake builds it where it finds Open CASCADE (7.6 was tried) and Leafless, which include/README.md tells how to install:
+// CMake builds it if it finds Open CASCADE (tested with 7.6) and Leafless, which include/README.md describes how to
+// install:
 //
 //     cmake -S examples/cpp -B build -DCMAKE_PREFIX_PATH=$HOME/.local
 //     cmake --build build
 //     build/open_cascade MODEL.step [DEFLECTION]
 //
-// Without arguments it makes a STEP file of its own, a block with a bore. It leaves open_cascade.lfl where it runs.
+// Without arguments it makes a STEP file of its own, a block with a bore. It writes open_cascade.lfl to the
+// current folder.
 
 #include <leafless.hpp>
 
@@ -79,7 +81,7 @@ std::vector<TopoDS_Solid> read_solids(const std::string &path) {
     std::vector<TopoDS_Solid> solids;
     for (TopExp_Explorer it(reader.OneShape(), TopAbs_SOLID); it.More(); it.Next()) {
         TopoDS_Solid solid = TopoDS::Solid(it.Current());
-        // Some files have solids that are inside out.
+        // Some files have inside-out solids.
         if (!BRepLib::OrientClosedSolid(solid)) throw std::runtime_error(path + ": a solid in it has no inside");
         solids.push_back(solid);
     }
@@ -138,14 +140,14 @@ leafless::mesh tessellation(const TopoDS_Shape &model, double deflection) {
     arrays.vertex_count = corners.size();
     arrays.indices = triangles.data();
     arrays.triangle_count = triangles.size();
-    // Each face has corners of its own. Those that are equal become one; those that rounding or the tolerance of an
-    // edge keeps apart are sewn. The faces of the model lie within the deflection of the triangles.
+    // Each face has corners of its own. Equal corners are welded; corners that rounding or the tolerance of an edge
+    // keeps apart are sewn. The faces of the model lie within the deflection of the triangles.
     return leafless::mesh::make(arrays).sewn().with_deviation(deflection);
 }
 
-// Every answer is certified for each solid whose boundary lies within the deflection of the triangles. That the model's does
-// is Open CASCADE's word: it keeps the deflection at the points that it checks. The octree keeps the planes of the
-// triangles as layers that are no thicker than four deflections.
+// Every answer is certified for each solid whose boundary lies within the deflection of the triangles. Open CASCADE
+// ensures this for the model only at the points that it checks. The octree keeps the planes of the triangles as layers
+// that are no thicker than four deflections.
 void by_triangles(const TopoDS_Shape &model, const leafless_frame &frame, double deflection) {
     const leafless::mesh mesh = tessellation(model, deflection);
     mesh.check_closed(LEAFLESS_FILL_NON_ZERO);
@@ -164,8 +166,8 @@ void by_triangles(const TopoDS_Shape &model, const leafless_frame &frame, double
 // ---- By distances -------------------------------------------------------------------------------------------------
 
 // Bounds the distances of points from the model's faces: no face reaches into the ball of that radius around the point.
-// The octree is certified of the model itself, without triangles, as far as Open CASCADE's distances and its verdicts
-// inside and outside are right.
+// The octree is certified for the model itself, without triangles, if Open CASCADE's distances and its inside and
+// outside verdicts are right.
 class distances {
 public:
     explicit distances(const std::vector<TopoDS_Solid> &solids)
@@ -179,7 +181,7 @@ public:
             for (TopExp_Explorer it(solid, TopAbs_FACE); it.More(); it.Next()) builder.Add(faces, it.Current());
         }
         search_->LoadS2(faces);
-        // Faces, edges and vertices that belong together may be apart by their greatest tolerance.
+        // The gaps between faces, edges and vertices that belong together are at most their greatest tolerance.
         tolerance_ = ShapeAnalysis_ShapeTolerance().Tolerance(faces, 1);
     }
 
@@ -188,7 +190,7 @@ public:
     }
 
 private:
-    // Negative inside, positive outside, and 0 where the tolerance leaves both.
+    // Negative inside, positive outside, and 0 where the tolerance allows both.
     double distance(const point &at) const {
         const gp_Pnt centre(at[0], at[1], at[2]);
         search_->LoadS1(BRepBuilderAPI_MakeVertex(centre).Vertex());
@@ -208,7 +210,7 @@ private:
 };
 
 void by_distances(const std::vector<TopoDS_Solid> &solids, const leafless_frame &frame) {
-    // Open CASCADE's searches change while they search, so one thread asks them.
+    // Open CASCADE's search objects change during a search, so only one thread uses them.
     leafless_options options = LEAFLESS_INIT(leafless_options);
     options.threads = 1;
     const solid model = leafless::solid_of(distances(solids), LEAFLESS_EXTERIOR_EMPTY);
@@ -219,7 +221,7 @@ void by_distances(const std::vector<TopoDS_Solid> &solids, const leafless_frame 
 void take_in(const std::string &path, double deflection) {
     const std::vector<TopoDS_Solid> solids = read_solids(path);
     const TopoDS_Compound model = compound_of(solids);
-    // Open CASCADE counts twice what two solids share, and Leafless once.
+    // Open CASCADE counts the common part of two solids twice, Leafless once.
     GProp_GProps properties;
     BRepGProp::VolumeProperties(model, properties);
     std::printf("%-28s %zu, of %s\n", "solids", solids.size(), path.c_str());
@@ -227,7 +229,7 @@ void take_in(const std::string &path, double deflection) {
 
     const auto [low, high] = bounds(model);
     by_triangles(model, leafless::frame_around(low, high, 10), deflection);
-    // Every further level asks for four times as many distances, of about a tenth of a millisecond each.
+    // Every further level needs four times as many distances, of about a tenth of a millisecond each.
     by_distances(solids, leafless::frame_around(low, high, 6));
 }
 

@@ -1,7 +1,7 @@
-// One part as a triangulation, as a function of the host and as an expression: volumes, cuts by sixty positions of a tool, a file
-// that a second process maps, ten poses of a shaft, refinement where it is looked at, and a picture.
+// One part as a triangulation, as a function of the host and as an expression: volumes, cuts by sixty positions of a
+// tool, a file that a second process maps, ten poses of a shaft, refinement on demand, and a picture.
 //
-// include/README.md tells how to build it; it leaves part.lfl and part.png where it runs.
+// include/README.md describes how to build it; it writes part.lfl and part.png to the current folder.
 
 #include <leafless.hpp>
 
@@ -37,7 +37,7 @@ leafless::mesh triangulation() {
     return leafless::mesh::make(arrays);
 }
 
-// The block by a function that classifies boxes.
+// The block as a function that classifies boxes.
 leafless_tag classify(const point &min, const point &max) {
     bool is_inside = true;
     for (std::size_t axis = 0; axis < 3; axis++) {
@@ -88,7 +88,7 @@ void picture(const octree &part) {
     leafless::picture_write(colours, shot.width, shot.height, leafless_to_file("part.png"));
 }
 
-// What a second process does: it maps the file.
+// The work of a second process: it maps the file.
 void ask(const char *path) {
     const octree part = octree::read(leafless_from_file(path, LEAFLESS_ACCESS_MAP));
     print("mapped", part.statistics().volume_model);

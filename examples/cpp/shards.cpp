@@ -1,7 +1,8 @@
-// A drilled plate in shards, as the machines of a cluster make it. Each machine builds, counts and measures one shard, and sends
-// numbers. The sums of these numbers are those of the whole plate, though no machine has the whole. Here each machine is a thread.
+// A drilled plate in shards, as made by the machines of a cluster. Each machine builds, counts and measures one shard,
+// and sends numbers. The sums of these numbers describe the whole plate, though no machine has the whole plate. Here
+// each machine is a thread.
 //
-// include/README.md tells how to build it.
+// include/README.md describes how to build it.
 
 #include <leafless.hpp>
 
@@ -16,7 +17,7 @@ namespace {
 
 constexpr std::uint32_t DEPTH = 9, LEVEL = 2;
 
-// Every machine can describe the plate.
+// Every machine can make the plate.
 solid drilled_plate() {
     std::vector<solid> parts;
     parts.push_back(solid::new_box({0, 0, 0}, {96, 80, 10}));
@@ -29,7 +30,7 @@ solid drilled_plate() {
     return solid::combine(LEAFLESS_OPERATION_DIFFERENCE, handles);
 }
 
-// What a machine sends: numbers alone.
+// The message of a machine: only numbers.
 struct report {
     std::vector<leafless_statistics> levels;
     leafless_mass_sum sum;
@@ -52,7 +53,7 @@ void build_in_shards() {
     std::vector<std::uint64_t> codes = top.open_cells(LEVEL);
     std::printf("cells that are open:  %lu of %d\n", static_cast<unsigned long>(codes.size()), 1 << 3 * LEVEL);
 
-    // One machine for each of them.
+    // One machine for each open cell.
     std::vector<octree> shards(codes.size());
     std::vector<std::future<report>> machines;
     for (std::size_t i = 0; i < codes.size(); i++) {
@@ -91,12 +92,12 @@ void build_in_shards() {
     std::printf("volume by the cells:  %.3f to %.3f\n", last.volume_model.lower, last.volume_model.upper);
     std::printf("centroid along x:     %.3f to %.3f\n", measures.centroid_model[0].lower, measures.centroid_model[0].upper);
 
-    // The shards are a solid without being joined ...
+    // The shards can be used as a solid without joining ...
     const solid sharded = solid::from_shards(top, LEVEL, told_codes, told_shards);
     const leafless_measures asked = sharded.measure(frame, 0, 0);
     std::printf("volume, unjoined:     %.3f to %.3f\n", asked.volume_model.lower, asked.volume_model.upper);
 
-    // ... and joined they are what one machine would have built.
+    // ... and joined they are the octree that one machine would build.
     const octree whole = octree::build(plate, frame, LEAFLESS_RULE_CERTIFIED);
     std::printf("joined:               %s\n", octree::join(all).equal(whole) ? "the octree of one machine" : "another octree");
 }
