@@ -96,7 +96,7 @@ impl Channel {
     ///
     /// `solid` is the octree that bounds the values. `frame` is a `Frame`, or an octree on that frame. The
     /// default is the frame of the solid; without a solid, `frame` is required. `depth` replaces the depth of
-    /// the frame. `cell` (model units) is the edge at which cells end, whatever the values are. `dtype` is
+    /// the frame. `cell` (model units) is the edge at which cells end, for any values. `dtype` is
     /// the type in which numbers are stored: "uint8", "uint16", "uint32" or "float32".
     #[staticmethod]
     #[pyo3(signature = (values, solid=None, *, frame=None, depth=None, cell=None, dtype="float32", nearest=false, **limits))]

@@ -123,7 +123,7 @@ fn sequence<'py>(
 }
 
 /// A sum of volume and moments of a solid over some cells of its frame. Sums are exact, so their order does
-/// not matter: `a + b - b == a`.
+/// not matter: the intervals of `a + b - b` are those of `a`. Only the number of splits keeps counting.
 #[pyclass(frozen, eq, module = "leafless.shards")]
 #[derive(PartialEq)]
 pub struct MassSum(query::MassSum);
