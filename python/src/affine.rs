@@ -29,7 +29,7 @@ pub struct Affine(pub Inner);
 
 #[pymethods]
 impl Affine {
-    /// NumPy's operators leave operations with this class to the class.
+    /// Makes NumPy's operators defer to this class.
     #[classattr]
     #[allow(non_upper_case_globals)]
     const __array_ufunc__: Option<u8> = None;

@@ -94,10 +94,10 @@ impl Channel {
     /// A `Volume` is interpolated between its samples. With `nearest=True` the value is the nearest sample,
     /// as labels require.
     ///
-    /// `solid` is the octree that bounds the values. `frame` is a `Frame`, or an octree on that frame. The
-    /// default is the frame of the solid; without a solid, `frame` is required. `depth` replaces the depth of
-    /// the frame. `cell` (model units) is the edge at which cells end, for any values. `dtype` is
-    /// the type in which numbers are stored: "uint8", "uint16", "uint32" or "float32".
+    /// `solid` is the octree inside which the channel has values. `frame` is a `Frame`, or an octree on that
+    /// frame. The default is the frame of the solid; without a solid, `frame` is required. `depth` replaces
+    /// the depth of the frame. `cell` (model units) is the edge at which cells end, for any values. `dtype`
+    /// is the type in which numbers are stored: "uint8", "uint16", "uint32" or "float32".
     #[staticmethod]
     #[pyo3(signature = (values, solid=None, *, frame=None, depth=None, cell=None, dtype="float32", nearest=false, **limits))]
     #[allow(clippy::too_many_arguments)]

@@ -101,7 +101,7 @@ impl Proof {
 /// >>> 4.18879 in octree.volume
 /// True
 ///
-/// The methods `contains`, `distances` and `rays` answer from the cells, whatever these prove. Functions
+/// The methods `contains`, `distances` and `rays` answer from the cells, without regard to proofs. Functions
 /// (`measure`, `interference` and the others) use only proofs about the source solid. A rule other than
 /// "certified" proves little. `as_truth` makes the cells themselves the truth.
 ///

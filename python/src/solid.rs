@@ -115,8 +115,8 @@ pub fn given(object: &Bound<'_, PyAny>, name: &str) -> PyResult<Given> {
     }
 }
 
-/// Returns the solid of an object. For an octree it is the solid of the cells, whatever these prove about the
-/// source solid.
+/// Returns the solid of an object. For an octree it is the solid of the cells, without regard to their proof
+/// about the source solid.
 fn of_cells(object: &Bound<'_, Solid>) -> PyResult<Given> {
     match object.cast::<Octree>() {
         Ok(octree) if !octree.get().octree.proof().is_certified() => {
@@ -128,7 +128,7 @@ fn of_cells(object: &Bound<'_, Solid>) -> PyResult<Given> {
 
 #[pymethods]
 impl Solid {
-    /// NumPy's operators leave operations with this class to the class.
+    /// Makes NumPy's operators defer to this class.
     #[classattr]
     #[allow(non_upper_case_globals)]
     const __array_ufunc__: Option<u8> = None;

@@ -26,7 +26,7 @@ class Intervals:
     (array([False, False]), array([False,  True]))
     """
 
-    #: NumPy's operators leave operations with this class to the class.
+    #: Makes NumPy's operators defer to this class.
     __array_ufunc__ = None
 
     __slots__ = ("__weakref__", "lower", "upper")
