@@ -1,4 +1,4 @@
-//! Affine maps, which place solids.
+//! Affine maps: the placements of solids.
 
 use crate::arguments::named;
 use crate::arrays::{self, doubles, triple};
@@ -8,12 +8,12 @@ use pyo3::exceptions::PyValueError;
 use pyo3::prelude::*;
 use pyo3::types::{PyList, PyTuple};
 
-/// A map of space that moves, turns or stretches: a `matrix` of 3×4 or 4×4 numbers, which are taken as they
-/// are.
+/// An affine map of space, which moves, turns or scales. It is made of a `matrix` of 3×4 or 4×4 numbers,
+/// which are used unchanged.
 ///
-/// `map @ solid` is the solid moved by it, and `first @ second` the map that does what `second` does, and
-/// then `first`. Where a placement is asked for, any matrix of NumPy will do. `numpy.asarray` makes the 4×4
-/// matrix of a map.
+/// `map @ solid` is the solid moved by the map. `first @ second` is the map that applies `second`, and then
+/// `first`. Wherever a placement is expected, any matrix of NumPy is accepted. `numpy.asarray` returns the
+/// 4×4 matrix of a map.
 ///
 /// >>> turned = Affine.translation([10, 0, 0]) @ Affine.rotation([0, 0, 1], 90)
 /// >>> turned([1, 0, 0])
@@ -29,32 +29,32 @@ pub struct Affine(pub Inner);
 
 #[pymethods]
 impl Affine {
-    /// Operators of NumPy leave this class alone.
+    /// Makes NumPy's operators defer to this class.
     #[classattr]
     #[allow(non_upper_case_globals)]
     const __array_ufunc__: Option<u8> = None;
 
-    /// The map of a `matrix` of 3×4 numbers, [M | t], or 4×4.
+    /// Makes the map of a `matrix` of 3×4 numbers, [M | t], or of 4×4 numbers.
     #[new]
     fn new(matrix: &Bound<'_, PyAny>) -> PyResult<Affine> {
         affine(matrix, "matrix").map(Affine)
     }
 
-    /// The map that moves nothing.
+    /// Returns the identity map.
     #[staticmethod]
     fn identity() -> Affine {
         Affine(Inner::IDENTITY)
     }
 
-    /// Moves everything by `offset`, three numbers (model units).
+    /// Returns the translation by `offset`, three numbers (model units).
     #[staticmethod]
     fn translation(offset: &Bound<'_, PyAny>) -> PyResult<Affine> {
         let found = Inner::translation(triple(offset, "offset")?).map_err(called([("placement", "offset")]));
         found.or_raise(offset.py()).map(Affine)
     }
 
-    /// Turns by an angle, `degrees`, around an `axis` through the origin, or through the point `about`:
-    /// counter-clockwise as seen from where the axis points to. The axis may have any length but 0.
+    /// Returns the rotation by `degrees` around an `axis` through the origin, or through the point `about`.
+    /// It turns counter-clockwise as seen from the tip of the axis. The axis may have any length except 0.
     #[staticmethod]
     #[pyo3(signature = (axis, degrees, about=None))]
     fn rotation(
@@ -90,13 +90,13 @@ impl Affine {
         });
         let rows = [0, 1, 2].map(|i| {
             let [a, b, c, moved] = rows[i];
-            // Numbers that are rounding and nothing else are zero.
+            // Entries that consist of rounding alone become zero.
             [a, b, c, at[i] - moved].map(|entry: f64| if entry.abs() < 1e-18 { 0.0 } else { entry })
         });
         Inner::new(rows).map_err(called([("placement", "about")])).or_raise(py).map(Affine)
     }
 
-    /// Stretches by a `factor`, or by three, one for each axis. A factor below 0 mirrors.
+    /// Returns the scaling by a `factor`, or by three factors, one for each axis. A negative factor mirrors.
     #[staticmethod]
     fn scale(factor: &Bound<'_, PyAny>) -> PyResult<Affine> {
         let factors = match factor.extract::<f64>() {
@@ -118,12 +118,12 @@ impl Affine {
         Ok(arrays::rows(py, vec![a, b, c, [0.0, 0.0, 0.0, 1.0]])?.into_any())
     }
 
-    /// The map that moves everything back, rounded.
+    /// Returns the inverse map, rounded.
     fn inverse(&self, py: Python<'_>) -> PyResult<Affine> {
         self.0.inverse().or_raise(py).map(Affine)
     }
 
-    /// Where the map moves `points` of shape (n, 3), or a single one of shape (3,).
+    /// Returns the images of `points` of shape (n, 3), or of a single point of shape (3,).
     fn __call__<'py>(&self, points: &Bound<'py, PyAny>) -> PyResult<Bound<'py, PyAny>> {
         let rows = arrays::Rows::of(points, "points")?;
         let list = rows.list();
@@ -142,7 +142,7 @@ impl Affine {
         composed(other, |other| after(other, &self.0))
     }
 
-    /// The 4×4 matrix, for `numpy.asarray`.
+    /// Returns the 4×4 matrix, for `numpy.asarray`.
     #[pyo3(signature = (dtype=None, copy=None))]
     fn __array__<'py>(
         &self,
@@ -170,7 +170,7 @@ impl Affine {
     }
 }
 
-/// What becomes of a map and another operand, if that is a map or an array.
+/// Composes a map with another operand, which must be a map or an array.
 fn composed<'py>(
     other: &Bound<'py, PyAny>,
     compose: impl FnOnce(&Inner) -> Result<Inner, leafless::Error>,
@@ -185,7 +185,7 @@ fn composed<'py>(
     Ok(Affine(whole).into_pyobject(py)?.into_any())
 }
 
-/// Sine and cosine of an angle in degrees, exact for quarter turns.
+/// Returns the sine and the cosine of an angle in degrees, exact for quarter turns.
 fn quarter(degrees: f64) -> (f64, f64) {
     match degrees.rem_euclid(360.0) {
         0.0 => (0.0, 1.0),
@@ -196,7 +196,7 @@ fn quarter(degrees: f64) -> (f64, f64) {
     }
 }
 
-/// The map that does what `first` does, and then `second`; rounded.
+/// Returns the map that applies `first`, and then `second`; rounded.
 pub fn after(second: &Inner, first: &Inner) -> Result<Inner, leafless::Error> {
     let (a, b) = (second.rows(), first.rows());
     Inner::new([0, 1, 2].map(|i| {
@@ -207,7 +207,7 @@ pub fn after(second: &Inner, first: &Inner) -> Result<Inner, leafless::Error> {
     }))
 }
 
-/// A map from an object of this class or from a matrix.
+/// Reads a map from an object of this class or from a matrix.
 pub fn affine(given: &Bound<'_, PyAny>, name: &'static str) -> PyResult<Inner> {
     if let Ok(known) = given.cast::<Affine>() {
         return Ok(known.get().0);
@@ -219,7 +219,8 @@ pub fn affine(given: &Bound<'_, PyAny>, name: &'static str) -> PyResult<Inner> {
     }
 }
 
-/// Maps from one matrix, from an array of shape (n, 4, 4) or (n, 3, 4), or from a list of maps and matrices.
+/// Reads maps from one matrix, from an array of shape (n, 4, 4) or (n, 3, 4), or from a list of maps and
+/// matrices.
 pub fn affines(given: &Bound<'_, PyAny>, name: &'static str) -> PyResult<Vec<Inner>> {
     if given.cast::<Affine>().is_ok() {
         return Ok(vec![affine(given, name)?]);

@@ -1,14 +1,15 @@
-//! Octrees that can be asked on any frame.
+//! Octrees that can be queried on any frame.
 
 use leafless::solid::{AnyClassifier, Fingerprint, Motion, Transform};
 use leafless::{Affine, AnySolid, Bounds, Control, Error, Frame, Solid, TriangleMesh};
 
-/// A solid that has a frame of its own. On another universe its cells are looked up: by whole cells where
-/// that is the own one doubled, else they blur by about one.
+/// A solid with a frame of its own that can be queried on any frame. On another universe its cells are looked
+/// up. The lookup uses whole cells if that universe is the solid's own one, doubled; otherwise the cells blur
+/// by about one cell.
 #[derive(Clone)]
 pub struct Anywhere(AnySolid);
 
-/// A solid, made to be asked anywhere.
+/// Wraps a solid so that it can be queried on any frame.
 pub fn anywhere(solid: &AnySolid) -> AnySolid {
     if solid.home().is_some() { AnySolid::new(Anywhere(solid.clone())) } else { solid.clone() }
 }

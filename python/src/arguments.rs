@@ -1,4 +1,4 @@
-//! Arguments of functions: numbers, texts and objects, refused by the names that callers know.
+//! Conversion of arguments: numbers, texts and objects. A refusal names the parameter as callers know it.
 
 use crate::error::refused;
 use crate::from_package;
@@ -9,13 +9,13 @@ use pyo3::prelude::*;
 use pyo3::types::{PyFloat, PyInt};
 use std::path::PathBuf;
 
-/// What an argument may be.
+/// A type that an argument converts to.
 pub trait Argument<'a, 'py>: Sized {
-    /// Takes it from an object, or refuses it by the name of the parameter.
+    /// Converts an object, or refuses it with the name of the parameter.
     fn take(given: &'a Bound<'py, PyAny>, name: &str) -> PyResult<Self>;
 }
 
-/// The refusal of an object that is of another type than it must be.
+/// Returns the refusal of an object of the wrong type.
 pub fn other_type(given: &Bound<'_, PyAny>, name: &str, kind: &str) -> PyErr {
     match given.get_type().name() {
         Ok(own) => PyTypeError::new_err(format!("{name}: must be {kind}, not {own}")),
@@ -23,7 +23,7 @@ pub fn other_type(given: &Bound<'_, PyAny>, name: &str, kind: &str) -> PyErr {
     }
 }
 
-/// A refusal by the type that an object is of, unless what came up is no matter of types, such as Ctrl-C.
+/// Refuses an object for its type. An error about something other than types, such as Ctrl-C, is passed on.
 fn refusal(given: &Bound<'_, PyAny>, name: &str, kind: &str, error: PyErr) -> PyErr {
     if error.is_instance_of::<PyTypeError>(given.py()) { other_type(given, name, kind) } else { error }
 }
@@ -53,7 +53,7 @@ impl<'a> Argument<'a, '_> for &'a str {
     }
 }
 
-/// A whole number of a type, whose range is told as `range`.
+/// Reads a whole number of a type; `range` is the text for its range.
 fn whole<'py, T>(given: &Bound<'py, PyAny>, name: &str, range: &str) -> PyResult<T>
 where
     T: for<'a> FromPyObject<'a, 'py, Error = PyErr>,
@@ -88,10 +88,10 @@ wholes! {
 #[derive(Clone, Copy)]
 pub struct Deep<const LOWEST: u8>(pub u8);
 
-/// How deep a frame is.
+/// The depth of a frame.
 pub type Depth = Deep<1>;
 
-/// Any level, from that of the universe on.
+/// A level of a frame; 0 is the universe.
 pub type Level = Deep<0>;
 
 impl<'py, const LOWEST: u8> Argument<'_, 'py> for Deep<LOWEST> {
@@ -141,7 +141,7 @@ impl<'py, T: PyClass> Argument<'_, 'py> for Bound<'py, T> {
     }
 }
 
-/// Functions for `from_py_with`, each with the name of the parameter that it takes.
+/// Functions for `from_py_with`, each named after its parameter.
 pub mod named {
     use super::Argument;
     use pyo3::prelude::*;

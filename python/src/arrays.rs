@@ -1,4 +1,4 @@
-//! Arrays of NumPy: taken as they are where their layout allows, and given without copies.
+//! NumPy arrays: read in place where their layout allows, and returned without copies.
 
 use crate::error::refused;
 use crate::from_package;
@@ -10,16 +10,16 @@ use pyo3::IntoPyObjectExt;
 use pyo3::prelude::*;
 use pyo3::types::{PyDict, PyList, PyTuple};
 
-/// Rows of three doubles from an array, or one row.
+/// Rows of three doubles, from an array of rows or from a single row.
 pub struct Rows<'py> {
     array: PyReadonlyArray2<'py, f64>,
-    /// Whether a single row was given.
+    /// True if a single row was given.
     pub is_one: bool,
 }
 
 impl<'py> Rows<'py> {
-    /// Takes rows of shape (n, 3), or one of shape (3,). An array of doubles that lies in memory row after
-    /// row is not copied, and must not be changed by another thread as long as the call takes.
+    /// Reads rows of shape (n, 3), or one row of shape (3,). A C-contiguous array of doubles is not copied,
+    /// and no other thread may change it during the call.
     pub fn of(given: &Bound<'py, PyAny>, name: &str) -> PyResult<Rows<'py>> {
         if given.get_type().is(&from_package!(given.py(), "numpy", "ndarray")?)
             && let Ok(array) = given.cast::<PyArray2<f64>>()
@@ -49,18 +49,18 @@ impl<'py> Rows<'py> {
 
     /// The rows.
     pub fn list(&self) -> &[[f64; 3]] {
-        // (Only arrays that lie row after row come here.)
+        // The array is always C-contiguous here.
         self.array.as_slice().map_or(&[], bytemuck::cast_slice)
     }
 }
 
-/// An array of doubles that lies in memory row after row, copied if need be.
+/// Reads a C-contiguous array of doubles, copied if necessary.
 pub fn doubles<'py>(given: &Bound<'py, PyAny>, name: &str) -> PyResult<Bound<'py, PyArrayDyn<f64>>> {
     required(given, "float64", name)
 }
 
-/// An array of one type that lies in memory row after row, copied if need be; refused if it holds other
-/// things than such numbers.
+/// Reads a C-contiguous array of one type, copied if necessary. Elements that are no such numbers are
+/// refused.
 pub fn required<'py, T: Element>(
     given: &Bound<'py, PyAny>,
     kind: &str,
@@ -70,7 +70,7 @@ pub fn required<'py, T: Element>(
     Ok(array.cast_into::<PyArrayDyn<T>>()?)
 }
 
-/// A shape as NumPy prints it.
+/// Formats a shape as NumPy prints it.
 pub fn shape_text(shape: &[usize]) -> String {
     match shape {
         [one] => format!("({one},)"),
@@ -78,7 +78,7 @@ pub fn shape_text(shape: &[usize]) -> String {
     }
 }
 
-/// Rows of one length.
+/// Reads rows of `N` numbers.
 pub fn table<const N: usize>(given: &Bound<'_, PyAny>, name: &str) -> PyResult<Vec<[f64; N]>> {
     let array = doubles(given, name)?;
     // An empty list has one axis.
@@ -90,7 +90,7 @@ pub fn table<const N: usize>(given: &Bound<'_, PyAny>, name: &str) -> PyResult<V
     Ok(numbers.as_slice()?.as_chunks().0.to_vec())
 }
 
-/// Three numbers.
+/// Reads three numbers.
 pub fn triple(given: &Bound<'_, PyAny>, name: &str) -> PyResult<[f64; 3]> {
     // A tuple or a list needs no array.
     if (given.is_instance_of::<PyTuple>() || given.is_instance_of::<PyList>())
@@ -109,7 +109,7 @@ pub fn triple(given: &Bound<'_, PyAny>, name: &str) -> PyResult<[f64; 3]> {
     }
 }
 
-/// An array of a shape, which has the list for its memory.
+/// Returns an array of a shape that owns the list's memory.
 pub fn array<'py, T: Element>(
     py: Python<'py>,
     list: Vec<T>,
@@ -118,7 +118,7 @@ pub fn array<'py, T: Element>(
     PyArray1::from_vec(py, list).reshape(shape)
 }
 
-/// The same of rows.
+/// Returns an array of rows that owns the list's memory.
 pub fn rows<'py, T: Element, const N: usize>(
     py: Python<'py>,
     list: Vec<[T; N]>,
@@ -127,8 +127,7 @@ pub fn rows<'py, T: Element, const N: usize>(
     array(py, list.into_flattened(), &[count, N])
 }
 
-/// An array that can be read and not written, of memory that an object of Python keeps alive and never
-/// changes.
+/// Returns a read-only array over memory that a Python object keeps alive and never changes.
 pub fn shown<'py, T: Element, D: Dimension>(
     owner: &Bound<'py, PyAny>,
     memory: &[T],
@@ -147,12 +146,12 @@ pub fn shown<'py, T: Element, D: Dimension>(
     Ok(array.into_any())
 }
 
-/// Whether the first axis varies fastest, or the last one.
+/// Returns the layout of a shape: the first or the last axis varies fastest.
 pub fn layout<D: Dimension>(shape: impl ShapeBuilder<Dim = D>, first_is_fastest: bool) -> StrideShape<D> {
     shape.set_f(first_is_fastest).into()
 }
 
-/// An array, or of a single question the one answer in it.
+/// Returns the array of answers, or for a single query its one answer.
 pub fn one_or_all<'py>(answers: Bound<'py, PyAny>, is_one: bool) -> PyResult<Bound<'py, PyAny>> {
     if is_one { answers.get_item(0)?.into_bound_py_any(answers.py()) } else { Ok(answers) }
 }

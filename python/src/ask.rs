@@ -1,4 +1,4 @@
-//! The frame that a question uses by default.
+//! The choice of the frame of a query.
 
 use crate::arguments::{Deep, Depth, other_type};
 use crate::error::{OrRaise, refused};
@@ -10,7 +10,7 @@ use leafless::{Affine, Bounds, Error, Frame as Inner};
 use pyo3::Borrowed;
 use pyo3::prelude::*;
 
-/// A frame, given as such or by an octree that has it.
+/// A frame, given directly or as an octree on the frame.
 #[derive(Clone, Copy)]
 pub struct FrameLike(pub Inner);
 
@@ -28,48 +28,48 @@ impl<'a, 'py> FromPyObject<'a, 'py> for FrameLike {
     }
 }
 
-/// What a caller says of the frame.
+/// The caller's wishes about the frame.
 #[derive(Clone, Copy, Default)]
 pub struct Wish {
     /// The frame.
     pub frame: Option<FrameLike>,
-    /// Its depth.
+    /// The depth, in place of the frame's own.
     pub depth: Option<Depth>,
 }
 
 impl Wish {
-    /// The frame that is given, as deep as is wished.
+    /// Returns the given frame, with the wished depth.
     fn given(&self, py: Python<'_>) -> PyResult<Option<Inner>> {
         let Some(FrameLike(frame)) = self.frame else { return Ok(None) };
         self.depth.map_or(Ok(frame), |Deep(depth)| frame.with_depth(depth)).or_raise(py).map(Some)
     }
 
-    /// The frame that is given where there is no solid to ask for one.
+    /// Returns the given frame, which is required when there is no solid.
     pub fn alone(&self, py: Python<'_>) -> PyResult<Inner> {
         self.given(py)?.ok_or_else(|| refused(py, "frame", "must be given without a solid"))
     }
 
-    /// The frame to ask a solid on: the wished one, that of an octree or of a volume's voxels, or one around
-    /// the solid, which is `deepest` deep where nothing limits the depth.
+    /// Returns the frame for queries of one solid: the wished frame, the frame of an octree or of a volume's
+    /// voxels, or a frame around the solid. The depth is `deepest` if nothing limits it.
     pub fn of(&self, py: Python<'_>, solid: &Given, deepest: u8) -> PyResult<Inner> {
         if let Some(frame) = self.given(py)? {
             return Ok(frame);
         }
         let deepest = self.depth.map_or(deepest, |Deep(depth)| depth);
         match solid.own {
-            // Cells that keep surfaces are large, and say little.
+            // Cells that keep surfaces are large and carry little information alone.
             Some(own) if solid.keeps_surfaces => own.with_depth(deepest).or_raise(py),
             Some(own) => {
                 let own = self.depth.map_or(Ok(own), |Deep(depth)| own.with_depth(depth)).or_raise(py)?;
-                // An expression may reach beyond the octree in it.
+                // An expression may reach beyond the octree that it contains.
                 solid.bounds(py).map_or(Ok(own), |all| doubled(own, &all)).or_raise(py)
             }
             None => fitted(py, &bounds(py, solid)?, deepest),
         }
     }
 
-    /// The frame to ask two solids on, the second under placements: of one of them its own, as often doubled
-    /// as it takes, or one around both.
+    /// Returns the frame for queries of two solids, the second under placements: the frame of the first
+    /// solid, doubled as often as necessary, or a frame around both.
     pub fn of_both(
         &self,
         py: Python<'_>,
@@ -103,7 +103,7 @@ fn fitted(py: Python<'_>, Bounds { min, max }: &Bounds, depth: u8) -> PyResult<I
     Inner::fitted(*min, *max, depth).or_raise(py)
 }
 
-/// A box that holds a solid, or all that is known of it.
+/// Returns a box that contains a solid: its bounds if they are known, else its frame.
 pub fn bounds(py: Python<'_>, solid: &Given) -> PyResult<Bounds> {
     match (solid.bounds(py), solid.own) {
         (Some(bounds), _) => Ok(bounds),
@@ -112,18 +112,18 @@ pub fn bounds(py: Python<'_>, solid: &Given) -> PyResult<Bounds> {
     }
 }
 
-/// Most doublings of a frame.
+/// The maximum number of doublings of a frame.
 const DOUBLINGS: u32 = 64;
 
-/// A frame doubled until it holds a box: its cells stay whole, as long as there is a depth for them.
+/// Doubles a frame until it contains a box. Cells stay whole, as long as the depth can grow.
 fn doubled(mut frame: Inner, all: &Bounds) -> Result<Inner, Error> {
     for _ in 0..DOUBLINGS {
-        // (The bounds of an octree are those of its frame, rounded outward.)
+        // The bounds of an octree are the bounds of its frame, rounded outward.
         if *all == Bounds::of(&frame) || all.is_within(&frame) {
             break;
         }
         let (origin, edge) = (frame.origin(), frame.edge());
-        // Towards the side where more is missing.
+        // Grow towards the side where more is missing.
         let grown = [0, 1, 2].map(|axis| {
             let above = all.max[axis] - (origin[axis] + edge) >= origin[axis] - all.min[axis];
             if above { origin[axis] } else { origin[axis] - edge }

@@ -1,4 +1,4 @@
-//! Values inside of solids.
+//! Channels: values inside solids.
 
 use crate::arguments::{Depth, named, other_type};
 use crate::arrays;
@@ -20,8 +20,8 @@ use pyo3::exceptions::PyValueError;
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
 
-/// Values inside of a solid (a temperature, a colour, a material), in a tree of its own, where equal
-/// neighbours share one value.
+/// Values inside a solid (a temperature, a colour, a material). A channel is a tree of its own, in which
+/// equal neighbours share one value.
 ///
 /// >>> part = build(Csg.cuboid([0, 0, 0], [8, 8, 8]), Frame([0, 0, 0], 8, 3))
 /// >>> heat = Channel.fill(lambda points: 20 + 3 * points[:, 2], part)
@@ -31,13 +31,13 @@ use pyo3::types::PyDict;
 #[pyclass(frozen, weakref, module = "leafless")]
 pub struct Channel(pub Inner);
 
-/// What the library calls the values.
+/// The library's names of the parameter `values`.
 const NAMES: [(&str, &str); 3] = [("value", "values"), ("components", "values"), ("attribute", "values")];
 
 /// The default depth of cells with values.
 const DEPTH: u8 = 8;
 
-/// A function of Python that has values at points.
+/// A Python function that returns values at points.
 struct Function {
     function: Py<PyAny>,
     components: usize,
@@ -67,7 +67,7 @@ impl Attribute for Function {
     }
 }
 
-/// Values of points, and how many numbers each has.
+/// Reads values at points, and the number of components of each.
 fn read(found: &Bound<'_, PyAny>, count: usize) -> PyResult<(Vec<f64>, usize)> {
     let array: Bound<'_, PyArrayDyn<f64>> = arrays::doubles(found, "values")?;
     let components = match *array.shape() {
@@ -84,20 +84,20 @@ fn read(found: &Bound<'_, PyAny>, count: usize) -> PyResult<(Vec<f64>, usize)> {
 
 #[pymethods]
 impl Channel {
-    /// A channel of `values`: those of a function, those of a `Volume`, or one value everywhere (1 to 4
-    /// numbers).
+    /// Makes a channel of `values`: the values of a function, the samples of a `Volume`, or one value
+    /// everywhere (1 to 4 numbers).
     ///
     /// A function gets points (shape (n, 3)) and returns values of shape (n,) or (n, components), NaN where
-    /// there is none. It is asked at the lower corner of the frame, for the number of components, and at the
-    /// centres of cells that belong to the solid.
+    /// there is none. It is called once at the lower corner of the frame, to find the number of components.
+    /// Then it is called at the centres of cells that belong to the solid.
     ///
-    /// A `Volume` has values between its samples. With `nearest=True` they are the nearest samples
-    /// themselves, as labels must be.
+    /// A `Volume` is interpolated between its samples. With `nearest=True` the value is the nearest sample,
+    /// as labels require.
     ///
-    /// `solid` is the octree inside of which there are values. `frame` is a `Frame`, or an octree that has
-    /// it; by default it is the solid's, and without a solid it must be given. `depth` replaces its depth.
-    /// `cell` (model units) ends cells at that edge, whatever the values. `dtype` is what numbers are stored
-    /// as: "uint8", "uint16", "uint32" or "float32".
+    /// `solid` is the octree inside which the channel has values. `frame` is a `Frame`, or an octree on that
+    /// frame. The default is the frame of the solid; without a solid, `frame` is required. `depth` replaces
+    /// the depth of the frame. `cell` (model units) is the edge at which cells end, for any values. `dtype`
+    /// is the type in which numbers are stored: "uint8", "uint16", "uint32" or "float32".
     #[staticmethod]
     #[pyo3(signature = (values, solid=None, *, frame=None, depth=None, cell=None, dtype="float32", nearest=false, **limits))]
     #[allow(clippy::too_many_arguments)]
@@ -138,7 +138,7 @@ impl Channel {
             let way = if nearest { Interpolation::Nearest } else { Interpolation::Trilinear };
             Box::new(VolumeAttribute::new(volume.get().volume.clone(), way))
         } else if values.is_callable() {
-            // How many numbers a value has, a first point tells.
+            // The number of components follows from the value at a first point.
             let probe = arrays::rows(py, vec![Bounds::of(&frame).min])?;
             let (_, components) = read(&values.call1((probe,))?, 1)?;
             Box::new(Function { function: values.clone().unbind(), components })
@@ -164,32 +164,32 @@ impl Channel {
         Ok(Channel(channel))
     }
 
-    /// Its name, if an octree has it.
+    /// The name in the octree; empty if no octree has the channel.
     #[getter]
     fn name(&self) -> &str {
         self.0.name()
     }
 
-    /// Where it lies.
+    /// The frame of the channel.
     #[getter]
     fn frame(&self) -> Frame {
         Frame(*self.0.frame())
     }
 
-    /// How many numbers a value has.
+    /// The number of components of a value.
     #[getter]
     fn components(&self) -> usize {
         self.0.value_type().components()
     }
 
-    /// Bytes that it takes.
+    /// The size in memory (bytes).
     #[getter]
     fn nbytes(&self) -> u64 {
         self.0.bytes()
     }
 
-    /// The values at `points` (shape (n, 3)): shape (n,), or (n, components) for several; NaN where there is
-    /// none.
+    /// Returns the values at `points` (shape (n, 3)): shape (n,) for one component, else (n, components). The
+    /// value is NaN where there is none.
     fn values_at<'py>(&self, points: &Bound<'py, PyAny>) -> PyResult<Bound<'py, PyAny>> {
         let py = points.py();
         let rows = arrays::Rows::of(points, "points")?;
@@ -208,9 +208,9 @@ impl Channel {
         arrays::one_or_all(arrays::array(py, numbers, &shape)?.into_any(), rows.is_one)
     }
 
-    /// Least, greatest, mean and integral of the values inside of `solid` (an octree), or inside of `bounds`
-    /// (a lower and an upper corner), or of all: a dictionary of arrays and intervals; `None` where nothing
-    /// has a value.
+    /// Summarises the values inside `solid` (an octree), inside `bounds` (a lower and an upper corner), or
+    /// all values. Returns a dictionary of arrays and intervals with the least and the greatest value, the
+    /// mean and the integral; `None` if nothing has a value.
     #[pyo3(signature = (solid=None, *, bounds=None, **limits))]
     fn summary<'py>(
         &self,

@@ -1,4 +1,4 @@
-//! Expressions of half-spaces, and of any other solids.
+//! Expressions of half-spaces and of any other solids.
 
 use crate::arguments::named;
 use crate::arrays::{self, triple};
@@ -16,10 +16,10 @@ use pyo3::types::{PyDict, PyList, PyTuple};
 use std::collections::HashMap;
 use std::path::{Path, PathBuf};
 
-/// An expression: half-spaces, primitives, and set operations of these and of any other solids.
+/// An expression of half-spaces, primitives, and set operations on them and on any other solids.
 ///
-/// Nothing is computed before something is asked, and then only where it matters. Numbers are taken as they
-/// are: a ball is a ball, not a polyhedron.
+/// Nothing is computed before a query, and a query computes only the parts that matter. Numbers are used
+/// unchanged: a ball is a ball, not a polyhedron.
 ///
 /// >>> plate = Csg.cuboid([0, 0, 0], [80, 60, 10]) - Csg.cylinder_between([20, 30, -1], [20, 30, 11], 8)
 /// >>> measure(plate, tolerance=1e-6).volume
@@ -27,13 +27,13 @@ use std::path::{Path, PathBuf};
 #[pyclass(extends = Solid, frozen, module = "leafless")]
 pub struct Csg {
     pub expression: Expression,
-    /// The function of this class and its arguments that made it. A shape of Python in the expression lives
-    /// as long as these do.
+    /// The function of this class that made the expression, with its arguments. The arguments keep Python
+    /// shapes in the expression alive.
     recipe: (&'static str, Py<PyTuple>),
 }
 
 impl Csg {
-    /// An expression as an object, with the recipe to make it again.
+    /// Wraps an expression, with the recipe to make it again.
     pub fn made<'py>(
         py: Python<'py>,
         expression: Expression,
@@ -47,7 +47,7 @@ impl Csg {
     }
 }
 
-/// An expression of the library, as an object that knows how it was made.
+/// Wraps an expression of the library, with the recipe to make it again.
 macro_rules! made {
     ($py:expr, $expression:expr, $name:literal, $($argument:expr),*) => {{
         let expression: Result<Expression, Error> = $expression;
@@ -57,14 +57,15 @@ macro_rules! made {
 
 #[pymethods]
 impl Csg {
-    /// A `solid` of another kind as an expression.
+    /// Makes an expression of a `solid` of another kind.
     #[staticmethod]
     fn of<'py>(solid: &Bound<'py, PyAny>) -> PyResult<Bound<'py, Csg>> {
         let py = solid.py();
         made!(py, Ok(expression(solid, "solid")?), "of", solid)
     }
 
-    /// The points p with `normal` · p + `offset` ≥ 0. The normal, of any length, points into the solid.
+    /// Returns the half-space of the points p with `normal` · p + `offset` ≥ 0. The normal has any length and
+    /// points into the solid.
     #[staticmethod]
     fn half_space<'py>(
         normal: &Bound<'py, PyAny>,
@@ -74,8 +75,8 @@ impl Csg {
         made!(py, Expression::half_space(n, offset), "half_space", n, offset)
     }
 
-    /// The points where a polynomial of degree two is not negative: ten `coefficients`, of xx, yy, zz, xy,
-    /// yz, zx, x, y, z and 1.
+    /// Returns the points where a polynomial of degree two is not negative. The ten `coefficients` belong to
+    /// xx, yy, zz, xy, yz, zx, x, y, z and 1.
     #[staticmethod]
     fn quadric<'py>(
         py: Python<'py>,
@@ -85,7 +86,7 @@ impl Csg {
         made!(py, half, "quadric", coefficients)
     }
 
-    /// The block between its lower corner `min` and its upper corner `max`.
+    /// Returns the block between its lower corner `min` and its upper corner `max`.
     ///
     /// >>> Csg.cuboid([0, 0, 0], [1, 2, 3]).bounds
     /// array([[0., 0., 0.],
@@ -96,7 +97,7 @@ impl Csg {
         made!(py, Expression::cuboid(a, b), "cuboid", a, b)
     }
 
-    /// The ball of a `radius` around a `centre`.
+    /// Returns the ball with a `radius` around a `centre`.
     #[staticmethod]
     fn ball<'py>(
         centre: &Bound<'py, PyAny>,
@@ -106,14 +107,14 @@ impl Csg {
         made!(py, Expression::ball(c, radius), "ball", c, radius)
     }
 
-    /// The ellipsoid around a `centre` with the semi-axes `radii` along x, y and z.
+    /// Returns the ellipsoid around a `centre` with the semi-axes `radii` along x, y and z.
     #[staticmethod]
     fn ellipsoid<'py>(centre: &Bound<'py, PyAny>, radii: &Bound<'py, PyAny>) -> PyResult<Bound<'py, Csg>> {
         let (py, c, r) = (centre.py(), triple(centre, "centre")?, triple(radii, "radii")?);
         made!(py, Expression::ellipsoid(c, r).map_err(called([("radius", "radii")])), "ellipsoid", c, r)
     }
 
-    /// The cylinder of a `radius` around the z axis, between the heights `low` and `high`.
+    /// Returns the cylinder with a `radius` around the z axis, between the heights `low` and `high`.
     #[staticmethod]
     fn cylinder(
         py: Python<'_>,
@@ -124,7 +125,7 @@ impl Csg {
         made!(py, Expression::cylinder(radius, low, high).map_err(height(low)), "cylinder", radius, low, high)
     }
 
-    /// The cylinder of a `radius` between two points on its axis, `start` and `end`.
+    /// Returns the cylinder with a `radius` between two points on its axis, `start` and `end`.
     #[staticmethod]
     #[pyo3(signature = (start, end, radius))]
     fn cylinder_between<'py>(
@@ -143,8 +144,8 @@ impl Csg {
         )
     }
 
-    /// The frustum of a cone around the z axis, between the heights `low` and `high`, with the radius
-    /// `bottom` at the lower and `top` at the upper one. One of the radii may be 0.
+    /// Returns the frustum of a cone around the z axis, between the heights `low` and `high`. The radius is
+    /// `bottom` at the lower height and `top` at the upper one. One of the radii may be 0.
     #[staticmethod]
     fn frustum(
         py: Python<'_>,
@@ -159,8 +160,8 @@ impl Csg {
         made!(py, found, "frustum", bottom, top, low, high)
     }
 
-    /// The frustum of a cone between two points on its axis, `start` and `end`, with the two `radii` there.
-    /// One of them may be 0.
+    /// Returns the frustum of a cone between two points on its axis, `start` and `end`, with the two `radii`
+    /// there. One of them may be 0.
     #[staticmethod]
     fn frustum_between<'py>(
         start: &Bound<'py, PyAny>,
@@ -178,8 +179,8 @@ impl Csg {
         )
     }
 
-    /// The torus around the z axis: all points at most `minor` from the circle of the radius `major` in the
-    /// plane z = 0.
+    /// Returns the torus around the z axis: all points at most `minor` from the circle with the radius
+    /// `major` in the plane z = 0.
     #[staticmethod]
     fn torus(
         py: Python<'_>,
@@ -189,8 +190,8 @@ impl Csg {
         made!(py, Expression::torus(major, minor), "torus", major, minor)
     }
 
-    /// The block of a `size` along x, y and z with a corner at the origin, whose top face is `top` long along
-    /// x: a wedge for 0.
+    /// Returns a block with the edges `size` along x, y and z and a corner at the origin. Its top face has
+    /// the length `top` along x; with 0 it is a wedge.
     #[staticmethod]
     fn wedge<'py>(
         size: &Bound<'py, PyAny>,
@@ -200,7 +201,7 @@ impl Csg {
         made!(py, Expression::wedge(s, top), "wedge", s, top)
     }
 
-    /// The prism over a simple `polygon` in the plane of x and y (points of shape (n, 2)), between the
+    /// Returns the prism over a simple `polygon` in the xy plane (points of shape (n, 2)), between the
     /// heights `low` and `high`.
     #[staticmethod]
     fn prism<'py>(
@@ -214,8 +215,8 @@ impl Csg {
         made!(py, found, "prism", corners, low, high)
     }
 
-    /// What lies in all half-spaces normal · p + offset ≥ 0, given as `planes`: rows of four numbers, those
-    /// of the normal first.
+    /// Returns the intersection of the half-spaces normal · p + offset ≥ 0, given as `planes`: rows of four
+    /// numbers, the normal first.
     #[staticmethod]
     fn convex<'py>(planes: &Bound<'py, PyAny>) -> PyResult<Bound<'py, Csg>> {
         let py = planes.py();
@@ -225,20 +226,20 @@ impl Csg {
         made!(py, found, "convex", rows)
     }
 
-    /// No points.
+    /// Returns the empty set.
     #[staticmethod]
     fn empty(py: Python<'_>) -> PyResult<Bound<'_, Csg>> {
         made!(py, Ok(Expression::empty()), "empty",)
     }
 
-    /// All of space.
+    /// Returns all of space.
     #[staticmethod]
     fn everything(py: Python<'_>) -> PyResult<Bound<'_, Csg>> {
         made!(py, Ok(Expression::everything()), "everything",)
     }
 
-    /// What at least one of any number of `solids` contains: for many at once faster than `|` one after
-    /// another.
+    /// Returns the union of any number of `solids`: the points that lie in at least one of them. For many
+    /// solids it is faster than repeated `|`.
     #[staticmethod]
     #[pyo3(signature = (*solids))]
     fn union_of<'py>(solids: &Bound<'py, PyTuple>) -> PyResult<Bound<'py, Csg>> {
@@ -247,7 +248,7 @@ impl Csg {
         Csg::made(solids.py(), whole, "union_of", solids.clone())
     }
 
-    /// What all of any number of `solids` contain.
+    /// Returns the intersection of any number of `solids`: the points that lie in all of them.
     #[staticmethod]
     #[pyo3(signature = (*solids))]
     fn intersection_of<'py>(solids: &Bound<'py, PyTuple>) -> PyResult<Bound<'py, Csg>> {
@@ -256,7 +257,7 @@ impl Csg {
         Csg::made(solids.py(), whole, "intersection_of", solids.clone())
     }
 
-    /// What the `first` solid contains, and none of the `others`.
+    /// Returns the points that lie in the `first` solid and in none of the `others`.
     #[staticmethod]
     #[pyo3(signature = (first, *others))]
     fn difference_of<'py>(
@@ -267,7 +268,8 @@ impl Csg {
         let others_of = all(others, "others")?;
         let own = expression(first, "first")?;
         let whole = py.detach(|| match &others_of[..] {
-            // What is pickled as one difference has the fingerprint of `first - other`.
+            // A difference of two solids must have the fingerprint of `first - other` when it is pickled and
+            // restored.
             [other] => own.difference(other),
             _ => own.difference(&Expression::union_of(others_of)?),
         });
@@ -276,7 +278,7 @@ impl Csg {
         Csg::made(py, whole, "difference_of", PyTuple::new(py, arguments.collect::<Vec<_>>())?)
     }
 
-    /// What an odd number of the `solids` contain.
+    /// Returns the symmetric difference: the points that lie in an odd number of the `solids`.
     #[staticmethod]
     #[pyo3(signature = (*solids))]
     fn xor_of<'py>(solids: &Bound<'py, PyTuple>) -> PyResult<Bound<'py, Csg>> {
@@ -285,13 +287,13 @@ impl Csg {
         Csg::made(solids.py(), whole, "xor_of", solids.clone())
     }
 
-    /// What a `solid` leaves of space, as `~solid`.
+    /// Returns the complement of a `solid`, as `~solid`.
     #[staticmethod]
     fn complement_of<'py>(solid: &Bound<'py, PyAny>) -> PyResult<Bound<'py, Csg>> {
         made!(solid.py(), Ok(expression(solid, "solid")?.complement()), "complement_of", solid)
     }
 
-    /// A `solid` moved by a `placement`, an `Affine` or a matrix, as `placement @ solid`.
+    /// Returns a `solid` moved by a `placement`, an `Affine` or a matrix, as `placement @ solid`.
     #[staticmethod]
     fn placed_of<'py>(solid: &Bound<'py, PyAny>, placement: &Bound<'py, PyAny>) -> PyResult<Bound<'py, Csg>> {
         let map = crate::affine::affine(placement, "placement")?;
@@ -299,8 +301,8 @@ impl Csg {
         made!(solid.py(), moved, "placed_of", solid, crate::affine::Affine(map))
     }
 
-    /// The solid of a scene, a `text` in the language that OpenSCAD writes as `.csg`; files that it names lie
-    /// in `folder`, and `max_bytes` refuses longer ones.
+    /// Reads the solid of a scene. `text` is in the language that OpenSCAD writes as `.csg`. Files that it
+    /// names lie in `folder`; files longer than `max_bytes` are refused.
     ///
     /// >>> Csg.from_scene("difference() { cube([4, 4, 4]); cylinder(h = 9, r = 1); }").bounds[1]
     /// array([4., 4., 4.])
@@ -329,22 +331,22 @@ impl Csg {
         Ok(format!("Csg.{name}({})", told.join(", ")))
     }
 
-    /// By how it was made: names and numbers, and the solids in it.
+    /// Pickles the recipe: names, numbers, and the solids in the expression.
     fn __reduce__<'py>(slf: &Bound<'py, Self>) -> PyResult<(Bound<'py, PyAny>, Bound<'py, PyAny>)> {
         let again = from_package!(slf.py(), "leafless._pickle", "csg")?;
         Ok((again, (steps(slf)?,).into_bound_py_any(slf.py())?))
     }
 
-    // Like a tuple, an expression never changes, so that each cycle through it has an object that the
+    // Like a tuple, an expression never changes. So each cycle through it contains another object that the
     // collector can clear.
     fn __traverse__(&self, visit: PyVisit<'_>) -> Result<(), PyTraverseError> {
         visit.call(&self.recipe.1)
     }
 }
 
-/// The recipe of an expression as a list of steps, each a name and arguments, that needs no recursion. An
-/// expression among the arguments is the number of the step that made it, and has one step however often it
-/// occurs.
+/// Returns the recipe of an expression as a list of steps, each a name and arguments, so that restoring needs
+/// no recursion. An expression among the arguments is the number of the step that made it. It has one step
+/// however often it occurs.
 fn steps<'py>(whole: &Bound<'py, Csg>) -> PyResult<Bound<'py, PyList>> {
     let py = whole.py();
     let steps = PyList::empty(py);
@@ -372,26 +374,26 @@ fn steps<'py>(whole: &Bound<'py, Csg>) -> PyResult<Bound<'py, PyList>> {
     Ok(steps)
 }
 
-/// What the library calls the ends of an axis, and the radii there.
+/// The library's names of the ends of an axis, and of the radii there.
 const ENDS: [(&str, &str); 3] = [("from", "start"), ("to", "end"), ("radius", "radii")];
 
-/// The ends of an axis.
+/// Reads the ends of an axis, which must differ.
 fn ends(start: &Bound<'_, PyAny>, end: &Bound<'_, PyAny>) -> PyResult<[[f64; 3]; 2]> {
     let (a, b) = (triple(start, "start")?, triple(end, "end")?);
     if a == b { Err(refused(start.py(), "end", "must be another point than start")) } else { Ok([a, b]) }
 }
 
-/// Whether a number is zero or of a magnitude that the library computes with.
+/// Returns whether a number is zero or has a magnitude that the library supports.
 fn is_fit(number: f64) -> bool {
     number == 0.0 || (2f64.powi(-256)..=2f64.powi(256)).contains(&number.abs())
 }
 
-/// The name of the height that is refused.
+/// Names the height that is refused.
 fn height(low: f64) -> impl Fn(Error) -> Error {
     called([("height", if is_fit(low) { "high" } else { "low" })])
 }
 
-/// Solids as expressions.
+/// Reads solids as expressions.
 fn all(solids: &Bound<'_, PyTuple>, name: &str) -> PyResult<Vec<Expression>> {
     solids.iter().map(|solid| expression(&solid, name)).collect()
 }

@@ -23,10 +23,10 @@ use std::path::PathBuf;
 /// The default depth of a model: 256 rays along each axis of a face.
 const DEPTH: u8 = 8;
 
-/// A solid as intervals along the rays of a lattice, whose ends are far finer than cells.
+/// A solid as intervals along the rays of a lattice. The ends of intervals are far finer than cells.
 ///
-/// `|`, `&`, `-`, `^` and `~` merge the intervals of models on one frame. Rays see nothing of what lies
-/// between them, so that a model proves nothing: `solid()` is the surface that marching cubes makes of it.
+/// `|`, `&`, `-`, `^` and `~` merge the intervals of models on one frame. A model proves nothing, because
+/// rays miss everything between them. `solid()` returns the solid inside the surface of marching cubes.
 ///
 /// >>> model = dexelize(Csg.ball([0, 0, 0], 1), depth=6)
 /// >>> round(model.volume(), 3)
@@ -34,7 +34,7 @@ const DEPTH: u8 = 8;
 #[pyclass(frozen, weakref, module = "leafless")]
 pub struct TriDexel {
     pub model: Inner,
-    /// The file that it is mapped from, with the checksum of its header.
+    /// The mapped file, with the checksum of its header.
     pub mapped: Option<(PathBuf, u64)>,
 }
 
@@ -43,7 +43,7 @@ impl TriDexel {
         TriDexel { model, mapped: None }
     }
 
-    /// The refusal of an axis along which no rays run.
+    /// Returns the refusal of an axis along which no rays run.
     fn no_rays(&self, py: Python<'_>, axis: usize) -> PyErr {
         let problem = format!(
             "must be one along which rays run, 0, 1 or 2 for x, y and z, not {axis}; rays of this model run along {}",
@@ -52,7 +52,7 @@ impl TriDexel {
         refused(py, "axis", problem)
     }
 
-    /// Any number of models, combined.
+    /// Combines any number of models.
     fn all_combined(
         models: &Bound<'_, PyTuple>,
         limits: Option<&Bound<'_, PyDict>>,
@@ -78,26 +78,26 @@ impl TriDexel {
 
 #[pymethods]
 impl TriDexel {
-    /// The model of a file's bytes, `data`.
+    /// Reads a model from the bytes of a file, `data`.
     #[staticmethod]
     fn from_bytes(py: Python<'_>, #[pyo3(from_py_with = named::data)] data: &[u8]) -> PyResult<TriDexel> {
         py.detach(|| leafless::file::dexels::from_bytes(data)).or_raise(py).map(TriDexel::new)
     }
 
-    /// The bytes of its file.
+    /// Returns the bytes of the model's file.
     fn to_bytes<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyBytes>> {
         let bytes = py.detach(|| leafless::file::dexels::to_bytes(&self.model)).or_raise(py)?;
         Ok(PyBytes::new(py, &bytes))
     }
 
-    /// The union of any number of `models` on one frame, as `|` makes it of two.
+    /// Returns the union of any number of `models` on one frame, as `|` does for two.
     #[staticmethod]
     #[pyo3(signature = (*models, **limits))]
     fn union_of(models: &Bound<'_, PyTuple>, limits: Option<&Bound<'_, PyDict>>) -> PyResult<TriDexel> {
         TriDexel::all_combined(models, limits, Inner::union_of)
     }
 
-    /// What any number of `models` on one frame have in common, as `&` makes it of two.
+    /// Returns the intersection of any number of `models` on one frame, as `&` does for two.
     #[staticmethod]
     #[pyo3(signature = (*models, **limits))]
     fn intersection_of(
@@ -107,21 +107,22 @@ impl TriDexel {
         TriDexel::all_combined(models, limits, Inner::intersection_of)
     }
 
-    /// The first of the `models` without the others, as `-` makes it of two.
+    /// Returns the first of the `models` without the others, as `-` does for two.
     #[staticmethod]
     #[pyo3(signature = (*models, **limits))]
     fn difference_of(models: &Bound<'_, PyTuple>, limits: Option<&Bound<'_, PyDict>>) -> PyResult<TriDexel> {
         TriDexel::all_combined(models, limits, Inner::difference_of)
     }
 
-    /// What an odd number of the `models` contain, as `^` makes it of two.
+    /// Returns the symmetric difference: the parts that lie in an odd number of the `models`, as `^` does for
+    /// two.
     #[staticmethod]
     #[pyo3(signature = (*models, **limits))]
     fn xor_of(models: &Bound<'_, PyTuple>, limits: Option<&Bound<'_, PyDict>>) -> PyResult<TriDexel> {
         TriDexel::all_combined(models, limits, Inner::xor_of)
     }
 
-    /// What a `model` leaves of its frame, as `~model`.
+    /// Returns the complement of a `model` in its frame, as `~model`.
     #[staticmethod]
     #[pyo3(signature = (model, **limits))]
     fn complement_of(
@@ -138,27 +139,27 @@ impl TriDexel {
         Frame(*self.model.frame())
     }
 
-    /// Along which axes rays run: any of "x", "y" and "z".
+    /// The axes along which rays run: any of "x", "y" and "z".
     #[getter]
     fn directions(&self) -> String {
         let has = self.model.view().directions();
         ["x", "y", "z"].into_iter().zip(has).filter_map(|(name, has)| has.then_some(name)).collect()
     }
 
-    /// How many intervals there are.
+    /// The number of intervals.
     #[getter]
     fn interval_count(&self) -> u64 {
         self.model.view().interval_count()
     }
 
-    /// Bytes that the arrays take.
+    /// The size of the arrays (bytes).
     #[getter]
     fn nbytes(&self) -> u64 {
         self.model.view().bytes()
     }
 
-    /// The volume by the rays along an `axis`, 0, 1 or 2 for x, y and z (cubic model units): no bound, but
-    /// the sum of intervals.
+    /// Returns the sum of the intervals along an `axis`, 0, 1 or 2 for x, y and z, as a volume (cubic model
+    /// units). It is an estimate, not a bound.
     #[pyo3(signature = (axis=2))]
     fn volume(&self, py: Python<'_>, #[pyo3(from_py_with = named::axis)] axis: usize) -> PyResult<f64> {
         match py.detach(|| self.model.view().statistics(axis)) {
@@ -167,9 +168,9 @@ impl TriDexel {
         }
     }
 
-    /// The intervals along an `axis` (0, 1 or 2 for x, y and z) as arrays: `ray` (indices of the ray on the
-    /// other two axes, the lower first) of shape (n, 2), `start` and `end` (coordinates) of shape (n,), and
-    /// `material` of shape (n,).
+    /// Returns the intervals along an `axis` (0, 1 or 2 for x, y and z) as arrays: `ray` of shape (n, 2)
+    /// holds the indices of the ray on the other two axes, the lower axis first. `start` and `end`
+    /// (coordinates) and `material` have the shape (n,).
     fn rays<'py>(
         &self,
         py: Python<'py>,
@@ -204,7 +205,8 @@ impl TriDexel {
         ))
     }
 
-    /// The surface: by dual contouring, with sharp edges, if the model keeps normals, else by marching cubes.
+    /// Makes the surface: by dual contouring, with sharp edges, if the model keeps normals, else by marching
+    /// cubes.
     #[pyo3(signature = (**limits))]
     fn surface<'py>(
         &self,
@@ -219,8 +221,8 @@ impl TriDexel {
         Mesh::bound(py, mesh, FillRule::NonZero, None, None)
     }
 
-    /// The solid inside of the surface that marching cubes finds, which is taken for the truth: a
-    /// `DexelSolid`.
+    /// Returns the solid inside the surface of marching cubes, as a `DexelSolid`. Its answers treat this
+    /// surface as the truth.
     #[pyo3(signature = (**limits))]
     fn solid<'py>(
         slf: &Bound<'py, Self>,
@@ -234,8 +236,8 @@ impl TriDexel {
         Bound::new(py, PyClassInitializer::from(Solid::new(given)).add_subclass(solid))
     }
 
-    /// The octree of the samples that rays decide; with `by_ends=True` cells in which rays begin or end stay
-    /// undecided.
+    /// Returns the octree of the samples that the rays decide. With `by_ends=True`, cells in which rays begin
+    /// or end stay undecided.
     #[pyo3(signature = (*, by_ends=false, **limits))]
     fn to_octree<'py>(
         &self,
@@ -295,7 +297,7 @@ impl TriDexel {
         format!("<TriDexel: depth {depth}, directions {}, {count} intervals>", self.directions())
     }
 
-    /// By the bytes of its file; of a mapped one by the path and a checksum.
+    /// Pickles the bytes of the file; for a mapped model the path and a checksum.
     fn __reduce__<'py>(&self, py: Python<'py>) -> PyResult<(Bound<'py, PyAny>, Bound<'py, PyAny>)> {
         match &self.mapped {
             Some((path, checksum)) => {
@@ -310,8 +312,8 @@ impl TriDexel {
     }
 }
 
-/// The solid inside of the surface that marching cubes finds in a tri-dexel model, which is taken for the
-/// truth: `model.solid()`.
+/// The solid inside the surface that marching cubes makes of a tri-dexel model: `model.solid()`. Its answers
+/// treat this surface as the truth.
 #[pyclass(extends = Solid, frozen, module = "leafless")]
 pub struct DexelSolid {
     model: Py<TriDexel>,
@@ -319,7 +321,7 @@ pub struct DexelSolid {
 
 #[pymethods]
 impl DexelSolid {
-    /// The model.
+    /// The tri-dexel model.
     #[getter]
     fn model(&self, py: Python<'_>) -> Py<TriDexel> {
         self.model.clone_ref(py)
@@ -335,19 +337,22 @@ impl DexelSolid {
     }
 }
 
-/// A tri-dexel model of a `solid`: where the rays through the centres of cells run inside.
+/// Makes a tri-dexel model of a `solid`: the intervals in which the rays through the centres of cells run
+/// inside.
 ///
-/// `frame` is a `Frame`, or an octree that has it: its cube and its cells are those of the lattice. Without
-/// it, the frame is a cube around the solid. `depth` replaces the frame's depth; a cube around the solid has
-/// the depth 8 by default, which means 256 × 256 rays along an axis.
+/// `frame` is a `Frame`, or an octree on that frame. Its cube and its cells are those of the lattice. Without
+/// it, the frame is a cube around the solid. `depth` replaces the frame's depth. A cube around the solid has
+/// the depth 8 by default, which gives 256 × 256 rays along an axis.
 ///
-/// `directions` are the axes along which rays run: some of the letters "xyz". With the `rule` "sampled", the
-/// default, intervals are those of the solid on each ray; with "inner" those of its FULL cells, and with
-/// "outer" those of all cells that are not EMPTY. ("certified" is refused: an interval cannot be undecided.)
+/// `directions` are the axes along which rays run: some of the letters "xyz". `rule` defines the intervals.
+/// "sampled", the default, takes the intervals of the solid on each ray. "inner" takes the FULL cells of the
+/// solid, and "outer" all cells that are not EMPTY. "certified" is refused, because an interval cannot be
+/// undecided.
 ///
-/// `normals` keeps the surface's normals at the ends, in 16 or 32 bits, so that surfaces have sharp edges; 0,
-/// the default, keeps none. `surfaces=True` keeps the numbers of the source's surfaces. `doubles=True` stores
-/// ends as doubles, in twice the memory; else they are off by up to 2^-31 of the frame's edge.
+/// `normals` is the number of bits, 16 or 32, in which the surface's normals at the ends are kept, so that
+/// surfaces have sharp edges. The default, 0, keeps none. `surfaces=True` keeps the numbers of the source's
+/// surfaces. `doubles=True` stores ends as doubles, in twice the memory; otherwise they are off by up to
+/// 2^-31 of the frame's edge.
 #[pyfunction]
 #[pyo3(signature = (
     solid, frame=None, *, depth=None, directions="xyz", rule="sampled", normals=0, surfaces=false, doubles=false, **limits

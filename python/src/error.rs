@@ -1,4 +1,5 @@
-//! Errors of the library as exceptions of Python, and exceptions that pass through the library.
+//! Conversion between errors of the library and Python exceptions, and exceptions that pass through the
+//! library.
 
 use crate::from_package;
 use leafless::Error;
@@ -7,13 +8,14 @@ use pyo3::prelude::*;
 use std::sync::atomic::{AtomicI32, Ordering::Relaxed};
 use std::sync::{Mutex, PoisonError};
 
-/// Exceptions of shapes written in Python, with the codes under which the library hands them on.
+/// Exceptions raised by shapes written in Python, with the codes under which the library passes them on.
 static RAISED: Mutex<Vec<(i32, PyErr)>> = Mutex::new(Vec::new());
 
-/// Most exceptions that are kept: of threads that fail at one time only the first is asked for again.
+/// The maximum number of kept exceptions. If several threads fail at a time, only the first exception is
+/// retrieved.
 const MOST_RAISED: usize = 64;
 
-/// The library's error that stands for an exception, until [`raised`] turns it back.
+/// Returns the library's error that stands for an exception, until [`raised`] converts it back.
 pub fn carried(error: PyErr) -> Error {
     static NEXT: AtomicI32 = AtomicI32::new(1);
     let code = NEXT.fetch_add(1, Relaxed);
@@ -25,7 +27,8 @@ pub fn carried(error: PyErr) -> Error {
     Error::Callback { code }
 }
 
-/// The exception of an error: the one that a function in Python raised, or one with the library's message.
+/// Returns the exception of an error: the one that a Python function raised, or one with the library's
+/// message.
 pub fn raised(py: Python<'_>, error: Error) -> PyErr {
     if let Error::Callback { code } = error {
         let mut kept = RAISED.lock().unwrap_or_else(PoisonError::into_inner);
@@ -38,7 +41,7 @@ pub fn raised(py: Python<'_>, error: Error) -> PyErr {
         Error::OutOfMemory => return PyMemoryError::new_err(message),
         Error::Io(cause) => {
             return match cause.raw_os_error() {
-                // Python makes of the number the class that fits, such as FileNotFoundError.
+                // Python derives the class from the number, such as FileNotFoundError.
                 Some(code) => PyOSError::new_err((code, message)),
                 None => PyOSError::new_err(message),
             };
@@ -63,9 +66,9 @@ pub fn raised(py: Python<'_>, error: Error) -> PyErr {
     }
 }
 
-/// Results of the library as results of Python.
+/// Conversion of the library's results to Python's.
 pub trait OrRaise<T> {
-    /// What was found, or the exception of the error.
+    /// Returns the value, or the exception of the error.
     fn or_raise(self, py: Python<'_>) -> PyResult<T>;
 }
 
@@ -75,7 +78,7 @@ impl<T> OrRaise<T> for Result<T, Error> {
     }
 }
 
-/// Gives parameters of the library the names that they have in Python.
+/// Renames parameters of the library to their names in Python.
 pub fn called<const N: usize>(names: [(&'static str, &'static str); N]) -> impl Fn(Error) -> Error {
     move |error| match error {
         Error::Argument { name, problem } => {
@@ -86,7 +89,7 @@ pub fn called<const N: usize>(names: [(&'static str, &'static str); N]) -> impl 
     }
 }
 
-/// An exception about an argument, in the library's manner.
+/// Returns an exception about an argument, in the form of the library's messages.
 pub fn refused(py: Python<'_>, name: &str, problem: impl std::fmt::Display) -> PyErr {
     let class = from_package!(py, "leafless._errors", "ArgumentError");
     match class.and_then(|class| class.call1((format!("{name}: {problem}"),))) {

@@ -1,4 +1,4 @@
-//! Files: Leafless's own, and those of other programs.
+//! Reading and writing of files: Leafless's own and those of other programs.
 
 use crate::arguments::{Argument, named};
 use crate::csg::Csg;
@@ -27,11 +27,11 @@ use std::ffi::CString;
 use std::io::{Read as _, Write as _};
 use std::path::{Path, PathBuf};
 
-/// Bytes of a file's header, and where its checksum stands, which covers those of all sections.
+/// The size of a file's header, and the place of its checksum, which covers the checksums of all sections.
 const HEADER: usize = 128;
 const CHECKSUM: std::ops::Range<usize> = 124..128;
 
-/// What files are taken for.
+/// The kinds of content.
 #[derive(Clone, Copy)]
 enum Content {
     Solid,
@@ -40,7 +40,7 @@ enum Content {
     Scene,
 }
 
-/// What the bytes of a file are: the content decides where it tells, then the name.
+/// Detects the kind of a file: from the content where that is conclusive, else from the name.
 fn content(bytes: &[u8], name: &Path) -> Option<Content> {
     let extension = name.extension().and_then(|extension| extension.to_str()).unwrap_or_default();
     if bytes.starts_with(&file::MAGIC) || extension == "lfl" {
@@ -56,8 +56,8 @@ fn content(bytes: &[u8], name: &Path) -> Option<Content> {
     }
 }
 
-/// How meshes and volumes in files are taken: `fill`, `unit`, `to_unit`, `scale`, `sew`, `threshold`; and
-/// limits.
+/// The keyword arguments for reading meshes and volumes: `fill`, `unit`, `to_unit`, `scale`, `sew`,
+/// `threshold`; and limits.
 struct Taking<'py> {
     fill: leafless::FillRule,
     options: MeshOptions,
@@ -99,8 +99,8 @@ impl<'py> Taking<'py> {
     }
 }
 
-/// The object in the bytes of a file. `name` tells the format where the content does not, and is what errors
-/// name; other files that it names lie in `folder`.
+/// Reads the object in the bytes of a file. `name` gives the format where the content does not, and errors
+/// contain it. Other files that the file names lie in `folder`.
 #[pyfunction]
 #[pyo3(signature = (data, name, folder=None, **taking))]
 pub fn open_bytes<'py>(
@@ -138,7 +138,7 @@ fn unknown(py: Python<'_>, name: &Path) -> PyErr {
     refused(py, "path", format!("{name}: neither the content nor the name is that of {kinds}"))
 }
 
-/// The object in the file at a path.
+/// Reads the object in the file at a path.
 #[pyfunction]
 #[pyo3(signature = (path, **taking))]
 pub fn open_path<'py>(
@@ -149,7 +149,7 @@ pub fn open_path<'py>(
     let taken = Taking::of(py, taking)?;
     let limits = &taken.limits;
     let (bytes, content) = limits.run_here(py, |control| {
-        // (A pipe does not tell its length.)
+        // A pipe has no known length.
         let length = std::fs::metadata(&path).map_or(0, |metadata| metadata.len());
         afford(control, "the file", length)?;
         let bytes = exchange::read_whole(&path).map_err(|error| error.of_file(&path))?;
@@ -161,7 +161,7 @@ pub fn open_path<'py>(
         return found.into_object(py, None);
     }
     if let Some(Content::Volume) = content {
-        // Samples may lie in a file beside the header.
+        // Samples may lie in a separate file beside the header.
         let found = py.detach(|| exchange::open_volume(&path)).or_raise(py)?;
         return volume(py, found, &taken, note::threshold(&bytes));
     }
@@ -184,7 +184,7 @@ impl Stored {
     }
 }
 
-/// The solid of one kind, or of the other if it is no file of the first.
+/// Reads a solid of the first kind, or of the second if the file is not of the first.
 fn either(
     octree: impl FnOnce() -> Result<leafless::Octree, Error>,
     model: impl FnOnce() -> Result<leafless::TriDexel, Error>,
@@ -201,10 +201,9 @@ fn stored(bytes: &[u8]) -> Result<Stored, Error> {
     either(|| file::from_bytes(bytes), || dexels::from_bytes(bytes))
 }
 
-/// The solid in a Leafless file, mapped: nothing is copied, and only what is asked for is ever read. The file
-/// may be replaced, but must not be shortened or written to as long as the object is there. `verify=True`
-/// looks for damage first, which reads all of it; `checksum` refuses the file if it is another than the one
-/// with this checksum.
+/// Maps the solid in a Leafless file. Nothing is copied, and only the queried parts are ever read. While the
+/// object lives, the file may be replaced, but must not be shortened or written to. `verify=True` looks for
+/// damage first, which reads the whole file. `checksum` refuses a file with another checksum.
 #[pyfunction]
 #[pyo3(name = "map_path", signature = (path, *, verify=false, checksum=None))]
 pub fn map_path<'py>(
@@ -217,15 +216,14 @@ pub fn map_path<'py>(
     let (own, found) = py.detach(|| {
         let before = header_checksum(&path);
         let found = either(
-            // SAFETY: that the file is not shortened or written to is what `leafless.map` asks of its
-            // callers.
+            // SAFETY: `leafless.map` requires that callers neither shorten the file nor write to it.
             #[allow(unsafe_code)]
             || unsafe { if verify { file::map_verified(&path) } else { file::map(&path) } },
             // SAFETY: as above.
             #[allow(unsafe_code)]
             || unsafe { if verify { dexels::map_verified(&path) } else { dexels::map(&path) } },
         );
-        // Of a file that was replaced in between nobody knows which one is mapped.
+        // If the file was replaced in between, the mapped file is not known.
         (before.filter(|_| header_checksum(&path) == before), found)
     });
     let found = found.or_raise(py)?;
@@ -236,10 +234,10 @@ pub fn map_path<'py>(
     found.into_object(py, own.map(|own| (path, own)))
 }
 
-/// The checksum in the header of a file, which covers those of all sections; nothing of a file that has no
+/// Returns the checksum in the header of a file, which covers the checksums of all sections; `None` without a
 /// header.
 fn header_checksum(path: &Path) -> Option<u64> {
-    // Opening a pipe would wait for whoever writes to it.
+    // Opening a pipe would wait for its writer.
     std::fs::metadata(path).ok().filter(std::fs::Metadata::is_file)?;
     let mut header = [0; HEADER];
     std::fs::File::open(path).and_then(|mut file| file.read_exact(&mut header)).ok()?;
@@ -256,7 +254,7 @@ fn mesh<'py>(py: Python<'py>, found: MeshFile, taking: &Taking<'py>) -> PyResult
     Ok(Mesh::bound(py, mesh, taking.fill, unit, None)?.into_any())
 }
 
-/// The volume in a file, whose header may tell the threshold that it was saved with.
+/// Makes the volume of a file. `saved` is the threshold in the file's header, if there is one.
 fn volume<'py>(
     py: Python<'py>,
     found: VolumeFile,
@@ -273,12 +271,12 @@ fn volume<'py>(
     let volume = Bound::new(py, Volume::initial(volume, false, false, told)?)?.into_any();
     match found.placement {
         None => Ok(volume),
-        // Axes that are not x, y and z make an expression of it.
+        // A volume with other axes than x, y and z becomes an expression.
         Some(placement) => volume.call_method1("placed", (crate::affine::Affine(placement),)),
     }
 }
 
-/// The solid of a scene.
+/// Reads the solid of a scene.
 pub fn scene<'py>(
     py: Python<'py>,
     text: &str,
@@ -286,7 +284,7 @@ pub fn scene<'py>(
     name: &Path,
     limits: &Limits,
 ) -> PyResult<Bound<'py, PyAny>> {
-    // The recipe must find the files from anywhere.
+    // The recipe must find the files from any working directory.
     let here = |folder: &Path| {
         std::path::absolute(if folder.as_os_str().is_empty() { Path::new(".") } else { folder })
     };
@@ -297,7 +295,7 @@ pub fn scene<'py>(
         options.max_bytes = control.max_bytes;
         let scene = options.read(text, folder).map_err(|error| error.of_file(name))?;
         let (min, max) = scene.bounds()?.unwrap_or(([0.0; 3], [1.0; 3]));
-        // Octrees in it lie on a frame; all else can be asked on any.
+        // Octrees in the scene lie on a frame; other solids can be queried on any.
         let frame = Frame::fitted(min, max, MAX_DEPTH).or_else(|_| Frame::new([0.0; 3], 1.0, MAX_DEPTH))?;
         scene.solid(&frame)
     })?;
@@ -305,8 +303,8 @@ pub fn scene<'py>(
     Ok(Csg::made(py, whole, "from_scene", recipe)?.into_any())
 }
 
-/// Writes an object to the file at a path, whose name tells the format: at any moment there is the old file
-/// or the new one.
+/// Writes an object to the file at a path, whose name gives the format. The file is replaced atomically: at
+/// any moment it is the old file or the new one.
 #[pyfunction]
 pub fn save_path(object: &Bound<'_, PyAny>, path: PathBuf) -> PyResult<()> {
     let py = object.py();
@@ -328,7 +326,7 @@ pub fn save_path(object: &Bound<'_, PyAny>, path: PathBuf) -> PyResult<()> {
     Limits::default().run(py, |_| file::replace(&path, |file| Ok(file.write_all(bytes)?)))
 }
 
-/// The bytes of the file that an object is saved in, in the format that the name tells.
+/// Returns the bytes of an object's file, in the format that the name gives.
 #[pyfunction]
 pub fn save_bytes<'py>(object: &Bound<'py, PyAny>, name: PathBuf) -> PyResult<Bound<'py, PyBytes>> {
     let py = object.py();

@@ -1,4 +1,4 @@
-//! Where an octree lies, and how deep it may go.
+//! The frame: the cube of an octree, and its depth.
 
 use crate::arguments::{Deep, Depth, Level, named};
 use crate::arrays::{self, Rows, doubles, shape_text, triple};
@@ -9,9 +9,9 @@ use numpy::{PyArrayMethods, PyUntypedArrayMethods};
 use pyo3::IntoPyObjectExt;
 use pyo3::prelude::*;
 
-/// A cube in model space, the *universe*, and how often it may be halved: the lattice of an octree. Its lower
-/// corner is `origin` and its length `edge` (model units); it has 2^`depth` cells along each axis, `depth`
-/// from 1 to 20.
+/// The lattice of an octree: a cube in model space, the *universe*, and the number of times that it may be
+/// halved. `origin` is the lower corner and `edge` the length of the cube (model units). The cube has
+/// 2^`depth` cells along each axis, with `depth` from 1 to 20.
 ///
 /// >>> frame = Frame([0, 0, 0], 128.0, depth=10)
 /// >>> frame.cells, frame.cell_size
@@ -24,8 +24,8 @@ pub struct Frame(pub Inner);
 
 #[pymethods]
 impl Frame {
-    /// The cube with the lower corner `origin` and the length `edge` (model units), in 2^`depth` cells along
-    /// each axis, `depth` from 1 to 20.
+    /// Makes the frame with the lower corner `origin` and the length `edge` (model units), in 2^`depth` cells
+    /// along each axis, `depth` from 1 to 20.
     #[new]
     #[pyo3(signature = (origin, edge, depth))]
     fn new(
@@ -37,7 +37,8 @@ impl Frame {
         Inner::new(triple(origin, "origin")?, edge, depth.0).or_raise(py).map(Frame)
     }
 
-    /// A cube around `bounds` (lower and upper corner), somewhat larger than these, of a `depth`.
+    /// Returns a frame of a `depth` around `bounds` (lower and upper corner), somewhat larger than the
+    /// bounds.
     #[staticmethod]
     #[pyo3(signature = (bounds, depth=Deep(MAX_DEPTH)), text_signature = "(bounds, depth=20)")]
     fn around(
@@ -48,8 +49,9 @@ impl Frame {
         Inner::around(min, max, depth.0).map_err(called(CORNERS)).or_raise(bounds.py()).map(Frame)
     }
 
-    /// A cube around `bounds` whose planes are round numbers, as near as the bounds allow, of a `depth`: for
-    /// parts with round dimensions, whose plane faces then lie in planes of the lattice.
+    /// Returns a frame of a `depth` around `bounds` that suits parts with round dimensions. If the bounds
+    /// allow it, the lattice planes are round numbers, and plane faces of such parts lie in them. Otherwise
+    /// the frame is that of `around`.
     #[staticmethod]
     #[pyo3(signature = (bounds, depth=Deep(MAX_DEPTH)), text_signature = "(bounds, depth=20)")]
     fn fitted(
@@ -60,7 +62,7 @@ impl Frame {
         Inner::fitted(min, max, depth.0).map_err(called(CORNERS)).or_raise(bounds.py()).map(Frame)
     }
 
-    /// A cube around `bounds` with finest cells of the edge `cell`.
+    /// Returns a frame around `bounds` whose finest cells have the edge `cell`.
     #[staticmethod]
     fn with_cells(
         bounds: &Bound<'_, PyAny>,
@@ -70,7 +72,7 @@ impl Frame {
         Inner::with_cells(min, max, cell).map_err(called(CORNERS)).or_raise(bounds.py()).map(Frame)
     }
 
-    /// The same cube with another `depth`.
+    /// Returns the same cube with another `depth`.
     fn with_depth(
         &self,
         py: Python<'_>,
@@ -85,19 +87,19 @@ impl Frame {
         self.0.origin().into()
     }
 
-    /// The length of an edge (model units).
+    /// The length of the cube's edge (model units).
     #[getter]
     fn edge(&self) -> f64 {
         self.0.edge()
     }
 
-    /// How often the cube may be halved.
+    /// The number of times that the cube may be halved.
     #[getter]
     fn depth(&self) -> u8 {
         self.0.depth()
     }
 
-    /// Finest cells along an edge: 2^depth.
+    /// The number of finest cells along an edge: 2^depth.
     #[getter]
     fn cells(&self) -> u32 {
         self.0.cells()
@@ -109,8 +111,8 @@ impl Frame {
         self.0.cell_size()
     }
 
-    /// The cells of a `level` in which `points` (shape (n, 3)) lie, by their codes (places in Morton order):
-    /// an array of type uint64, with 2^64 - 1 for a point outside of the cube. A point on a wall lies in the
+    /// Returns the codes (Morton order) of the cells of a `level` that contain `points` (shape (n, 3)): an
+    /// array of type uint64. A point outside the cube has the code 2^64 - 1. A point on a wall belongs to the
     /// cell behind it.
     fn codes<'py>(
         &self,
@@ -147,7 +149,7 @@ impl Frame {
     }
 }
 
-/// A lower and an upper corner.
+/// Reads a lower and an upper corner.
 pub fn corners(given: &Bound<'_, PyAny>, name: &str) -> PyResult<[[f64; 3]; 2]> {
     let array = doubles(given, name)?;
     match (array.shape(), array.readonly().as_slice()?) {
@@ -160,7 +162,7 @@ pub fn corners(given: &Bound<'_, PyAny>, name: &str) -> PyResult<[[f64; 3]; 2]> 
     }
 }
 
-/// A level that a frame must have.
+/// Returns a level, or refuses one below the depth of the frame.
 pub fn level_of(py: Python<'_>, frame: &Inner, Deep(level): Level) -> PyResult<u8> {
     if level <= frame.depth() {
         return Ok(level);
@@ -169,10 +171,10 @@ pub fn level_of(py: Python<'_>, frame: &Inner, Deep(level): Level) -> PyResult<u
     Err(refused(py, "level", problem))
 }
 
-/// What the library calls the corners of bounds.
+/// The library's names of the corners of bounds.
 pub const CORNERS: [(&str, &str); 2] = [("min", "bounds"), ("max", "bounds")];
 
-/// A hash of a frame: equal frames have equal ones.
+/// Returns a hash of a frame. Equal frames have equal hashes.
 pub fn hash(frame: &Inner) -> u64 {
     let numbers = frame.origin().into_iter().chain([frame.edge()]);
     numbers.fold(frame.depth().into(), |hash: u64, x| hash.rotate_left(13) ^ (x + 0.0).to_bits())

@@ -9,10 +9,10 @@ use pyo3::IntoPyObjectExt;
 use pyo3::basic::CompareOp;
 use pyo3::prelude::*;
 
-/// Two numbers, `lower` and `upper`, between which the truth lies: proven.
+/// An interval that is proven to contain the truth: two numbers, `lower` and `upper`.
 ///
-/// It prints the digits that mean something, and `in` asks whether a number is possible. A format of numbers
-/// is one of both ends, which are rounded outward, so that what is printed contains the truth.
+/// An interval prints its significant digits. `in` tests whether a number is possible. A number format
+/// applies to both ends, which are rounded outward, so the text contains the truth.
 ///
 /// >>> volume = Interval(171000.0, 172000.0)
 /// >>> volume
@@ -22,8 +22,8 @@ use pyo3::prelude::*;
 /// >>> 171234.5 in volume, volume.lower, volume.upper
 /// (True, 171000.0, 172000.0)
 ///
-/// `<`, `<=`, `>` and `>=` are true only if they hold for all that the interval contains. So `volume < 2e5`
-/// is a proof, and both `volume < 171500` and `volume > 171500` are false. `==` compares the ends of two
+/// `<`, `<=`, `>` and `>=` are true only if they hold for every number in the interval. So `volume < 2e5` is
+/// a proof, and both `volume < 171500` and `volume > 171500` are false. `==` compares the ends of two
 /// intervals; an interval equals no number.
 ///
 /// >>> volume < 2e5, volume < 171500, volume > 171500
@@ -34,7 +34,7 @@ pub struct Interval(pub Bounds);
 
 #[pymethods]
 impl Interval {
-    /// The interval from `lower` to `upper`; of one number that number.
+    /// Makes the interval from `lower` to `upper`. With one number the interval is that number.
     #[new]
     #[pyo3(signature = (lower, upper=None))]
     fn new(
@@ -52,25 +52,25 @@ impl Interval {
         })
     }
 
-    /// Nothing below is possible.
+    /// The lower end: no smaller number is possible.
     #[getter]
     fn lower(&self) -> f64 {
         self.0.lower
     }
 
-    /// Nothing above is possible.
+    /// The upper end: no greater number is possible.
     #[getter]
     fn upper(&self) -> f64 {
         self.0.upper
     }
 
-    /// How far apart the ends are.
+    /// The width: upper minus lower.
     #[getter]
     fn width(&self) -> f64 {
         self.0.width()
     }
 
-    /// The number half-way between the ends.
+    /// The midpoint.
     #[getter]
     fn middle(&self) -> f64 {
         0.5 * self.0.lower + 0.5 * self.0.upper
@@ -80,7 +80,7 @@ impl Interval {
         self.0.contains(value)
     }
 
-    /// Lower and upper, so that `low, high = interval` works.
+    /// Iterates over lower and upper, so that `low, high = interval` works.
     fn __iter__<'py>(slf: &Bound<'py, Self>) -> PyResult<Bound<'py, PyAny>> {
         let ends = (slf.get().0.lower, slf.get().0.upper).into_pyobject(slf.py())?;
         ends.call_method0("__iter__")
@@ -121,8 +121,8 @@ impl Interval {
         self.0.to_string()
     }
 
-    /// Both ends by a format of numbers, as in `f"{volume:.3f}"`, the lower one rounded down and the upper
-    /// one rounded up.
+    /// Formats both ends like numbers, as in `f"{volume:.3f}"`: the lower end is rounded down, the upper end
+    /// up.
     fn __format__<'py>(&self, py: Python<'py>, spec: &str) -> PyResult<Bound<'py, PyAny>> {
         if spec.is_empty() {
             return self.0.to_string().into_bound_py_any(py);
@@ -135,7 +135,7 @@ impl Interval {
     }
 }
 
-/// Intervals in an array of a shape, as the package's class `Intervals` has them.
+/// Returns an array of intervals as an object of the package's class `Intervals`.
 pub fn intervals<'py>(
     py: Python<'py>,
     all: impl IntoIterator<Item = Bounds> + Send,

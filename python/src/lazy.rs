@@ -20,10 +20,11 @@ use pyo3::prelude::*;
 use pyo3::types::PyDict;
 use std::sync::{Mutex, MutexGuard, TryLockError};
 
-/// An octree that splits the cells of a `solid` that you ask about, and remembers them.
+/// An octree of a `solid` that splits cells only where you ask, and remembers them.
 ///
-/// `frame` is the cube where it lies: a `Frame`, or an octree that has it. Without it, it is a cube around
-/// the solid. With `resume`, it begins with what an octree knows that `freeze` made of the same solid.
+/// `frame` is the cube of the octree: a `Frame`, or an octree on that frame. Without it, it is a cube around
+/// the solid. With `resume`, the octree begins with the cells of an octree that `freeze` made of the same
+/// solid.
 ///
 /// >>> lazy = LazyOctree(Csg.ball([0, 0, 0], 1))
 /// >>> lazy.refine(level=4)
@@ -35,13 +36,13 @@ use std::sync::{Mutex, MutexGuard, TryLockError};
 #[pyclass(frozen, weakref, module = "leafless")]
 pub struct LazyOctree {
     lazy: Mutex<Inner<Prepared>>,
-    /// The object that has the shape.
+    /// The Python object of the solid, kept alive.
     solid: Py<PyAny>,
 }
 
 impl LazyOctree {
-    /// The octree, unless another call is at work on it: a shape's own method must not wait for the call that
-    /// called it.
+    /// Locks the octree, or fails if another call is working on it. A shape's own method must not wait for
+    /// the call that called it.
     fn lock(&self) -> PyResult<MutexGuard<'_, Inner<Prepared>>> {
         match self.lazy.try_lock() {
             Ok(lazy) => Ok(lazy),
@@ -53,14 +54,14 @@ impl LazyOctree {
     }
 }
 
-/// What the library calls the parts of zones.
+/// The library's names of the parts of zones.
 const ZONE: [(&str, &str); 5] =
     [("min", "bounds"), ("max", "bounds"), ("origin", "ray"), ("direction", "ray"), ("from", "ray")];
 
 #[pymethods]
 impl LazyOctree {
-    /// An octree that knows its universe only. With `resume`, it begins with what a frozen octree of the same
-    /// solid knows.
+    /// Makes an octree of one undecided cell. With `resume`, it begins with the cells of a frozen octree of
+    /// the same solid.
     #[new]
     #[pyo3(signature = (solid, frame=None, *, resume=None, **limits))]
     fn new(
@@ -88,8 +89,8 @@ impl LazyOctree {
     }
 
     /// Splits undecided cells down to a `level`: all of them, or those in a box (`bounds`), around a `point`,
-    /// or along a `ray` (origin and direction). True if all is done; false if a limit came first
-    /// (`max_splits`, `max_nodes`, `max_bytes`), and then what was found is kept.
+    /// or along a `ray` (origin and direction). Returns True when all is done. Returns False if a limit came
+    /// first (`max_splits`, `max_nodes`, `max_bytes`); the cells split so far are kept.
     #[pyo3(signature = (level, *, bounds=None, point=None, ray=None, **limits))]
     fn refine(
         &self,
@@ -122,7 +123,7 @@ impl LazyOctree {
         Ok(done == Refinement::Done)
     }
 
-    /// What is known of `points` (shape (n, 3)), without splitting.
+    /// Classifies `points` (shape (n, 3)) by the known cells, without splitting.
     fn contains<'py>(&self, points: &Bound<'py, PyAny>) -> PyResult<Bound<'py, PyAny>> {
         let py = points.py();
         let rows = crate::arrays::Rows::of(points, "points")?;
@@ -134,25 +135,25 @@ impl LazyOctree {
         crate::solid::memberships(py, &answers, rows.is_one)
     }
 
-    /// Where it lies.
+    /// The frame of the octree.
     #[getter]
     fn frame(&self) -> PyResult<Frame> {
         Ok(Frame(*self.lock()?.frame()))
     }
 
-    /// How many cells were split.
+    /// The number of cells that were split.
     #[getter]
     fn splits(&self) -> PyResult<u64> {
         Ok(self.lock()?.splits())
     }
 
-    /// Between which numbers the volume lies, as far as cells were split.
+    /// The interval of the volume that follows from the known cells.
     #[getter]
     fn volume(&self) -> PyResult<Interval> {
         Ok(Interval(self.lock()?.statistics().volume()))
     }
 
-    /// What is known, as an octree. It remembers the solid, and can be taken up again.
+    /// Returns the known cells as an octree. It remembers the solid, so that `resume` can continue from it.
     #[pyo3(signature = (**limits))]
     fn freeze<'py>(
         &self,

@@ -1,12 +1,12 @@
-//! The Python interface of Leafless. A class or a function of Python is some lines here: it takes Python's
-//! values, asks the library with the interpreter released, and hands back what was found. What is easier said
-//! in Python is in `package/leafless`.
+//! The Python interface of Leafless. Each class or function converts Python's values, calls the library with
+//! the interpreter released, and returns the results. Parts that are easier in Python are in
+//! `package/leafless`.
 //!
-//! From the bottom up: `error`, `work` (long work that can be watched and interrupted), `words` (what
-//! enumerations are called), `arguments` (what functions take), `arrays`, `interval`, `frame` and `affine`
-//! are what values are taken from; `solid` is the class of all that has a shape, and `ask` what is asked of
-//! it on which frame; `csg`, `mesh`, `octree` and the others are its kinds; `measures`, `pairs`, `surface`
-//! and `picture` are questions; `files` reads and writes, and `note` is what a volume adds to its file.
+//! From the bottom up: `error`, `work` (long operations that can be watched and interrupted), `words` (the
+//! names of enumeration values), `arguments`, `arrays`, `interval`, `frame` and `affine` (conversion of
+//! arguments), `solid` (the class of all solids), `ask` (the default frame of a query), `csg`, `mesh`,
+//! `octree` and the other kinds of solids, `measures`, `pairs`, `surface` and `picture` (queries), `files`
+//! (reading and writing), `note` (the threshold of a volume in its file).
 
 mod affine;
 mod anywhere;
@@ -39,7 +39,7 @@ mod work;
 
 use pyo3::prelude::*;
 
-/// What `leafless` re-exports.
+/// The extension module, which `leafless` re-exports.
 #[pymodule(gil_used = true)]
 mod _leafless {
     #[pymodule_export]
@@ -82,7 +82,7 @@ mod _leafless {
     use super::voxels::VoxelRecords;
 }
 
-/// The class or function of that name in a module of the package, looked up once.
+/// Returns a class or function of a module of the package, looked up once.
 macro_rules! from_package {
     ($py:expr, $module:literal, $name:literal) => {{
         static FOUND: pyo3::sync::PyOnceLock<pyo3::Py<pyo3::PyAny>> = pyo3::sync::PyOnceLock::new();

@@ -1,4 +1,5 @@
-//! Volumes, areas and boxes, as intervals that contain the truth.
+//! Measures of a solid: volume, centroid, inertia, area and bounding box, as intervals that contain the
+//! truth.
 
 use crate::arguments::{Depth, named};
 use crate::ask::{FrameLike, Wish};
@@ -15,7 +16,7 @@ use leafless::query;
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
 
-/// How narrow an interval is to be.
+/// Returns the tolerance for the width of an interval.
 pub fn wanted(py: Python<'_>, relative: f64, absolute: f64) -> PyResult<Tolerance> {
     if absolute.is_nan() || absolute < 0.0 {
         return Err(refused(
@@ -27,11 +28,12 @@ pub fn wanted(py: Python<'_>, relative: f64, absolute: f64) -> PyResult<Toleranc
     Ok(Tolerance { relative, absolute })
 }
 
-/// Measures a `solid`: volume, centroid and inertia, until the width of the volume's interval is `tolerance`
-/// of it, or at most `absolute` (cubic model units). Closed meshes are known to rounding at once.
+/// Measures volume, centroid and inertia of a `solid`. It ends when the width of the volume's interval is at
+/// most `tolerance` times the volume, or at most `absolute` (cubic model units). A closed mesh without
+/// intersecting triangles is measured to rounding at once.
 ///
-/// `frame` is the cube in which the solid is looked at: a `Frame`, or an octree that has it. Without it, it
-/// is a cube around the solid. `depth` replaces its depth.
+/// `frame` is the cube of the query: a `Frame`, or an octree on that frame. Without it, it is a cube around
+/// the solid. `depth` replaces the depth of the frame.
 ///
 /// >>> found = measure(Csg.ball([0, 0, 0], 1), tolerance=1e-6)
 /// >>> 4.18879020478639 in found.volume, 0.0 in found.centroid[2]
@@ -53,7 +55,7 @@ pub fn measure<'py>(
     told(py, &limits.run(py, |control| query::measure(&solid.shape, &frame, tolerance, control))?)
 }
 
-/// Mass properties as Python tells them.
+/// Converts mass properties to Python.
 pub fn told<'py>(py: Python<'py>, found: &query::MassProperties) -> PyResult<Bound<'py, PyAny>> {
     from_package!(py, "leafless._answers", "MassProperties")?.call1((
         Interval(found.volume),
@@ -68,11 +70,11 @@ pub fn told<'py>(py: Python<'py>, found: &query::MassProperties) -> PyResult<Bou
     ))
 }
 
-/// The area of the boundary of a `solid`, until the width of its interval is `tolerance` of it, or at most
-/// `absolute` (square model units).
+/// Measures the area of the boundary of a `solid`. It ends when the width of the interval is at most
+/// `tolerance` times the area, or at most `absolute` (square model units).
 ///
-/// `frame` is the cube in which the solid is looked at: a `Frame`, or an octree that has it. Without it, it
-/// is a cube around the solid. `depth` replaces its depth.
+/// `frame` is the cube of the query: a `Frame`, or an octree on that frame. Without it, it is a cube around
+/// the solid. `depth` replaces the depth of the frame.
 ///
 /// >>> 12.566370614359172 in surface_area(Csg.ball([0, 0, 0], 1), tolerance=0.01).area
 /// True
@@ -95,11 +97,11 @@ pub fn surface_area<'py>(
     answer.call1((Interval(found.area), found.clipped, words::word(found.stop_reason), found.splits))
 }
 
-/// The bounding box of a `solid`, each side known to `tolerance` (model units; by default a millionth of the
-/// frame).
+/// Returns the bounding box of a `solid`. Each side is known to `tolerance` (model units; the default is a
+/// millionth of the frame's edge).
 ///
-/// `frame` is the cube in which the solid is looked at: a `Frame`, or an octree that has it. Without it, it
-/// is a cube around the solid. `depth` replaces its depth.
+/// `frame` is the cube of the query: a `Frame`, or an octree on that frame. Without it, it is a cube around
+/// the solid. `depth` replaces the depth of the frame.
 ///
 /// >>> box = bounding_box(Csg.ball([0, 0, 0], 1))
 /// >>> 1.0 in box.corners[1, 0]

@@ -16,10 +16,10 @@ use pyo3::prelude::*;
 use pyo3::types::PyDict;
 use std::sync::Arc;
 
-/// A triangle mesh, and the solid that it encloses.
+/// A triangle mesh with the solid that it encloses.
 ///
-/// Any mesh is a solid. For a closed mesh, the inside is exact. For a mesh with holes, fins or turned facets,
-/// the winding number decides by the rule `fill`: "nonzero" (at least ½ in magnitude), "positive" or
+/// Any mesh is a solid. For a closed mesh, the inside is exact. For a mesh with holes, fins or inverted
+/// facets, the winding number decides by the rule `fill`: "nonzero" (at least ½ in magnitude), "positive" or
 /// "evenodd".
 ///
 /// >>> corners = [[0, 0, 0], [1, 0, 0], [0, 1, 0], [0, 0, 1]]
@@ -27,19 +27,19 @@ use std::sync::Arc;
 /// >>> mesh.is_closed, 1 / 6 in measure(mesh).volume
 /// (True, True)
 ///
-/// `vertices` and `faces` are arrays that trimesh, meshio, PyVista and Open3D take as they are.
+/// `vertices` and `faces` are arrays that trimesh, meshio, PyVista and Open3D accept unchanged.
 #[pyclass(extends = Solid, frozen, module = "leafless")]
 pub struct Mesh {
     pub mesh: Arc<TriangleMesh>,
     pub fill: FillRule,
-    /// The unit of its numbers, if a file told it.
+    /// The unit of the coordinates, if the file states one.
     pub unit: Option<String>,
-    /// How it was made of a solid.
+    /// The report of the method that made the mesh of a solid.
     surface: Option<SurfaceReport>,
 }
 
 impl Mesh {
-    /// A mesh as an object.
+    /// Wraps a mesh.
     pub fn bound(
         py: Python<'_>,
         mesh: impl Into<Arc<TriangleMesh>>,
@@ -65,19 +65,19 @@ impl Mesh {
         Bound::new(py, PyClassInitializer::from(Solid::new(given)).add_subclass(mesh))
     }
 
-    /// How far the true boundary may lie from it, if that is known.
+    /// Returns the maximum distance of the true boundary from the mesh, if it is known.
     pub fn deviation(&self) -> Option<f64> {
         self.surface
             .filter(|report| report.deviation.is_finite() && !report.from_mesh)
             .map(|report| report.deviation)
     }
 
-    /// What is wrong with the mesh, found out once.
+    /// Returns the mesh's report, which is computed once.
     pub fn inspected(&self, py: Python<'_>) -> PyResult<MeshReport> {
         py.detach(|| self.mesh.report()).or_raise(py)
     }
 
-    /// The mesh in another place.
+    /// Moves the mesh.
     pub fn placed<'py>(&self, py: Python<'py>, placement: &Affine) -> PyResult<Bound<'py, Mesh>> {
         let moved =
             py.detach(|| MeshSolid::new(self.mesh.clone(), self.fill)?.placed(placement)).or_raise(py)?;
@@ -87,8 +87,8 @@ impl Mesh {
 
 #[pymethods]
 impl Mesh {
-    /// A mesh from vertices (shape (n, 3)) and triangles (indices of shape (m, 3), counter-clockwise as seen
-    /// from outside). Equal vertices become one, and triangles without area are dropped.
+    /// Makes a mesh from vertices (shape (n, 3)) and triangles (indices of shape (m, 3), counter-clockwise as
+    /// seen from outside). Equal vertices become one, and triangles without area are dropped.
     #[new]
     #[pyo3(signature = (vertices, faces, *, fill="nonzero"))]
     fn new(
@@ -113,7 +113,7 @@ impl Mesh {
         Ok(PyClassInitializer::from(Solid::new(given)).add_subclass(mesh))
     }
 
-    /// A mesh again, as it was pickled.
+    /// Restores a pickled mesh.
     #[staticmethod]
     fn _restored<'py>(
         vertices: &Bound<'py, PyAny>,
@@ -151,7 +151,7 @@ impl Mesh {
         Mesh::bound(py, mesh, words::value(py, fill)?, unit, surface_report)
     }
 
-    /// A `mesh` of trimesh, or of anything else that has `vertices` and `faces`, with the rule `fill`.
+    /// Converts a `mesh` of trimesh, or any other object with `vertices` and `faces`, with the rule `fill`.
     #[staticmethod]
     #[pyo3(signature = (mesh, *, fill="nonzero"))]
     fn from_trimesh<'py>(
@@ -167,7 +167,7 @@ impl Mesh {
         mesh.py().get_type::<Mesh>().call(arguments, Some(&fill_rule))
     }
 
-    /// The mesh as one of trimesh, which must be installed.
+    /// Returns the mesh as a `trimesh.Trimesh`. The package trimesh must be installed.
     fn to_trimesh<'py>(slf: &Bound<'py, Self>) -> PyResult<Bound<'py, PyAny>> {
         from_package!(slf.py(), "leafless._exchange", "to_trimesh")?.call1((slf,))
     }
@@ -186,39 +186,40 @@ impl Mesh {
         shown(slf.as_any(), list.as_flattened(), layout([list.len(), 3], false))
     }
 
-    /// The rule that says what is inside.
+    /// The fill rule, which defines the inside.
     #[getter]
     fn fill(&self) -> &'static str {
         words::word(self.fill)
     }
 
-    /// The unit of the numbers, if a file told it.
+    /// The unit of the coordinates, if the file states one.
     #[getter]
     fn unit(&self) -> Option<&str> {
         self.unit.as_deref()
     }
 
-    /// Whether the triangles have no open edge.
+    /// True if the triangles have no open edge.
     #[getter]
     fn is_closed(&self, py: Python<'_>) -> PyResult<bool> {
         Ok(self.inspected(py)?.is_closed())
     }
 
-    /// How the mesh was made of a solid, if `surface` or `simplify` did.
+    /// The report of `surface` or `simplify`, if one of them made the mesh.
     #[getter]
     fn surface_report(&self) -> Option<SurfaceReport> {
         self.surface
     }
 
-    /// The mesh with hair cracks closed: vertices next to open edges that differ by rounding only become one.
-    /// `report` counts them (`sewn`). What is proven of the mesh accounts for how far they moved.
+    /// Returns the mesh with hair cracks closed: vertices at open edges that differ only by rounding are
+    /// merged. `report` counts them (`sewn`). Proofs about the new mesh account for the distance that
+    /// vertices moved.
     fn sewn<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, Mesh>> {
         let mesh = Limits::default().run(py, |_| self.mesh.try_clone()?.sewn())?;
         Mesh::bound(py, mesh, self.fill, self.unit.clone(), self.surface)
     }
 
-    /// What is wrong with the mesh, if anything is: counts of bodies, open edges, turned facets and the like,
-    /// as a dictionary.
+    /// Returns the defects of the mesh: counts of bodies, open edges, inverted facets and the like, as a
+    /// dictionary.
     fn report<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyDict>> {
         let report = self.inspected(py)?;
         let told = PyDict::new(py);
@@ -248,14 +249,14 @@ impl Mesh {
         Ok(told)
     }
 
-    /// The names of the values that triangles or their corners bear, as colours and materials of a file are.
+    /// The names of the attributes of triangles or their corners, such as a file's colours and materials.
     #[getter]
     fn attributes(&self) -> Vec<String> {
         self.mesh.attributes().iter().map(|attribute| attribute.name().to_owned()).collect()
     }
 
-    /// The values of the attribute called `name` at the corners of triangles: shape (m, 3, components), NaN
-    /// where there is none.
+    /// Returns the values of the attribute called `name` at the corners of triangles: shape (m, 3,
+    /// components), NaN where there is none.
     fn attribute<'py>(
         &self,
         py: Python<'py>,
@@ -283,8 +284,8 @@ impl Mesh {
             let corners = if attribute.domain() == AttributeDomain::Corner { 3 } else { 1 };
             Ok((attribute.name(), attribute.names(), values(slf.py(), attribute, corners)?))
         });
-        // What is proven of a mesh accounts for how far its vertices were moved, and so must what is proven
-        // of the copy.
+        // Proofs about a mesh account for the distance that its vertices were moved. Proofs about the copy
+        // must do the same.
         let past = own.mesh.history();
         let history: History = (
             [past.welded, past.degenerate, past.sewn, past.polygons, past.bent_polygons],
@@ -303,11 +304,11 @@ impl Mesh {
     }
 }
 
-/// A mesh's history as it is pickled: its counts, and its lengths.
+/// The pickled form of a mesh's history: its counts and its lengths.
 type History = ([u64; 5], [f64; 3]);
 
-/// The values of an attribute, shape (m, corners, components), at the first corner of each triangle or at all
-/// three.
+/// Returns the values of an attribute, shape (m, corners, components), at the first corner of each triangle
+/// or at all three.
 fn values<'py>(py: Python<'py>, attribute: &MeshAttribute, corners: usize) -> PyResult<Bound<'py, PyAny>> {
     let (count, components) = (attribute.len(), attribute.components());
     let values = py.detach(|| {
@@ -318,7 +319,7 @@ fn values<'py>(py: Python<'py>, attribute: &MeshAttribute, corners: usize) -> Py
     Ok(arrays::array(py, values, &[count, corners, components])?.into_any())
 }
 
-/// The attribute with these values, shape (m, 1, components) for triangles or (m, 3, components) for their
+/// Reads an attribute from values of shape (m, 1, components) for triangles or (m, 3, components) for their
 /// corners.
 fn read(name: &str, values: &Bound<'_, PyAny>) -> PyResult<MeshAttribute> {
     let py = values.py();
@@ -338,7 +339,7 @@ fn read(name: &str, values: &Bound<'_, PyAny>) -> PyResult<MeshAttribute> {
     attribute.or_raise(py)
 }
 
-/// Triples of indices, of integers of any type.
+/// Reads triples of indices, from integers of any type.
 fn indices(given: &Bound<'_, PyAny>) -> PyResult<Vec<[u32; 3]>> {
     let py = given.py();
     let array = arrays::required::<i64>(given, "int64", "faces")?;

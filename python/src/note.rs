@@ -1,11 +1,12 @@
-//! The threshold of a volume in its NRRD file: a key with a value, which other programs skip or carry along.
+//! Stores the threshold of a volume in its NRRD file: a key with a value, which other programs skip or pass
+//! on.
 
 use crate::volume::Threshold;
 
-/// The key, and what follows any key.
+/// The key with its separator.
 const KEY: &[u8] = b"leafless threshold:=";
 
-/// The lines of a header, which end with an empty line or with the file.
+/// Iterates over the lines of a header, which ends at an empty line or at the end of the file.
 fn lines(file: &[u8]) -> impl Iterator<Item = &[u8]> {
     let lines = file.split(|&byte| byte == b'\n').map(<[u8]>::trim_ascii_end);
     lines.take_while(|line| !line.is_empty())
@@ -20,7 +21,7 @@ pub fn add(file: &mut Vec<u8>, (low, high): Threshold) {
     file.splice(first..first, line);
 }
 
-/// The threshold that a header tells, if it tells one.
+/// Returns the threshold in a header, if there is one.
 pub fn threshold(file: &[u8]) -> Option<Threshold> {
     let told = lines(file).find_map(|line| line.strip_prefix(KEY))?;
     let mut numbers =

@@ -1,4 +1,4 @@
-//! Octrees, and how they are built.
+//! Octrees, and building them.
 
 use crate::arguments::{Argument, Deep, Depth, Level, named, other_type};
 use crate::arrays;
@@ -26,31 +26,32 @@ use std::path::PathBuf;
 /// The default depth of an octree.
 const DEPTH: u8 = 9;
 
-/// How many cells are listed before signals and limits are looked at again.
+/// The number of cells that are listed between two checks of signals and limits.
 const CHUNK: usize = 1 << 16;
 
-/// Bytes of a cell in the arrays of a list.
+/// The bytes of a cell in the arrays of a list.
 const CELL: u64 = 1 + 1 + 3 * 4;
 
-/// Bytes of an open cell, as the library lists it and as a code.
+/// The bytes of an open cell: the library's cell and its code.
 const OPEN_CELL: u64 = (size_of::<leafless::Cell>() + size_of::<u64>()) as u64;
 
-/// What cells prove: whether FULL cells are proven to lie inside (`full`), and EMPTY cells outside (`empty`),
-/// of a solid whose surfaces were moved before by at most `displacement` (model units).
+/// The proof that the cells of an octree give: FULL cells are proven to lie inside (`full`), and EMPTY cells
+/// outside (`empty`). The proof is about a solid whose surfaces were moved before by at most `displacement`
+/// (model units).
 #[pyclass(frozen, eq, get_all, weakref, from_py_object, module = "leafless")]
 #[derive(Clone, Copy, PartialEq)]
 pub struct Proof {
-    /// Whether FULL cells are proven to lie inside.
+    /// True if FULL cells are proven to lie inside.
     full: bool,
-    /// Whether EMPTY cells are proven to lie outside.
+    /// True if EMPTY cells are proven to lie outside.
     empty: bool,
-    /// How far surfaces were moved before (model units).
+    /// The maximum distance that surfaces were moved before (model units).
     displacement: f64,
 }
 
 #[pymethods]
 impl Proof {
-    /// What cells prove, as `octree.proof` tells it.
+    /// Makes a proof, as `octree.proof` returns it.
     #[new]
     #[pyo3(signature = (full, empty, displacement=0.0))]
     fn new(
@@ -85,14 +86,14 @@ impl From<leafless::Proof> for Proof {
 }
 
 impl Proof {
-    /// The library's own.
+    /// Converts to the library's type.
     pub fn inner(self) -> Result<leafless::Proof, leafless::Error> {
         leafless::Proof::new(self.full, self.empty).with_displacement(self.displacement)
     }
 }
 
-/// A stored solid. Each cell of a cube is EMPTY (outside), FULL (inside) or PARTIAL (not decided). Only cells
-/// that are cut take memory.
+/// A stored solid. Each cell of a cube is EMPTY (outside), FULL (inside) or PARTIAL (undecided). Only split
+/// cells take memory.
 ///
 /// >>> octree = build(Csg.ball([0, 0, 0], 1), depth=6)
 /// >>> octree.contains([[0, 0, 0], [2, 0, 0]])
@@ -100,16 +101,16 @@ impl Proof {
 /// >>> 4.18879 in octree.volume
 /// True
 ///
-/// The methods `contains`, `distances` and `rays` ask the cells, whatever these prove. Functions (`measure`,
-/// `interference` and the others) ask what is proven of the solid that the octree was made of, which is
-/// little if it was built by another rule than "certified"; `as_truth` takes the cells for the truth.
+/// The methods `contains`, `distances` and `rays` answer from the cells, without regard to proofs. Functions
+/// (`measure`, `interference` and the others) use only proofs about the source solid. A rule other than
+/// "certified" proves little. `as_truth` makes the cells themselves the truth.
 ///
 /// On one frame, `|`, `&`, `-`, `^` and `~` are exact set algebra of cells: `a - b == a & ~b` holds bit by
 /// bit.
 #[pyclass(extends = Solid, frozen, module = "leafless")]
 pub struct Octree {
     pub octree: Inner,
-    /// The file that it is mapped from, with the checksum of its header.
+    /// The mapped file, with the checksum of its header.
     pub mapped: Option<(PathBuf, u64)>,
 }
 
@@ -128,7 +129,7 @@ impl Octree {
         Bound::new(py, PyClassInitializer::from(Solid::new(given)).add_subclass(Octree { octree, mapped }))
     }
 
-    /// Any number of octrees, combined.
+    /// Combines any number of octrees.
     fn combined<'py>(
         octrees: &Bound<'py, PyTuple>,
         limits: Option<&Bound<'py, PyDict>>,
@@ -143,7 +144,7 @@ impl Octree {
         Octree::bound(py, found)
     }
 
-    /// What is counted once, when it is first asked for.
+    /// Returns the statistics, which are counted once.
     fn statistics_of_cells(&self, py: Python<'_>) -> Statistics {
         py.detach(|| self.octree.statistics())
     }
@@ -151,21 +152,21 @@ impl Octree {
 
 #[pymethods]
 impl Octree {
-    /// The octree of a file's bytes, `data`.
+    /// Reads an octree from the bytes of a file, `data`.
     #[staticmethod]
     fn from_bytes(py: Python<'_>, #[pyo3(from_py_with = named::data)] data: &[u8]) -> PyResult<Py<Octree>> {
         let octree = py.detach(|| leafless::file::from_bytes(data)).or_raise(py)?;
         Ok(Octree::bound(py, octree)?.unbind())
     }
 
-    /// The bytes of its file, the same wherever and however it was built.
+    /// Returns the bytes of the octree's file. They are the same wherever and however it was built.
     pub fn to_bytes<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyBytes>> {
         let bytes = Limits::default().run_here(py, |_| leafless::file::to_bytes(&self.octree))?;
         Ok(PyBytes::new(py, &bytes))
     }
 
-    /// The union of any number of octrees on one frame, as `|` makes it of two. An octree that keeps its
-    /// surfaces costs one walk for all of the `octrees`, where `|` costs one for each.
+    /// Returns the union of any number of `octrees` on one frame, as `|` does for two. If an octree keeps its
+    /// surfaces, one walk serves all operands, where repeated `|` needs a walk for each.
     #[staticmethod]
     #[pyo3(signature = (*octrees, **limits))]
     fn union_of<'py>(
@@ -175,7 +176,7 @@ impl Octree {
         Octree::combined(octrees, limits, op::union_of)
     }
 
-    /// What any number of `octrees` on one frame have in common, as `&` makes it of two.
+    /// Returns the intersection of any number of `octrees` on one frame, as `&` does for two.
     #[staticmethod]
     #[pyo3(signature = (*octrees, **limits))]
     fn intersection_of<'py>(
@@ -185,7 +186,7 @@ impl Octree {
         Octree::combined(octrees, limits, op::intersection_of)
     }
 
-    /// The first of the `octrees` without the others, as `-` makes it of two.
+    /// Returns the first of the `octrees` without the others, as `-` does for two.
     #[staticmethod]
     #[pyo3(signature = (*octrees, **limits))]
     fn difference_of<'py>(
@@ -195,7 +196,8 @@ impl Octree {
         Octree::combined(octrees, limits, op::difference_of)
     }
 
-    /// What an odd number of the `octrees` contain, as `^` makes it of two.
+    /// Returns the symmetric difference: the points that lie in an odd number of the `octrees`, as `^` does
+    /// for two.
     #[staticmethod]
     #[pyo3(signature = (*octrees, **limits))]
     fn xor_of<'py>(
@@ -205,7 +207,7 @@ impl Octree {
         Octree::combined(octrees, limits, op::xor_of)
     }
 
-    /// What an `octree` leaves of space, as `~octree`.
+    /// Returns the complement of an `octree`, as `~octree`.
     #[staticmethod]
     #[pyo3(signature = (octree, **limits))]
     fn complement_of<'py>(
@@ -217,57 +219,57 @@ impl Octree {
         Octree::bound(py, found)
     }
 
-    /// Where it lies.
+    /// The frame of the octree.
     #[getter]
     fn frame(&self) -> Frame {
         Frame(*self.octree.frame())
     }
 
-    /// What its cells prove of the solid that it was made of.
+    /// The proof that the cells give about the source solid.
     #[getter]
     fn proof(&self) -> Proof {
         self.octree.proof().into()
     }
 
-    /// Between which numbers the volume of the cells lies (cubic model units). `measure` knows more of an
-    /// octree that keeps its surfaces.
+    /// The interval of the volume of the cells (cubic model units). For an octree that keeps its surfaces,
+    /// `measure` returns a narrower interval.
     #[getter]
     fn volume(&self, py: Python<'_>) -> Interval {
         Interval(self.statistics_of_cells(py).volume())
     }
 
-    /// How many nodes are stored.
+    /// The number of stored nodes.
     #[getter]
     fn node_count(&self, py: Python<'_>) -> u64 {
         self.statistics_of_cells(py).nodes()
     }
 
-    /// Bytes that the arrays take, in memory or where a file is mapped.
+    /// The size of the arrays (bytes), in memory or in a mapped file.
     #[getter]
     fn nbytes(&self) -> u64 {
         self.octree.bytes()
     }
 
-    /// Whether cells keep the surfaces that cross them.
+    /// True if cells keep the surfaces that cross them.
     #[getter]
     fn keeps_surfaces(&self) -> bool {
         self.octree.view().cuts().is_some()
     }
 
-    /// The same octree, whose cells are taken for the truth: what is called proven of it is so of the cells,
-    /// and of the solid that they were made of only as far as these are right.
+    /// Returns the same octree with its cells as the truth. A proof is then a proof about the cells. It holds
+    /// for the source solid only as far as the cells are right.
     fn as_truth<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, Octree>> {
         Octree::bound(py, self.octree.with_proof(leafless::Proof::CERTIFIED))
     }
 
-    /// Level by level, a list of dictionaries: `level`, `nodes`, `empty`, `full`, `partial` (cells that end
-    /// there), and `volume`, an interval of what the cells down to that level tell.
+    /// Returns a list of dictionaries, one for each level: `level`, `nodes`, `empty`, `full`, `partial`
+    /// (cells that end there), and `volume`, the interval that follows from the cells down to that level.
     fn statistics<'py>(&self, py: Python<'py>) -> PyResult<Vec<Bound<'py, PyDict>>> {
         told(py, &self.statistics_of_cells(py))
     }
 
-    /// The part of the octree that a `shard` (a `leafless.shards.Shard`) knows: an octree that has the cells
-    /// of the shard. All other cells are PARTIAL.
+    /// Returns the part of the octree with the cells of a `shard` (a `leafless.shards.Shard`). All other
+    /// cells are PARTIAL.
     #[pyo3(signature = (shard, **limits))]
     fn shard<'py>(
         &self,
@@ -280,9 +282,9 @@ impl Octree {
         Octree::bound(py, found)
     }
 
-    /// The cells of a `level` of which nothing is known, by their codes (places in Morton order): an array of
-    /// type uint64. In the top of that level, these are the cells that need a shard. `max_bytes` is a limit
-    /// of the array, with what is needed to make it.
+    /// Returns the codes (Morton order) of the cells of a `level` that are open: nothing is known of them.
+    /// The array has the type uint64. In the top of that level, these are the cells that need a shard.
+    /// `max_bytes` limits the array and the memory for making it.
     #[pyo3(signature = (level, **limits))]
     fn open_cells<'py>(
         &self,
@@ -304,7 +306,7 @@ impl Octree {
         Ok(arrays::array(py, codes, &[count])?.into_any())
     }
 
-    /// What its file says of it, such as `name` and `units`.
+    /// The metadata of the octree's file, such as `name` and `units`.
     #[getter]
     fn metadata<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyDict>> {
         let told = PyDict::new(py);
@@ -314,7 +316,7 @@ impl Octree {
         Ok(told)
     }
 
-    /// The same octree with other `metadata`: a dictionary of texts.
+    /// Returns the same octree with other `metadata`: a dictionary of texts.
     fn with_metadata<'py>(&self, metadata: &Bound<'py, PyAny>) -> PyResult<Bound<'py, Octree>> {
         let py = metadata.py();
         let facts =
@@ -327,10 +329,10 @@ impl Octree {
         Octree::bound(py, self.octree.with_metadata(told))
     }
 
-    /// Cells as arrays: `level` of shape (n,), `at` (indices along x, y and z in cells of that level) of
-    /// shape (n, 3), and `tag` (`Tag`) of shape (n,). `tags` chooses among "empty", "partial", "full" and
-    /// "branch" (cells that are cut), or the constants EMPTY, PARTIAL and FULL. Without it, all cells that
-    /// are not cut are listed. `max_bytes` is a limit of the arrays.
+    /// Lists cells as arrays: `level` of shape (n,), `at` (indices along x, y and z in cells of that level)
+    /// of shape (n, 3), and `tag` (`Tag`) of shape (n,). `tags` selects among "empty", "partial", "full" and
+    /// "branch" (split cells), or the constants EMPTY, PARTIAL and FULL. Without `tags`, all cells that are
+    /// not split are listed. `max_bytes` limits the arrays.
     ///
     /// >>> cells = build(Csg.cuboid([0, 0, 0], [1, 1, 1]), Frame([0, 0, 0], 2, 1)).cells("full")
     /// >>> cells.level, cells.at
@@ -356,7 +358,8 @@ impl Octree {
             let count = chosen.fold(0, |sum: u64, tag| sum.saturating_add(statistics.cells(tag)));
             afford(control, "the list of cells", count.saturating_mul(CELL))?;
             let (mut levels, mut tags, mut places) = (Vec::new(), Vec::new(), Vec::new());
-            // (Arrays of a damaged file may hold more cells than it says, so that their number is no bound.)
+            // The arrays of a damaged file may hold more cells than the file states, so the stated number is
+            // no bound.
             for (i, found) in self.octree.view().cells(filter).enumerate() {
                 if i % CHUNK == 0 {
                     advance(control, i, count as usize)?;
@@ -378,7 +381,7 @@ impl Octree {
         ))
     }
 
-    /// The tag of the finest cell `at` these indices along x, y and z.
+    /// Returns the tag of the finest cell with the indices `at` along x, y and z.
     fn tag_at<'py>(
         &self,
         py: Python<'py>,
@@ -390,10 +393,10 @@ impl Octree {
         from_package!(py, "leafless._answers", "Tag")?.call1((self.octree.view().tag_at(at) as u8,))
     }
 
-    /// The cells of a `level` as a volume, indexed [x, y, z]: an array of booleans, true where cells are
-    /// FULL, or with `outer=True` where they are not EMPTY. The finest level is the default. `first` and
-    /// `end` cut out a box: its first cell, and the first one beyond it, as indices along x, y and z.
-    /// `max_bytes` is a limit of the array, with what is needed to make it.
+    /// Returns the cells of a `level` as an array of booleans, indexed [x, y, z]: true where cells are FULL,
+    /// or with `outer=True` where they are not EMPTY. The default is the finest level. `first` and `end`
+    /// select a box: its first cell, and the first cell beyond it, as indices along x, y and z. `max_bytes`
+    /// limits the array and the memory for making it.
     #[pyo3(signature = (level=None, *, first=None, end=None, outer=false, **limits))]
     fn bitmap<'py>(
         &self,
@@ -445,7 +448,7 @@ impl Octree {
         flat.call_method("reshape", (size.to_vec(),), Some(&order))
     }
 
-    /// How a box, whose `bounds` are its lower and its upper corner, lies to the solid: "inside", "outside",
+    /// Classifies a box, whose `bounds` are its lower and its upper corner, as "inside", "outside",
     /// "crossing" or "undecided".
     fn classify_box<'py>(&self, bounds: &Bound<'py, PyAny>) -> PyResult<&'static str> {
         use leafless::query::Region;
@@ -460,13 +463,13 @@ impl Octree {
         })
     }
 
-    /// The names of its channels.
+    /// The names of the channels.
     #[getter]
     fn channels(&self) -> Vec<String> {
         self.octree.channels().iter().map(|channel| channel.name().to_owned()).collect()
     }
 
-    /// The channel called `name`.
+    /// Returns the channel called `name`.
     fn channel(&self, py: Python<'_>, #[pyo3(from_py_with = named::name)] name: &str) -> PyResult<Channel> {
         match self.octree.channel(name) {
             Some(channel) => Ok(Channel(channel.clone())),
@@ -474,7 +477,7 @@ impl Octree {
         }
     }
 
-    /// The same octree with a `channel` more, or with another one of that `name`.
+    /// Returns the same octree with a `channel` added, or in place of the channel with that `name`.
     fn with_channel<'py>(
         &self,
         py: Python<'py>,
@@ -484,8 +487,8 @@ impl Octree {
         Octree::bound(py, self.octree.with_channel(channel.get().0.with_name(name)).or_raise(py)?)
     }
 
-    /// The octree of cells alone, to a `depth`: surfaces that it keeps decide them, and `rule` what is
-    /// undecided there, as in `build`.
+    /// Returns an octree without surfaces, to a `depth`. The surfaces of this octree decide its cells. `rule`
+    /// decides the cells that are still undecided there, as in `build`.
     #[pyo3(signature = (depth=None, *, rule="certified", **limits))]
     fn plain<'py>(
         &self,
@@ -501,9 +504,9 @@ impl Octree {
         Octree::bound(py, found)
     }
 
-    /// Its voxels as records, sorted by code; with the values of a `channel` at their centres. Boundary
-    /// voxels end at `boundary_depth`, the frame's depth by default. `outside=True` lists the voxels outside,
-    /// too.
+    /// Returns the voxels as records, sorted by code, with the values of a `channel` at their centres.
+    /// Boundary voxels end at `boundary_depth`, the frame's depth by default. `outside=True` lists the voxels
+    /// outside, too.
     #[pyo3(signature = (channel=None, *, boundary_depth=None, outside=false, **limits))]
     fn voxels(
         &self,
@@ -546,7 +549,7 @@ impl Octree {
         format!("<Octree: depth {depth}, {} nodes, volume {}>", known.nodes(), known.volume())
     }
 
-    /// By the bytes of its file; of a mapped one by the path and a checksum, which costs nothing.
+    /// Pickles the bytes of the file; for a mapped octree the path and a checksum, which costs nothing.
     fn __reduce__<'py>(slf: &Bound<'py, Self>) -> PyResult<(Bound<'py, PyAny>, Bound<'py, PyAny>)> {
         let py = slf.py();
         match &slf.get().mapped {
@@ -562,7 +565,7 @@ impl Octree {
     }
 }
 
-/// Statistics as a list of dictionaries, level by level.
+/// Converts statistics to a list of dictionaries, level by level.
 pub fn told<'py>(py: Python<'py>, statistics: &Statistics) -> PyResult<Vec<Bound<'py, PyDict>>> {
     let level = |level: &LevelStatistics| {
         let told = PyDict::new(py);
@@ -582,7 +585,7 @@ pub fn told<'py>(py: Python<'py>, statistics: &Statistics) -> PyResult<Vec<Bound
     statistics.levels().iter().map(level).collect()
 }
 
-/// Which surfaces are kept.
+/// Reads the parameter `surfaces`.
 fn kept_surfaces(surfaces: Option<&Bound<'_, PyAny>>) -> PyResult<Option<SurfaceOptions>> {
     let Some(kept) = surfaces else { return Ok(None) };
     if let Ok(all) = kept.extract::<bool>() {
@@ -595,7 +598,7 @@ fn kept_surfaces(surfaces: Option<&Bound<'_, PyAny>>) -> PyResult<Option<Surface
     }
 }
 
-/// The frame that an octree is built on.
+/// Returns the frame for building an octree.
 fn frame_for(
     py: Python<'_>,
     solid: &Given,
@@ -603,7 +606,7 @@ fn frame_for(
     surfaces: Option<&SurfaceOptions>,
 ) -> PyResult<leafless::Frame> {
     let deepest = match surfaces {
-        // (A frame tells its depth.)
+        // A given frame has a depth of its own.
         Some(options) if wish.frame.is_none() => {
             options.frame(&crate::ask::bounds(py, solid)?).or_raise(py)?.depth()
         }
@@ -612,7 +615,7 @@ fn frame_for(
     wish.of(py, solid, deepest)
 }
 
-/// The frame on which `build` would build a `solid` with the same `frame`, `depth` and `surfaces`.
+/// Returns the frame that `build` would use for a `solid` with the same `frame`, `depth` and `surfaces`.
 #[pyfunction]
 #[pyo3(signature = (solid, frame=None, *, depth=None, surfaces=None))]
 pub fn frame_of(
@@ -626,20 +629,20 @@ pub fn frame_of(
     frame_for(py, &solid, Wish { frame, depth }, kept_surfaces(surfaces)?.as_ref()).map(Frame)
 }
 
-/// An octree of a `solid`: cells are split until they are decided, or the frame's depth is reached.
+/// Builds an octree of a `solid`: cells are split until they are decided, or the frame's depth is reached.
 ///
-/// `rule` says what becomes of cells that are undecided at the finest level. "certified" keeps the doubt, so
-/// every answer is proven. "sampled" asks at the centres of cells. "inner" calls undecided cells EMPTY,
-/// "outer" calls them FULL.
+/// `rule` decides the cells that are undecided at the finest level. "certified" keeps the doubt, so every
+/// answer is proven. "sampled" evaluates the solid at the centres of the cells. "inner" makes undecided cells
+/// EMPTY, "outer" makes them FULL.
 ///
-/// `surfaces=True` keeps the surfaces that cross undecided cells. For an expression these are exact: the
-/// octree is small, and as exact as the solid. A number keeps layers around a mesh's surface instead, at most
-/// that thick (model units).
+/// `surfaces=True` keeps the surfaces that cross undecided cells. For an expression these surfaces are exact:
+/// the octree is small, and as exact as the solid. For a mesh, a number keeps layers around the surface
+/// instead, at most that thick (model units).
 ///
-/// `frame` is a `Frame`, or an octree whose frame is used. Without it, the frame is a cube around the solid.
-/// `depth` replaces the frame's depth; a cube around the solid has the depth 9 by default.
+/// `frame` is a `Frame`, or an octree on that frame. Without it, the frame is a cube around the solid.
+/// `depth` replaces the frame's depth. A cube around the solid has the depth 9 by default.
 ///
-/// With a `shard` (a `leafless.shards.Shard`), only the cells of the shard are made. All other cells are
+/// With a `shard` (a `leafless.shards.Shard`), only the cells of the shard are built. All other cells are
 /// PARTIAL.
 ///
 /// >>> block = build(Csg.cuboid([0, 0, 0], [3, 2, 1]), depth=5)

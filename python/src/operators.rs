@@ -1,4 +1,4 @@
-//! Set operations and placements of solids of all kinds.
+//! Set operations and placements of all kinds of solids.
 
 use crate::affine::affine;
 use crate::anywhere::anywhere;
@@ -11,7 +11,7 @@ use crate::work::Limits;
 use leafless::{Csg as Expression, complement as complement_of, difference, intersection, union, xor};
 use pyo3::prelude::*;
 
-/// What two solids are combined by.
+/// A set operation on two solids.
 #[derive(Clone, Copy)]
 pub enum Operator {
     Union,
@@ -20,7 +20,7 @@ pub enum Operator {
     Xor,
 }
 
-/// An expression of what an object is.
+/// Returns a solid as an expression.
 pub fn expression(object: &Bound<'_, PyAny>, name: &str) -> PyResult<Expression> {
     match object.cast::<Csg>() {
         Ok(csg) => Ok(csg.get().expression.clone()),
@@ -28,7 +28,7 @@ pub fn expression(object: &Bound<'_, PyAny>, name: &str) -> PyResult<Expression>
     }
 }
 
-/// Two solids combined: two octrees make an octree, any other pair an expression.
+/// Combines two solids. Two octrees give an octree; any other pair gives an expression.
 pub fn combined<'py>(
     operator: Operator,
     a: &Bound<'py, Solid>,
@@ -59,7 +59,7 @@ pub fn combined<'py>(
     Ok(Csg::made(py, whole.or_raise(py)?, name, (a, b))?.into_any())
 }
 
-/// The complement of a solid. The complement of an octree is an octree.
+/// Returns the complement of a solid. The complement of an octree is an octree.
 pub fn complement<'py>(solid: &Bound<'py, Solid>) -> PyResult<Bound<'py, PyAny>> {
     let py = solid.py();
     if let Ok(own) = solid.cast::<Octree>() {
@@ -71,7 +71,7 @@ pub fn complement<'py>(solid: &Bound<'py, Solid>) -> PyResult<Bound<'py, PyAny>>
     Ok(Csg::made(py, whole, "complement_of", (solid,))?.into_any())
 }
 
-/// A solid in another place.
+/// Moves a solid. A mesh stays a mesh; any other solid becomes an expression.
 pub fn placed<'py>(solid: &Bound<'py, Solid>, placement: &Bound<'py, PyAny>) -> PyResult<Bound<'py, PyAny>> {
     let py = solid.py();
     let map = affine(placement, "placement")?;

@@ -1,4 +1,4 @@
-//! Two solids: whether they overlap, how far apart they are, and how far their boundaries differ.
+//! Queries of two solids: overlap, distance, and deviation of the boundaries.
 
 use crate::affine::affines;
 use crate::anywhere::anywhere;
@@ -23,10 +23,10 @@ const DEPTH: u8 = 16;
 /// The default number of splits for each answer.
 const SPLITS: u64 = 100_000;
 
-/// The default tolerance of distances, as a part of the frame.
+/// The default tolerance of distances, as a part of the frame's edge.
 const TOLERANCE: f64 = 1e-6;
 
-/// What is known of two solids, as an object.
+/// Converts an answer about an overlap.
 fn overlap(py: Python<'_>, found: query::Interference) -> PyResult<Bound<'_, PyAny>> {
     from_package!(py, "leafless._answers", "Interference")?.call1((
         words::word(found.verdict),
@@ -37,7 +37,7 @@ fn overlap(py: Python<'_>, found: query::Interference) -> PyResult<Bound<'_, PyA
     ))
 }
 
-/// The distance of two solids, as an object.
+/// Converts an answer about a distance.
 fn distance(py: Python<'_>, found: query::Clearance) -> PyResult<Bound<'_, PyAny>> {
     from_package!(py, "leafless._answers", "Clearance")?.call1((
         Interval(found.distance),
@@ -49,26 +49,26 @@ fn distance(py: Python<'_>, found: query::Clearance) -> PyResult<Bound<'_, PyAny
     ))
 }
 
-/// The gap between two solids, as an object.
+/// Converts an answer about a gap.
 fn gap(py: Python<'_>, found: query::Gap) -> PyResult<Bound<'_, PyAny>> {
     let answer = from_package!(py, "leafless._answers", "Gap")?;
     answer.call1((words::word(found.verdict), Interval(found.evidence.distance)))
 }
 
-/// Two solids, the places of the second, and the frame to look at.
+/// Two solids, the placements of the second, and the frame of the query.
 struct Pair {
     a: Given,
     b: Given,
-    /// None: where it is.
+    /// `None`: the second solid stays where it is.
     placements: Option<Vec<Affine>>,
-    /// Whether one placement was given, and one answer is expected.
+    /// True if the answer is single: at most one placement was given.
     is_one: bool,
     frame: Inner,
     own: Inner,
     limits: Limits,
 }
 
-/// Limits with a number of splits.
+/// Returns limits with a maximum number of splits.
 fn budgeted(limits: Option<&Bound<'_, PyDict>>) -> PyResult<Limits> {
     let mut limits = Limits::of(limits)?;
     limits.max_splits = limits.max_splits.or(Some(SPLITS));
@@ -94,8 +94,8 @@ impl Pair {
         let placements = placements.map(|given| affines(given, "placements")).transpose()?;
         let places = placements.as_deref().unwrap_or(&[Affine::IDENTITY]);
         let frame = wish.of_both(py, [&a, &b], places, DEPTH)?;
-        // An octree is known on its own frame, all else on one around it, or around whatever comes to lie in
-        // the frame.
+        // An octree is prepared on its own frame. Any other solid is prepared on a frame around it, or,
+        // without bounds, around everything that the placements move into the frame.
         let own = match (placements.is_some(), b.own) {
             (true, Some(own)) => own,
             (true, None) => {
@@ -110,12 +110,12 @@ impl Pair {
         Ok(Pair { a, b, placements, is_one, frame, own, limits })
     }
 
-    /// A solid that stays where it is: it remembers the frame, or can be asked on any.
+    /// Returns a solid that is not moved. It remembers the frame, or can be queried on any.
     fn still(&self, solid: &Given) -> AnySolid {
         if solid.own.is_some() { anywhere(solid.any()) } else { AnySolid::new(solid.shape.clone()) }
     }
 
-    /// The answers at all places.
+    /// Answers the query at all placements.
     fn ask<'py, T: Send>(
         &self,
         py: Python<'py>,
@@ -127,7 +127,7 @@ impl Pair {
             match &self.placements {
                 None => Ok(vec![here(&self.still(&self.a), &self.still(&self.b), control)?]),
                 Some(places) => {
-                    // Octrees on their own frames are compared as such.
+                    // Octrees on their own frames are compared as stored trees.
                     let is_home = self.a.own.is_none_or(|own| own.same_universe(&self.frame));
                     let a = if is_home { self.a.any().clone() } else { anywhere(self.a.any()) };
                     there(&a, self.b.any(), places, control)
@@ -148,18 +148,22 @@ impl Pair {
     }
 }
 
-/// Whether two solids overlap, `a` where it is and `b` under a placement, or under each of many: then the
-/// answer is a list. `placements` is an `Affine` or a matrix, or a sequence of them.
+/// Decides whether two solids overlap: `a` where it is, and `b` under a placement. `placements` is an
+/// `Affine` or a matrix, or a sequence of them; a sequence gives a list of answers.
 ///
-/// `frame` is the cube in which both are looked at: a `Frame`, or an octree that has it. Without it, it is a
-/// cube around both, under all placements. `depth` replaces its depth; 16 by default, or that of an octree.
+/// `frame` is the cube of the query: a `Frame`, or an octree on that frame. Without it, it is a cube around
+/// both solids under all placements. `depth` replaces the depth of the frame. The default is 16, or the depth
+/// of an octree.
 ///
-/// With a `tolerance` (cubic model units) the common volume is measured until its interval is no wider. Each
-/// placement may split `max_splits` cells, 100,000 by default.
+/// With a `tolerance` (cubic model units), the volume of the intersection is measured until its interval is
+/// no wider. Each placement may split `max_splits` cells, 100,000 by default.
 ///
-/// >>> pin, plate = Csg.cylinder(2, -5, 5), Csg.cuboid([-9, -9, 0], [9, 9, 1]) - Csg.cylinder(2, -1, 2) >>>
-/// interference(pin, plate).verdict 'disjoint' >>> [found.verdict for found in interference(plate, pin,
-/// [Affine.translation([x, 0, 0]) for x in (0, 0.1)])] ['disjoint', 'overlapping']
+/// >>> pin, plate = Csg.cylinder(2, -5, 5), Csg.cuboid([-9, -9, 0], [9, 9, 1]) - Csg.cylinder(2, -1, 2)
+/// >>> interference(pin, plate).verdict
+/// 'disjoint'
+/// >>> places = [Affine.translation([x, 0, 0]) for x in (0, 0.1)]
+/// >>> [found.verdict for found in interference(plate, pin, places)]
+/// ['disjoint', 'overlapping']
 #[pyfunction]
 #[pyo3(signature = (a, b, placements=None, *, tolerance=f64::INFINITY, frame=None, depth=None, **limits))]
 pub fn interference<'py>(
@@ -181,9 +185,9 @@ pub fn interference<'py>(
     )
 }
 
-/// How far two solids are apart, to a `tolerance` (model units; by default a millionth of the frame): `a`
-/// where it is, and `b` under a placement, or under each of many. `placements`, `frame` and `depth` are those
-/// of `interference`.
+/// Measures the distance between two solids, to a `tolerance` (model units; the default is a millionth of the
+/// frame's edge). `a` stays where it is, and `b` is moved by one placement or by each of many. `placements`,
+/// `frame` and `depth` are those of `interference`.
 ///
 /// >>> found = clearance(Csg.ball([0, 0, 0], 1), Csg.ball([5, 0, 0], 2))
 /// >>> 2.0 in found.distance, found.points.round(3).tolist()
@@ -210,8 +214,8 @@ pub fn clearance<'py>(
     )
 }
 
-/// Whether no point of `a` is nearer than `least` (model units) to one of `b`: cheaper than the distance.
-/// `placements`, `frame` and `depth` are those of `interference`.
+/// Decides whether every point of `a` is at least `least` (model units) away from every point of `b`. It is
+/// cheaper than the distance. `placements`, `frame` and `depth` are those of `interference`.
 ///
 /// >>> gap_at_least(Csg.ball([0, 0, 0], 1), Csg.ball([5, 0, 0], 2), 1.9).verdict
 /// 'yes'
@@ -236,10 +240,10 @@ pub fn gap_at_least<'py>(
     )
 }
 
-/// The frame on which `interference`, `clearance` and `gap_at_least` look at two solids, `a` and `b`, under
-/// these `placements`, with the same `frame` and `depth`. Whoever asks about the placements in several calls
-/// gives the frame to each of them, and gets the answers of one call; but a `b` without known bounds is
-/// prepared for the placements of each call.
+/// Returns the frame on which `interference`, `clearance` and `gap_at_least` compare two solids, `a` and `b`,
+/// under these `placements`, with the same `frame` and `depth`. Pass this frame to several calls with parts
+/// of the placements, and their answers are those of one call. But a `b` without known bounds is prepared
+/// anew for the placements of each call.
 ///
 /// >>> from leafless._leafless import frame_of_pair
 /// >>> a, b = Csg.ball([0, 0, 0], 1), Csg.ball([0, 0, 0], 2)
@@ -260,8 +264,8 @@ pub fn frame_of_pair(
     Pair::of(a, b, placements, Wish { frame, depth }, Limits::default()).map(|pair| Frame(pair.frame))
 }
 
-/// How far the boundaries of two solids, `a` and `b`, are from each other, to a `tolerance` (model units; by
-/// default a ten-thousandth of the frame). `frame` and `depth` are those of `interference`.
+/// Measures the distance between the boundaries of two solids, `a` and `b`, to a `tolerance` (model units;
+/// the default is a ten-thousandth of the frame's edge). `frame` and `depth` are those of `interference`.
 ///
 /// >>> found = deviation(Csg.ball([0, 0, 0], 1), Csg.ball([0.1, 0, 0], 1), tolerance=0.01)
 /// >>> 0.1 in found.distance, found.within(0.2)
@@ -295,12 +299,12 @@ pub fn deviation<'py>(
     ))
 }
 
-/// A box that holds all that one placement or another moves into a frame.
+/// Returns a box that contains everything that any placement moves into a frame.
 fn moved_there(frame: &Inner, placements: &[Affine]) -> Result<Bounds, Error> {
     let universe = Bounds::of(frame);
     let mut all: Option<Bounds> = None;
     for placement in placements {
-        // What is beyond the doubles no frame can hold.
+        // No frame can contain points beyond the range of doubles.
         let Some(before) = universe.placed(&placement.inverse()?) else { continue };
         all = Some(all.map_or(before, |all| all.hull(&before)));
     }

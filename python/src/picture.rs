@@ -1,4 +1,4 @@
-//! Pictures.
+//! Rendering of pictures.
 
 use crate::arguments::named;
 use crate::arrays::{self, layout, required, shown};
@@ -25,17 +25,17 @@ use std::sync::Arc;
 /// The default direction of view: azimuth and elevation in degrees.
 const FROM: [f64; 2] = [30.0, 25.0];
 
-/// Colours of several solids, so that the colour-blind can tell them apart (Okabe and Ito 2002).
+/// The colours of several solids, which colour-blind people can tell apart (Okabe and Ito 2002).
 const COLOURS: [[u8; 3]; 6] =
     [[178, 187, 196], [230, 159, 0], [86, 180, 233], [0, 158, 115], [204, 121, 167], [213, 94, 0]];
 
 /// The depth of a solid's cells in a section.
 const CELLS: u8 = 7;
 
-/// A picture: an array `rgba` of shape (height, width, 4), and `depth` of shape (height, width), infinite
-/// where nothing is seen.
+/// A picture: an array `rgba` of shape (height, width, 4), and an array `depth` of shape (height, width),
+/// infinite where nothing is seen.
 ///
-/// Notebooks show it. `leafless.save(picture, "part.png")` writes a PNG.
+/// Notebooks display it. `leafless.save(picture, "part.png")` writes a PNG.
 #[pyclass(frozen, weakref, module = "leafless")]
 pub struct Picture(pub pictures::Picture);
 
@@ -49,7 +49,7 @@ impl Picture {
         shown(slf.as_any(), picture.colours().as_flattened(), layout(shape, false))
     }
 
-    /// How far away what is seen lies along the line of sight.
+    /// The distance of each pixel's nearest point along the line of sight.
     #[getter]
     fn depth<'py>(slf: &Bound<'py, Self>) -> PyResult<Bound<'py, PyAny>> {
         let picture = &slf.get().0;
@@ -57,7 +57,7 @@ impl Picture {
         shown(slf.as_any(), picture.depths(), layout(shape, false))
     }
 
-    /// The bytes of a PNG file.
+    /// Returns the bytes of a PNG file.
     pub fn to_png<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyBytes>> {
         Ok(PyBytes::new(py, &py.detach(|| write_png(&self.0)).or_raise(py)?))
     }
@@ -66,7 +66,7 @@ impl Picture {
         self.to_png(py)
     }
 
-    /// A picture again, as it was pickled.
+    /// Restores a pickled picture.
     #[staticmethod]
     fn _restored(rgba: &Bound<'_, PyAny>, depth: &Bound<'_, PyAny>) -> PyResult<Picture> {
         let py = rgba.py();
@@ -92,7 +92,7 @@ impl Picture {
     }
 }
 
-/// A solid, and how it is shown.
+/// A solid, with its frame and colour in the picture.
 struct Shown {
     solid: Given,
     stored: Option<leafless::Octree>,
@@ -101,19 +101,19 @@ struct Shown {
     colour: [u8; 4],
 }
 
-/// Takes a picture of `solids`, of a `size` in pixels (width, height). A mesh with holes is shown by its
+/// Renders a picture of `solids` with a `size` in pixels (width, height). A mesh with holes is shown by its
 /// triangles.
 ///
-/// One looks from an azimuth and an elevation in degrees, `view`; `colours` are triples or quadruples of 0 to
-/// 255, one for each solid; `clip` keeps what lies within planes a x + b y + c z + d ≥ 0, rows of four
-/// numbers; `slice` is one such plane a x + b y + c z + d = 0, and shows the cells of the first solid in it:
-/// EMPTY light blue, FULL blue, PARTIAL orange. `cells=True` shows octrees by their cells. `edges=False`
-/// leaves out the lines along sharp edges. `background` is a colour with its opacity, four numbers of 0 to 255.
-/// `samples` are those of a pixel: 1, 4, 9, 16, 25, 36, 49 or 64.
+/// `view` is the azimuth and the elevation of the camera in degrees. `colours` are triples or quadruples of 0
+/// to 255, one for each solid. `clip` keeps the part within planes a x + b y + c z + d ≥ 0, rows of four
+/// numbers. `slice` is one plane a x + b y + c z + d = 0. It shows the cells of the first solid in that
+/// plane: EMPTY light blue, FULL blue, PARTIAL orange. `cells=True` shows octrees by their cells.
+/// `edges=False` leaves out the lines along sharp edges. `background` is a colour with its opacity, four
+/// numbers of 0 to 255. `samples` is the number of samples in a pixel: 1, 4, 9, 16, 25, 36, 49 or 64.
 ///
-/// `frame` is a `Frame`, or an octree that has it: the cube that the picture takes in, and in which solids
-/// are looked for. Without it, the picture takes in the solids as a whole. Octrees, and meshes with holes,
-/// are drawn as they are.
+/// `frame` is a `Frame`, or an octree on that frame. The picture shows this cube, and solids are searched in
+/// it. Without it, the picture shows the whole solids. Octrees, and meshes with holes, are drawn without a
+/// search.
 ///
 /// >>> render(Csg.ball([0, 0, 0], 1), size=(320, 240))
 /// <Picture: 320 × 240 pixels>
@@ -148,13 +148,13 @@ pub fn render(
             Some(colours) => colour(colours, i, solids.len())?,
         };
         let stored = object.cast::<Octree>().ok().map(|octree| octree.get().octree.clone());
-        // A mesh with holes is shown as it is: its triangles.
+        // A mesh with holes is shown by its triangles.
         let open = match object.cast::<Mesh>() {
             Ok(mesh) if !mesh.get().inspected(py)?.is_closed() => Some(mesh.get().mesh.clone()),
             _ => None,
         };
         let solid = given(&object, "solids")?;
-        // (An octree is drawn on its own frame.)
+        // An octree is drawn on its own frame.
         let frame = if stored.is_some() { None } else { frame };
         let frame =
             Wish { frame, depth: None }.of(py, &solid, if slice.is_some() { CELLS } else { MAX_DEPTH })?;
@@ -181,7 +181,7 @@ pub fn render(
     let aspect = f64::from(size[0]) / f64::from(size[1].max(1));
     let camera = match slice {
         None => Camera::fitted(&points, view, Some(FIELD_OF_VIEW), aspect),
-        // From above the plane.
+        // The camera looks from above the plane.
         Some([a, b, c, _]) => {
             let flat = (a * a + b * b).sqrt();
             let from = [a.atan2(-b).to_degrees(), c.atan2(flat).to_degrees()];
@@ -235,7 +235,7 @@ pub fn render(
     Ok(Picture(picture))
 }
 
-/// The colour of one of several solids.
+/// Reads the colour of one of several solids.
 fn colour(colours: &Bound<'_, PyAny>, i: usize, count: usize) -> PyResult<[u8; 4]> {
     let py = colours.py();
     let problem = || {
@@ -251,10 +251,10 @@ fn colour(colours: &Bound<'_, PyAny>, i: usize, count: usize) -> PyResult<[u8; 4
     }
 }
 
-/// A box around a solid.
+/// Returns a tight box around a solid.
 fn tight(py: Python<'_>, solid: &Given) -> PyResult<Bounds> {
     match (solid.own, solid.bounds(py)) {
-        // The universe of an octree may be much larger than what is in it.
+        // The universe of an octree may be much larger than its solid.
         (Some(own), _) => {
             let (shape, coarse) = (&solid.shape, own);
             let found = py.detach(|| {

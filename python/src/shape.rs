@@ -11,27 +11,27 @@ use pyo3::prelude::*;
 use pyo3::types::{PyDict, PyTuple, PyType, PyWeakrefMethods, PyWeakrefReference};
 use std::sync::Arc;
 
-/// A solid of your own: a subclass with one of these methods or both, which get arrays of many cells or
-/// points at once.
+/// A solid of your own. A subclass defines at least one of these methods, which get arrays of many cells or
+/// points at once:
 ///
-/// - `classify(boxes)` gets boxes of shape (n, 2, 3), lower and upper corners, and returns n tags: EMPTY or
-///   FULL where that is proven for all of a box, else PARTIAL.
-/// - `distance(points)` gets points of shape (n, 3), and returns n numbers whose magnitude is at most the
-///   distance from the surface, negative inside; 0 says nothing.
+/// - `classify(boxes)` gets boxes of shape (n, 2, 3), lower and upper corners. It returns n tags: EMPTY or
+///   FULL where that is proven for the whole box, else PARTIAL.
+/// - `distance(points)` gets points of shape (n, 3). It returns n numbers, negative inside. The magnitude of
+///   each is at most the distance from the surface; 0 carries no information.
 ///
-/// And, if you like:
+/// These members are optional:
 ///
-/// - `inside(points)` returns n booleans: the sampled rule needs it.
-/// - `gradient(boxes)` bounds a function f over the boxes, where the solid is f ≤ 0: a pair of arrays of
-///   shape (n, 2), which hold the value in the middle of each box, and (n, 3, 2), the derivatives in all of
-///   it. Measures need far fewer cells with it. NaN says nothing.
-/// - `bounds`, an attribute of the class or of the object, or a property: a lower and an upper corner between
-///   which all of the shape lies.
+/// - `inside(points)` returns n booleans. The "sampled" rule needs this method.
+/// - `gradient(boxes)` bounds a function f over the boxes; the solid is f ≤ 0. It returns two arrays of
+///   bounds: the value at the centre of each box, of shape (n, 2), and the derivatives in the whole box, of
+///   shape (n, 3, 2). Measures need far fewer cells with it. NaN carries no information.
+/// - `bounds` is a lower and an upper corner of a box that contains the whole shape: an attribute of the
+///   class or of the object, or a property.
 ///
-/// `arguments` and `named` ones are those of your `__init__`.
+/// The positional `arguments` and the `named` ones are those of your `__init__`.
 ///
-/// The methods are called from several threads, one at a time. Exceptions in them end the work, and come out
-/// of it.
+/// The methods are called from several threads, one at a time. An exception in a method ends the operation,
+/// which raises it.
 ///
 /// >>> import numpy as np
 /// >>> class Ball(Shape):
@@ -45,13 +45,13 @@ pub struct Shape;
 
 #[pymethods]
 impl Shape {
-    /// Nothing is known. A plain attribute, unlike that of other solids, so that a subclass or an object may
-    /// have its own.
+    /// `None`: no bounds are known. It is a plain attribute, unlike `bounds` of other solids, so that a
+    /// subclass or an object may replace it.
     #[classattr]
     #[allow(non_upper_case_globals)]
     const bounds: Option<u8> = None;
 
-    /// Arguments are for `__init__`. Where nobody takes them they are refused, as `object` does.
+    /// Leaves arguments to `__init__`. If no class takes them, they are refused, as `object` does.
     #[new]
     #[classmethod]
     #[pyo3(signature = (*arguments, **named))]
@@ -79,17 +79,18 @@ impl Shape {
         Ok(format!("<{}>", slf.get_type().name()?))
     }
 
-    /// Tells `object.__reduce_ex__` that all there is to pickle are the attributes.
+    /// Lets `object.__reduce_ex__` pickle the attributes alone.
     fn __getnewargs__<'py>(&self, py: Python<'py>) -> Bound<'py, PyTuple> {
         PyTuple::empty(py)
     }
 }
 
-/// The methods of a shape, called from wherever the library is. The reference is weak, because the collector
-/// does not see what the library holds: whoever keeps a solid beyond a call keeps the object, too.
+/// The Python methods of a shape, as the library calls them. The reference is weak, because Python's
+/// collector does not see references that the library holds. An owner that keeps a solid beyond a call also
+/// keeps the object.
 struct Methods(Py<PyWeakrefReference>);
 
-/// Numbers of an array of one size.
+/// Reads the numbers of an array that must have a given shape.
 fn numbers(array: &Bound<'_, PyAny>, kind: &str, name: &str, shape: &[usize]) -> PyResult<Vec<f64>> {
     let array: Bound<'_, PyArrayDyn<f64>> = arrays::required(array, kind, name)?;
     if array.shape() != shape {
@@ -194,7 +195,7 @@ fn points_of<'py>(py: Python<'py>, points: &[[f64; 3]]) -> PyResult<Bound<'py, P
     Ok(arrays::rows(py, points.to_vec())?.into_any())
 }
 
-/// The solid of an object whose methods are written in Python.
+/// Returns the solid of an object whose methods are written in Python.
 pub fn given(object: &Bound<'_, PyAny>) -> PyResult<Given> {
     let has = |name: &str| object.get_type().hasattr(name);
     let (classifies, measures) = (has("classify")?, has("distance")?);

@@ -1,4 +1,4 @@
-//! Octrees in shards: building, cutting and joining them, and adding up what is measured of them.
+//! Octrees in shards: building, cutting and joining them, and adding up their measures.
 
 use crate::arguments::{Argument, Deep, Level, named, other_type};
 use crate::arrays;
@@ -20,22 +20,23 @@ use pyo3::exceptions::PyTypeError;
 use pyo3::prelude::*;
 use pyo3::types::{PyBytes, PyDict};
 
-/// The cells that a shard knows: those down to a level, or those below one cell of a level. A cell is named
-/// by its `level` and its `code`, the place in Morton order among the 8^level cells of the level.
+/// The cells of a shard: the cells down to a level, or the cells below one cell of a level. A cell is named
+/// by its `level` and its `code` (Morton order) among the 8^level cells of the level.
 #[pyclass(frozen, eq, hash, from_py_object, module = "leafless.shards")]
 #[derive(Clone, Copy, PartialEq, Eq, Hash)]
 pub struct Shard(pub Inner);
 
 #[pymethods]
 impl Shard {
-    /// The cells down to a `level`, from 0 to the depth of the frame. A cell that would be split there stays
-    /// PARTIAL.
+    /// Returns the top: the cells down to a `level`, from 0 to the depth of the frame. A cell that would be
+    /// split on that level stays PARTIAL.
     #[staticmethod]
     fn top(#[pyo3(from_py_with = named::level)] level: Level) -> Shard {
         Shard(Inner::Top { level: level.0 })
     }
 
-    /// The cells in the cell with this `code` on a `level`, and those around the cell.
+    /// Returns the shard of the cell with this `code` on a `level`: the cells in that cell, and the cells
+    /// around it.
     #[staticmethod]
     fn below(
         py: Python<'_>,
@@ -54,7 +55,7 @@ impl Shard {
         }
     }
 
-    /// The place of the cell in Morton order; `None` of a top.
+    /// The Morton code of the cell; `None` for a top.
     #[getter]
     fn code(&self) -> Option<u64> {
         match self.0 {
@@ -79,18 +80,18 @@ impl Shard {
     }
 }
 
-/// The cell of a level at a place in Morton order, which the parameter `name` tells.
+/// Returns the cell with a code on a level. A refusal names the parameter `name`.
 fn cell(py: Python<'_>, name: &str, level: u8, code: u64) -> PyResult<Cell> {
     let problem = || format!("must be a code below 8^{level}, the number of cells of the level, not {code}");
     Cell::from_morton(level, code).ok_or_else(|| refused(py, name, problem()))
 }
 
-/// The cell of a frame.
+/// Returns the cell with a code on a level of a frame.
 fn cell_of(py: Python<'_>, frame: &leafless::Frame, level: Level, code: u64) -> PyResult<Cell> {
     cell(py, "code", level_of(py, frame, level)?, code)
 }
 
-/// What the cells of a level on a frame have: pairs of a code and something else, which is told as `kind`.
+/// Reads pairs of a cell's code and a value. `kind` describes the value in refusals.
 fn by_codes<'py, T>(
     given: &Bound<'py, PyAny>,
     frame: &leafless::Frame,
@@ -110,7 +111,7 @@ fn by_codes<'py, T>(
     sequence(given, "shards", &format!("a sequence of codes with {kind}"))?.map(pair).collect()
 }
 
-/// What a sequence holds.
+/// Iterates over a sequence.
 fn sequence<'py>(
     given: &Bound<'py, PyAny>,
     name: &str,
@@ -121,16 +122,16 @@ fn sequence<'py>(
     })
 }
 
-/// What is known of the volume and the moments of a solid in some cells of its frame. Sums are exact, so that
-/// their order does not matter: `a + b - b == a`.
+/// A sum of volume and moments of a solid over some cells of its frame. Sums are exact, so their order does
+/// not matter: the intervals of `a + b - b` are those of `a`. Only the number of splits keeps counting.
 #[pyclass(frozen, eq, module = "leafless.shards")]
 #[derive(PartialEq)]
 pub struct MassSum(query::MassSum);
 
 #[pymethods]
 impl MassSum {
-    /// The sum of the cell with this `code` on a `level`, of which nothing is known. `frame` is a `Frame`, or
-    /// an octree that has it.
+    /// Returns the sum of one unknown cell, with this `code` on a `level`. `frame` is a `Frame`, or an octree
+    /// on that frame.
     #[staticmethod]
     fn unknown(
         py: Python<'_>,
@@ -141,13 +142,13 @@ impl MassSum {
         query::MassSum::unknown(&frame.0, cell_of(py, &frame.0, level, code)?).or_raise(py).map(MassSum)
     }
 
-    /// The sum in `data`, the bytes that `to_bytes` made.
+    /// Reads a sum from `data`, the bytes that `to_bytes` made.
     #[staticmethod]
     fn from_bytes(py: Python<'_>, #[pyo3(from_py_with = named::data)] data: &[u8]) -> PyResult<MassSum> {
         query::MassSum::from_bytes(data).map_err(called([("bytes", "data")])).or_raise(py).map(MassSum)
     }
 
-    /// The sum as bytes, for another process of the same version.
+    /// Returns the sum as bytes, for another process of the same version.
     fn to_bytes<'py>(&self, py: Python<'py>) -> Bound<'py, PyBytes> {
         PyBytes::new(py, &self.0.to_bytes())
     }
@@ -158,7 +159,7 @@ impl MassSum {
         Frame(*self.0.frame())
     }
 
-    /// Volume, centroid and inertia.
+    /// The volume, the centroid and the inertia.
     #[getter]
     fn properties<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyAny>> {
         measures::told(py, &self.0.properties().or_raise(py)?)
@@ -182,12 +183,12 @@ impl MassSum {
     }
 }
 
-/// Measures the part of a `solid` in one cell of a `frame` (a `Frame`, or an octree that has it): volume,
-/// centroid and inertia, until the width of the interval of the volume in the cell is `tolerance` of it, or
-/// at most `absolute` (cubic model units).
+/// Measures volume, centroid and inertia of the part of a `solid` in one cell of a `frame` (a `Frame`, or an
+/// octree on that frame). It ends when the width of the interval of the volume in the cell is at most
+/// `tolerance` times that volume, or at most `absolute` (cubic model units).
 ///
-/// The cell is the one with this `code` (place in Morton order) on a `level`. Without them, it is the whole
-/// frame. `max_splits` is how many times cells may be split.
+/// The cell is the one with this `code` (Morton order) on a `level`. Without them, it is the whole frame.
+/// `max_splits` limits the number of splits.
 ///
 /// >>> from leafless.shards import measure_cell
 /// >>> ball, frame = Csg.ball([0, 0, 0], 1), Frame([-1, -1, -1], 2, 20)
@@ -214,7 +215,7 @@ pub fn measure_cell(
     limits.run(py, ask).map(MassSum)
 }
 
-/// Puts together what several `octrees` on one frame know of one solid: a cell is FULL or EMPTY if one of
+/// Joins the knowledge of several `octrees` on one frame about one solid. A cell is FULL or EMPTY if one of
 /// them says so, and PARTIAL where all leave it open. Surfaces that one of them keeps are kept. This is the
 /// reverse of cutting an octree into shards, byte for byte.
 ///
@@ -242,14 +243,14 @@ pub fn join<'py>(
 }
 
 /// A solid of shards that are not joined: a `top`, and `shards` of cells of one `level` that the top leaves
-/// open, as pairs of the cell's code and the octree. A shard is looked at when one of its cells is asked for.
-/// A cell without a shard is PARTIAL.
+/// open, as pairs of the cell's code and the octree. A shard is read when a query needs one of its cells. A
+/// cell without a shard is PARTIAL.
 #[pyclass(extends = Solid, frozen, module = "leafless.shards")]
 pub struct ShardedSolid(ShardedOctree);
 
 #[pymethods]
 impl ShardedSolid {
-    /// Of a top, and shards by the codes of their cells.
+    /// Makes a solid of a top, and of shards with the codes of their cells.
     #[new]
     fn new(
         py: Python<'_>,
@@ -266,7 +267,7 @@ impl ShardedSolid {
         Ok(PyClassInitializer::from(Solid::new(given)).add_subclass(ShardedSolid(sharded)))
     }
 
-    /// Where it lies.
+    /// The frame of the whole.
     #[getter]
     fn frame(&self) -> Frame {
         Frame(*self.0.frame())
@@ -276,7 +277,7 @@ impl ShardedSolid {
         format!("<ShardedSolid: depth {}, {} shards>", self.0.frame().depth(), self.0.shards().len())
     }
 
-    /// By the bytes of the octrees.
+    /// Pickles the bytes of the octrees.
     fn __reduce__<'py>(slf: &Bound<'py, Self>) -> PyResult<(Bound<'py, PyAny>, Bound<'py, PyAny>)> {
         let (py, own) = (slf.py(), &slf.get().0);
         let mut list = Vec::new();
@@ -289,9 +290,9 @@ impl ShardedSolid {
     }
 }
 
-/// The statistics of a `top` and of `shards` of cells of a `level`, level by level as `Octree.statistics`
-/// tells them. A shard is a pair of the cell's code and of counts: of each level of the frame, the nodes, the
-/// FULL and the PARTIAL cells.
+/// Returns the statistics of a `top` and of `shards` of cells of a `level`, in the form of
+/// `Octree.statistics`. A shard is a pair of the cell's code and of counts: for each level of the frame, the
+/// numbers of nodes, FULL cells and PARTIAL cells.
 #[pyfunction]
 pub fn joined_statistics<'py>(
     py: Python<'py>,
@@ -314,9 +315,9 @@ pub fn joined_statistics<'py>(
     crate::octree::told(py, &found.or_raise(py)?)
 }
 
-/// The triangles of marching cubes in the cell with this `code` on a `level`, as vertices and faces. `octree`
-/// is the one of the cell's shard, joined with those of the neighbours behind it. `resolve` says whether
-/// undecided cells belong to the solid: "outer" (they do) or "inner" (they do not).
+/// Returns the triangles of marching cubes in the cell with this `code` on a `level`, as vertices and faces.
+/// `octree` is the cell's shard, joined with the shards of its neighbours towards +x, +y and +z. `resolve`
+/// decides whether undecided cells belong to the solid: "outer" (they do) or "inner" (they do not).
 #[pyfunction]
 #[pyo3(signature = (octree, level, code, resolve, **limits))]
 pub fn surface_in<'py>(

@@ -1,5 +1,4 @@
-//! What has a shape: the class of all solids, and the questions that arrays of points and rays put to any of
-//! them.
+//! The class of all solids, and queries with arrays of points and rays.
 
 use crate::arguments::named;
 use crate::arrays::{self, Rows};
@@ -23,33 +22,33 @@ use pyo3::prelude::*;
 use pyo3::types::PyDict;
 use std::sync::{Arc, OnceLock};
 
-/// Questions that are answered on the calling thread: more of them may take longer than anybody wants to wait
-/// for Ctrl-C.
+/// The maximum sizes of queries that are answered on the calling thread. Larger ones may take longer than a
+/// user wants to wait for Ctrl-C.
 const FEW_POINTS: usize = 4096;
 const FEW_RAYS: usize = 256;
 const FEW_DISTANCES: usize = 16;
 
-/// How many points an octree is asked about before signals are looked at again.
+/// The number of points that an octree classifies between two checks of signals.
 const CHUNK: usize = 1 << 16;
 
-/// What the library calls the parts of a ray.
+/// The library's names of the parts of a ray.
 const RAY: [(&str, &str); 2] = [("origin", "origins"), ("direction", "directions")];
 
-/// The default tolerance of distances, as a part of the frame.
+/// The default tolerance of distances, as a part of the frame's edge.
 const TOLERANCE: f64 = 1e-6;
 
-/// A solid as the library sees it.
+/// A solid of the library, with facts about it.
 #[derive(Clone)]
 pub struct Given {
-    /// The solid, which remembers the frame that it was asked on last.
+    /// The solid, prepared for the last frame of a query.
     pub shape: Prepared,
-    /// The box that holds it, if one is known; found out once.
+    /// A box that contains the solid, if one is known; computed once.
     pub known_bounds: Arc<OnceLock<Option<Bounds>>>,
     /// The frame of an octree, or of a volume's voxels.
     pub own: Option<Inner>,
-    /// Whether the cells of an octree keep surfaces.
+    /// True if the cells of an octree keep surfaces.
     pub keeps_surfaces: bool,
-    /// Whether questions call functions of Python.
+    /// True if queries call Python functions.
     pub calls_python: bool,
 }
 
@@ -60,7 +59,7 @@ impl Given {
         Given { shape, known_bounds, own, keeps_surfaces: false, calls_python: false }
     }
 
-    /// A box that holds the solid, if one is known.
+    /// Returns a box that contains the solid, if one is known.
     pub fn bounds(&self, py: Python<'_>) -> Option<Bounds> {
         match self.known_bounds.get() {
             Some(&known) => known,
@@ -68,22 +67,21 @@ impl Given {
         }
     }
 
-    /// The solid itself.
+    /// Returns the solid itself.
     pub fn any(&self) -> &AnySolid {
         self.shape.solid()
     }
 }
 
-/// Anything that has a shape. `Csg`, `Mesh`, `Octree` and `Volume` are solids, and so is a subclass of
-/// `Shape` of your own.
+/// Anything that has a shape: `Csg`, `Mesh`, `Octree`, `Volume`, and subclasses of `Shape` of your own.
 ///
 /// Operators combine any two solids: `a | b` (union), `a & b` (intersection), `a - b` (difference), `a ^ b`
-/// (symmetric difference) and `~a` (complement). Two octrees make an octree, at once and exactly; any others
-/// an expression (`Csg`), which splits nothing before it is asked. `map @ a` is `a` moved by an `Affine` or a
-/// matrix.
+/// (symmetric difference) and `~a` (complement). Two octrees give an octree, at once and exactly. Any other
+/// pair gives an expression (`Csg`), which splits nothing before a query. `map @ a` is `a` moved by an
+/// `Affine` or a matrix.
 #[pyclass(subclass, frozen, weakref, module = "leafless")]
 pub struct Solid {
-    /// Nothing for shapes of Python, which come with the object itself.
+    /// `None` for shapes written in Python: the object itself has the methods.
     given: Option<Given>,
 }
 
@@ -92,18 +90,18 @@ impl Solid {
         Solid { given: Some(given) }
     }
 
-    /// The base of a shape whose methods are written in Python.
+    /// Returns the base of a shape whose methods are written in Python.
     pub fn of_python() -> Solid {
         Solid { given: None }
     }
 }
 
-/// Whether an object is a solid.
+/// Returns whether an object is a solid.
 pub fn is_solid(object: &Bound<'_, PyAny>) -> bool {
     object.cast::<Solid>().is_ok()
 }
 
-/// The solid that an object is.
+/// Returns the solid of an object.
 pub fn given(object: &Bound<'_, PyAny>, name: &str) -> PyResult<Given> {
     let Ok(solid) = object.cast::<Solid>() else {
         let kind = object.get_type().name()?;
@@ -117,7 +115,8 @@ pub fn given(object: &Bound<'_, PyAny>, name: &str) -> PyResult<Given> {
     }
 }
 
-/// The solid that an object is; of an octree the cells, whatever they prove of the solid that it was made of.
+/// Returns the solid of an object. For an octree it is the solid of the cells, without regard to their proof
+/// about the source solid.
 fn of_cells(object: &Bound<'_, Solid>) -> PyResult<Given> {
     match object.cast::<Octree>() {
         Ok(octree) if !octree.get().octree.proof().is_certified() => {
@@ -129,13 +128,13 @@ fn of_cells(object: &Bound<'_, Solid>) -> PyResult<Given> {
 
 #[pymethods]
 impl Solid {
-    /// Operators of NumPy leave this class alone.
+    /// Makes NumPy's operators defer to this class.
     #[classattr]
     #[allow(non_upper_case_globals)]
     const __array_ufunc__: Option<u8> = None;
 
-    /// A box that holds the solid, as an array of its lower and its upper corner; `None` if none is known. It
-    /// may be larger than the solid; `bounding_box` proves how large that is.
+    /// A box that contains the solid, as an array of its lower and its upper corner; `None` if none is known.
+    /// The box may be larger than the solid. `bounding_box` returns proven bounds of the solid's extent.
     #[getter]
     fn bounds<'py>(slf: &Bound<'py, Self>) -> PyResult<Option<Bound<'py, PyAny>>> {
         let bounds = given(slf, "self")?.bounds(slf.py());
@@ -143,21 +142,22 @@ impl Solid {
         Ok(array.transpose()?.map(Bound::into_any))
     }
 
-    /// A text that tells the solid from others: solids with the same fingerprint give the same answers.
-    /// `None` if a part of the solid has none, as shapes written in Python.
+    /// A text that identifies the solid: solids with the same fingerprint give the same answers. `None` if a
+    /// part of the solid has no fingerprint, as a shape written in Python.
     #[getter]
     fn fingerprint(slf: &Bound<'_, Self>) -> PyResult<Option<String>> {
         let (py, solid) = (slf.py(), given(slf, "self")?);
         Ok(py.detach(|| solid.shape.fingerprint()).map(|fingerprint| fingerprint.to_string()))
     }
 
-    /// Whether points lie inside. `points` has the shape (n, 3), in model units. The answer is an array of
-    /// the codes of `Membership`, of type uint8; compare it, as in `points[part.contains(points) == INSIDE]`.
-    /// A single point has a single answer. A point in an undecided cell of an octree is UNDECIDED, and so is
-    /// a point outside of the frame about which nothing is known. On the boundary both answers are right.
+    /// Classifies points as inside, outside or undecided. `points` has the shape (n, 3), in model units. The
+    /// answer is an array of the codes of `Membership`, of type uint8; compare it, as in
+    /// `points[part.contains(points) == INSIDE]`. A single point has a single answer. A point in an undecided
+    /// cell of an octree is UNDECIDED, and so is a point outside the frame about which nothing is known. On
+    /// the boundary both answers are right.
     ///
-    /// `frame` is the cube whose cells are asked: a `Frame`, or an octree that has it. Without it, an octree
-    /// is asked on its own frame, and any other solid on a cube around it.
+    /// `frame` is the cube of the query: a `Frame`, or an octree on that frame. Without it, an octree uses
+    /// its own frame, and any other solid a cube around it.
     ///
     /// >>> ball = Csg.ball([0, 0, 0], 1)
     /// >>> ball.contains([[0, 0, 0.999], [0, 0, 1.001]])
@@ -195,7 +195,7 @@ impl Solid {
                 limits.run_if(long, py, ask)?;
             }
         }
-        // What lies beyond the frame, and beyond the box that holds the solid, is proven outside.
+        // A point beyond the frame and beyond the box that contains the solid is proven outside.
         if let Some(bounds) = solid.bounds(py) {
             let is_beyond = |axis: usize, x: f64| x < bounds.min[axis] || x > bounds.max[axis];
             py.detach(|| {
@@ -209,16 +209,16 @@ impl Solid {
         memberships(py, &answers, points.is_one)
     }
 
-    /// Signed distances of points from the boundary, negative inside, as intervals that contain the truth.
-    /// `points` has the shape (n, 3), in model units. An interval is no wider than `tolerance` where that is
-    /// possible; the default is a millionth of the frame. `to="solid"` measures to the solid (0 inside),
-    /// `to="complement"` to what is not solid (0 outside).
+    /// Returns the signed distances of points from the boundary, negative inside, as intervals that contain
+    /// the truth. `points` has the shape (n, 3), in model units. An interval is no wider than `tolerance`
+    /// where that is possible. The default is a millionth of the frame's edge. `to="solid"` measures to the
+    /// solid (0 inside), `to="complement"` to the complement (0 outside).
     ///
     /// The answer is a `Distances`: `distance` (`Intervals`), `nearest` (points of the boundary), `surface`
-    /// (numbers of triangles or surfaces there) and `undecided` (where the interval is wider than the
-    /// tolerance). A single point has a `Distance`, whose `distance` is an `Interval`.
+    /// (numbers of the triangles or surfaces there) and `undecided` (true where the interval is wider than
+    /// the tolerance). A single point has a `Distance`, whose `distance` is an `Interval`.
     ///
-    /// `frame` is the cube that is searched: a `Frame`, or an octree that has it. Without it, it is a cube
+    /// `frame` is the cube of the query: a `Frame`, or an octree on that frame. Without it, it is a cube
     /// around the solid.
     ///
     /// >>> found = Csg.ball([0, 0, 0], 1).distances([[3, 0, 4], [0, 0.5, 0]], tolerance=1e-9)
@@ -248,16 +248,16 @@ impl Solid {
         distances_found(py, &found, tolerance, points.is_one)
     }
 
-    /// Where rays first meet the solid. `origins` and `directions` have the shape (n, 3); a single origin or
-    /// direction is used for all rays. Distances count multiples of a direction's length. `on="inner"` stops
-    /// a ray where the solid is proven to be, `on="outer"` where the solid may be. `last` ends all rays at
-    /// that distance.
+    /// Returns the first hits of rays on the solid. `origins` and `directions` have the shape (n, 3); a
+    /// single origin or direction is used for all rays. Distances are multiples of the direction's length.
+    /// `on="inner"` stops a ray where the solid is proven, `on="outer"` where the solid is possible. `last`
+    /// is the distance at which all rays end.
     ///
-    /// The answer is a `RayHits`: `hit`, `distance` (`Intervals`), `normal` and `surface`. Before the lower
-    /// end of a distance the ray is proven outside, at the upper end inside. A single origin with a single
+    /// The answer is a `RayHits`: `hit`, `distance` (`Intervals`), `normal` and `surface`. The ray is proven
+    /// outside before the lower end of a distance, and inside at the upper end. A single origin with a single
     /// direction has a `RayHit`, whose `distance` is an `Interval`.
     ///
-    /// `frame` is the cube that is searched: a `Frame`, or an octree that has it. Without it, it is a cube
+    /// `frame` is the cube of the query: a `Frame`, or an octree on that frame. Without it, it is a cube
     /// around the solid.
     ///
     /// >>> hits = Csg.ball([0, 0, 0], 1).rays([[-2, 0.6, 0], [-2, 2, 0]], [1, 0, 0])
@@ -306,9 +306,9 @@ impl Solid {
         rays_found(py, &found, origins.is_one && directions.is_one)
     }
 
-    /// The solid moved by a `placement`, an `Affine` or a matrix. A mesh stays a mesh; any other solid
-    /// becomes an expression. Meshes and expressions are moved exactly. The cells of an octree blur by about
-    /// one cell, unless the map moves by whole cells or quarter turns.
+    /// Returns the solid moved by a `placement`, an `Affine` or a matrix. A mesh stays a mesh; any other
+    /// solid becomes an expression. Meshes and expressions are moved exactly. The cells of an octree blur by
+    /// about one cell, unless the map consists of quarter turns and moves by whole cells.
     fn placed<'py>(slf: &Bound<'py, Self>, placement: &Bound<'py, PyAny>) -> PyResult<Bound<'py, PyAny>> {
         operators::placed(slf, placement)
     }
@@ -345,9 +345,9 @@ impl Solid {
         operators::placed(slf, placement)
     }
 
-    /// A picture, for notebooks.
+    /// Returns a picture, for notebooks.
     fn _repr_png_<'py>(slf: &Bound<'py, Self>) -> PyResult<Option<Bound<'py, PyAny>>> {
-        // What cannot be shown is told in words.
+        // A solid that cannot be drawn is shown as text.
         match from_package!(slf.py(), "leafless._leafless", "render")?.call1((slf,)) {
             Ok(picture) => picture.call_method0("_repr_png_").map(Some),
             Err(error) if error.is_instance_of::<PyException>(slf.py()) => Ok(None),
@@ -356,7 +356,7 @@ impl Solid {
     }
 }
 
-/// Answers about points.
+/// Converts answers about points.
 pub fn memberships<'py>(
     py: Python<'py>,
     answers: &[Membership],
@@ -369,7 +369,7 @@ pub fn memberships<'py>(
     Ok(arrays::array::<u8>(py, codes, &[answers.len()])?.into_any())
 }
 
-/// The number of a surface, or −1.
+/// Returns the number of a surface, or −1.
 fn number(surface: Option<u32>) -> i64 {
     surface.map_or(-1, i64::from)
 }
@@ -382,7 +382,7 @@ fn distances_found<'py>(
 ) -> PyResult<Bound<'py, PyAny>> {
     let near = |found: &PointDistance| found.nearest.map_or([f64::NAN; 3], |near| near.point);
     let number = |found: &PointDistance| number(found.nearest.and_then(|near| near.surface));
-    // (Of what is proven not to be there, both ends are infinite, and the width is no number.)
+    // If nothing is there, by proof, both ends are infinite, and the width is NaN.
     let is_wide = |found: &PointDistance| found.distance.width() > tolerance;
     if let (&[one], true) = (found, is_one) {
         let answer = from_package!(py, "leafless._answers", "Distance")?;

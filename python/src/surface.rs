@@ -1,4 +1,4 @@
-//! Surfaces as triangle meshes.
+//! Surface extraction: triangle meshes of solids.
 
 use crate::arguments::{Depth, named};
 use crate::ask::{self, FrameLike, Wish};
@@ -15,8 +15,8 @@ use pyo3::IntoPyObjectExt;
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
 
-/// Default depths: for cells that end by themselves, for cells that hold one vertex each, and for cells of
-/// one size.
+/// The default depths: for cells that end by themselves, for cells that hold one vertex each, and for cells
+/// of one size.
 const DEEP: u8 = 14;
 const FINE: u8 = 12;
 const EQUAL: u8 = 8;
@@ -24,33 +24,34 @@ const EQUAL: u8 = 8;
 /// The default tolerance, as a part of the longest extent.
 const TOLERANCE: f64 = 1e-3;
 
-/// Where coplanar shrink puts vertices.
+/// The place of vertices in coplanar shrink.
 const SNAP: Snap = Snap::Fat;
 
-/// What `method` of a report may be.
+/// The values of `method` in a report.
 const METHODS: [&str; 6] = ["faces", "adaptive", "cubes", "nets", "shrink", "simplify"];
 
-/// How a mesh was made of a solid: by a `method`, with what is proven of the `deviation` of the mesh from the
-/// solid's boundary (`from_mesh` says whether it is only that from another mesh), and the number of
-/// `intersecting_pairs` of triangles.
+/// A report about a mesh that was made of a solid: the `method`, the proven `deviation` of the mesh from the
+/// solid's boundary, and the number of `intersecting_pairs` of triangles. With `from_mesh` the deviation is
+/// only that from another mesh.
 #[pyclass(frozen, eq, get_all, weakref, from_py_object, module = "leafless")]
 #[derive(Clone, Copy, PartialEq)]
 pub struct SurfaceReport {
     /// "faces", "adaptive", "cubes", "nets", "shrink" or "simplify".
     method: &'static str,
-    /// No point of the mesh is further from the solid's boundary than that, and no point of the boundary is
-    /// further from the mesh (model units): proven. Infinite if nothing is known.
+    /// The proven maximum distance of mesh and boundary, in both directions: of each point of the mesh from
+    /// the solid's boundary, and of each point of the boundary from the mesh (model units). Infinite if
+    /// nothing is known.
     pub deviation: f64,
-    /// Whether the deviation is that from another mesh, of which no deviation is known: `simplify` of a mesh
+    /// True if the deviation is that from another mesh whose own deviation is unknown: `simplify` of a mesh
     /// from a file.
     pub from_mesh: bool,
-    /// Pairs of triangles that intersect each other, where the method counts them.
+    /// The number of pairs of triangles that intersect each other, where the method counts them.
     intersecting_pairs: u64,
 }
 
 #[pymethods]
 impl SurfaceReport {
-    /// A report, as `mesh.surface_report` tells it.
+    /// Makes a report, as `mesh.surface_report` returns it.
     #[new]
     fn new(
         py: Python<'_>,
@@ -79,7 +80,7 @@ impl SurfaceReport {
     }
 }
 
-/// What `surface` may make.
+/// The methods of `surface`.
 #[derive(Clone, Copy, PartialEq)]
 enum Method {
     Faces,
@@ -100,28 +101,28 @@ impl Word for Method {
     ];
 }
 
-/// The surface of a `solid` as a closed triangle mesh.
+/// Makes a closed triangle mesh of the surface of a `solid`.
 ///
-/// `method` is one of these. Without it, the first method that suits the solid is taken.
+/// `method` is one of these. By default, the first method that suits the solid is used.
 ///
-/// - "faces": plane faces as they are, sharp edges, few triangles. For solids that know their surfaces
+/// - "faces": plane faces stay plane, sharp edges, few triangles. For solids that store their surfaces
 ///   (expressions, octrees that keep them) and for meshes.
 /// - "adaptive": few triangles where the surface is flat. For any solid.
-/// - "cubes": marching cubes in 2^`depth` cells along an axis. For octrees it uses their cells, for volumes
-///   their voxels.
+/// - "cubes": marching cubes in 2^`depth` cells along an axis. For an octree in its own cells, for a volume
+///   in its voxels.
 /// - "nets": surface nets, smoother, in the same cells.
-/// - "shrink": coplanar shrink, with few triangles where the cells make a plane.
+/// - "shrink": coplanar shrink, with few triangles where the cells form a plane.
 ///
-/// `tolerance` (model units) is how far "faces" and "adaptive" may be from the solid; the default is a
-/// thousandth of the longest side. `mesh.surface_report.deviation` is what is proven of that distance.
+/// `tolerance` (model units) is the maximum distance of "faces" and "adaptive" from the solid; the default is
+/// a thousandth of the longest side. `mesh.surface_report.deviation` is the proven bound of that distance.
 ///
-/// `frame` is the cube in which the surface is looked for: a `Frame`, or an octree that has it. `depth`
-/// replaces its depth. Neither they nor `tolerance` have a meaning for the cells of an octree or the voxels
-/// of a volume, and are refused there. A volume with a `frame` or a `depth` is asked there as any other solid
-/// is.
+/// `frame` is the cube in which the surface is searched: a `Frame`, or an octree on that frame. `depth`
+/// replaces the depth of the frame. `frame`, `depth` and `tolerance` have no meaning for the cells of an
+/// octree or the voxels of a volume, and are refused there. A volume with a `frame` or a `depth` is treated
+/// like any other solid.
 ///
-/// `resolve` says whether undecided cells of an octree belong to the solid: "outer" (they do, the default) or
-/// "inner" (they do not). It is refused where no cells of an octree make the mesh.
+/// `resolve` decides whether undecided cells of an octree belong to the solid: "outer" (they do, the default)
+/// or "inner" (they do not). It is refused where the mesh is not made of an octree's cells.
 ///
 /// >>> mesh = surface(Csg.cuboid([0, 0, 0], [3, 2, 1]))
 /// >>> len(mesh.faces), mesh.surface_report.method
@@ -145,7 +146,7 @@ pub fn surface<'py>(
     let stored = stored.filter(|octree| octree.view().cuts().is_none());
     let solid = given(solid, "solid")?;
     let wish = Wish { frame, depth };
-    // A parameter without a meaning is refused, so that nobody believes that it was heeded.
+    // A parameter without a meaning is refused, so that no caller believes that it had an effect.
     let without = |name: &str, is_given: bool, why: &str| {
         if is_given { Err(refused(py, name, format!("has no meaning here: {why}"))) } else { Ok(()) }
     };
@@ -221,7 +222,7 @@ pub fn surface<'py>(
                         SurfaceReport { method: "faces", deviation, from_mesh: false, intersecting_pairs };
                     return Ok((found.into_mesh(), report));
                 }
-                // Of what is not bounded by surfaces the other method makes one.
+                // A solid that is not bounded by surfaces is meshed by the other method.
                 Err(Error::Argument { name, .. }) if method.is_none() && name != "tolerance" => {}
                 Err(error) => return Err(error),
             }
@@ -235,8 +236,8 @@ pub fn surface<'py>(
     made(py, mesh, report)
 }
 
-/// The same `mesh` with fewer triangles. Both meshes are within `tolerance` (model units) of each other:
-/// proven, for open meshes too.
+/// Returns a `mesh` with fewer triangles. Both meshes are proven to be within `tolerance` (model units) of
+/// each other, even if they are open.
 #[pyfunction]
 #[pyo3(signature = (mesh, tolerance, **limits))]
 pub fn simplify<'py>(
@@ -247,7 +248,7 @@ pub fn simplify<'py>(
     let (py, own) = (mesh.py(), mesh.get());
     let found = Limits::of(limits)?.run(py, |control| surfaces::simplify(&own.mesh, tolerance, control))?;
     let report = found.report();
-    // What the mesh was off before, and what it is off now.
+    // The sum of the deviation before and the deviation of this step.
     let before = own.deviation();
     let deviation = before.map_or(report.deviation, |before| (before + report.deviation).next_up());
     let intersecting_pairs = report.intersecting_pairs;

@@ -16,17 +16,18 @@ use pyo3::prelude::*;
 use pyo3::types::{PyDict, PyTuple};
 use std::sync::Arc;
 
-/// A 3-D `array` of samples as a solid: its voxels with values in a band.
+/// A solid of a 3-D `array` of samples: the voxels whose values lie in a band.
 ///
 /// The array is indexed [x, y, z]. With `order="zyx"` it is indexed [z, y, x], as in SimpleITK and tifffile.
-/// It may hold booleans, uint8, uint16, int16 or float32.
+/// It holds booleans, uint8, uint16, int16 or float32.
 ///
 /// An array in which x varies fastest is not copied: "zyx" in NumPy's default order, "xyz" in Fortran's. Do
-/// not change such an array as long as the volume lives.
+/// not change such an array while the volume exists.
 ///
-/// A voxel is inside if its sample is at least `threshold`. Two thresholds are a least and a greatest sample.
-/// The default is 0.5 for booleans and float32, 127.5 for uint8, 32767.5 for uint16 and 0 for int16. `origin`
-/// is the lower corner of the first voxel, `spacing` the edge of a voxel, or the edges along x, y and z.
+/// A voxel is inside if its sample is at least `threshold`. Two thresholds are the least and the greatest
+/// sample inside. The default is 0.5 for booleans and float32, 127.5 for uint8, 32767.5 for uint16 and 0 for
+/// int16. `origin` is the lower corner of the first voxel. `spacing` is the edge of a voxel, or the edges
+/// along x, y and z.
 ///
 /// >>> import numpy as np
 /// >>> x, y, z = np.mgrid[-10:11, -10:11, -10:11]
@@ -36,21 +37,21 @@ use std::sync::Arc;
 #[pyclass(extends = Solid, frozen, module = "leafless")]
 pub struct Volume {
     pub volume: Inner<'static>,
-    /// Booleans lie in memory as bytes.
+    /// True if the samples are booleans, which are stored as bytes.
     is_boolean: bool,
     axes_reversed: bool,
     pub threshold: Threshold,
 }
 
-/// An array of NumPy that a volume reads.
+/// A NumPy array that a volume reads.
 struct Held<T> {
-    /// Dropped with the interpreter attached, or when it is next.
+    /// Released when the interpreter is attached, now or later.
     _array: Py<PyAny>,
     start: *const T,
     length: usize,
 }
 
-// SAFETY: numbers that nobody changes can be read from any thread. (Reference counts are left to Python.)
+// SAFETY: unchanging numbers can be read from any thread. Python manages the reference counts.
 #[allow(unsafe_code)]
 unsafe impl<T: Sync> Send for Held<T> {}
 // SAFETY: as above.
@@ -59,8 +60,8 @@ unsafe impl<T: Sync> Sync for Held<T> {}
 
 impl<T> AsRef<[T]> for Held<T> {
     fn as_ref(&self) -> &[T] {
-        // SAFETY: the memory is that of the array, which is kept alive, lies there as one piece, and is not
-        // changed: the class says so.
+        // SAFETY: the memory belongs to the array, which is kept alive. It is one contiguous piece. It is not
+        // changed: the documentation of the class requires this.
         #[allow(unsafe_code)]
         unsafe {
             std::slice::from_raw_parts(self.start, self.length)
@@ -68,7 +69,7 @@ impl<T> AsRef<[T]> for Held<T> {
     }
 }
 
-/// The samples of an array in which x varies fastest.
+/// Returns the samples of an array in which x varies fastest.
 fn held<'py, T: Element + Sync + Copy>(array: &Bound<'py, PyAny>) -> PyResult<SampleArray<'static, T>> {
     let array = array.cast::<PyArray3<T>>()?;
     let held = Held {
@@ -79,15 +80,15 @@ fn held<'py, T: Element + Sync + Copy>(array: &Bound<'py, PyAny>) -> PyResult<Sa
     Ok(SampleArray::Shared(Arc::new(held)))
 }
 
-/// The least sample inside; and the greatest, if there is one.
+/// The least sample inside, and the greatest, if there is one.
 pub type Threshold = (f64, Option<f64>);
 
-/// One number, or a least and a greatest one.
+/// Reads a threshold: one number, or a least and a greatest one.
 pub fn threshold(given: &Bound<'_, PyAny>) -> PyResult<Threshold> {
     if let Ok(low) = given.extract::<f64>() {
         return Ok((low, None));
     }
-    // What the property tells.
+    // The form that the property `threshold` returns.
     if let Ok(told) = given.extract::<(f64, Option<f64>)>() {
         return Ok(told);
     }
@@ -100,7 +101,8 @@ pub fn threshold(given: &Bound<'_, PyAny>) -> PyResult<Threshold> {
     }
 }
 
-/// Which values are inside. A refusal shows what was given, if the threshold was not read from a file.
+/// Returns the band of the values inside. A refusal shows the given argument, if the threshold was not read
+/// from a file.
 pub fn band(py: Python<'_>, threshold: Threshold, given: Option<&Bound<'_, PyAny>>) -> PyResult<Band> {
     let band = match threshold {
         (low, None) => Band::at_least(low),
@@ -177,7 +179,7 @@ impl Volume {
         Volume::initial(volume, kind == "bool", axes_reversed, told)
     }
 
-    /// The samples, indexed as they were given: a view of the memory that the volume reads.
+    /// The samples, indexed as in the given array: a view of the memory that the volume reads.
     #[getter]
     fn array<'py>(slf: &Bound<'py, Self>) -> PyResult<Bound<'py, PyAny>> {
         let own = slf.get();
@@ -216,31 +218,31 @@ impl Volume {
         self.volume.grid().corner().into()
     }
 
-    /// The edges of a voxel.
+    /// The edges of a voxel along x, y and z.
     #[getter]
     fn spacing(&self) -> (f64, f64, f64) {
         self.volume.grid().spacing().into()
     }
 
-    /// The least sample inside; and the greatest, or `None`.
+    /// The least sample inside, and the greatest one or `None`.
     #[getter]
     fn threshold(&self) -> (f64, Option<f64>) {
         self.threshold
     }
 
-    /// "xyz" or "zyx": how `array` is indexed.
+    /// The order of the indices of `array`: "xyz" or "zyx".
     #[getter]
     fn order(&self) -> &'static str {
         if self.axes_reversed { "zyx" } else { "xyz" }
     }
 
-    /// A frame whose finest cells are the voxels, if these are cubes.
+    /// A frame whose finest cells are the voxels, if the voxels are cubes.
     #[getter]
     fn frame(&self, py: Python<'_>) -> PyResult<Frame> {
         self.volume.grid().frame().or_raise(py).map(Frame)
     }
 
-    /// The same samples with another `threshold`, without reading them again.
+    /// Returns the same samples with another `threshold`, without reading them again.
     #[pyo3(signature = (threshold, **limits))]
     fn with_threshold(
         &self,
@@ -254,7 +256,7 @@ impl Volume {
         Py::new(py, Volume::initial(volume, self.is_boolean, self.axes_reversed, told)?)
     }
 
-    /// The value between samples at `points` (shape (n, 3)): NaN beyond the grid.
+    /// Returns the interpolated values at `points` (shape (n, 3)); NaN beyond the grid.
     fn values_at<'py>(&self, points: &Bound<'py, PyAny>) -> PyResult<Bound<'py, PyAny>> {
         let rows = arrays::Rows::of(points, "points")?;
         let list = rows.list();

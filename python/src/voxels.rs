@@ -15,9 +15,9 @@ use pyo3::IntoPyObjectExt;
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
 
-/// Voxels as records, sorted by code: arrays of `codes`, `levels`, `kinds` (`VoxelKind`: 0 outside, 1 inside,
-/// 2 boundary, 3 refined) and `values`, which are views of the library's own memory. `frame` is their
-/// lattice.
+/// A list of voxels, sorted by code: arrays of `codes`, `levels`, `kinds` (`VoxelKind`: 0 outside, 1 inside,
+/// 2 boundary, 3 refined) and `values`. The arrays are views of the library's own memory. `frame` is the
+/// lattice of the voxels.
 ///
 /// >>> records = build(Csg.cuboid([0, 0, 0], [3, 1, 1]), Frame([0, 0, 0], 4, 2)).voxels()
 /// >>> len(records), records.corners().tolist()
@@ -27,8 +27,8 @@ pub struct VoxelRecords(pub Inner);
 
 #[pymethods]
 impl VoxelRecords {
-    /// Records from arrays of your own, sorted by code, with values of shape (n,) or (n, components) if they
-    /// have any.
+    /// Makes records from arrays of your own, sorted by code, with optional values of shape (n,) or (n,
+    /// components).
     #[new]
     #[pyo3(signature = (frame, codes, levels, kinds, values=None))]
     fn new(
@@ -82,7 +82,7 @@ impl VoxelRecords {
         records.map_err(called([("records", "codes")])).or_raise(py).map(VoxelRecords)
     }
 
-    /// Records of your own with what else a list that the library made says, as it was pickled.
+    /// Restores pickled records: adds the facts that the library stores beside the arrays.
     #[staticmethod]
     fn _restored(
         py: Python<'_>,
@@ -97,34 +97,34 @@ impl VoxelRecords {
         Ok(VoxelRecords(records.with_boundary(boundary)))
     }
 
-    /// The lattice.
+    /// The lattice of the voxels.
     #[getter]
     fn frame(&self) -> Frame {
         Frame(*self.0.view().frame())
     }
 
-    /// Codes of voxels: three bits a level, x the lowest.
+    /// The codes of voxels: three bits for each level, x the lowest bit.
     #[getter]
     fn codes<'py>(slf: &Bound<'py, Self>) -> PyResult<Bound<'py, PyAny>> {
         let list = slf.get().0.view().codes();
         shown(slf.as_any(), list, layout([list.len()], false))
     }
 
-    /// Levels of voxels.
+    /// The levels of voxels.
     #[getter]
     fn levels<'py>(slf: &Bound<'py, Self>) -> PyResult<Bound<'py, PyAny>> {
         let list = slf.get().0.view().levels();
         shown(slf.as_any(), list, layout([list.len()], false))
     }
 
-    /// Kinds of voxels.
+    /// The kinds of voxels.
     #[getter]
     fn kinds<'py>(slf: &Bound<'py, Self>) -> PyResult<Bound<'py, PyAny>> {
         let list = slf.get().0.view().kinds();
         shown(slf.as_any(), list, layout([list.len()], false))
     }
 
-    /// Values of voxels, shape (n, components), NaN where there is none.
+    /// The values of voxels, shape (n, components), NaN where there is none.
     #[getter]
     fn values<'py>(slf: &Bound<'py, Self>) -> PyResult<Bound<'py, PyAny>> {
         let view = slf.get().0.view();
@@ -132,14 +132,14 @@ impl VoxelRecords {
         shown(slf.as_any(), list, layout([view.len(), components], false))
     }
 
-    /// The lower corners of voxels (model units), shape (n, 3).
+    /// Returns the lower corners of voxels (model units), shape (n, 3).
     fn corners<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyAny>> {
         let view = self.0.view();
         let all = py.detach(|| (0..view.len()).map(|i| view.corner(i).unwrap_or([f64::NAN; 3])).collect());
         Ok(arrays::rows(py, all)?.into_any())
     }
 
-    /// The edges of voxels (model units), shape (n,).
+    /// Returns the edges of voxels (model units), shape (n,).
     fn edges<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyAny>> {
         let view = self.0.view();
         let all: Vec<f64> = py.detach(|| (0..view.len()).map(|i| view.edge(i).unwrap_or(f64::NAN)).collect());
@@ -147,7 +147,7 @@ impl VoxelRecords {
         Ok(arrays::array(py, all, &[count])?.into_any())
     }
 
-    /// The order in which voxels are seen from the point `eye`, those in front first: indices of shape (n,).
+    /// Returns the order of voxels as seen from the point `eye`, the front ones first: indices of shape (n,).
     #[pyo3(signature = (eye, **limits))]
     fn depth_order<'py>(
         &self,
@@ -162,8 +162,8 @@ impl VoxelRecords {
         Ok(arrays::array(py, order, &[count])?.into_any())
     }
 
-    /// The octree of the voxels. `boundary` says what boundary voxels become: "partial" (the default), "full"
-    /// or "empty", or one of the constants PARTIAL, FULL and EMPTY.
+    /// Returns the octree of the voxels. `boundary` is the tag of boundary voxels: "partial" (the default),
+    /// "full" or "empty", or one of the constants PARTIAL, FULL and EMPTY.
     #[pyo3(signature = (boundary=None, **limits), text_signature = "($self, boundary='partial', **limits)")]
     fn to_octree<'py>(
         &self,
@@ -199,7 +199,7 @@ impl VoxelRecords {
     }
 }
 
-/// Whole numbers in a list.
+/// Reads a list of whole numbers.
 fn list<T: Element + Copy>(given: &Bound<'_, PyAny>, kind: &str, name: &str) -> PyResult<Vec<T>> {
     let array = required::<T>(given, kind, name)?;
     if array.ndim() != 1 {

@@ -1,4 +1,4 @@
-//! The words that stand for the library's enumerations in Python.
+//! The names of the values of the library's enumerations in Python.
 
 use crate::arguments::other_type;
 use crate::error::refused;
@@ -8,20 +8,20 @@ use leafless::surface::Resolve;
 use leafless::{FillRule, Rule, Tag};
 use pyo3::prelude::*;
 
-/// An enumeration whose values are words.
+/// An enumeration whose values have names.
 pub trait Word: Copy + 'static {
-    /// The parameter that takes it.
+    /// The parameter that takes the name.
     const NAME: &'static str;
-    /// All words, with their values.
+    /// All names, with their values.
     const ALL: &'static [(&'static str, Self)];
 }
 
-/// The value of a word.
+/// Returns the value of a name.
 pub fn value<W: Word>(py: Python<'_>, word: &str) -> PyResult<W> {
     value_of(py, W::NAME, word)
 }
 
-/// The value of a word that another parameter takes.
+/// Returns the value of a name that another parameter takes.
 pub fn value_of<W: Word>(py: Python<'_>, name: &str, word: &str) -> PyResult<W> {
     match W::ALL.iter().find(|(own, _)| *own == word) {
         Some(&(_, value)) => Ok(value),
@@ -32,7 +32,7 @@ pub fn value_of<W: Word>(py: Python<'_>, name: &str, word: &str) -> PyResult<W> 
     }
 }
 
-/// A tag, by its word or as the package's constant.
+/// Reads a tag, from its name or from the package's constant.
 pub fn tag(given: &Bound<'_, PyAny>, name: &str) -> PyResult<Tag> {
     let py = given.py();
     if given.is_instance(&from_package!(py, "leafless._answers", "Tag")?)? {
@@ -45,7 +45,7 @@ pub fn tag(given: &Bound<'_, PyAny>, name: &str) -> PyResult<Tag> {
     }
 }
 
-/// The word of a value.
+/// Returns the name of a value.
 pub fn word<W: Word + PartialEq>(value: W) -> &'static str {
     W::ALL.iter().find(|(_, own)| *own == value).map_or("unknown", |(word, _)| word)
 }

@@ -1,4 +1,4 @@
-//! Long work: the interpreter is released, Ctrl-C interrupts, progress is reported, limits hold.
+//! Long operations: the interpreter is released, Ctrl-C interrupts, progress is reported, limits hold.
 
 use crate::arguments::Argument;
 use crate::error::{OrRaise, raised};
@@ -14,13 +14,13 @@ use std::sync::atomic::{
 use std::thread;
 use std::time::Duration;
 
-/// How long work goes on before signals and progress are looked at again.
+/// The time between two checks of signals and progress.
 const GLANCE: Duration = Duration::from_millis(50);
 
-/// Bytes of the stack of the thread that works, as much as a main thread has.
+/// The size of the working thread's stack (bytes): that of a usual main thread.
 const STACK: usize = 8 << 20;
 
-/// Refuses what is known to take more bytes than the caller allows.
+/// Refuses a result that is known to need more bytes than the caller allows.
 pub fn afford(control: &Control<'_>, what: &'static str, needed: u64) -> Result<(), Error> {
     match control.max_bytes.filter(|&limit| needed > limit) {
         Some(limit) => Err(Error::TooLarge { what, needed, limit }),
@@ -28,7 +28,7 @@ pub fn afford(control: &Control<'_>, what: &'static str, needed: u64) -> Result<
     }
 }
 
-/// Tells how much is done, and refuses to go on when the caller cancelled.
+/// Reports progress, and fails if the caller cancelled.
 pub fn advance(control: &Control<'_>, done: usize, all: usize) -> Result<(), Error> {
     if control.is_cancelled() {
         return Err(Error::Cancelled);
@@ -39,7 +39,7 @@ pub fn advance(control: &Control<'_>, done: usize, all: usize) -> Result<(), Err
     Ok(())
 }
 
-/// The keyword arguments that all long work takes: `threads`, `max_nodes`, `max_bytes`, `max_splits`,
+/// The keyword arguments of all long operations: `threads`, `max_nodes`, `max_bytes`, `max_splits`,
 /// `progress`.
 #[derive(Default)]
 pub struct Limits {
@@ -51,7 +51,7 @@ pub struct Limits {
 }
 
 impl Limits {
-    /// Takes them from keyword arguments, and refuses any other.
+    /// Reads the limits from keyword arguments, and refuses any other argument.
     pub fn of(given: Option<&Bound<'_, PyDict>>) -> PyResult<Limits> {
         let mut limits = Limits::default();
         for (name, value) in given.into_iter().flat_map(|given| given.iter()) {
@@ -83,8 +83,8 @@ impl Limits {
         Control { threads, max_nodes, max_bytes, max_splits, cancel, progress }
     }
 
-    /// Does work that may take long, in a thread of its own. This thread waits for signals, which cancel the
-    /// work, and calls the function that progress is reported to.
+    /// Runs a long operation in a thread of its own. The calling thread waits for signals, which cancel the
+    /// operation, and calls the progress function.
     pub fn run<R: Send>(
         &self,
         py: Python<'_>,
@@ -96,7 +96,7 @@ impl Limits {
         let control = self.control(Some(&cancel), progress);
         let (found, stopped) = py.detach(|| -> PyResult<_> {
             let (waiting, control) = (thread::current(), &control);
-            // (A thread that has done its work is not finished at once.)
+            // A thread that has done its work is not finished at once.
             let is_done = &AtomicBool::new(false);
             thread::scope(|scope| {
                 let worker = thread::Builder::new().stack_size(STACK).spawn_scoped(scope, || {
@@ -106,7 +106,7 @@ impl Limits {
                     found
                 })?;
                 let (mut told, mut stopped) = (0, None);
-                // (One that panics is only finished.)
+                // A thread that panics is finished without being done.
                 let goes_on = || !is_done.load(Acquire) && !worker.is_finished();
                 while goes_on() {
                     thread::park_timeout(GLANCE);
@@ -138,7 +138,7 @@ impl Limits {
         }
     }
 
-    /// Looks for signals, and reports what is done since the last time.
+    /// Checks signals, and reports the progress since the last time.
     fn glance(&self, py: Python<'_>, done: &AtomicU64, told: &mut u64) -> PyResult<()> {
         py.check_signals()?;
         let now = done.load(Relaxed);
@@ -151,7 +151,7 @@ impl Limits {
         Ok(())
     }
 
-    /// Does work that is known to be short on this thread, with the interpreter released.
+    /// Runs a short operation on the calling thread, with the interpreter released.
     pub fn run_here<R: Send>(
         &self,
         py: Python<'_>,
@@ -161,7 +161,8 @@ impl Limits {
         py.detach(|| work(&control)).map_err(|error| raised(py, error))
     }
 
-    /// Does work in the one way or the other.
+    /// Runs an operation in a thread of its own if it is `long` or reports progress, else on the calling
+    /// thread.
     pub fn run_if<R: Send>(
         &self,
         long: bool,

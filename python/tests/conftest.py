@@ -9,7 +9,7 @@ import leafless as lf
 
 @pytest.fixture
 def plate():
-    """A plate with a bore, whose volume is known."""
+    """A plate with a bore. Its volume is known."""
     return lf.Csg.cuboid([0, 0, 0], [8, 6, 1]) - lf.Csg.cylinder_between([4, 3, -1], [4, 3, 2], 1)
 
 
@@ -24,7 +24,7 @@ def tetrahedron():
 
 @pytest.fixture
 def models():
-    """The folder of real meshes, where there is one."""
+    """The folder of real meshes, if it exists."""
     folder = os.environ.get("LEAFLESS_MODELS")
     if not folder:
         pytest.skip("SKIPPED python: no models (LEAFLESS_MODELS)")

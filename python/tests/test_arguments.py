@@ -1,4 +1,4 @@
-"""What is taken for points, boxes, rays, tuples and arrays, and what is refused."""
+"""Accepted and refused arguments: points, boxes, rays, tuples and arrays."""
 
 import warnings
 
@@ -11,7 +11,7 @@ BALL = lf.Csg.ball([0, 0, 0], 1)
 
 masked = np.ma.masked_array
 
-#: What stands for no three numbers, whatever the axes.
+#: Values that are not three numbers, for any layout of axes.
 NO_NUMBERS = {
     "complex": [1 + 2j, 0, 0],
     "none": [None, 0, 0],
@@ -23,7 +23,7 @@ NO_NUMBERS = {
     "uneven": [[1, 2], 3, 4],
 }
 
-#: All that takes points, boxes, directions, placements and numbers, given three numbers.
+#: Functions that take points, boxes, directions, placements and numbers, called with three numbers.
 TAKERS = {
     "contains one": lambda three: BALL.contains(three),
     "contains many": lambda three: BALL.contains([three, three]),
@@ -53,7 +53,7 @@ TAKERS = {
 @pytest.mark.parametrize("wrong", NO_NUMBERS)
 def test_what_is_no_number_is_refused(taker, wrong):
     with warnings.catch_warnings():
-        # NumPy warns where it drops what is imaginary, and makes NaN of a masked number in a list of lists.
+        # NumPy warns when it drops an imaginary part. It turns a masked number in a list of lists into NaN.
         warnings.simplefilter("error")
         with pytest.raises((TypeError, ValueError, UserWarning)):
             TAKERS[taker](NO_NUMBERS[wrong])

@@ -45,7 +45,7 @@ def test_open_meshes_tell(tetrahedron):
     opened = lf.Mesh(tetrahedron.vertices, tetrahedron.faces[:3])
     assert not opened.is_closed and opened.report()["boundary_edges"] == 3
     assert tetrahedron.is_closed and tetrahedron.report()["bodies"] == 1
-    # Whatever the hole, the winding number decides.
+    # The winding number decides in spite of the hole.
     assert opened.contains([0.1, 0.1, 0.1]) == lf.INSIDE and opened.contains([-1, -1, -1]) == lf.OUTSIDE
 
 
@@ -120,7 +120,7 @@ def test_cells_add_up(plate):
     for tag in (lf.FULL, lf.PARTIAL, lf.EMPTY, lf.Tag.BRANCH):
         assert (octree.cells(tag).at == octree.cells(tag.name.lower()).at).all()
     assert len(octree.cells("full", lf.EMPTY, lf.FULL)) == len(octree.cells("empty", "full"))
-    # The constants of points are numbers, too, and none of them is a tag.
+    # The constants of points are numbers, too. None of them is a tag.
     for wrong in (lf.INSIDE, 3, None):
         with pytest.raises(TypeError, match="^tags: "):
             octree.cells(wrong)
@@ -145,7 +145,7 @@ def test_channels():
     colour = lf.Channel.fill([255, 0, 7], frame=octree.frame, dtype="uint8")
     assert colour.values_at([1, 1, 1]).tolist() == [255, 0, 7] and colour.nbytes < 10
     summary = warm.channel("heat").summary(octree)
-    # (The mean of a linear function in a ball is that in the middle.)
+    # The mean of a linear function over a ball is its value at the centre.
     assert 24 in summary["mean"][0] and summary["least"][0] < 24 < summary["greatest"][0]
     holes = lf.Channel.fill(lambda points: np.where(points[:, 0] < 4, np.nan, 1.0), octree)
     assert np.isnan(holes.values_at([2, 4, 4])) and holes.values_at([6, 4, 4]) == 1

@@ -1,4 +1,4 @@
-"""Shards on the workers of Dask: the results are those of one process, whoever dies on the way."""
+"""Shards on the workers of Dask: the results are those of one process, even if a worker dies."""
 
 import os
 import signal
@@ -91,7 +91,7 @@ def test_a_damaged_shard_is_told(client, tmp_path):
 
 
 class Slow(lf.Shape):
-    """A ball that takes its time, and of which one task kills its worker once."""
+    """A slow ball. One of its tasks kills its worker once."""
 
     bounds = [[-1, -1, -1], [1, 1, 1]]
 
@@ -134,7 +134,7 @@ def test_a_worker_that_dies_is_replaced(tmp_path):
 
 
 def build_with_a_victim(tmp_path, frame, marker):
-    # The top is built here, by this process, which is spared.
+    # The top is built in this process, which must survive.
     shape = Slow(marker, os.getpid())
     os.path.exists(marker) or open(marker, "w").close()
     how = shards.recipe(shape, frame, None, 1, "certified", None)

@@ -13,7 +13,7 @@ import pytest
 import leafless
 
 
-#: What is public, and what the extension module has for octrees in shards and for pairs in batches.
+#: The public names, and the names of the extension module for octrees in shards and for pairs in batches.
 PUBLIC = {name: getattr(leafless, name) for name in [*leafless.__all__, "map", "open"]}
 INNER = ["MassSum", "Shard", "ShardedSolid", "frame_of", "frame_of_pair", "join", "joined_statistics", "measure_cell", "surface_in"]
 ALL = PUBLIC | {name: getattr(leafless._leafless, name) for name in INNER}
@@ -47,7 +47,7 @@ def test_examples_run(name, thing):
 
 @pytest.mark.parametrize("name, thing", THINGS, ids=[name for name, _ in THINGS])
 def test_everything_is_documented(name, thing):
-    # (Fields of answers are told beside them, in the source.)
+    # Fields of answers have comments in the source.
     if type(thing).__name__ in ("member_descriptor", "property") and name.split(".")[0] in ("Intervals",):
         return
     assert thing.__doc__ and thing.__doc__.strip(), name
@@ -59,7 +59,7 @@ def callables():
             if callable(thing):
                 yield name, thing, thing.__doc__
             continue
-        # (Answers are not made by callers.)
+        # Callers do not construct answers.
         if not dataclasses.is_dataclass(thing) and not issubclass(thing, (enum.Enum, Exception)):
             yield name, thing, thing.__doc__
             for inner in vars(thing):
@@ -69,7 +69,7 @@ def callables():
 
 
 def parameters(thing):
-    """The names of what a function takes; those of limits are told on the page and in the package's docstring."""
+    """The parameters of a function. The page and the package's docstring explain those of limits."""
     try:
         all = inspect.signature(thing).parameters
     except ValueError:

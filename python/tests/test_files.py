@@ -52,7 +52,7 @@ def test_meshes(plate, tmp_path, extension):
 
 
 def test_warnings(tmp_path):
-    # A PLY with one number more on each line of a vertex than its header announces.
+    # Each line of a vertex in this PLY has one number more than its header announces.
     header = "ply\nformat ascii 1.0\nelement vertex 4\nproperty float x\nproperty float y\nproperty float z\n"
     faces = "element face 4\nproperty list uchar int vertex_indices\nend_header\n"
     corners = "0 0 0 9\n1 0 0 9\n0 1 0 9\n0 0 1 9\n"
@@ -110,7 +110,7 @@ def test_thresholds_of_other_files(tmp_path):
     whole = path.read_bytes()
     line = b"leafless threshold:=5.0\n"
     assert whole.startswith(b"NRRD0004\n" + line)
-    # Without the key, or with one that tells no number, it is the middle of the type.
+    # Without the key, or without a number in it, the threshold is the middle of the type.
     for other in (b"", b"other key:=7\n", b"leafless threshold:=low\n", b"leafless threshold:=\n"):
         path.write_bytes(whole.replace(line, other))
         assert lf.open(path).threshold == (127.5, None)
@@ -140,7 +140,7 @@ def test_the_name_of_a_url_tells_the_format(octree, tetrahedron, tmp_path):
     fsspec = pytest.importorskip("fsspec")
 
     class Server(fsspec.get_filesystem_class("memory")):
-        """Files that are asked for by a token."""
+        """Files whose URLs carry a token."""
 
         protocol = "tokens"
         store, pseudo_dirs = {}, [""]
@@ -215,12 +215,12 @@ def test_mapped_files_are_pickled_by_their_path(octree, tmp_path):
     lf.save(~octree, path)
     with pytest.raises(lf.ArgumentError, match="checksum"):
         pickle.loads(data)
-    # What is mapped stays what it was.
+    # The mapped octree stays as it was.
     assert mapped == octree
 
 
 def test_pickled_meshes_keep_their_doubt(tmp_path):
-    # The faces of a cube, whose common edges differ by rounding.
+    # The faces of a cube. Their common edges differ by rounding.
     corners = np.array([[x, y, z] for z in (0, 1) for y in (0, 1) for x in (0, 1)], float)
     quads = [[0, 2, 3, 1], [4, 5, 7, 6], [0, 1, 5, 4], [2, 6, 7, 3], [0, 4, 6, 2], [1, 3, 7, 5]]
     soup = np.concatenate([corners[quad] + 1e-12 * k for k, quad in enumerate(quads)])
@@ -230,7 +230,7 @@ def test_pickled_meshes_keep_their_doubt(tmp_path):
     again = pickle.loads(pickle.dumps(mesh))
     one, other = lf.measure(mesh).volume, lf.measure(again).volume
     assert one.width > 1e-13 and other == one and other.lower < 1 < other.upper
-    # With a hole, too, which no stated deviation allows.
+    # A mesh with a hole, for which no deviation can be stated, keeps its doubt, too.
     opened = lf.Mesh(soup, faces[:-1]).sewn()
     assert not opened.is_closed and opened.report()["sewn"] > 0
     points = [[0.5, 0.5, 0.5], [0.5, 0.5, 1e-12], [2, 2, 2]]

@@ -1,4 +1,4 @@
-"""What a caller reads who gave a wrong argument: the name of the parameter, and what it must be."""
+"""Messages about wrong arguments: the name of the parameter, and the values that it may have."""
 
 import numpy as np
 import pytest
@@ -336,7 +336,7 @@ def test_messages_name_the_parameter(function, arguments, named, error, words):
         function(*arguments, **named)
     message = str(raised.value)
     first, *others = words.split()
-    # (What Python itself says begins otherwise.)
+    # Messages of Python itself begin differently.
     assert message.startswith(first) if first.endswith(":") else first in message, message
     for word in others:
         assert word in message, (word, message)

@@ -1,4 +1,4 @@
-"""The notebooks run from the first cell to the last one; what they assert holds."""
+"""The notebooks run from the first cell to the last one, and their assertions hold."""
 
 import os
 from pathlib import Path
@@ -28,7 +28,7 @@ def test_notebook_runs(name, tmp_path):
         for cell in notebook.cells:
             cell.source = cell.source.replace("500_000", "10_000").replace("spacing = 0.05", "spacing = 0.2")
     nbclient.NotebookClient(notebook, timeout=300, resources={"metadata": {"path": str(tmp_path)}}).execute()
-    # The kinds of outputs are those that are shown.
+    # The kinds of outputs are those in the stored notebook.
     assert [kinds(cell) for cell in notebook.cells] == before and any(before)
 
 

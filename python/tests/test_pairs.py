@@ -1,4 +1,4 @@
-"""Two solids: overlap, distance, deviation; surfaces; one by one and under many placements."""
+"""Queries of two solids: overlap, distance and deviation, one by one and under many placements; surfaces."""
 
 import numpy as np
 import pytest
@@ -9,7 +9,7 @@ from leafless._leafless import frame_of_pair
 
 
 def kinds(csg):
-    """A solid in all its forms."""
+    """One solid in all its forms."""
     return [csg, lf.surface(csg, tolerance=1e-4), lf.build(csg, depth=7), lf.build(csg, surfaces=True)]
 
 
@@ -32,7 +32,7 @@ def test_blocks_apart(a, b):
     distances = lf.clearance(a, b, np.stack([place.matrix for place in places]), tolerance=0.05, max_splits=5000)
     assert all(truth in one.distance for truth, one in zip((1.5, 1, 0.5, 0), distances))
     gaps = [one.verdict for one in lf.gap_at_least(a, b, 0.75, places, max_splits=5000)]
-    # (Of a mesh beside cells it may take more to see that they overlap.)
+    # Proving that a mesh and cells overlap may take more splits.
     assert gaps[:3] == ["yes", "yes", "no"] and gaps[3] in ("no", "undecided")
 
 
@@ -67,7 +67,7 @@ def test_batches_on_the_frame_of_all_are_one_call():
                 whole = ask(a, b, places, max_splits=500, **wish)
                 batches = [places[:1], places[1:3], places[3:]]
                 parts = [one for batch in batches for one in ask(a, b, batch, max_splits=500, frame=frame)]
-                # (Answers that hold arrays are not equal to their like.)
+                # Answers with arrays have no useful equality.
                 assert [vars(one) | {"points": None} for one in parts] == [vars(one) | {"points": None} for one in whole]
     assert frame_of_pair(BLOCK, BLOCK).edge < frame_of_pair(BLOCK, BLOCK, places).edge
 
@@ -94,7 +94,7 @@ def test_a_given_frame_stands_for_bounds():
 
 
 class Unbounded(lf.Shape):
-    """A ball that does not say where it lies."""
+    """A ball without bounds."""
 
     def distance(self, points):
         return (np.linalg.norm(points, axis=1) - 1) * (1 - 1e-12)
@@ -109,10 +109,10 @@ def test_a_given_frame_stands_for_bounds_under_placements():
         assert [one.verdict for one in found[:2]] == ["disjoint"] * 2 and found[2].verdict != "disjoint"
         near = lf.clearance(block, solid, places[:2], frame=frame, tolerance=0.25, max_splits=20_000)
         assert 1 in near[0].distance and 2.5 in near[1].distance and near[0].distance.upper < 1.5
-        # (What may lie beyond the frame may be as near as it likes.)
+        # The solid may lie beyond the frame, at any distance.
         gaps = lf.gap_at_least(block, solid, 4, places[:2], frame=frame, max_splits=20_000)
         assert [one.verdict for one in gaps] == ["no", "no"]
-        # Where it is moved from, the frame does not matter.
+        # The place from which the solid is moved may lie beyond the frame.
         far = lf.Affine.translation([-100, 0, 0])
         assert lf.interference(block, far.inverse() @ solid, far, frame=frame, max_splits=20_000).verdict == "disjoint"
         assert lf.interference(solid, block, places, frame=frame, max_splits=20_000)[0].verdict == "disjoint"
@@ -129,7 +129,7 @@ def test_a_given_frame_is_what_a_picture_takes_in():
     shown = np.isfinite(lf.render(Unbounded(), size=(80, 60), frame=frame).depth).mean()
     ball = lf.Csg.ball([0, 0, 0], 1)
     assert 0.02 < shown < np.isfinite(lf.render(ball, size=(80, 60)).depth).mean() / 2
-    # Half of it lies in the frame.
+    # Half of the ball lies in the frame.
     half = lf.render(ball, size=(80, 60), view=(0, 0), frame=lf.Frame([0, -2, -2], 4, 20))
     assert np.isfinite(half.depth).sum() < 0.75 * np.isfinite(lf.render(ball, size=(80, 60), view=(0, 0), frame=frame).depth).sum()
     octree = lf.build(ball, depth=5)
@@ -156,7 +156,7 @@ def test_surfaces_ignore_nothing():
     for solid, named in refused:
         with pytest.raises(lf.ArgumentError, match=f"^{list(named)[-1]}: has no meaning"):
             lf.surface(solid, **named)
-    # What is heeded makes another mesh.
+    # Parameters that have an effect change the mesh.
     assert len(lf.surface(volume, frame=frame, depth=3)) != len(lf.surface(volume))
     assert len(lf.surface(volume, method="cubes", frame=frame)) != len(lf.surface(volume))
     coarse, fine = (lf.surface(octree, method="adaptive", tolerance=tolerance) for tolerance in (0.5, 0.05))
@@ -222,10 +222,10 @@ def test_simplified_meshes_add_up_what_they_are_off():
     few = lf.simplify(first, 0.02)
     report = few.surface_report
     assert not report.from_mesh and report.deviation > first.surface_report.deviation
-    # The farthest of many points of its triangles is no farther than that.
+    # No point of the mesh is further from the ball than the deviation.
     corners = few.vertices[few.faces]
     weights = np.random.default_rng(0).dirichlet([1, 1, 1], 20_000)
     points = np.einsum("nk,nkd->nd", weights, corners[np.random.default_rng(1).integers(0, len(few), 20_000)])
     assert np.abs(np.linalg.norm(points, axis=1) - 1).max() <= report.deviation
-    # Nothing is known of a mesh that comes as it is.
+    # For a mesh from plain arrays no deviation is known.
     assert lf.simplify(lf.Mesh(first.vertices, first.faces), 0.02).surface_report.from_mesh

@@ -1,4 +1,4 @@
-"""What is public can be pickled and copied, or says why not."""
+"""Public objects can be pickled and copied, or say why not."""
 
 import copy
 import pickle
@@ -11,7 +11,7 @@ import leafless as lf
 
 
 def copies(thing):
-    """The thing pickled and read again, by each protocol that knows of classes, and a deep copy."""
+    """Copies of an object: pickled by each protocol that supports classes, and a deep copy."""
     return [*(pickle.loads(pickle.dumps(thing, protocol)) for protocol in range(2, 6)), copy.deepcopy(thing)]
 
 
@@ -32,7 +32,7 @@ def test_shared_parts_stay_shared():
     part = BALL
     for k in range(40):
         part = part | lf.Affine.translation([2.0**-k, 0, 0]) @ part
-    # Written out it would be 2^40 balls.
+    # Without sharing it would be 2^40 balls.
     for again in copies(part):
         assert len(pickle.dumps(part)) == len(pickle.dumps(again)) < 20_000
 
@@ -132,13 +132,13 @@ THINGS = {
     "VoxelRecords": lambda: [records(), lf.build(BALL, depth=3).voxels(outside=True)],
 }
 
-#: Classes whose objects are not pickled, and what can be pickled instead.
+#: Classes whose objects cannot be pickled. The comments name the objects that can be pickled instead.
 REFUSED = {
     "Channel": lambda: lf.Channel.fill(1.0, frame=lf.Frame([0, 0, 0], 1, 1)),  # The octree that has it.
     "LazyOctree": lambda: lf.LazyOctree(BALL),  # The solid, and the frozen octree.
 }
 
-#: Classes that have no objects of their own, and exceptions, which Python pickles.
+#: Classes without objects of their own, and exceptions, which Python pickles itself.
 BASES = {"Solid"} | {name for name in lf.__all__ if name.endswith("Error")}
 
 
@@ -148,10 +148,10 @@ def test_the_tables_have_all_classes():
 
 
 def parts(thing):
-    """All that can be read of an object without arguments, by name."""
+    """All values that an object returns without arguments, by name."""
     found = {"repr": repr(thing)}
     for name in dir(thing):
-        # (How much memory an object takes may change.)
+        # The size of an object in memory may change.
         if not name.startswith("_") and name != "nbytes" and not callable(value := getattr(thing, name)):
             found[name] = value
     return found
@@ -187,7 +187,7 @@ def test_what_is_not_pickled_says_why(name):
 @pytest.mark.parametrize("name", [*THINGS, *REFUSED])
 def test_everything_can_be_watched(name):
     thing = THINGS[name]()[0] if name in THINGS else REFUSED[name]()
-    # (Numbers of Python cannot.)
+    # Python's numbers have no weak references.
     assert isinstance(thing, int) or weakref.ref(thing)() is thing
 
 

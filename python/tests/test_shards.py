@@ -1,4 +1,4 @@
-"""Octrees in shards: their bytes are those of a single build, and what is missing is PARTIAL and told."""
+"""Octrees in shards: their bytes are those of a single build. Missing shards are PARTIAL and reported."""
 
 import json
 import os
@@ -115,7 +115,7 @@ def test_sums_in_any_order(parts):
     total = parts.measure_joined(top, sums)
     back = parts.measure_joined(top, [(code, pickle.loads(pickle.dumps(one))) for code, one in reversed(sums)])
     assert total == back
-    # (How often cells were split is counted on.)
+    # The number of splits keeps counting, so only the volumes are compared.
     assert (total - sums[0][1] + sums[0][1]).properties.volume == total.properties.volume
     with pytest.raises(lf.ArgumentError, match="other"):
         MassSum.unknown(FRAME, 0, 0) + MassSum.unknown(FRAME, 1, 3)
@@ -147,7 +147,7 @@ def test_surfaces_close_across_shards(whole, parts):
     for resolve in ("inner", "outer"):
         found, expected = parts.surface(resolve), lf.surface(whole, method="cubes", resolve=resolve)
         assert found.is_closed
-        # All cells that are not decided are finest ones.
+        # All undecided cells are finest cells.
         assert lf.deviation(found, PLATE).distance.upper < 2 * FRAME.cell_size
         assert len(found.vertices) == len(expected.vertices) and len(found.faces) == len(expected.faces)
         place = lambda mesh: np.unique(mesh.vertices[mesh.faces].reshape(-1, 9), axis=0)
@@ -162,7 +162,7 @@ def test_voxels_are_those_of_the_whole(whole, parts):
 
 
 def damaged(parts, how):
-    """A shard whose file is damaged, by its code."""
+    """Damages the file of one shard, and returns the shard's code."""
     code = parts.codes[len(parts) // 2]
     path = os.path.join(parts.url, next(entry["path"] for entry in parts.manifest["shards"] if entry["code"] == code))
     data = bytearray(open(path, "rb").read())
@@ -192,7 +192,7 @@ def test_a_damaged_shard_is_partial_and_told(whole, parts, how):
     here = FRAME.codes(rows, 2) == code
     assert here.any() and (answers[~here] == expected[~here]).all() and (answers[here] == lf.UNDECIDED).all()
     assert (joined.contains(rows) == answers).all()
-    # All is true of the whole.
+    # All intervals contain the truth about the whole.
     truth = lf.measure(PLATE, tolerance=1e-6).volume
     for volume in (again.measure(tolerance=0).volume, again.volume, joined.volume):
         assert volume.lower <= truth.lower and truth.upper <= volume.upper
@@ -202,7 +202,7 @@ def test_a_damaged_shard_is_partial_and_told(whole, parts, how):
     found, kinds = again.voxels(), joined.voxels()
     assert (found.codes == kinds.codes).all() and (found.kinds == kinds.kinds).all()
     assert again.classify_box([[-0.3, -0.2, -0.1], [8.5, 6.5, 1.5]]) in ("undecided", "crossing")
-    # An operation knows nothing there, and is right elsewhere.
+    # The result of an operation is PARTIAL in the missing cell, and right elsewhere.
     tool = shards.build(TOOL, parts.url + "-tool", FRAME, level=2)
     cut = shards.combine("difference", again, tool, parts.url + "-cut")
     assert cut.join().to_bytes() == (joined - tool.join()).to_bytes()
@@ -318,7 +318,7 @@ def test_by_urls_and_ranges(whole, parts):
     assert again.join().to_bytes() == whole.to_bytes()
     assert (again.contains(points()) == whole.contains(points())).all()
     assert packed.codes == parts.codes
-    # A damaged range is told.
+    # A damaged range is reported.
     memory = fsspec.filesystem("memory")
     data = bytearray(memory.cat("/packed/plate/shards.lfl.pack"))
     data[len(data) // 2] ^= 1

@@ -1,4 +1,4 @@
-"""Points, distances and rays of solids of all kinds, set operations and placements: one table of solids, and what is true of each."""
+"""Points, distances, rays, set operations and placements, tested on one table of solids of all kinds."""
 
 import pickle
 
@@ -11,7 +11,7 @@ SIDE = 4.0
 
 
 class Block(lf.Shape):
-    """The cube of the table, by boxes."""
+    """The cube of the table, as a classifier of boxes."""
 
     bounds = [[0, 0, 0], [SIDE] * 3]
 
@@ -34,7 +34,7 @@ def cube_mesh():
 CUBE = lf.Csg.cuboid([0, 0, 0], [SIDE] * 3)
 FRAME = lf.Frame([-2, -2, -2], 8, 6)
 
-# Every way to a solid that is the cube from 0 to 4.
+# All ways to make a solid that is the cube from 0 to 4.
 CUBES = {
     "csg": lambda: CUBE,
     "mesh": cube_mesh,
@@ -75,7 +75,7 @@ def test_points(cube):
     assert answers.dtype == np.uint8 and answers.shape == (2000,)
     known = answers != lf.UNDECIDED
     assert (answers[known] == truth[known]).all()
-    # All of these cubes lie in planes of their lattices: nothing is undecided but perhaps next to faces.
+    # The faces of all these cubes lie in planes of their lattices, so points may be undecided only next to faces.
     clear = np.abs(points[:, :, None] - [0, SIDE]).min(axis=(1, 2)) > 0.2
     assert known[clear].all()
 
@@ -127,7 +127,7 @@ def test_built(cube):
 
 def test_bounds(cube):
     low, high = np.asarray(cube.bounds)
-    # (Vertices of a surface are rounded.)
+    # The vertices of a surface are rounded.
     assert (low <= 1e-12).all() and (high >= SIDE - 1e-12).all()
 
 

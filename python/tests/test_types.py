@@ -1,4 +1,4 @@
-"""The types that the stub tells: they are those of the module, good programs pass with them, and wrong ones do not."""
+"""The types of the stub: they match the module, correct programs pass the type checker, and wrong ones fail."""
 
 import os
 import re
@@ -13,13 +13,13 @@ import leafless as lf
 pytest.importorskip("mypy")
 
 TESTS = Path(__file__).parent
-#: The folder that the package lies in, whether it is installed there or only on the path.
+#: The folder that contains the package, whether it is installed or only on the path.
 FOLDER = str(Path(lf.__file__).parent.parent)
 PLAIN = ["--config-file=", "--strict", "--no-pretty", "--no-color-output", "--hide-error-context"]
 
 
 def run(folder, *arguments):
-    """What a module of Python prints that is run in a folder, and its exit code."""
+    """Runs a Python module in a folder, and returns its output and its exit code."""
     kept = {name: value for name, value in os.environ.items() if not name.startswith("MYPY")}
     paths = [FOLDER, *filter(None, [kept.get("PYTHONPATH")])]
     environment = {**kept, "PYTHONPATH": os.pathsep.join(paths)}
@@ -31,7 +31,7 @@ def run(folder, *arguments):
 
 @pytest.fixture(scope="module")
 def cache(tmp_path_factory):
-    """A folder in which what is known of NumPy's types is kept from one check to the next."""
+    """A cache folder, so that NumPy's types are analysed once for all checks."""
     return tmp_path_factory.mktemp("cache")
 
 
@@ -57,7 +57,7 @@ def test_the_typed_program_runs(tmp_path):
     main(tmp_path)
 
 
-#: Wrong lines, and the errors that they are.
+#: Wrong lines, and the errors that the checker must report.
 WRONG = {
     "lf.build(1)": "arg-type",
     'lf.build(ball, rule="certain")': "arg-type",
@@ -94,7 +94,7 @@ WRONG = {
 
 @pytest.fixture(scope="module")
 def errors(tmp_path_factory, cache):
-    """The errors of all wrong lines, by line."""
+    """Checks all wrong lines, and returns the errors by line."""
     folder = tmp_path_factory.mktemp("wrong")
     before = ["import numpy as np", "import leafless as lf"]
     before += ["ball, placement = lf.Csg.ball([0, 0, 0], 1), lf.Affine.identity()"]

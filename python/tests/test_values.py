@@ -26,7 +26,7 @@ def test_intervals_compare_as_proofs():
     assert one < 3 and one <= 2 and one > 0 and one >= 1
     assert not one < 2 and not one > 1 and not one < 1.5 and not one > 1.5
     assert one < lf.Interval(2.5, 3) and one == lf.Interval(1, 2) and one != lf.Interval(1, 3)
-    # An interval is no number.
+    # An interval equals no number.
     assert one != 1 and lf.Interval(1) != 1
     assert len({one, lf.Interval(1, 2)}) == 1
 
@@ -43,7 +43,7 @@ def test_formats_are_rounded_outward():
             nearest_is_inside += number(format(low, spec)) > Fraction(low) or number(format(high, spec)) < Fraction(high)
             if spec == ".3f":
                 assert Fraction(low) - lower < Fraction(1, 1000) and upper - Fraction(high) < Fraction(1, 1000)
-    # The formats of numbers are not rounded so.
+    # Formats of plain numbers do not round outward.
     assert nearest_is_inside > 20
     assert f"{lf.Interval(0.1):.20f}" == "0.10000000000000000555 to 0.10000000000000000556"
     assert f"{lf.Interval(1e-9, 2e-9):.3f}" == "0.000 to 0.001" and f"{lf.Interval(-1e-9, 1):.0f}" == "-1 to 1"
@@ -78,7 +78,7 @@ def test_arrays_of_intervals_compare_as_proofs():
     assert (some < 2.5).tolist() == [True, True, False] and (some > 2.5).tolist() == [False, False, True]
     assert (some < 2).tolist() == [False] * 3 and (some <= 2).tolist() == [True, True, False]
     assert (some >= [1, 2, 4]).tolist() == [True, True, False] and (some > [1, 2, 4]).tolist() == [False] * 3
-    # With intervals, whichever stands first.
+    # Comparisons with intervals, in both orders.
     for one in (lf.Interval(2, 3), lf.Interval(1.5), some):
         for two in (lf.Interval(2, 3), lf.Interval(0), some):
             if one is some or two is some:
@@ -143,7 +143,7 @@ def test_maps_are_arrays():
 
 
 class Backwards:
-    """What knows by itself how a map is multiplied with it."""
+    """A class with its own multiplication by a map."""
 
     def __rmatmul__(self, map):
         return "mine"

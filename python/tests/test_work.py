@@ -1,4 +1,4 @@
-"""Long work: Ctrl-C, progress, limits, the interpreter's lock; shapes whose methods raise."""
+"""Long operations: Ctrl-C, progress, limits, the interpreter's lock; shapes whose methods raise."""
 
 import gc
 import os
@@ -13,12 +13,12 @@ import pytest
 
 import leafless as lf
 
-#: So many splits that nobody waits for them.
+#: More splits than any test waits for.
 ENDLESS = {"tolerance": 0.0, "max_splits": 1 << 40}
 
 
 def hard():
-    """A solid that takes for ever to measure."""
+    """A solid whose measurement takes for ever."""
     return lf.Csg.union_of(*(lf.Csg.torus(2 + 0.01 * k, 0.5) for k in range(4))) & lf.Csg.half_space([1, 2, 3], 0.1)
 
 
@@ -50,7 +50,7 @@ def test_signal_handlers_run_and_their_exceptions_come_out():
 
 
 def questions():
-    """Questions that take some time, and whose arrays NumPy need not convert."""
+    """Queries that take some time, and whose arrays NumPy need not convert."""
     ball, turned = lf.Csg.ball([0, 0, 0], 1), lf.Affine.rotation([1, 2, 3], 40)
     octree, model, mesh = lf.build(ball, depth=7), lf.dexelize(ball, depth=7), lf.surface(ball, tolerance=3e-4)
     data, model_data = octree.to_bytes(), model.to_bytes()
@@ -60,7 +60,7 @@ def questions():
     volume, records = lf.Volume(octree.bitmap(), spacing=0.01), octree.voxels()
     lazy = lf.LazyOctree(ball)
     lazy.refine(6)
-    # A mesh remembers what it found out.
+    # A mesh caches its report, so each call needs a fresh mesh.
     fresh = [mesh.placed(turned) for _ in range(30)]
     return {
         "Affine.__call__": lambda: turned(points),
@@ -88,7 +88,7 @@ def questions():
 
 
 def lets_others_run(ask, patience=10.0):
-    """Whether another thread runs while a question is answered."""
+    """Returns whether another thread runs during a query."""
     ran, gate = [], threading.Lock()
     ask()
     gate.acquire()
@@ -100,7 +100,7 @@ def lets_others_run(ask, patience=10.0):
     other = threading.Thread(target=wait)
     other.start()
     before = sys.getswitchinterval()
-    # From here on a thread keeps the interpreter until it gives it away, and only the question may do so.
+    # From here on a thread keeps the interpreter until it releases it. Only the query may do so.
     sys.setswitchinterval(1000)
     try:
         gate.release()
@@ -162,12 +162,12 @@ def test_limits_of_arrays_and_files(tmp_path):
     assert len(octree.cells(max_bytes=14 * count)) == count
     with pytest.raises(lf.LimitError, match="cells"):
         octree.cells(max_bytes=14 * count - 1)
-    # The library's list, and a code for each cell.
+    # The limit covers the library's list, and a code for each cell.
     codes = octree.open_cells(6)
     assert (octree.open_cells(6, max_bytes=24 * len(codes)) == codes).all()
     with pytest.raises(lf.LimitError, match="open cells"):
         octree.open_cells(6, max_bytes=24 * len(codes) - 1)
-    # A word for each row, and a byte for each cell.
+    # The limit covers a word for each row, and a byte for each cell.
     needed = 64 * 64 * 8 + 64**3
     assert octree.bitmap(max_bytes=needed).shape == (64, 64, 64)
     with pytest.raises(lf.LimitError, match="bitmap"):
@@ -226,7 +226,7 @@ def test_octrees_heed_those_who_stop_them():
 
     with pytest.raises(LookupError, match="enough"):
         octree.contains(points, progress=stop)
-    # The answers do not depend on how many points are asked about at once.
+    # The answers do not depend on the number of points in one call.
     many, beyond = octree.contains(points[: 3 << 16]), points[1 << 16 :][:1000]
     assert (many[1 << 16 :][:1000] == octree.contains(beyond)).all() and set(many) == {0, 1, 2}
 
@@ -273,7 +273,7 @@ class Sphere(lf.Shape):
 
 
 class Sloped(Sphere):
-    """With the gradient of |p|² − r²."""
+    """A ball with the gradient of |p|² − r²."""
 
     def gradient(self, boxes):
         low, high = boxes[:, 0], boxes[:, 1]

@@ -1,4 +1,4 @@
-"""A program with types, as strict checkers read it. `test_types.py` has it checked, and runs it."""
+"""A typed program for strict checkers. `test_types.py` checks it and runs it."""
 
 from pathlib import Path
 from typing import Any

@@ -1,11 +1,12 @@
 """A solid-modelling kernel: certified, closed and exact Booleans on leaf-free octrees.
 
-Everything that has a shape is a `Solid`: an expression of half-spaces (`Csg`), a triangle mesh (`Mesh`), a stored octree
-(`Octree`), an array of samples (`Volume`), a shape of your own (`Shape`). Any of them can be asked about points, rays and distances in
-arrays of NumPy, measured, compared, built into an octree, and made a mesh.
+A `Solid` is anything that has a shape: an expression of half-spaces (`Csg`), a triangle mesh (`Mesh`), a stored octree
+(`Octree`), an array of samples (`Volume`), or a shape of your own (`Shape`). Every solid answers queries about points,
+rays and distances in arrays of NumPy. Every solid can be measured, compared with another one, built into an octree, and
+meshed.
 
-Answers are proven. A point is INSIDE, OUTSIDE or UNDECIDED; a volume or a distance is an interval that contains the truth, and
-becomes as narrow as you ask for.
+Answers are proven. A point is INSIDE, OUTSIDE or UNDECIDED. A volume or a distance is an interval that contains the
+truth. You choose how narrow the interval becomes.
 
 >>> plate = Csg.cuboid([0, 0, 0], [80, 60, 10])
 >>> bore = Csg.cylinder_between([20, 30, -1], [20, 30, 11], 8)
@@ -15,8 +16,9 @@ becomes as narrow as you ask for.
 >>> part.contains([[1, 1, 1], [20, 30, 5]])
 array([1, 0], dtype=uint8)
 
-Long work takes the keyword arguments `threads` (0: all processors), `max_bytes`, `max_nodes`, `max_splits` and `progress` (a
-function of the part done, a bar of tqdm, or True); Ctrl-C interrupts it. No result depends on the number of threads.
+Functions that may take long accept the keyword arguments `threads` (0: all processors), `max_bytes`, `max_nodes`,
+`max_splits` and `progress` (a function of the part done, a bar of tqdm, or True). Ctrl-C interrupts them. No result
+depends on the number of threads.
 """
 
 from ._answers import (
@@ -90,7 +92,7 @@ EMPTY = Tag.EMPTY
 FULL = Tag.FULL
 PARTIAL = Tag.PARTIAL
 
-# `open` and `map` are not in it: `import *` must not hide those of Python.
+# `open` and `map` are missing here: `import *` must not hide Python's own.
 __all__ = [
     "EMPTY",
     "FULL",

@@ -1,4 +1,4 @@
-"""What questions are answered with."""
+"""The classes of answers."""
 
 from __future__ import annotations
 
@@ -23,7 +23,8 @@ if TYPE_CHECKING:
 
 
 class Membership(IntEnum):
-    """Whether a point lies inside. UNDECIDED is neither true nor false, so compare: `answer == INSIDE`."""
+    """The position of a point: inside, outside or undecided. UNDECIDED has no truth value, so compare:
+    `answer == INSIDE`."""
 
     OUTSIDE = 0
     INSIDE = 1
@@ -36,7 +37,7 @@ class Membership(IntEnum):
 
 
 class Tag(IntEnum):
-    """What is known of a cell."""
+    """The state of a cell: EMPTY (outside), BRANCH (split), PARTIAL (undecided) or FULL (inside)."""
 
     EMPTY = 0
     BRANCH = 1
@@ -45,7 +46,7 @@ class Tag(IntEnum):
 
 
 class VoxelKind(IntEnum):
-    """What a voxel is."""
+    """The kind of a voxel: outside, inside, on the boundary, or refined into the voxels that follow it."""
 
     OUTSIDE = 0
     INSIDE = 1
@@ -55,29 +56,29 @@ class VoxelKind(IntEnum):
 
 @dataclass(frozen=True, eq=False)
 class Distance:
-    """How far a point is from a solid."""
+    """The distance of one point from a solid."""
 
     #: The distance.
     distance: Interval
-    #: A point of the boundary that is as near, shape (3,); NaN if none is known.
+    #: A point of the boundary at that distance, shape (3,); NaN if none is known.
     nearest: npt.NDArray[np.float64]
-    #: The number of the triangle or surface there; −1 if none is known.
+    #: The number of the triangle or surface at `nearest`; −1 if none is known.
     surface: int
-    #: Whether the interval is wider than the tolerance.
+    #: True if the interval is wider than the tolerance.
     undecided: bool
 
 
 @dataclass(frozen=True, eq=False)
 class Distances:
-    """How far points are from a solid."""
+    """The distances of points from a solid."""
 
     #: The distances, one interval a point.
     distance: Intervals
-    #: Points of the boundary that are as near, shape (n, 3); NaN where none is known.
+    #: Points of the boundary at these distances, shape (n, 3); NaN where none is known.
     nearest: npt.NDArray[np.float64]
-    #: The numbers of triangles or surfaces there; −1 where none is known.
+    #: The numbers of the triangles or surfaces at `nearest`; −1 where none is known.
     surface: npt.NDArray[np.int64]
-    #: Where the interval is wider than the tolerance.
+    #: True where the interval is wider than the tolerance.
     undecided: npt.NDArray[np.bool_]
 
     def __len__(self) -> int:
@@ -86,11 +87,12 @@ class Distances:
 
 @dataclass(frozen=True, eq=False)
 class RayHit:
-    """Where a ray first meets a solid."""
+    """The first hit of one ray on a solid."""
 
-    #: Whether anything stopped the ray.
+    #: True if something stopped the ray.
     hit: bool
-    #: Before the lower end the ray is proven outside, at the upper end inside; infinite without a hit.
+    #: The distance along the ray; infinite without a hit. The ray is proven outside before the lower end, inside at the
+    #: upper end.
     distance: Interval
     #: The outward normal at the hit, shape (3,); NaN without a hit.
     normal: npt.NDArray[np.float64]
@@ -100,11 +102,12 @@ class RayHit:
 
 @dataclass(frozen=True, eq=False)
 class RayHits:
-    """Where rays first meet a solid."""
+    """The first hits of rays on a solid."""
 
-    #: Whether anything stopped a ray.
+    #: True where something stopped a ray.
     hit: npt.NDArray[np.bool_]
-    #: Before the lower end a ray is proven outside, at the upper end inside; infinite without a hit.
+    #: The distances along the rays; infinite without a hit. A ray is proven outside before the lower end, inside at the
+    #: upper end.
     distance: Intervals
     #: Outward normals at the hits, shape (n, 3); NaN without a hit.
     normal: npt.NDArray[np.float64]
@@ -123,15 +126,15 @@ class MassProperties:
     volume: Interval
     #: The centroid, shape (3,); `None` if the solid may be empty.
     centroid: Intervals | None
-    #: The inertia tensor about the origin, of density 1, shape (3, 3).
+    #: The inertia tensor about the origin for density 1, shape (3, 3).
     inertia_about_origin: Intervals
-    #: The inertia tensor about the centroid, of density 1, shape (3, 3).
+    #: The inertia tensor about the centroid for density 1, shape (3, 3).
     inertia_about_centroid: Intervals
-    #: Whether nothing is in doubt but rounding.
+    #: True if rounding is the only uncertainty.
     exact: bool
     #: Whether the solid may go on beyond the frame.
     clipped: bool
-    #: What of the solid is proven.
+    #: The proven part of the solid; the rest counts as undecided.
     proof: Proof
     #: Why it ended.
     stop_reason: _StopReason
@@ -162,11 +165,11 @@ class SurfaceArea:
 
 @dataclass(frozen=True)
 class BoundingBox:
-    """What is proven of a bounding box."""
+    """A bounding box with proven bounds of each coordinate."""
 
     #: The lower and the upper corner, shape (2, 3); `None` if the solid is proven empty.
     corners: Intervals | None
-    #: Whether the solid is proven not to be empty.
+    #: True if the solid is proven not to be empty.
     occupied: bool
     #: Whether the solid may go on beyond the frame.
     clipped: bool
@@ -184,13 +187,13 @@ class BoundingBox:
 
 @dataclass(frozen=True)
 class Interference:
-    """Whether two solids overlap."""
+    """The verdict whether two solids overlap, with its evidence."""
 
-    #: "disjoint" (proven: no common point but on the boundaries), "overlapping" (proven) or "undecided".
+    #: "disjoint" (proven: no common point except on the boundaries), "overlapping" (proven) or "undecided".
     verdict: Literal["disjoint", "overlapping", "undecided"]
-    #: The volume of what both have in common (cubic model units).
+    #: The volume of the intersection (cubic model units).
     volume: Interval
-    #: A ball that lies in both, as its centre and radius, if an overlap is proven.
+    #: The centre and the radius of a ball that lies in both solids, if an overlap is proven.
     ball: tuple[tuple[float, float, float], float] | None
     #: Whether a solid may go on beyond the frame.
     clipped: bool
@@ -203,13 +206,13 @@ class Interference:
 
 @dataclass(frozen=True, eq=False)
 class Clearance:
-    """How far two solids are apart."""
+    """The distance between two solids."""
 
-    #: The distance (model units); 0 where they overlap.
+    #: The distance (model units); 0 where the solids overlap.
     distance: Interval
-    #: A point of each, as near as the upper bound says, shape (2, 3), if they are known.
+    #: One point of each solid, shape (2, 3), no further apart than the upper bound; `None` if unknown.
     points: npt.NDArray[np.float64] | None
-    #: How deep they overlap at the least; 0 if they do not, or nothing is known.
+    #: A lower bound of the depth of an overlap; 0 if the solids do not overlap or nothing is known.
     depth: float
     #: Why it ended.
     stop_reason: _StopReason
@@ -224,11 +227,11 @@ class Clearance:
 
 @dataclass(frozen=True)
 class Gap:
-    """Whether two solids are far enough apart."""
+    """The verdict whether two solids are far enough apart."""
 
     #: "yes" (proven), "no" (proven) or "undecided".
     verdict: _Answer
-    #: What is known of the distance by then.
+    #: The bounds of the distance when the verdict was found.
     distance: Interval
 
     def __repr__(self) -> str:
@@ -237,21 +240,22 @@ class Gap:
 
 @dataclass(frozen=True, eq=False)
 class Deviation:
-    """How far the boundaries of two solids are from each other."""
+    """The deviation between the boundaries of two solids."""
 
-    #: The greatest distance of a boundary point of one from the boundary of the other (Hausdorff).
+    #: The Hausdorff distance: the greatest distance of a boundary point of one solid from the boundary of the other.
     distance: Interval
-    #: The same of points of the first only.
+    #: The greatest distance of a boundary point of the first solid from the second boundary.
     a_to_b: Interval
-    #: The same of points of the second only.
+    #: The greatest distance of a boundary point of the second solid from the first boundary.
     b_to_a: Interval
-    #: Where that is: a point of one boundary and the nearest of the other, shape (2, 3), if it is known.
+    #: A point of one boundary and the nearest point of the other at that distance, shape (2, 3); `None` if unknown.
     points: npt.NDArray[np.float64] | None
     #: Why it ended.
     stop_reason: _StopReason
 
     def within(self, distance: float) -> _Answer:
-        """Whether the boundaries are within a `distance` (model units) of each other: "yes", "no" or "undecided"."""
+        """Returns "yes" if the boundaries are within a `distance` (model units) of each other, else "no" or
+        "undecided"."""
         if not isinstance(distance, Real):
             raise TypeError(f"distance: must be a number, not {type(distance).__name__}")
         if self.distance <= distance:
@@ -264,13 +268,13 @@ class Deviation:
 
 @dataclass(frozen=True, eq=False)
 class Cells:
-    """Cells of an octree."""
+    """A list of cells of an octree."""
 
-    #: Their levels, 0 for the universe.
+    #: The level of each cell; 0 is the universe.
     level: npt.NDArray[np.uint8]
-    #: Their indices along x, y and z in cells of that level, shape (n, 3).
+    #: The indices of each cell along x, y and z, counted in cells of its level, shape (n, 3).
     at: npt.NDArray[np.uint32]
-    #: Their tags.
+    #: The tag of each cell.
     tag: npt.NDArray[np.uint8]
 
     def __len__(self) -> int:
@@ -279,15 +283,15 @@ class Cells:
 
 @dataclass(frozen=True, eq=False)
 class DexelRays:
-    """Intervals of a tri-dexel model along an axis."""
+    """The intervals of a tri-dexel model along one axis."""
 
     #: The index of the ray on the other two axes, the lower axis first, shape (n, 2).
     ray: npt.NDArray[np.uint32]
-    #: Where intervals begin.
+    #: The coordinates where intervals begin.
     start: npt.NDArray[np.float64]
-    #: Where they end.
+    #: The coordinates where intervals end.
     end: npt.NDArray[np.float64]
-    #: What they are made of.
+    #: The material of each interval.
     material: npt.NDArray[np.uint32]
 
     def __len__(self) -> int:

@@ -1,35 +1,35 @@
-"""Why an operation was refused. Nothing is changed, and nothing half-made is returned, when one of these is raised.
+"""Exceptions of the library. An operation that raises one of them changes nothing and returns nothing half-made.
 
-What the operating system refuses is an `OSError`, and memory that cannot be had a `MemoryError`, as elsewhere in Python.
+As elsewhere in Python, a refusal of the operating system is an `OSError`, and a lack of memory is a `MemoryError`.
 """
 
 
 class Error(Exception):
-    """Any error of the library."""
+    """The base class of the library's errors."""
 
 
 class ArgumentError(Error, ValueError):
-    """An argument is outside of its documented range; the message begins with the name of the argument."""
+    """An argument is outside its documented range. The message begins with the argument's name."""
 
 
 class FrameMismatchError(Error, ValueError):
-    """Two octrees or models do not lie on one lattice."""
+    """Two octrees or models lie on different lattices."""
 
 
 class FormatError(Error, ValueError):
-    """A file is of no known format, or is damaged."""
+    """A file has no known format, or is damaged."""
 
 
 class MeshError(Error, ValueError):
-    """Vertices and triangles do not make a mesh."""
+    """Vertices and triangles do not form a mesh."""
 
 
 class LimitError(Error):
-    """A result would have, or has, more nodes or bytes than the caller allowed."""
+    """A result has, or would have, more nodes or bytes than the caller allowed."""
 
 
 class CancelledError(Error):
-    """The caller asked to stop."""
+    """The caller cancelled the operation."""
 
 
 for _error in (Error, ArgumentError, FrameMismatchError, FormatError, MeshError, LimitError, CancelledError):

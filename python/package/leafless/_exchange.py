@@ -1,4 +1,4 @@
-"""To and from the arrays of other packages."""
+"""Conversion from and to the arrays of other packages."""
 
 from __future__ import annotations
 
@@ -14,7 +14,7 @@ if TYPE_CHECKING:
 
 
 def _plain(given: npt.ArrayLike, name: str) -> npt.NDArray[Any]:
-    """An array of NumPy, refused if some of its elements are masked: their values mean nothing."""
+    """Returns an array of NumPy. Masked elements are refused, because their values mean nothing."""
     parts = given if isinstance(given, (list, tuple)) else [given]
     if any(isinstance(part, np.ma.MaskedArray) and np.ma.is_masked(part) for part in parts):
         raise ArgumentError(f"{name}: must have no masked elements; filled and compressed make a plain array")
@@ -25,14 +25,14 @@ def _plain(given: npt.ArrayLike, name: str) -> npt.NDArray[Any]:
 
 
 def is_lossy(given: object) -> bool:
-    """Whether `float` would drop something of an object, or does not take it."""
+    """Returns whether `float` would drop a part of an object, or refuses the object."""
     if isinstance(given, np.ndarray):
         return given.ndim > 0 or given.dtype.kind not in "biuf" or np.ma.is_masked(given)
     return isinstance(given, (complex, np.complexfloating))
 
 
 def numbers(given: npt.ArrayLike, kind: str, name: str) -> npt.NDArray[Any]:
-    """An array of one type that lies in memory row after row. Digits may be rounded; what else would be lost is refused."""
+    """Returns a C-contiguous array of one type. Digits may be rounded; any other loss is refused."""
     array = _plain(given, name)
     if np.dtype(kind).kind == "f":
         if array.dtype.kind not in "biuf":
@@ -47,11 +47,11 @@ def numbers(given: npt.ArrayLike, kind: str, name: str) -> npt.NDArray[Any]:
 
 
 def samples(array: npt.ArrayLike, axes_reversed: bool) -> tuple[npt.NDArray[Any], str, tuple[int, int, int]]:
-    """The array with x varying fastest, the name of its type, and the numbers of samples along x, y and z."""
+    """Returns the array with x varying fastest, the name of its type, and the numbers of samples along x, y and z."""
     array = _plain(array, "array")
     if array.ndim != 3:
         raise ArgumentError(f"array: must have three axes, not {array.ndim}")
-    # In the order z, y, x the last axis varies fastest in memory, as NumPy likes it.
+    # In the order z, y, x the last axis varies fastest in memory, which is NumPy's default.
     reversed_ = array if axes_reversed else array.transpose()
     kind = reversed_.dtype.newbyteorder("=").name
     z, y, x = reversed_.shape
@@ -62,8 +62,8 @@ def samples(array: npt.ArrayLike, axes_reversed: bool) -> tuple[npt.NDArray[Any]
 
 
 def to_trimesh(mesh: Mesh) -> Any:
-    """The mesh as one of trimesh."""
+    """Returns the mesh as a `trimesh.Trimesh`."""
     import trimesh  # type: ignore[import, unused-ignore]
 
-    # A mesh of trimesh may be changed, and has arrays of its own.
+    # A `trimesh.Trimesh` is mutable, so it gets its own arrays.
     return trimesh.Trimesh(mesh.vertices.copy(), mesh.faces.astype(np.int64), process=False)

@@ -1,4 +1,4 @@
-"""Files: paths, and URLs of fsspec."""
+"""Reading and writing of files, at paths and at URLs of fsspec."""
 
 from __future__ import annotations
 
@@ -19,7 +19,8 @@ def _url(path: str | os.PathLike[str]) -> str | None:
 
 
 def _name(url: str) -> str:
-    """The name of the file at a URL, without what is asked of a server. In a chain (`zip://part.stl::https://…`) it is the first name."""
+    """Returns the file name in a URL, without the query. In a chain (`zip://part.stl::https://…`) it is the first
+    name."""
     first = next(part for part in url.split("::") if "://" in part)
     return first.partition("?")[0].rsplit("/", 1)[-1]
 
@@ -43,16 +44,21 @@ def _fsspec() -> Any:
 
 
 def open(path: str | os.PathLike[str], **taking: Unpack[Taking]) -> Octree | TriDexel | Mesh | Csg | Volume:
-    """Reads a file, whatever it is: an `Octree` or a `TriDexel` (.lfl), a `Mesh` (STL, OBJ, PLY, OFF, 3MF), a `Csg` (.csg) or a `Volume`
-    (NRRD, MetaImage).
+    """Reads a file of any known format: an `Octree` or a `TriDexel` (.lfl), a `Mesh` (STL, OBJ, PLY, OFF, 3MF), a `Csg`
+    (.csg) or a `Volume` (NRRD, MetaImage).
 
-    `path` is a path, or a URL of any kind that fsspec knows. Of meshes, `fill` says what is inside ("nonzero", "positive", "evenodd"),
-    `unit` what the numbers mean ("mm", "in"), `to_unit` what they are converted to, `scale` multiplies them, and
-    `sew=False` leaves hair cracks open, which are closed by default. For volumes, `threshold` says which samples are inside. A volume that
-    was saved here remembers its threshold. For other files the default is the middle of what the type of the samples can be: 127.5 for
-    uint8, 32767.5 for uint16, −0.5 for signed integers, 0 for floating point. A mask of zeros and ones therefore needs `threshold=0.5`.
+    `path` is a path, or a URL of any kind that fsspec supports.
 
-    `max_bytes` refuses longer files, those that a scene names too; `threads` and `progress` are those of long work.
+    For meshes, `fill` is the fill rule that defines the inside ("nonzero", "positive", "evenodd"). `unit` is the unit
+    of the numbers ("mm", "in"), and `to_unit` the unit that they are converted to. `scale` multiplies the coordinates.
+    Hair cracks are closed by default; `sew=False` leaves them open.
+
+    For volumes, `threshold` defines which samples are inside. A volume that this package saved remembers its threshold.
+    For other files the default is the middle of the range of the sample type: 127.5 for uint8, 32767.5 for uint16, −0.5
+    for signed integers, 0 for floating point. A mask of zeros and ones therefore needs `threshold=0.5`.
+
+    Files longer than `max_bytes` are refused, including files that a scene names. `threads` and `progress` are those of
+    every long operation.
 
     >>> import os, tempfile
     >>> path = os.path.join(tempfile.mkdtemp(), "ball.lfl")
@@ -65,19 +71,19 @@ def open(path: str | os.PathLike[str], **taking: Unpack[Taking]) -> Octree | Tri
         return _leafless.open_path(_path(path), **taking)
     with _fsspec().open(url, "rb") as file:
         limit = taking.get("max_bytes")
-        # One byte more than is allowed, and the file is refused.
+        # Reads at most one byte more than the limit; then the file is refused.
         data = file.read(limit + 1 if isinstance(limit, int) else -1)
         return _leafless.open_bytes(data, _name(url), **taking)
 
 
 def map(path: str | os.PathLike[str], *, verify: bool = False) -> Octree | TriDexel:
-    """The octree or the tri-dexel model in the file at `path`, mapped: nothing is copied, and only what is asked for is ever read, so that it takes
-    microseconds whatever the size. The pages are shared with all processes that map the file.
+    """Maps the octree or the tri-dexel model in the file at `path`. Nothing is copied, and only the queried parts are
+    ever read, so mapping takes microseconds for any size. All processes that map the file share its pages.
 
-    The file may be replaced or removed, but must not be made shorter or written to as long as the object is there. Of a file that is
-    damaged, answers may be wrong; `verify=True` looks for damage first, and reads all of it.
+    While the object lives, the file may be replaced or removed, but must not be made shorter or written to. A damaged
+    file may give wrong answers. `verify=True` looks for damage first, which reads the whole file.
 
-    A mapped object is pickled by its path and its checksum.
+    A mapped object is pickled as its path and its checksum.
 
     >>> import os, tempfile
     >>> path = os.path.join(tempfile.mkdtemp(), "ball.lfl")
@@ -91,11 +97,11 @@ def map(path: str | os.PathLike[str], *, verify: bool = False) -> Octree | TriDe
 
 
 def save(object: Octree | TriDexel | Mesh | Volume | Picture, path: str | os.PathLike[str]) -> None:
-    """Writes an `object`: an `Octree` or a `TriDexel` (.lfl), a `Mesh` (.stl, .obj, .ply, .off, .3mf), a `Volume` (.nrrd, with its threshold)
-    or a `Picture` (.png).
+    """Writes an `object` to a file: an `Octree` or a `TriDexel` (.lfl), a `Mesh` (.stl, .obj, .ply, .off, .3mf), a
+    `Volume` (.nrrd, with its threshold) or a `Picture` (.png).
 
-    `path` is a path, or a URL of any kind that fsspec can write to. A file at a path is replaced as a whole: at any moment there is the
-    old one or the new one.
+    `path` is a path, or a URL of any kind that fsspec can write to. A file at a path is replaced atomically: at any
+    moment it is the old file or the new one.
 
     >>> import os, tempfile
     >>> path = os.path.join(tempfile.mkdtemp(), "block.stl")

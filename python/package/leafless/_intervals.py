@@ -11,7 +11,7 @@ from ._leafless import Interval
 
 
 class Intervals:
-    """An array of intervals: two arrays of one shape, `lower` and `upper`, between which the truth lies.
+    """An array of intervals that contain the truth: two arrays of one shape, `lower` and `upper`.
 
     >>> bounds = Intervals([1.0, 2.0], [1.5, 2.0])
     >>> bounds[0], bounds.width
@@ -19,14 +19,14 @@ class Intervals:
     >>> bounds.contain([1.2, 3.0])
     array([ True, False])
 
-    `<`, `<=`, `>` and `>=` compare one by one, with numbers or with intervals, and are true where they hold for all that an interval
-    contains. Where an interval is in doubt, both `<` and `>` are false.
+    `<`, `<=`, `>` and `>=` compare element by element, with numbers or with intervals. They are true where they hold
+    for every value that the interval contains. Where an interval is in doubt, both `<` and `>` are false.
 
     >>> bounds < 1.2, bounds > 1.2
     (array([False, False]), array([False,  True]))
     """
 
-    #: Operators of NumPy leave this class alone.
+    #: Makes NumPy's operators defer to this class.
     __array_ufunc__ = None
 
     __slots__ = ("__weakref__", "lower", "upper")
@@ -49,18 +49,18 @@ class Intervals:
 
     @property
     def middle(self) -> npt.NDArray[np.float64]:
-        """The numbers half-way between the ends; where both ends are infinite, that infinity."""
+        """The midpoints; where both ends are the same infinity, that infinity."""
         with np.errstate(invalid="ignore"):
             return np.where(self.lower == self.upper, self.lower, 0.5 * self.lower + 0.5 * self.upper)
 
     @property
     def width(self) -> npt.NDArray[np.float64]:
-        """How far apart the ends are."""
+        """The widths: upper minus lower."""
         with np.errstate(invalid="ignore"):
             return np.where(self.lower == self.upper, 0.0, self.upper - self.lower)
 
     def contain(self, values: npt.ArrayLike) -> npt.NDArray[np.bool_]:
-        """Where `values` lie in their intervals: an array of booleans."""
+        """Returns an array of booleans: whether `values` lie in their intervals."""
         values = np.asarray(values)
         return (self.lower <= values) & (values <= self.upper)
 
@@ -80,10 +80,10 @@ class Intervals:
         found: npt.NDArray[np.bool_] = np.greater_equal(self.lower, _ends(other)[1])
         return found
 
-    # Whether an axis is left, and with it an array, depends on how many there are.
     def __contains__(self, value: object) -> bool:
         raise TypeError("which of the intervals? intervals.contain(values) tells of each")
 
+    # The number of remaining axes decides whether the result is an interval or an array, so no type says which.
     @overload
     def __getitem__(self, index: slice | list[int] | list[bool] | npt.NDArray[Any]) -> Intervals: ...
     @overload
@@ -121,7 +121,7 @@ class Intervals:
 
 
 def _ends(value: Intervals | Interval | npt.ArrayLike) -> tuple[Any, Any]:
-    """The lower and the upper ends of what intervals are compared with."""
+    """Returns the lower and the upper ends of the other side of a comparison."""
     if isinstance(value, (Intervals, Interval)):
         return value.lower, value.upper
     return np.asarray(value), np.asarray(value)

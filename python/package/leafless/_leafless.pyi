@@ -1,5 +1,5 @@
-# The types of the extension module: its classes and functions, the words they take, and the dictionaries they give.
-# It tells no `__eq__`, so that strict checkers find comparisons of different kinds, which are never true.
+# The types of the extension module: its classes and functions, the words that they take, and the dictionaries that they
+# return. `__eq__` is left out, so that strict checkers report comparisons of different kinds, which are never true.
 
 from collections.abc import Callable, Iterable, Iterator, Sequence
 from os import PathLike
@@ -98,14 +98,14 @@ _Path: TypeAlias = str | PathLike[str]
 _Doubles: TypeAlias = npt.NDArray[np.float64]
 _Samples: TypeAlias = npt.NDArray[np.bool_ | np.uint8 | np.uint16 | np.int16 | np.float32]
 _Indices: TypeAlias = Sequence[SupportsIndex] | npt.NDArray[np.integer[Any]]
-# A least sample, or a least and a greatest one.
+# A least sample, or a least and a greatest sample.
 _Threshold: TypeAlias = float | tuple[float, float | None] | Sequence[float] | npt.NDArray[Any]
 
-# One point, and many. An array may hold either: its type does not say how many axes it has.
+# One point, or many. An array may hold either: its type does not say how many axes it has.
 _Point: TypeAlias = Sequence[float]
 _Points: TypeAlias = Sequence[Sequence[float] | npt.NDArray[Any]]
 
-# Solids that are no octrees.
+# Solids other than octrees.
 _Other: TypeAlias = Csg | Mesh | Volume | Shape | DexelSolid
 
 _Opened: TypeAlias = Octree | TriDexel | Mesh | Csg | Volume
@@ -257,7 +257,7 @@ class Affine:
 @disjoint_base
 class Solid:
     __array_ufunc__: ClassVar[None]
-    # A shape of your own may tell it as a list.
+    # A shape of your own may give a list.
     @property
     def bounds(self) -> ArrayLike | None: ...
     @property
@@ -268,7 +268,8 @@ class Solid:
     def contains(
         self, points: _Points, *, frame: Frame | Octree | None = None, **limits: Unpack[Limits]
     ) -> npt.NDArray[np.uint8]: ...
-    # An array holds one point, and the answer is a `Membership`, or many, and it is an array. No type says which.
+    # For an array with one point the answer is a `Membership`; for many points it is an array. The type of an array
+    # does not say which.
     @overload
     def contains(self, points: ArrayLike, *, frame: Frame | Octree | None = None, **limits: Unpack[Limits]) -> Any: ...
     @overload
@@ -429,7 +430,7 @@ class Mesh(Solid):
     ) -> Mesh: ...
     @staticmethod
     def from_trimesh(mesh: _HasTriangles, *, fill: _Fill = "nonzero") -> Mesh: ...
-    # It is a `trimesh.Trimesh`. The package need not be installed.
+    # Returns a `trimesh.Trimesh`. The stub does not require the package.
     def to_trimesh(self) -> Any: ...
     @property
     def vertices(self) -> _Doubles: ...
@@ -625,7 +626,7 @@ class LazyOctree:
     def contains(self, points: _Point) -> Membership: ...
     @overload
     def contains(self, points: _Points) -> npt.NDArray[np.uint8]: ...
-    # The answers are those of a solid.
+    # The answers are those of `Solid.contains`.
     @overload
     def contains(self, points: ArrayLike) -> Any: ...
     @property
@@ -903,7 +904,7 @@ def bounding_box(
     **limits: Unpack[Limits],
 ) -> BoundingBox: ...
 
-# One placement has one answer, and a sequence of them a list. An array may hold one matrix or many.
+# One placement has one answer; a sequence has a list of answers. An array may hold one matrix or many.
 @overload
 def interference(
     a: Solid,

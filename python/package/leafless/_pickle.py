@@ -1,4 +1,4 @@
-"""How pickled objects are made again."""
+"""Functions that restore pickled objects."""
 
 from __future__ import annotations
 
@@ -13,7 +13,7 @@ if TYPE_CHECKING:
 def csg(steps: list[tuple[str, tuple[Any, ...]]]) -> Csg:
     made: list[Csg] = []
     for name, arguments in steps:
-        # A whole number stands for what an earlier step made: no function of the class takes one.
+        # A whole number stands for the result of an earlier step: no function of the class takes one.
         parts = (made[part] if type(part) is int else part for part in arguments)
         made.append(getattr(Csg, name)(*parts))
     return made[-1]
@@ -44,7 +44,7 @@ def tridexel(data: bytes) -> TriDexel:
 
 
 def mapped(path: str, checksum: int) -> Octree | TriDexel:
-    """The solid in a file that must be the one that was mapped."""
+    """Maps the solid in a file, which must still be the file that was mapped."""
     return map_path(path, checksum=checksum)
 
 

@@ -1,4 +1,4 @@
-"""Whom progress is reported to."""
+"""Receivers of progress reports."""
 
 from __future__ import annotations
 
@@ -9,7 +9,8 @@ if TYPE_CHECKING:
 
 
 def reporter(progress: Callable[[float], object] | ProgressBar | bool) -> Callable[[float], object]:
-    """A function of the part done (0 to 1): the one given, one that moves a bar of tqdm, or for True a bar that is made here."""
+    """Returns a function of the part done (0 to 1): the given one, or one that moves a bar of tqdm. True makes a new
+    bar."""
     if progress is True:
         from tqdm.auto import tqdm  # type: ignore[import, unused-ignore]
 

@@ -1,12 +1,13 @@
-"""Sharded octrees on the workers of Dask: built, combined, measured, meshed and listed shard by shard, and many poses or parameters at
-once.
+"""Sharded octrees on the workers of Dask: built, combined, measured, meshed and listed shard by shard. Many poses or
+parameters are evaluated at once.
 
-Each function makes a graph of small tasks and computes it with the scheduler that Dask is set to: threads by default, or the workers
-of a `dask.distributed.Client`. A task builds, reads or writes one shard. It depends on nothing but its arguments, and writes whole
-files, so that a task that is lost with its worker is done again by another one, with the same bytes. What a worker holds at a time is
-bounded by a shard. Results are those of one machine, byte by byte.
+Each function makes a graph of small tasks and computes it with Dask's current scheduler: threads by default, or the
+workers of a `dask.distributed.Client`. A task builds, reads or writes one shard. A task depends only on its arguments,
+and writes whole files. So if a worker dies, another worker repeats its tasks, with the same bytes. The memory of a
+worker is bounded by the size of a shard. Results equal the results of one machine, byte by byte.
 
-Solids travel to the workers by pickle. A folder must be one that all workers see: on one machine any, else a URL of fsspec.
+Solids travel to the workers by pickle. All workers must see the folder: on one machine any folder, otherwise a URL of
+fsspec.
 
 >>> import leafless as lf, tempfile
 >>> from leafless import distributed, shards
@@ -50,7 +51,7 @@ __all__ = ["build", "combine", "complement", "interference", "measure", "split",
 
 R = TypeVar("R")
 
-#: Threads of a task. Workers have several processors by having several threads of Dask.
+#: Threads of one task. A worker uses several processors by several Dask threads.
 THREADS = 1
 
 
@@ -63,7 +64,7 @@ def _dask() -> Any:
 
 
 def _each(task: Callable[..., R], arguments: Iterable[tuple[Any, ...]], **shared: Any) -> list[R]:
-    """What a task gives for each of many arguments, in their order. What they share travels once."""
+    """Returns the results of a task for each of many arguments, in their order. Shared arguments travel once."""
     dask = _dask()
     delayed = dask.delayed(task, pure=False, traverse=False)
     given = {name: dask.delayed(value, traverse=False) for name, value in shared.items()}
@@ -85,8 +86,8 @@ def build(
     rule: _Rule = "certified",
     surfaces: bool | float | None = None,
 ) -> ShardedOctree:
-    """Builds the octree of a solid in shards, each by a task, into a folder or to a URL. The arguments are those of
-    `leafless.shards.build`, and so are the bytes."""
+    """Builds the octree of a solid in shards, each by a task, into a folder or to a URL. The arguments and the
+    resulting bytes are those of `leafless.shards.build`."""
     how, folder = recipe(solid, frame, depth, level, rule, surfaces), Folder(url)
     top = how.top(solid)
     made = _each(_built, ((code,) for code in top.open_cells(level).tolist()), solid=solid, folder=folder, how=how)
@@ -100,7 +101,7 @@ def _split(code: int, octree: Octree, folder: Folder, level: int) -> Entry | byt
 
 
 def split(octree: Octree, url: str | os.PathLike[str], *, level: int = 3) -> ShardedOctree:
-    """Cuts an octree into shards, as `leafless.shards.split`. An octree that is mapped travels by its path."""
+    """Cuts an octree into shards, as `leafless.shards.split`. A mapped octree travels as its path."""
     from .shards import Shard
 
     folder, top = Folder(url), octree.shard(Shard.top(level))
@@ -115,7 +116,7 @@ def _combined(code: int, operation: _Operation, a: ShardedOctree, b: ShardedOctr
 
 
 def combine(operation: _Operation, a: ShardedOctree, b: ShardedOctree, url: str | os.PathLike[str]) -> ShardedOctree:
-    """A set operation on two sharded octrees, as `leafless.shards.combine`: "union", "intersection", "difference" or "xor"."""
+    """Combines two sharded octrees, as `leafless.shards.combine`: "union", "intersection", "difference" or "xor"."""
     folder, top = Folder(url), combined_top(operation, a, b)
     codes = ((code,) for code in top.open_cells(a.level).tolist())
     return finish(folder, a.level, top, _each(_combined, codes, operation=operation, a=a, b=b, folder=folder), None)
@@ -126,7 +127,7 @@ def _complemented(code: int, a: ShardedOctree, folder: Folder) -> Entry | bytes:
 
 
 def complement(a: ShardedOctree, url: str | os.PathLike[str]) -> ShardedOctree:
-    """Everything but a sharded octree, as `leafless.shards.complement`."""
+    """Returns the complement of a sharded octree, as `leafless.shards.complement`."""
     folder = Folder(url)
     codes = ((code,) for code in a.top.open_cells(a.level).tolist())
     top: Any = ~a.top
@@ -137,7 +138,7 @@ def _present(code: int | None, octree: ShardedOctree) -> bool:
     return code is None or octree.shard(code) is not None
 
 
-#: What a task found, or nothing if its shard is missing; and the shards that it found missing.
+#: The result of a task, or `None` if its shard is missing; and the shards that the task found missing.
 Found = Tuple[Optional[R], "dict[int, str]"]
 
 
@@ -148,8 +149,8 @@ def _measured(code: int | None, octree: ShardedOctree, tolerance: float, absolut
 
 
 def measure(octree: ShardedOctree, *, tolerance: float = 1e-3, absolute: float = 0.0) -> MassProperties:
-    """Volume, centroid and inertia, as `ShardedOctree.measure`, each shard by a task. Sums are exact, so that their order does not
-    matter. Shards that are missing are in doubt, and told in `octree.missing`."""
+    """Measures volume, centroid and inertia, as `ShardedOctree.measure`, each shard by a task. Sums are exact, so their
+    order does not matter. Missing shards count as undecided and are listed in `octree.missing`."""
     absolute /= len(octree) + 1
     top = octree.measure_part(tolerance=tolerance, absolute=absolute)
     codes = octree.codes
@@ -159,7 +160,7 @@ def measure(octree: ShardedOctree, *, tolerance: float = 1e-3, absolute: float =
 
 
 def _told(octree: ShardedOctree, found: list[Found[R]]) -> list[R | None]:
-    """What tasks found; what they found missing is noted."""
+    """Returns the results of tasks, and adds the shards that they found missing to the octree's list."""
     for _, missing in found:
         octree.note_missing(missing)
     return [part for part, _ in found]
@@ -170,7 +171,8 @@ def _surface(code: int, octree: ShardedOctree, resolve: Literal["inner", "outer"
 
 
 def surface(octree: ShardedOctree, resolve: Literal["inner", "outer"] = "outer") -> Mesh:
-    """The surface by marching cubes, as `ShardedOctree.surface`, each cell by a task. The mesh is in the memory of the caller."""
+    """Makes the surface by marching cubes, as `ShardedOctree.surface`, each cell by a task. The mesh is in the caller's
+    memory."""
     return welded(_each(_surface, ((code,) for code in octree.surface_codes()), octree=octree, resolve=resolve))
 
 
@@ -181,7 +183,7 @@ def _voxels(code: int | None, octree: ShardedOctree, outside: bool) -> Found[Vox
 
 
 def voxels(octree: ShardedOctree, *, outside: bool = False) -> VoxelRecords:
-    """The voxels as records, as `Octree.voxels` of the joined octree, each shard by a task."""
+    """Returns the voxels as records, as `Octree.voxels` of the joined octree, each shard by a task."""
     codes: list[tuple[int | None]] = [(None,), *((code,) for code in octree.codes)]
     parts = _told(octree, _each(_voxels, codes, octree=octree, outside=outside))
     return octree.voxels_joined([part for part in parts if part is not None])
@@ -195,8 +197,9 @@ def _interfered(placements: list[Affine], a: Solid, b: Solid, options: dict[str,
 def interference(
     a: Solid, b: Solid, placements: Sequence[Any], *, batch: int = 256, **options: Any
 ) -> list[Interference]:
-    """What `leafless.interference` tells of two solids under many placements of the second, `batch` of them by a task. The options are
-    those of `leafless.interference`, and so are the verdicts: all tasks look at the frame of all placements."""
+    """Returns the answers of `leafless.interference` for many placements of the second solid, `batch` placements per
+    task. The options and the verdicts are those of `leafless.interference`: all tasks use the frame of all
+    placements."""
     placed = [placement if isinstance(placement, Affine) else Affine(placement) for placement in placements]
     if not placed:
         return []
@@ -208,6 +211,6 @@ def interference(
 
 
 def sweep(task: Callable[..., R], parameters: Iterable[Any]) -> list[R]:
-    """What a function gives for each of many parameters, each by a task: parts of a family that are built, measured or compared. A tuple
-    is taken as several arguments."""
+    """Calls a function for each of many parameters, each by a task, and returns the results: parts of a family that are
+    built, measured or compared. A tuple is passed as several arguments."""
     return _each(task, (given if isinstance(given, tuple) else (given,) for given in parameters))

@@ -1,9 +1,9 @@
-"""Octrees that outgrow one machine: cut into shards, built, combined, measured and asked part by part.
+"""Octrees that outgrow one machine: built, combined, measured and queried shard by shard.
 
-A sharded octree is a folder, of this machine or at any URL of fsspec: a manifest (`manifest.json`), the *top* of the octree down to a
-level, and one file for each cell of that level that the top leaves open. Each file is an ordinary octree on the frame of the
-whole, and true of the whole: it only knows less. So a shard that is missing or damaged is PARTIAL, which answers tell, and no answer is
-wrong.
+A sharded octree is a folder, on this machine or at any URL of fsspec. The folder holds a manifest (`manifest.json`),
+the *top* of the octree down to a level, and one file for each cell of that level that the top leaves open. Each file is
+an ordinary octree on the frame of the whole. It is true of the whole solid and only knows less. So the cell of a
+missing or damaged shard is PARTIAL: answers report the doubt, and no answer is wrong.
 
 >>> import leafless as lf, tempfile
 >>> from leafless import shards
@@ -16,7 +16,7 @@ True
 >>> parts.volume == lf.build(ball, depth=7).volume
 True
 
-`leafless.distributed` does the same on the workers of Dask. docs/scale.md tells what to expect.
+`leafless.distributed` does the same on the workers of Dask. docs/scale.md lists the costs.
 """
 
 from __future__ import annotations
@@ -77,7 +77,7 @@ TOP = "top.lfl"
 FORMAT = "leafless shards"
 VERSION = 1
 
-#: Set operations of two octrees, by what they are called.
+#: The set operations of two octrees, by name.
 OPERATIONS: dict[str, Callable[[Octree, Octree], Any]] = {
     "union": lambda a, b: a | b,
     "intersection": lambda a, b: a & b,
@@ -92,16 +92,17 @@ class MissingShardWarning(UserWarning):
 
 @dataclasses.dataclass(frozen=True)
 class Entry:
-    """A file of a sharded octree."""
+    """The manifest's entry of one file of a sharded octree."""
 
     path: str
     bytes: int
     sha256: str
-    #: Where its bytes begin in the file.
+    #: The offset of the octree's first byte in the file.
     offset: int = 0
-    #: The place of the cell in Morton order; −1 of the top.
+    #: The Morton code of the cell; −1 for the top.
     code: int = -1
-    #: Nodes, FULL and PARTIAL cells in the shard's cell, level by level from the one below it on.
+    #: The numbers of nodes, FULL cells and PARTIAL cells in the shard's cell, for each level below the level of the
+    #: cell.
     levels: tuple[tuple[int, int, int], ...] = ()
 
     def told(self) -> dict[str, Any]:
@@ -112,7 +113,7 @@ class Entry:
 
 
 class Folder:
-    """Where the files of a sharded octree lie: a folder of this machine, or a URL of fsspec."""
+    """The place of the files of a sharded octree: a folder on this machine, or a URL of fsspec."""
 
     def __init__(self, url: str | os.PathLike[str]) -> None:
         self.url = os.fspath(url)
@@ -122,11 +123,11 @@ class Folder:
         return f"{self.url.rstrip('/')}/{name}" if self._is_remote else os.path.join(self.url, name)
 
     def local(self, name: str) -> Path | None:
-        """The path of a file of this machine."""
+        """Returns the path of a file on this machine; `None` at a URL."""
         return None if self._is_remote else Path(self.path(name))
 
     def write(self, name: str, data: bytes) -> None:
-        """Writes a file as a whole: at any moment there is the old one or the new one."""
+        """Writes a file. In a folder it is replaced atomically: at any moment it is the old file or the new one."""
         if self._is_remote:
             with _files._fsspec().open(self.path(name), "wb") as file:
                 file.write(data)
@@ -154,7 +155,7 @@ class Folder:
 
 
 def _name(level: int, code: int) -> str:
-    """The name of a shard's file: the octants from the universe down to its cell."""
+    """Returns the name of a shard's file: the octants from the universe down to its cell."""
     return f"{code:0{level}o}.lfl" if level else "0.lfl"
 
 
@@ -166,8 +167,8 @@ def store(folder: Folder, name: str, octree: Octree) -> Entry:
 
 
 def store_shard(folder: Folder, level: int, code: int, octree: Octree) -> Entry | bytes:
-    """Writes a shard into a folder. What is known of a cell that is not split belongs into the top: that is handed back as the bytes of an
-    octree."""
+    """Writes a shard into a folder. A shard whose cell is not split belongs into the top: its octree is returned as
+    bytes instead."""
     statistics = octree.statistics()
     if statistics[level]["nodes"] != 1:
         return octree.to_bytes()
@@ -178,8 +179,8 @@ def store_shard(folder: Folder, level: int, code: int, octree: Octree) -> Entry 
 def finish(
     folder: Folder, level: int, top: Octree, made: Iterable[Entry | bytes], source: str | None, **facts: Any
 ) -> ShardedOctree:
-    """Writes the top and the manifest of shards that have been written. The manifest comes last: a folder without one is not
-    finished."""
+    """Writes the top and the manifest, after the shards have been written. The manifest comes last: a folder without
+    one is unfinished."""
     entries: list[Entry] = []
     settled: list[Octree] = []
     for one in made:
@@ -208,14 +209,14 @@ def finish(
 
 
 def _written(manifest: dict[str, Any]) -> bytes:
-    """A manifest as bytes, a line for each shard."""
+    """Returns a manifest as bytes, one line for each shard."""
     shards = ",\n".join(json.dumps(entry, separators=(",", ":")) for entry in manifest["shards"])
     head = json.dumps({**manifest, "shards": []}, separators=(",", ":"))
     return (head.removesuffix("[]}") + "[\n" + shards + "\n]}\n").encode()
 
 
 def _checked(manifest: Any, url: str) -> dict[str, Any]:
-    """The manifest, if it is one."""
+    """Returns the manifest, or raises `FormatError` if it is invalid."""
 
     def whole(value: Any, least: int, most: int) -> bool:
         return isinstance(value, int) and not isinstance(value, bool) and least <= value <= most
@@ -280,9 +281,9 @@ def _entry(told: dict[str, Any]) -> Entry:
 
 
 class ShardedOctree:
-    """An octree in shards, of which each is looked at when it is asked for.
+    """An octree in shards. A shard is read when a query needs it.
 
-    A shard that is missing or damaged is told by a `MissingShardWarning` and in `missing`; its cell is PARTIAL.
+    A missing or damaged shard causes a `MissingShardWarning` and is listed in `missing`. Its cell is PARTIAL.
     """
 
     def __init__(self, url: str, manifest: dict[str, Any], *, verify: bool = True, keep: int = 64) -> None:
@@ -298,12 +299,12 @@ class ShardedOctree:
 
     @property
     def url(self) -> str:
-        """The folder or the URL where it lies."""
+        """The folder or the URL of the files."""
         return self._folder.url
 
     @property
     def frame(self) -> Frame:
-        """The frame of the whole."""
+        """The frame of the whole octree."""
         frame = self._manifest["frame"]
         return Frame(frame["origin"], frame["edge"], frame["depth"])
 
@@ -315,42 +316,42 @@ class ShardedOctree:
 
     @property
     def codes(self) -> list[int]:
-        """The places in Morton order of the cells that have shards, ascending."""
+        """The Morton codes of the cells that have shards, ascending."""
         return list(self._entries)
 
     @property
     def keeps_surfaces(self) -> bool:
-        """Whether cells keep the surfaces that cross them."""
+        """True if cells keep the surfaces that cross them."""
         return bool(self._manifest.get("keeps_surfaces"))
 
     @property
     def proof(self) -> Proof:
-        """What the cells prove of the solid that it was made of."""
+        """The proof that the cells give about the source solid."""
         return self.top.proof
 
     @property
     def source(self) -> str | None:
-        """The fingerprint of the solid that it was built of, if that has one."""
+        """The fingerprint of the source solid, if it has one."""
         source: str | None = self._manifest.get("source")
         return source
 
     @property
     def manifest(self) -> dict[str, Any]:
-        """What the manifest says."""
+        """The parsed manifest."""
         return self._manifest
 
     @property
     def missing(self) -> dict[int, str]:
-        """The codes of shards that were found missing or damaged, each with the reason. Shards that nobody has asked for are not
-        among them: `check` asks for all."""
+        """The codes of the shards that were found missing or damaged, each with the reason. Shards that no query has
+        needed yet are not listed: `check` reads all."""
         return dict(self._missing)
 
     @property
     def top(self) -> Octree:
-        """The top, an octree that knows the cells down to the level of the shards.
+        """The top: an octree with the cells down to the level of the shards.
 
         Raises:
-            FormatError: the file is damaged, or lies on another frame.
+            FormatError: the file of the top is damaged, or lies on another frame.
         """
         if self._top is None:
             top = self._read(_entry(self._manifest["top"]))
@@ -361,7 +362,7 @@ class ShardedOctree:
 
     def _read(self, entry: Entry) -> Octree:
         path = self._folder.local(entry.path)
-        # (Shards that share a file are no files of their own.)
+        # Only a shard with a file of its own can be mapped.
         if path is not None and entry.offset == 0 and path.stat().st_size == entry.bytes:
             if self._verify:
                 self._compare(hashlib.sha256(path.read_bytes()).hexdigest(), entry)
@@ -381,7 +382,7 @@ class ShardedOctree:
             raise FormatError(f"{self._folder.path(entry.path)}: the checksum is not that of the manifest")
 
     def shard(self, code: int) -> Octree | None:
-        """The shard of a cell; `None` if there is none, or it is missing or damaged."""
+        """Returns the shard of a cell; `None` if the cell has none, or if it is missing or damaged."""
         entry = self._entries.get(code)
         if entry is None or code in self._missing:
             return None
@@ -406,17 +407,17 @@ class ShardedOctree:
         return octree
 
     def part(self, code: int) -> Octree:
-        """What is known of one cell of the level: its shard, or else what the top knows of it."""
+        """Returns an octree of one cell of the level: its shard, or else the part of the top."""
         return self.shard(code) or self.top.shard(Shard.below(self.level, code))
 
     def check(self) -> dict[int, str]:
-        """Reads all shards, and returns `missing`."""
+        """Reads all shards and returns `missing`."""
         for code in self._entries:
             self.shard(code)
         return self.missing
 
     def octrees(self, codes: Iterable[int] | None = None) -> Iterator[Octree]:
-        """The top, and the shards that are there, one after the other."""
+        """Iterates over the top and the present shards."""
         yield self.top
         for code in self._entries if codes is None else codes:
             shard = self.shard(code)
@@ -424,46 +425,48 @@ class ShardedOctree:
                 yield shard
 
     def join(self, **limits: Unpack[Limits]) -> Octree:
-        """The octree: of all shards the bytes of a single build. A missing shard is PARTIAL."""
+        """Joins the shards to one octree. With all shards it has the bytes of a single build. The cells of missing
+        shards are PARTIAL."""
         return join(list(self.octrees()), **limits)
 
     def solid(self, codes: Iterable[int] | None = None) -> ShardedSolid:
-        """The shards as a solid, without joining them, for whatever takes a solid. `codes` chooses shards; the cells of others are
-        PARTIAL."""
+        """Returns the shards as a solid for any function that takes a solid, without joining them. `codes` selects
+        shards; the cells of other shards are PARTIAL."""
         codes = list(self._entries if codes is None else codes)
         found = [(code, self.shard(code)) for code in codes]
         return ShardedSolid(self.top, self.level, [(code, shard) for code, shard in found if shard is not None])
 
     def statistics(self) -> list[Level]:
-        """As `Octree.statistics`, from the manifest and the top alone."""
+        """Returns the statistics of the joined octree, in the form of `Octree.statistics`. Only the manifest and the
+        top are read."""
         above = ((1, 0, 0),) * (self.level + 1)
         known = [(code, above + entry.levels) for code, entry in self._entries.items() if code not in self._missing]
         return _leafless.joined_statistics(self.top, self.level, known)
 
     @property
     def volume(self) -> Interval:
-        """Between which numbers the volume of the cells lies (cubic model units)."""
+        """The interval of the volume of the cells (cubic model units)."""
         return self.statistics()[-1]["volume"]
 
     @property
     def node_count(self) -> int:
-        """How many nodes are stored, each once."""
+        """The number of stored nodes, each counted once."""
         return sum(level["nodes"] for level in self.statistics())
 
     @property
     def nbytes(self) -> int:
-        """Bytes of all files."""
+        """The bytes of all files of octrees."""
         total: int = self._manifest["top"]["bytes"] + sum(entry.bytes for entry in self._entries.values())
         return total
 
     def measure_part(
         self, code: int | None = None, *, tolerance: float = 1e-3, absolute: float = 0.0, **limits: Unpack[Limits]
     ) -> MassSum:
-        """What is known of the volume and the moments in the cell of a shard; without a code, what the top knows of all, and leaves open.
-        `measure_joined` adds them up."""
+        """Measures the cell of one shard: volume and moments. Without a `code`, the sum contains the top, with open
+        cells as unknown. `measure_joined` adds the sums."""
         frame = self.frame
         if code is None:
-            # What is open in the top is none of its doubt.
+            # The open cells do not count for the tolerance of the top.
             absolute += len(self._open_cells()) * (frame.edge / 2**self.level) ** 3 * (1 + 1e-9)
             return measure_cell(self.top, frame, tolerance=tolerance, absolute=absolute, **limits)
         return measure_cell(
@@ -471,14 +474,15 @@ class ShardedOctree:
         )
 
     def measure_joined(self, top: MassSum, parts: Iterable[tuple[int, MassSum]]) -> MassSum:
-        """The sum of what is measured of the top and of shards, by their codes; each takes the place of what the top leaves open."""
+        """Returns the sum of the top and of shards, given with their codes. Each shard replaces the unknown that the
+        top leaves in its cell."""
         for code, part in parts:
             top = top - MassSum.unknown(self.frame, self.level, code) + part
         return top
 
     def measure(self, *, tolerance: float = 1e-3, absolute: float = 0.0, **limits: Unpack[Limits]) -> MassProperties:
-        """Volume, centroid and inertia, as `leafless.measure`: each shard is measured to the tolerance, and the sums are exact. Cells whose
-        shards are missing are in doubt."""
+        """Measures volume, centroid and inertia, as `leafless.measure`. Each shard is measured to the tolerance, and
+        the sums are exact. Cells of missing shards count as undecided."""
         absolute /= len(self._entries) + 1
         parts = (
             (code, self.measure_part(code, tolerance=tolerance, absolute=absolute, **limits))
@@ -500,8 +504,8 @@ class ShardedOctree:
         return self._open
 
     def contains(self, points: ArrayLike) -> Any:
-        """Whether points lie inside, as `Octree.contains`. Only the shards of cells in which the top leaves points undecided are
-        looked at, one after the other."""
+        """Classifies points, as `Octree.contains`. Only the shards of cells in which the top leaves points undecided
+        are read, one after the other."""
         rows = np.asarray(points, dtype=np.float64)
         answers = np.atleast_1d(
             np.asarray(self.top.contains(rows.reshape(-1, 3) if rows.ndim == 1 else rows), dtype=np.uint8)
@@ -517,7 +521,7 @@ class ShardedOctree:
         return Membership(int(answers[0])) if rows.ndim == 1 else answers
 
     def _boxes(self) -> tuple[list[int], npt.NDArray[np.float64], npt.NDArray[np.float64]]:
-        """The cells that have shards, with their boxes, a little larger than they are."""
+        """Returns the cells that have shards, with slightly enlarged boxes."""
         codes = list(self._entries)
         all_codes = np.array(codes, dtype=np.uint64)
         at = np.zeros((len(codes), 3))
@@ -539,8 +543,8 @@ class ShardedOctree:
         last: float = float("inf"),
         **limits: Unpack[Limits],
     ) -> Any:
-        """Where rays first meet the solid, as `Octree.rays`: a `RayHits`, or a `RayHit` of a single ray. Only shards of cells that rays pass
-        are looked at."""
+        """Returns the first hits of rays, as `Octree.rays`: a `RayHits`, or a `RayHit` for a single ray. Only shards
+        whose cells the rays pass are read."""
         from_, along = (np.asarray(given, dtype=np.float64).reshape(-1, 3) for given in (origins, directions))
         from_, along = np.broadcast_arrays(from_, along)
         codes, low, high = self._boxes()
@@ -549,7 +553,7 @@ class ShardedOctree:
             for first in range(0, len(from_), 4096):
                 start, way = from_[first : first + 4096, None, :], along[first : first + 4096, None, :]
                 ends = np.stack([(low - start) / way, (high - start) / way])
-                # A ray along a wall divides 0 by 0, and is within.
+                # A ray in the plane of a wall divides 0 by 0. It counts as within.
                 near = np.where(np.isnan(ends).any(axis=0), -np.inf, ends.min(axis=0)).max(axis=-1)
                 far = np.where(np.isnan(ends).any(axis=0), np.inf, ends.max(axis=0)).min(axis=-1)
                 passed |= ((near <= far) & (far >= 0) & (near <= last)).any(axis=0)
@@ -557,8 +561,8 @@ class ShardedOctree:
         return self.solid(chosen).rays(origins, directions, on=on, last=last, frame=self.frame, **limits)
 
     def classify_box(self, bounds: ArrayLike) -> str:
-        """How a box (lower and upper corner) lies to the solid, as `Octree.classify_box`. The shards of cells that the box meets are
-        joined for it."""
+        """Classifies a box (lower and upper corner), as `Octree.classify_box`. The shards of the cells that the box
+        meets are joined for this."""
         box = np.asarray(bounds, dtype=np.float64)
         codes, low, high = self._boxes()
         meets = ((low <= box[1]) & (high >= box[0])).all(axis=1)
@@ -568,28 +572,31 @@ class ShardedOctree:
     def surface_part(
         self, code: int, resolve: Literal["inner", "outer"] = "outer", **limits: Unpack[Limits]
     ) -> tuple[npt.NDArray[np.float64], npt.NDArray[np.uint32]]:
-        """The vertices and faces of `surface` in one cell of the level: of its shard, and of those of the neighbours behind it."""
+        """Returns the vertices and faces of `surface` in one cell of the level. They need the cell's shard and the
+        shards of its neighbours towards +x, +y and +z."""
         near = [self.part(code)]
         near += [self.part(neighbour) for neighbour in _behind(self.level, code)]
         return _leafless.surface_in(join([self.top, *near]), self.level, code, resolve, **limits)
 
     def surface(self, resolve: Literal["inner", "outer"] = "outer", **limits: Unpack[Limits]) -> Mesh:
-        """The surface by marching cubes, as `leafless.surface` of the joined octree with `method="cubes"`: a closed mesh. Undecided cells are
-        outside ("inner") or inside ("outer"). At most eight shards are in memory at a time; the mesh is in memory as a whole."""
+        """Makes the surface by marching cubes, as `leafless.surface` of the joined octree with `method="cubes"`: a
+        closed mesh. Undecided cells are outside ("inner") or inside ("outer"). At most eight shards are in memory at a
+        time, beside the whole mesh."""
         return welded(self.surface_part(code, resolve, **limits) for code in self.surface_codes())
 
     def surface_codes(self) -> list[int]:
-        """The cells of the level in which the surface may have triangles."""
+        """Returns the codes of the cells of the level in which the surface may have triangles."""
         if self.keeps_surfaces:
             raise ValueError(
                 "an octree that keeps surfaces has few and large cells: join it, and take leafless.surface of that"
             )
-        # Outside of the frame, before the first cell and behind the last, all is EMPTY.
+        # Outside the frame, before the first cell and behind the last, everything is EMPTY.
         count = 2**self.level
         full, maybe = np.zeros((2, count + 2, count + 2, count + 2), dtype=bool)
         full[1:-1, 1:-1, 1:-1] = self.top.bitmap(self.level)
         maybe[1:-1, 1:-1, 1:-1] = self.top.bitmap(self.level, outer=True)
-        # A cell with its neighbours on both sides: more than what is looked at, but on the first cells' outer sides.
+        # The window holds a cell with its neighbours on both sides. That is more than marching cubes reads, except at
+        # the outer sides of the first cells.
         window = np.lib.stride_tricks.sliding_window_view
         is_empty = ~window(maybe, (3, 3, 3)).any(axis=(3, 4, 5))
         is_full = window(full, (3, 3, 3)).all(axis=(3, 4, 5))
@@ -602,7 +609,7 @@ class ShardedOctree:
         return found
 
     def voxels_part(self, code: int | None = None, *, outside: bool = False, **limits: Unpack[Limits]) -> VoxelRecords:
-        """The records of `voxels` in the cell of a shard; without a code, those of the top."""
+        """Returns the records of `voxels` in the cell of a shard; without a `code`, the records of the top."""
         octree = self.top if code is None else self._present(code)
         found = octree.voxels(outside=outside, **limits)
         if code is None:
@@ -611,13 +618,13 @@ class ShardedOctree:
         return VoxelRecords(self.frame, found.codes[own], found.levels[own], found.kinds[own])
 
     def voxels_joined(self, parts: Sequence[VoxelRecords]) -> VoxelRecords:
-        """One list of the records of the top, which come first, and of shards."""
+        """Joins the records of the top, which come first, and of the shards to one list."""
         depth, level = self.frame.depth, self.level
         present = np.array([code for code in self._entries if code not in self._missing], dtype=np.uint64)
         top, codes, levels, kinds = parts[0], [], [], []
         is_whole = np.ones(len(top), dtype=bool)
         for i in np.flatnonzero(top.kinds == VoxelKind.BOUNDARY).tolist():
-            # A cell that the top leaves open is that of shards, and of what lies between them.
+            # An open cell of the top is covered by shards, and by the cells between them.
             stack = [(int(top.levels[i]), int(top.codes[i]) >> 3 * (depth - int(top.levels[i])))]
             while stack:
                 at, cell = stack.pop()
@@ -648,15 +655,15 @@ class ShardedOctree:
         return VoxelRecords(self.frame, all_codes[order], all_levels[order], all_kinds[order])
 
     def voxels(self, *, outside: bool = False, **limits: Unpack[Limits]) -> VoxelRecords:
-        """The voxels as records, as `Octree.voxels` of the joined octree. One shard is in memory at a time; the list is in memory as a
-        whole."""
+        """Returns the voxels as records, as `Octree.voxels` of the joined octree. One shard is in memory at a time,
+        beside the whole list."""
         codes = [code for code in self._entries if self.shard(code) is not None]
         parts = [self.voxels_part(outside=outside, **limits)]
         parts += [self.voxels_part(code, outside=outside, **limits) for code in codes]
         return self.voxels_joined(parts)
 
     def note_missing(self, missing: dict[int, str]) -> None:
-        """Takes over what another process found missing."""
+        """Adds the shards that another process found missing."""
         for code, reason in missing.items():
             if code not in self._missing:
                 self._missing[code] = reason
@@ -667,7 +674,8 @@ class ShardedOctree:
                 )
 
     def pack(self, url: str | os.PathLike[str]) -> ShardedOctree:
-        """A copy whose shards lie in one file, one after the other: for object storage, where they are read by ranges."""
+        """Writes a copy whose shards lie in one file, one after the other. On object storage each shard is then read as
+        a range."""
         folder = Folder(url)
         data, entries = bytearray(), []
         for code, entry in self._entries.items():
@@ -692,7 +700,7 @@ class ShardedOctree:
 
 
 def _behind(level: int, code: int) -> list[int]:
-    """The up to seven neighbours of a cell towards +x, +y and +z."""
+    """Returns the up to seven neighbours of a cell towards +x, +y and +z."""
     at = [sum((code >> (3 * bit + axis) & 1) << bit for bit in range(level)) for axis in range(3)]
     found = []
     for step in range(1, 8):
@@ -703,7 +711,7 @@ def _behind(level: int, code: int) -> list[int]:
 
 
 def welded(parts: Iterable[tuple[npt.NDArray[np.float64], npt.NDArray[np.uint32]]]) -> Mesh:
-    """One mesh of the parts of a surface. Vertices at one place are the same to the bit."""
+    """Returns one mesh from the parts of a surface. Vertices of two parts at one place agree to the bit."""
     vertices, faces, count = [np.zeros((0, 3))], [np.zeros((0, 3), dtype=np.uint32)], 0
     for own, triangles in parts:
         vertices.append(own)
@@ -717,15 +725,15 @@ def _again(url: str, manifest: dict[str, Any], verify: bool, keep: int) -> Shard
 
 
 def open(url: str | os.PathLike[str], *, verify: bool = True, keep: int = 64) -> ShardedOctree:
-    """The sharded octree in a folder, or at a URL of fsspec. Nothing is read but the manifest: a shard is read when it is asked for,
-    mapped if it lies on this machine, and else as one range. `keep` shards at most are kept.
+    """Opens the sharded octree in a folder, or at a URL of fsspec. Only the manifest is read. A shard is read when a
+    query needs it: it is mapped on this machine, and read as one range elsewhere. At most `keep` shards stay open.
 
-    With `verify` each shard is compared with its checksum, which reads all of it. Without it a mapped shard costs next to nothing, but
-    damage of the file may go unseen.
+    With `verify` each shard is compared with its checksum, which reads the whole shard. Without it a mapped shard costs
+    next to nothing, but damage of the file may go unnoticed.
 
     Raises:
-        FormatError: there is a manifest, but it is damaged.
-        FileNotFoundError: there is no manifest; a build that was broken off leaves none.
+        FormatError: the manifest is damaged.
+        FileNotFoundError: there is no manifest. An interrupted build leaves none.
     """
     folder = Folder(url)
     data = folder.read(MANIFEST)
@@ -738,7 +746,7 @@ def open(url: str | os.PathLike[str], *, verify: bool = True, keep: int = 64) ->
 
 @dataclasses.dataclass(frozen=True)
 class Recipe:
-    """How shards of a solid are built."""
+    """The parameters for building shards of a solid."""
 
     frame: Frame
     level: int
@@ -763,7 +771,7 @@ def recipe(
     rule: _Rule,
     surfaces: bool | float | None,
 ) -> Recipe:
-    """How shards of a solid are built, on the frame that `leafless.build` takes."""
+    """Returns the parameters for building shards of a solid, on the frame that `leafless.build` uses."""
     whole = (
         frame
         if isinstance(frame, Frame) and depth is None
@@ -785,10 +793,11 @@ def build(
     surfaces: bool | float | None = None,
     **limits: Unpack[Limits],
 ) -> ShardedOctree:
-    """Builds the octree of a solid in shards, one after the other, into a folder or to a URL: only one is in memory at a time. The other
-    arguments are those of `leafless.build`.
+    """Builds the octree of a solid in shards, into a folder or to a URL. Shards are built one after the other, so only
+    one is in memory at a time. The other arguments are those of `leafless.build`.
 
-    `level` is that of the shards' cells: there are at most 8^level shards, and about 4^level for a solid with a smooth surface."""
+    `level` is the level of the shards' cells. There are at most 8^level shards, and about 4^level for a solid with a
+    smooth surface."""
     how, folder = recipe(solid, frame, depth, level, rule, surfaces), Folder(url)
     top = how.top(solid, **limits)
     made = (
@@ -808,15 +817,15 @@ def split(octree: Octree, url: str | os.PathLike[str], *, level: int = 3, **limi
 
 
 def combine(operation: _Operation, a: ShardedOctree, b: ShardedOctree, url: str | os.PathLike[str]) -> ShardedOctree:
-    """A set operation on two sharded octrees on one frame, shard by shard: "union", "intersection", "difference" or "xor". Where a shard is
-    missing, the result is PARTIAL unless the other operand decides it."""
+    """Combines two sharded octrees on one frame, shard by shard: "union", "intersection", "difference" or "xor". In the
+    cell of a missing shard the result is PARTIAL, unless the other operand decides it."""
     folder, top = Folder(url), combined_top(operation, a, b)
     made = (combined(folder, operation, a, b, code) for code in top.open_cells(a.level).tolist())
     return finish(folder, a.level, top, made, None)
 
 
 def combined_top(operation: _Operation, a: ShardedOctree, b: ShardedOctree) -> Octree:
-    """The top of a result; the cells that it leaves open need shards."""
+    """Returns the top of a result. The cells that it leaves open need shards."""
     if operation not in OPERATIONS:
         raise ValueError(f"operation: must be one of {', '.join(OPERATIONS)}, not {operation!r}")
     if a.frame != b.frame or a.level != b.level:
@@ -826,19 +835,19 @@ def combined_top(operation: _Operation, a: ShardedOctree, b: ShardedOctree) -> O
 
 
 def combined(folder: Folder, operation: _Operation, a: ShardedOctree, b: ShardedOctree, code: int) -> Entry | bytes:
-    """One shard of a result."""
+    """Computes and stores one shard of a result."""
     found: Octree = OPERATIONS[operation](a.part(code), b.part(code))
     return store_shard(folder, a.level, code, found.shard(Shard.below(a.level, code)))
 
 
 def complement(a: ShardedOctree, url: str | os.PathLike[str]) -> ShardedOctree:
-    """Everything but a sharded octree, shard by shard."""
+    """Returns the complement of a sharded octree, shard by shard."""
     folder = Folder(url)
     made = (complemented(folder, a, code) for code in a._open_cells().tolist())
     return finish(folder, a.level, ~a.top, made, None)
 
 
 def complemented(folder: Folder, a: ShardedOctree, code: int) -> Entry | bytes:
-    """One shard of a complement."""
+    """Computes and stores one shard of a complement."""
     found: Any = ~a.part(code)
     return store_shard(folder, a.level, code, found)
