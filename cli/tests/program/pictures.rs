@@ -6,7 +6,6 @@
 #[allow(dead_code)]
 mod gear_pictures;
 
-use crate::place::Place;
 use leafless::octree::CellFilter;
 use leafless::op::Zone;
 use leafless::render::{Camera, Finish, Layer, LinesLayer, Picture, Shot, SolidLayer, render};
@@ -52,73 +51,6 @@ pub fn check(name: &str, bytes: &[u8]) {
 
 fn check_picture(name: &str, picture: &Picture) {
     check(name, &exchange::write_png(picture).unwrap());
-}
-
-/// A plate with twenty bores by its cells, and by the cells of which some keep surfaces; and what the
-/// documentation says of both.
-#[test]
-fn a_plate_with_twenty_bores() {
-    let place = Place::new();
-    let extended = |name: &str, text: &str| {
-        place.write(&format!("{name}.csg"), text);
-        let bounds = "--bounds -2.5,-12.5,-37.5,85";
-        place.run(&format!("csg {name}.csg -o {name}.lfl --surfaces {bounds}")).good();
-    };
-    extended("plate", "cube([80, 60, 10]);");
-    let mut bores = String::new();
-    for k in 0..20 {
-        let to = format!(
-            "[1, 0, 0, {}], [0, 1, 0, {}], [0, 0, 1, -1]",
-            8 + 16 * (k % 5),
-            7.5 + 15.0 * f64::from(k / 5)
-        );
-        let bore = format!("multmatrix([{to}, [0, 0, 0, 1]]) cylinder(h = 12, r = 2.5, $fn = 0);");
-        extended(&format!("bore{k}"), &bore);
-        bores += &format!("bore{k}.lfl ");
-    }
-    let told = place.run(&format!("difference plate.lfl {bores} -o part.lfl")).good();
-    let page = std::fs::read_to_string(folder().join("../extended.md")).unwrap();
-    for words in ["44072.93 ± 0.43", "49 nodes", "4,072 bytes"] {
-        assert!(told.text().contains(words), "{words}: {told:?}");
-    }
-    let told = place.run("convert part.lfl -o plain.lfl --to octree --resolution 1024").good();
-    for words in ["44240 ± 650", "757,937", "456,648"] {
-        assert!(told.text().contains(words) && page.contains(words), "{words}: {told:?}");
-    }
-    assert!(page.contains("44072.93 ± 0.43") && page.contains("| 49 |") && page.contains("| 4,072 |"));
-    place.run(&format!("difference plate.lfl {bores} -o extended.lfl --plain")).good();
-    place.run("render part.lfl -o plate.png --size 420x320 --from 35,35").good();
-    check("plate.png", &place.bytes("plate.png"));
-    for name in ["plain", "extended"] {
-        let view = "--view slice --plane 0,0,1,-5 --no-legend --size 420x320";
-        place.run(&format!("render {name}.lfl -o {name}.png {view}")).good();
-        check(&format!("plate-{name}.png"), &place.bytes(&format!("{name}.png")));
-    }
-}
-
-/// The layout of the documentation: scenes and commands are those of the page, and what the page says is what
-/// is told.
-#[test]
-fn parts_in_a_box() {
-    let place = Place::new();
-    let page = std::fs::read_to_string(folder().join("../layout.md")).unwrap();
-    let blocks: Vec<&str> = page.split("```").collect();
-    let scenes = blocks.iter().find_map(|block| block.strip_prefix("openscad\n// ")).unwrap();
-    for scene in scenes.split("// ") {
-        let (name, text) = scene.split_once('\n').unwrap();
-        place.write(name, text);
-        place.run(&format!("mesh {name} -o {}.stl", name.strip_suffix(".csg").unwrap())).good();
-    }
-    let told = blocks.iter().find_map(|block| block.strip_prefix("console\n")).unwrap();
-    let (_, command) = told.split_once("$ leafless ").unwrap();
-    let (command, lines) = command.split_once("tray.png\n").unwrap();
-    let run = place.run(&format!("{}tray.png", command.replace("\\\n", ""))).good();
-    assert!(run.text().contains("placed          27 of 27\n"), "{run:?}");
-    for line in lines.lines() {
-        assert!(run.text().lines().any(|told| told == line), "{line}: {run:?}");
-    }
-    check("layout.png", &place.bytes("tray.png"));
-    place.run("layout --check tray.json").good();
 }
 
 #[test]
