@@ -1,4 +1,4 @@
-//! Octrees of tri-dexel models: what ends decide, and what materials become.
+//! Octrees of tri-dexel models: how ends decide cells, and how materials are carried over.
 
 use crate::common::Random;
 use leafless::attribute::dexel_materials;
@@ -17,7 +17,7 @@ fn frame(depth: u8) -> Frame {
     Frame::new([0.0; 3], 16.0, depth).unwrap()
 }
 
-/// What the rays through a finest cell say, interval by interval: the tag of the cell.
+/// Derives the tag of a finest cell from the rays through the cell, interval by interval.
 fn told(model: &TriDexelRef<'_>, cell: [u32; 3]) -> Tag {
     let mut tags = Vec::new();
     for axis in 0..3 {
@@ -153,8 +153,8 @@ fn materials_become_a_channel() {
     ));
 }
 
-/// The library's way to an octree with surfaces: the surface that ends and normals make is a mesh, and that
-/// is a solid.
+/// The library's way to an octree with surfaces: ends and normals make a surface, the surface is a mesh, and
+/// the mesh makes a solid.
 #[test]
 fn a_model_with_normals_becomes_an_octree_with_surfaces() {
     let (centre, radius) = ([8.1, 7.9, 8.2], 5.3);

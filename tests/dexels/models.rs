@@ -32,7 +32,7 @@ fn inside(tree: &Octree, cell: [u32; 3]) -> bool {
     tree.contains(point) == leafless::Membership::Inside
 }
 
-/// Each direction, in both forms of ends, holds just the centres that are sampled inside.
+/// Checks that each direction, in both forms of ends, contains exactly the centres that are sampled inside.
 fn check_samples<S: Solid>(solid: &S, frame: &Frame, name: &str) {
     let control = Control::default();
     let tree = build(solid, frame, Rule::Sampled, &control).unwrap();
@@ -69,7 +69,7 @@ fn box_mesh(min: [f64; 3], max: [f64; 3]) -> TriangleMesh {
     TriangleMesh::new((0..8).map(corner).collect(), triangles).unwrap()
 }
 
-/// A rotation whose numbers are no short doubles.
+/// A rotation whose matrix entries are not short doubles.
 fn turn() -> Affine {
     let (c, s) = (0.3f64.cos(), 0.3f64.sin());
     let (d, t) = (1.1f64.cos(), 1.1f64.sin());
@@ -94,7 +94,7 @@ fn octahedron(radius: f64) -> TriangleMesh {
     TriangleMesh::new(vertices, triangles).unwrap()
 }
 
-/// A ball of which only values and ranges are known.
+/// A ball that provides only values and ranges.
 fn host_ball(c: [f64; 3], radius: f64) -> HalfSpace {
     let square = |x: f64, low: f64, high: f64| {
         let far = (x - low).abs().max((high - x).abs());
@@ -213,7 +213,7 @@ fn meshes_are_sampled_as_octrees_are() {
     }
 }
 
-/// Faces of convex polygons, as a boundary representation has them.
+/// Faces of convex polygons, as in a boundary representation, are sampled like half-spaces.
 #[test]
 fn polygonal_faces_are_sampled_as_half_spaces_are() {
     // A hexagon with two edges that lie on rays along y.
@@ -395,7 +395,7 @@ fn triangles_tell_their_numbers_and_normals() {
     }
 }
 
-/// A part of many intervals: balls and boxes at random places, of several materials.
+/// A part with many intervals: balls and boxes of several materials at random places.
 fn random_part(seed: u64, frame: &Frame, options: &DexelOptions) -> TriDexel {
     let mut random = common::Random(seed);
     let control = Control::default();
@@ -425,7 +425,7 @@ fn random_part(seed: u64, frame: &Frame, options: &DexelOptions) -> TriDexel {
     TriDexel::union_of(&views, &control).unwrap()
 }
 
-/// What a ray is made of at a place.
+/// Returns the material of a ray at a place, or `None` outside.
 fn matter(model: &TriDexel, axis: usize, ray: [u32; 2], at: f64) -> Option<u32> {
     let mut dexels = model.view().rays(axis).unwrap().dexels(ray);
     dexels.find(|dexel| dexel.start.at <= at && at < dexel.end.at).map(|dexel| dexel.material)
@@ -572,7 +572,7 @@ fn a_subtraction_shows_the_other_side() {
     );
 }
 
-/// The finest cells that the intervals of models run through.
+/// Returns the box of finest cells that the intervals of the models run through.
 fn box_of_differences(parts: &[TriDexel; 2]) -> Option<[[u32; 3]; 2]> {
     let mut found: Option<[[u32; 3]; 2]> = None;
     for model in parts {

@@ -12,8 +12,8 @@ fn only(axis: usize, ends: DexelEnds) -> DexelOptions {
     DexelOptions { directions: [0, 1, 2].map(|a| a == axis), format, ..DexelOptions::default() }
 }
 
-/// A bent tube or ball around (16.1, 15.8, 16.3), `at(s, t)` for s and t from 0 to 1, without the triangles
-/// that `is_hole` takes.
+/// A bent tube or ball around (16.1, 15.8, 16.3), `at(s, t)` for s and t from 0 to 1. Triangles that
+/// `is_hole` selects are missing.
 fn patch(
     [m, n]: [u32; 2],
     at: impl Fn(f64, f64) -> [f64; 3],
@@ -82,8 +82,8 @@ fn excess(fill: FillRule, winding: f64) -> f64 {
     if fill == FillRule::Positive { winding - 0.5 } else { winding.abs() - 0.5 }
 }
 
-/// Holds every end and the middle of every interval against the winding number: an end that no triangle makes
-/// lies where it passes one half.
+/// Checks every end and the middle of every interval against the winding number. Where no triangle makes an
+/// end, the winding number passes one half there.
 fn check_ends(name: &str, mesh: &TriangleMesh, fill: FillRule, model: &TriDexel, axis: usize) -> [usize; 2] {
     let frame = model.frame();
     let scale = frame.edge();

@@ -1,5 +1,5 @@
-//! Tri-dexel models of real meshes: samples, surfaces there and back, edges; and what one, two and three
-//! directions lose.
+//! Tri-dexel models of real meshes: samples, surfaces there and back, edges, and the losses of one, two and
+//! three directions.
 
 use crate::common;
 use crate::common::model;
@@ -73,7 +73,7 @@ fn all_directions_have_the_samples_of_closed_meshes() {
     }
 }
 
-/// Distances to a mesh, by all triangles in boxes around a point.
+/// Distances to a mesh. Only triangles in grid boxes near the point are examined.
 struct Nearest {
     triangles: Vec<[DVec3; 3]>,
     size: f64,
@@ -105,7 +105,7 @@ impl Nearest {
         (point / self.size).floor().to_array().map(|c| c as i64)
     }
 
-    /// The distance, if it is at most the size of a box; else infinity.
+    /// Returns the distance if it is at most the size of a box, else infinity.
     fn distance(&self, point: DVec3) -> f64 {
         let at = self.place(point);
         let mut least = f64::INFINITY;
@@ -119,7 +119,7 @@ impl Nearest {
     }
 }
 
-/// The distance of a point from a triangle (Ericson 2005).
+/// Returns the distance of a point from a triangle (Ericson 2005).
 fn to_triangle(p: DVec3, [a, b, c]: [DVec3; 3]) -> f64 {
     let to_segment = |a: DVec3, b: DVec3| {
         let t = (p - a).dot(b - a) / (b - a).length_squared();
@@ -133,7 +133,7 @@ fn to_triangle(p: DVec3, [a, b, c]: [DVec3; 3]) -> f64 {
     to_segment(a, b).min(to_segment(b, c)).min(to_segment(c, a))
 }
 
-/// Points of a mesh, no more than `most`: vertices and inner points of triangles.
+/// Returns at most `most` points of a mesh: vertices and inner points of triangles.
 fn points(mesh: &TriangleMesh, most: usize) -> Vec<(DVec3, DVec3)> {
     let mut random = common::Random(17);
     (0..most)
@@ -297,7 +297,7 @@ fn set_operations_agree_with_those_of_octrees() {
     }
 }
 
-/// The volume of a ball of radius 1 between planes.
+/// Returns the volume of the unit ball between two planes.
 fn ball_between([low, high]: [f64; 2]) -> f64 {
     let below = |x: f64| {
         let x = x.clamp(-1.0, 1.0);
@@ -306,8 +306,8 @@ fn ball_between([low, high]: [f64; 2]) -> f64 {
     below(high) - below(low)
 }
 
-/// The part of the unit ball that lies beyond what the rays of some directions cross. (The caps do not
-/// overlap.)
+/// Returns the share of the unit ball outside the extent that the rays of some directions cross. (The caps do
+/// not overlap.)
 fn lost(model: &TriDexel) -> f64 {
     let ball = 4.0 / 3.0 * std::f64::consts::PI;
     let mut lost = 0.0;

@@ -1,4 +1,4 @@
-//! What is made of tri-dexel models: octrees, surfaces, solids and voxels, against dense arrays and formulas.
+//! Octrees, surfaces, solids and voxels made from tri-dexel models, against dense arrays and formulas.
 
 use leafless::dexel::{Dexel, DexelEnd, DexelEnds, DexelFormat, DexelNormals};
 use leafless::error::MeshError;
@@ -13,7 +13,7 @@ use leafless::{
 use std::collections::{BTreeMap, BTreeSet};
 use std::f64::consts::PI;
 
-/// What is stored in most tests.
+/// The format of most tests.
 const FORMAT: DexelFormat =
     DexelFormat { ends: DexelEnds::Double, normals: DexelNormals::Bits32, surfaces: false, materials: false };
 
@@ -39,7 +39,7 @@ fn plain_end(at: f64) -> DexelEnd {
     DexelEnd::new(at)
 }
 
-/// Intervals of random length, and every ray as it likes: the directions agree about nothing.
+/// A model with intervals of random length on every ray, so that the directions contradict each other.
 fn soup(frame: &Frame, format: DexelFormat, directions: [bool; 3], seed: u64) -> TriDexel {
     let mut random = Random(seed);
     let (low, cell) = (frame.origin(), frame.cell_size());
@@ -68,7 +68,7 @@ fn soup(frame: &Frame, format: DexelFormat, directions: [bool; 3], seed: u64) ->
     TriDexel::from_rays(frame, format, directions, rays, &Control::default()).unwrap()
 }
 
-/// Whether the rays along an axis hold the centre of a cell.
+/// True if the rays along an axis contain the centre of a cell.
 fn holds(model: &TriDexel, axis: usize, cell: [u32; 3]) -> bool {
     let frame = model.frame();
     let centre = frame.origin()[axis] + (f64::from(cell[axis]) + 0.5) * frame.cell_size();
@@ -120,7 +120,7 @@ fn octrees_hold_the_centres() -> Result<(), Error> {
     Ok(())
 }
 
-/// A model of all points with f < 0, by steps of an eighth of a cell and bisection.
+/// A model of all points with f < 0, found by steps of an eighth of a cell and bisection.
 fn implicit(frame: &Frame, directions: [bool; 3], f: &dyn Fn([f64; 3]) -> f64) -> TriDexel {
     let cell = frame.cell_size();
     let centre = |axis: usize, k: u32| frame.origin()[axis] + (f64::from(k) + 0.5) * cell;
@@ -169,7 +169,7 @@ fn implicit(frame: &Frame, directions: [bool; 3], f: &dyn Fn([f64; 3]) -> f64) -
     TriDexel::from_rays(frame, FORMAT, directions, rays, &Control::default()).unwrap()
 }
 
-/// A model of half-open boxes from one corner to the other, which do not overlap.
+/// A model of half-open boxes that do not overlap, each given by two corners.
 fn boxes(frame: &Frame, format: DexelFormat, directions: [bool; 3], boxes: &[[[f64; 3]; 2]]) -> TriDexel {
     let rays = |axis: usize, ray: [u32; 2], list: &mut Vec<Dexel>| {
         for (material, [low, high]) in (1u32..).zip(boxes) {
@@ -202,8 +202,8 @@ fn dual(model: &TriDexel, control: &Control<'_>) -> Result<(TriangleMesh, DexelS
     dual_contouring_dexels(model.view(), control)
 }
 
-/// The surface by any method, which is balanced, the same for any number of threads, and says how many edges
-/// are cut.
+/// Extracts the surface by a method. Checks that the surface is balanced, is the same for any number of
+/// threads, and reports the number of cut edges.
 fn surface(method: Method, model: &TriDexel) -> (TriangleMesh, DexelSurfaceReport) {
     let (mesh, report) = method(model, &Control::threads(1)).unwrap();
     let (again, report_again) = method(model, &Control::threads(2)).unwrap();
@@ -222,7 +222,7 @@ fn surface(method: Method, model: &TriDexel) -> (TriangleMesh, DexelSurfaceRepor
     (mesh, report)
 }
 
-/// On how many edges not exactly two triangles meet, in opposite directions.
+/// Counts the edges where not exactly two triangles meet in opposite directions.
 fn uneven_edges(mesh: &TriangleMesh) -> usize {
     let mut edges: BTreeMap<[u32; 2], u32> = BTreeMap::new();
     for &[a, b, c] in mesh.triangles() {
@@ -233,7 +233,7 @@ fn uneven_edges(mesh: &TriangleMesh) -> usize {
     edges.iter().filter(|&(&[a, b], &count)| count != 1 || edges.get(&[b, a]) != Some(&1)).count()
 }
 
-/// Each vertex lies at an end of an interval, on a line between centres.
+/// Checks that each vertex lies at an end of an interval, on a line between centres.
 fn check_on_crossings(model: &TriDexel, mesh: &TriangleMesh) {
     let frame = model.frame();
     let cell = frame.cell_size();
@@ -262,7 +262,7 @@ fn check_on_crossings(model: &TriDexel, mesh: &TriangleMesh) {
     }
 }
 
-/// Each vertex lies in a cube between eight centres, of which some lie inside and some do not.
+/// Checks that each vertex lies in a cube between eight centres, some inside and some outside.
 fn check_in_cubes(model: &TriDexel, mesh: &TriangleMesh) {
     let frame = model.frame();
     let inside = |at: [i64; 3]| {
@@ -286,7 +286,7 @@ fn length(v: [f64; 3]) -> f64 {
     v.iter().map(|c| c * c).sum::<f64>().sqrt()
 }
 
-/// Negative inside.
+/// A shape function, negative inside.
 type Shape = fn([f64; 3]) -> f64;
 
 fn ball([x, y, z]: [f64; 3]) -> f64 {
@@ -297,7 +297,7 @@ fn torus([x, y, z]: [f64; 3]) -> f64 {
     length([length([x, y, 0.0]) - 0.55, z - 0.013, 0.0]) - 0.27
 }
 
-/// A sloping wall of a thickness of somewhat more than a cell.
+/// A sloping wall, slightly thicker than a cell.
 fn wall([x, y, z]: [f64; 3]) -> f64 {
     let across = (0.6 * x + 0.64 * y + 0.48 * z - 0.05).abs() - 0.055;
     let ends = [x, y, z].iter().fold(0.0, |most: f64, c| most.max(c.abs())) - 0.7;
@@ -351,7 +351,7 @@ fn thin_walls_are_closed() {
     check_in_cubes(&model, &surface(dual, &model).0);
 }
 
-/// Faces anywhere, at centres, in planes of cells, and at the universe's own faces.
+/// Faces at arbitrary places, at centres, in planes of cells, and at the universe's own faces.
 #[test]
 fn dual_contouring_keeps_edges_and_corners() {
     let frame = Frame::new([-1.0, 2.0, 0.0], 2.0, 4).unwrap();
@@ -396,7 +396,7 @@ fn dual_contouring_keeps_edges_and_corners() {
     }
 }
 
-/// Edges that do not run along axes, as exactly as normals are stored.
+/// Edges that do not run along axes are as exact as the stored normals.
 #[test]
 fn dual_contouring_keeps_turned_edges() {
     let frame = Frame::new([-1.0; 3], 2.0, 5).unwrap();
@@ -484,7 +484,7 @@ fn whatever_rays_say_surfaces_are_closed() {
     }
 }
 
-/// Random samples, so that all configurations and all neighbours of them occur.
+/// Random samples exercise all configurations and all pairs of neighbouring configurations.
 #[test]
 fn two_triangles_meet_on_every_edge() {
     let frame = Frame::new([0.0; 3], 16.0, 4).unwrap();
@@ -558,7 +558,7 @@ fn where_materials_touch_there_is_no_surface() {
     }
 }
 
-/// Models of solids have their samples, and their surfaces come near them.
+/// Models of solids contain the solids' samples, and their surfaces lie near the solids.
 #[test]
 fn surfaces_of_dexelised_solids() -> Result<(), Error> {
     let (frame, control) = (Frame::new([-1.0; 3], 2.0, 6)?, Control::default());
@@ -629,7 +629,7 @@ fn models_are_solids() -> Result<(), Error> {
     Ok(())
 }
 
-/// Of some of the materials.
+/// Colours of some of the materials.
 const COLOURS: [[u8; 4]; 2] = [[10, 20, 30, 40], [250, 0, 0, 255]];
 
 #[test]
@@ -704,7 +704,7 @@ fn voxels_lie_between_centres() -> Result<(), Error> {
     Ok(())
 }
 
-/// Time for the largest usual lattice: `--ignored --nocapture`.
+/// Measures the time for the largest usual lattice: `--ignored --nocapture`.
 #[test]
 #[ignore = "takes long"]
 fn time_of_1024() -> Result<(), Error> {
@@ -738,8 +738,8 @@ fn time_of_1024() -> Result<(), Error> {
     Ok(())
 }
 
-/// A model of inside centres, which the rays of all directions hold; how far intervals go beyond their
-/// outermost centres each ray knows.
+/// A model of inside centres that the rays of all directions contain. `beyond` returns how far a ray's
+/// intervals reach beyond their outermost centres.
 fn around(
     frame: &Frame,
     inside: &BTreeSet<[u32; 3]>,
@@ -878,7 +878,8 @@ fn intervals_that_hold_no_centre_are_counted() {
     assert_eq!(model.view().without_centres(), 1);
 }
 
-/// What a model of a few intervals becomes at a depth where nothing can be looked at cell by cell.
+/// At a depth where no cell-by-cell work is possible, the work on a few intervals depends only on their
+/// number.
 #[test]
 fn at_the_greatest_depth_work_is_that_of_what_is_stored() {
     let start = std::time::Instant::now();

@@ -1,5 +1,5 @@
-//! Attacks that are fuzz targets, too: any bytes as scenes of unit cells and as attributes, against dense
-//! arrays.
+//! Attacks that are fuzz targets, too: arbitrary bytes as scenes of unit cells and as attributes, against
+//! dense arrays.
 
 use crate::common::repeated;
 use crate::{attributes, contacts, direct, layouts, measures, records, surfaces};
@@ -12,7 +12,7 @@ use leafless::voxel::VoxelRecords;
 use leafless::{Affine, Bounds, Cell, Control, Csg, Error, Frame, Interval, clearance};
 use std::path::Path;
 
-/// Numbers that only look random (splitmix64): the same for a seed everywhere.
+/// Pseudo-random numbers (splitmix64). A seed gives the same numbers everywhere.
 struct Random(u64);
 
 impl Random {
@@ -25,7 +25,7 @@ impl Random {
     }
 }
 
-/// What a fuzz target does, on inputs that are the same every time.
+/// Runs a fuzz target's body on inputs that are the same every time.
 fn any_bytes(body: fn(&[u8]), seeds: std::ops::Range<u64>, most: u64) {
     for seed in seeds {
         let mut random = Random(seed);
@@ -37,7 +37,7 @@ fn any_bytes(body: fn(&[u8]), seeds: std::ops::Range<u64>, most: u64) {
     }
 }
 
-/// What the fuzzer found interesting.
+/// Runs a fuzz target's body on its corpus.
 fn corpus(target: &str, body: fn(&[u8])) {
     let corpus = Path::new(env!("CARGO_MANIFEST_DIR")).join("fuzz/corpus").join(target);
     let mut count = 0;
@@ -53,7 +53,7 @@ fn corpus(target: &str, body: fn(&[u8])) {
 
 // ---- what was found ------------------------------------------------------------------------------------
 
-/// The points of a box, and their coordinates: what an affine map makes of a box is the range of its image.
+/// The points of a box by their coordinates. The image of a box under an affine map has an exact range.
 struct Places;
 
 impl Attribute for Places {
@@ -97,7 +97,7 @@ fn a_clearance_of_what_goes_on_outside_does_not_claim_its_tolerance() {
     assert_eq!(ask(2.0).stop_reason, StopReason::Tolerance);
 }
 
-/// One where x is at least 0, and no value elsewhere; nothing is known of ranges.
+/// An attribute with the value 1 where x is at least 0, and no value elsewhere. It provides no ranges.
 struct HalfSpace;
 
 impl Attribute for HalfSpace {

@@ -5,7 +5,7 @@ use leafless::TriangleMesh;
 use leafless::exchange::{MeshFormat, MeshOptions, WriteOptions, read_mesh, write_mesh};
 use leafless::mesh::{AttributeDomain, MeshAttribute};
 
-/// A strip of so many triangles.
+/// A strip of `count` triangles.
 fn strip(count: usize) -> TriangleMesh {
     let vertices = (0..count + 2).map(|i| [i as f64, (i % 2) as f64, 0.25 * i as f64]).collect();
     TriangleMesh::new(vertices, (0..count as u32).map(|i| [i, i + 1, i + 2]).collect()).unwrap()
@@ -24,7 +24,7 @@ fn values(mesh: &TriangleMesh, name: &str) -> Vec<[Option<[f64; 4]>; 3]> {
     (0..attribute.len()).map(|t| [0, 1, 2].map(|corner| attribute.value(t, corner))).collect()
 }
 
-/// The name of each triangle's material.
+/// Returns the name of each triangle's material.
 fn materials(mesh: &TriangleMesh) -> Vec<Option<String>> {
     let attribute = mesh.attribute("material").unwrap();
     let name = |t| attribute.value(t, 0).map(|value: [f64; 4]| attribute.names()[value[0] as usize].clone());
@@ -160,7 +160,7 @@ fn numbers_are_properties_of_faces() {
     }
 }
 
-/// Comments that announce nonsense announce nothing.
+/// Comments that announce malformed attributes announce nothing.
 #[test]
 fn what_is_announced_badly_is_no_attribute() {
     let head = |comments: &str, properties: &str| {

@@ -1,5 +1,5 @@
-//! Colours and materials of PLY and 3MF files, as attributes of their meshes; and files that say them badly,
-//! whose meshes are read all the same.
+//! Colours and materials of PLY and 3MF files as mesh attributes. The mesh is read even if the file states
+//! its colours badly.
 
 use crate::packages::zip;
 
@@ -14,12 +14,12 @@ fn read(bytes: &[u8]) -> MeshFile {
     read_mesh(bytes, &MeshOptions::default()).unwrap_or_else(|error| panic!("{error}"))
 }
 
-/// The values at the corners of each triangle.
+/// Returns the values at the corners of each triangle.
 fn values(attribute: &MeshAttribute) -> Vec<[Option<[f64; 4]>; 3]> {
     (0..attribute.len()).map(|t| [0, 1, 2].map(|corner| attribute.value(t, corner))).collect()
 }
 
-/// The first number of each triangle's value, which is that of all its corners.
+/// Returns the first number of each triangle's value. All corners of the triangle have the same value.
 fn numbers(mesh: &TriangleMesh, name: &str) -> Vec<Option<f64>> {
     let attribute = mesh.attribute(name).unwrap_or_else(|| panic!("no {name}"));
     assert_eq!(attribute.domain(), AttributeDomain::Triangle);
@@ -64,8 +64,8 @@ mod ply {
         bytes.extend(number);
     }
 
-    /// Elements of one kind: name, properties as type and name, rows. A face's list stands where a property
-    /// is called `list`, and has its first three numbers.
+    /// Elements of one kind: name, properties as (type, name), rows. A property called `list` is a face's
+    /// list; the list has the row's first three numbers.
     type Element<'a> = (&'a str, &'a [(&'a str, &'a str)], Vec<Vec<f64>>);
 
     fn file(format: &str, elements: &[Element]) -> Vec<u8> {
@@ -104,7 +104,7 @@ mod ply {
     const XYZ: [(&str, &str); 3] = [("float", "x"), ("float", "y"), ("float", "z")];
     const LIST: [(&str, &str); 1] = [("int", "list")];
 
-    /// A square of two triangles, its vertices with these colours behind their places.
+    /// A square of two triangles. Each vertex has its colour after its coordinates.
     fn square(format: &str, channels: &[(&str, &str)], colours: [Vec<f64>; 4]) -> Vec<u8> {
         let places = [[0., 0., 0.], [1., 0., 0.], [1., 1., 0.], [0., 1., 0.]];
         let rows = places.iter().zip(colours).map(|(place, colour)| [place.to_vec(), colour].concat());
@@ -264,7 +264,7 @@ mod ply {
     }
 
     proptest! {
-        /// What can be read without its colours can be read with them.
+        /// A file that is readable without its colours is readable with them.
         #[test]
         fn colours_change_no_mesh(
             header in "(property (uchar|int|float|double|ushort) (red|green|blue|alpha|diffuse_red)\n){0,5}",
@@ -310,7 +310,7 @@ mod threemf {
         )
     }
 
-    /// A tetrahedron of which the four triangles have these attributes.
+    /// A tetrahedron whose four triangles have these attributes.
     fn object(id: u32, attributes: &str, triangles: [&str; 4]) -> String {
         let [a, b, c, d] = triangles;
         format!(
@@ -433,7 +433,7 @@ mod threemf {
         assert_eq!(numbers(&file.mesh, "object")[3..5], [Some(0.0), Some(1.0)]);
     }
 
-    /// A reference to something that is not there costs the triangle its colour, and is told of.
+    /// A triangle that refers to a missing object has no colour, and the reader reports it.
     #[test]
     fn what_is_missing() {
         for (object_has, wrong) in [
@@ -516,7 +516,7 @@ mod threemf {
     }
 
     proptest! {
-        /// Any references: the mesh is the same, and what has a colour has one of the group.
+        /// Arbitrary references leave the mesh the same, and every colour is one of the group.
         #[test]
         fn references_change_no_mesh(
             own in "(pid=\"[5-7x]\" )?(pindex=\"[0-4]\" )?",

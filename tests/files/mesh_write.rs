@@ -1,4 +1,4 @@
-//! Written mesh files come back as they were, through the readers of this library and through foreign ones.
+//! Written mesh files are unchanged when read back, by this library's readers and by foreign readers.
 
 use crate::common::{Random, cases};
 use leafless::exchange::{
@@ -8,7 +8,7 @@ use leafless::{Error, TriangleMesh};
 use ply_rs_bw::{parser::Parser, ply::DefaultElement, ply::Property};
 use proptest::prelude::*;
 
-/// Coordinates with few and with all digits, tiny, huge, and zeros of both signs.
+/// Coordinates with few or all digits, tiny and huge ones, and zeros of both signs.
 fn coordinate(random: &mut Random) -> f64 {
     let sign = if random.below(2) == 0 { -1.0 } else { 1.0 };
     sign * match random.below(6) {
@@ -21,7 +21,7 @@ fn coordinate(random: &mut Random) -> f64 {
     }
 }
 
-/// Triangles of three different vertices, all of which some triangle has.
+/// A mesh whose triangles have three different vertices each. Some triangle uses each vertex.
 fn mesh(seed: u64) -> TriangleMesh {
     let mut random = Random(seed);
     let vertices: Vec<[f64; 3]> =
@@ -34,8 +34,8 @@ fn mesh(seed: u64) -> TriangleMesh {
     TriangleMesh::new(vertices, triangles.filter(|[a, b, c]| a != b && b != c && c != a).collect()).unwrap()
 }
 
-/// A box with a small one beside it and a vertex that no triangle uses, so far away that single precision
-/// keeps all, some or nothing of it.
+/// A box, a smaller box beside it, and a vertex that no triangle uses. Single precision keeps all, some or
+/// nothing of the mesh at this distance from the origin.
 fn far_away(seed: u64, far: i32) -> TriangleMesh {
     let mut random = Random(seed);
     let at = [0; 3].map(|_| random.between(1.0, 2.0) * 2f64.powi(far));
@@ -87,7 +87,8 @@ proptest! {
         }
     }
 
-    /// What is told before is what is read back, for meshes of which single precision keeps much or little.
+    /// The writer's forecast is the mesh that is read back, whether single precision keeps much or little of
+    /// it.
     #[test]
     fn what_comes_back_is_told_before(seed: u64, far in 0..30i32, seen: bool) {
         let mesh = if seen { mesh(seed) } else { far_away(seed, far) };
@@ -117,7 +118,7 @@ proptest! {
         }
     }
 
-    /// Normals stand beside vertices, for this library's readers and for foreign ones.
+    /// Normals are written beside vertices, for this library's readers and for foreign readers.
     #[test]
     fn normals_are_written(seed: u64) {
         let mesh = mesh(seed);
@@ -209,7 +210,7 @@ proptest! {
     }
 }
 
-/// Objects with names, each in several places, come back as one mesh with the volume of all.
+/// Named objects, each at several places, come back as one mesh with the total volume.
 #[cfg(feature = "threemf")]
 #[test]
 fn placed_meshes_come_back() {
@@ -319,7 +320,8 @@ fn a_mesh_of_nothing_has_no_area() {
     }
 }
 
-/// What is known of a mesh's distance from the true boundary stands in the file, and is told, not believed.
+/// A mesh's known distance from the true boundary is written to the file. Readers report it and do not rely
+/// on it.
 #[test]
 fn deviations_are_written_and_told() {
     let mesh = mesh(7);

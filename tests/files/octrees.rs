@@ -1,5 +1,5 @@
-//! The file format from outside: what goes in comes out, what is damaged is refused, and a file on disk is
-//! the old one or the new one.
+//! The file format from outside: files round-trip, damaged files are refused, and a file on disk is always
+//! either the old one or the new one.
 
 #![cfg(feature = "std")]
 
@@ -133,11 +133,11 @@ fn number(bytes: &[u8], at: usize, length: usize) -> u64 {
     u64::from_le_bytes(raw)
 }
 
-/// Length of an entry of the section table.
+/// Length of an entry of the section table, in bytes.
 const ENTRY: usize = 48;
 
-/// Where the record of the solid is, and the fields of the header that it repeats: offset, offset in the
-/// record, length.
+/// Returns the offset of the solid's record and the header fields that the record repeats, as (offset, offset
+/// in the record, length).
 fn mirrored(bytes: &[u8]) -> (usize, [(usize, usize, usize); 8]) {
     let start = number(bytes, 128 + 16, 8) as usize;
     (
@@ -155,7 +155,7 @@ fn mirrored(bytes: &[u8]) -> (usize, [(usize, usize, usize); 8]) {
     )
 }
 
-/// Makes the record of the solid say what the header says.
+/// Copies the header's fields into the solid's record.
 fn mirror(bytes: &mut [u8]) {
     let (start, fields) = mirrored(bytes);
     for (from, to, length) in fields {
@@ -163,7 +163,7 @@ fn mirror(bytes: &mut [u8]) {
     }
 }
 
-/// Makes all checksums right again, as far as the fields that say where things are allow.
+/// Repairs all checksums, as far as the offset fields allow.
 fn seal(bytes: &mut [u8]) {
     let count = number(bytes, 96, 4) as usize;
     for i in 0..count.min(64) {
@@ -189,7 +189,7 @@ fn seal_head(bytes: &mut [u8]) {
     bytes[124..128].copy_from_slice(&crc);
 }
 
-/// `bytes` after a change, with the checksums of header and table (or all of them) made right.
+/// Returns `bytes` after a change, with repaired checksums of header and table, or of all sections.
 fn changed(bytes: &[u8], sections_too: bool, change: impl FnOnce(&mut Vec<u8>)) -> Vec<u8> {
     let mut bytes = bytes.to_vec();
     change(&mut bytes);
@@ -216,7 +216,7 @@ fn format_error<T>(result: Result<T, Error>) -> FormatError {
     }
 }
 
-/// Everything that reads and makes trees, on one that may be damaged: all of it must return.
+/// Runs everything that reads and makes trees on a tree that may be damaged. All calls must return.
 fn exercise(tree: &OctreeRef<'_>) {
     read_all(tree);
     let control = Control::threads(1);
@@ -234,7 +234,7 @@ fn exercise(tree: &OctreeRef<'_>) {
     }
 }
 
-/// Queries and checks, on a tree that may be damaged.
+/// Runs queries and checks on a tree that may be damaged.
 fn read_all(tree: &OctreeRef<'_>) {
     let frame = tree.frame();
     let (origin, edge) = (frame.origin(), frame.edge());
@@ -358,7 +358,7 @@ fn bricks_are_coded_as_the_rule_says() {
     assert_eq!(names(&Octree::uniform(frame(3), Tag::Full, Tag::Full).unwrap()), ["objects", "level table"]);
 }
 
-/// The numbers in a file are where its documentation says; a change of this test is a change of the format.
+/// The numbers in a file are at their documented places. A change of this test is a change of the format.
 #[test]
 fn a_file_byte_by_byte() {
     // The lower x half of the universe, at depth 1: one brick.
@@ -514,8 +514,8 @@ fn every_flipped_byte_is_found() {
     }
 }
 
-/// As an attacker would do it: with right checksums. Whatever is let in must be readable without a panic, and
-/// whatever is written of it must be a good file.
+/// Changes as an attacker makes them, with right checksums. An accepted file must be readable without a
+/// panic, and anything written from it must be a good file.
 #[test]
 fn changes_with_right_checksums_never_panic() {
     let directory = tempfile::tempdir().unwrap();
@@ -578,8 +578,8 @@ fn changes_with_right_checksums_never_panic() {
     assert!(let_in[0] > 1000 && let_in[1] > 100, "{let_in:?}");
 }
 
-/// A file of depth 20 in which all 64 elements of a level have the same 64 children: followed without a
-/// memory, its links would lead to 64^9 bricks.
+/// A file of depth 20 in which all 64 elements of a level have the same 64 children. Without a memory of
+/// visited elements, its links lead to 64^9 bricks.
 fn shared_children() -> Vec<u8> {
     let (elements, bricks) = (1 + 64 * 8, 64);
     let mut bytes = file::to_bytes(&Octree::uniform(frame(20), Tag::Empty, Tag::Empty).unwrap()).unwrap();
@@ -1038,7 +1038,7 @@ mod save {
         assert_eq!(names(directory.path()), ["tree.lfl"]);
     }
 
-    /// Whether the file system has files without names.
+    /// True if the file system supports files without names.
     #[cfg(target_os = "linux")]
     fn has_unnamed_files(directory: &Path) -> bool {
         use rustix::fs::{Mode, OFlags, open};
@@ -1094,7 +1094,7 @@ mod save {
         assert!(output.status.success() && text.contains("the child was here"), "{text}");
     }
 
-    /// What the other tests start; nothing by itself.
+    /// The process that other tests start. By itself it does nothing.
     #[test]
     fn child() {
         let Ok(task) = std::env::var(TASK) else { return };
@@ -1174,7 +1174,7 @@ mod save {
         assert_eq!(file::open(&path).unwrap(), small());
     }
 
-    /// A command for the test program as a user whom permissions bind.
+    /// Returns a command that runs the test program as a user whom permissions bind.
     fn unprivileged(directory: &Path, program: &Path) -> Command {
         use std::os::unix::process::CommandExt;
         let mut command = Command::new(program);
@@ -1186,7 +1186,7 @@ mod save {
         command
     }
 
-    /// A directory and a copy of the test program that every user can reach.
+    /// Returns a directory and a copy of the test program in it. Every user can reach both.
     fn open_directory() -> (tempfile::TempDir, PathBuf, PathBuf) {
         let outer = tempfile::tempdir().unwrap();
         set_mode(outer.path(), 0o755);
@@ -1240,7 +1240,7 @@ mod save {
     }
 }
 
-/// Each refusal of a path begins with the path as it was given, and tells no other name and no number.
+/// Each refusal of a path begins with the path as given, and contains no other name and no number.
 #[test]
 fn errors_name_the_file() {
     fn text<T>(result: Result<T, Error>) -> String {
@@ -1290,7 +1290,7 @@ fn errors_name_the_file() {
     }
 }
 
-/// Frames that differ are both told.
+/// An error about different frames names both frames.
 #[test]
 fn frames_that_differ_are_told() {
     let tree = |x: f64, depth| {

@@ -1,4 +1,4 @@
-//! Scenes: every call of the language, every error with its place, and texts that mean harm.
+//! Scenes: every call of the language, every error with its place, and hostile texts.
 
 #![cfg(feature = "scene")]
 
@@ -16,7 +16,7 @@ fn tree(text: &str, frame: &Frame) -> Octree {
     build(&solid, frame, Rule::Certified, &Control::default()).unwrap()
 }
 
-/// The solid in [-8, 8]³ at depth 6.
+/// Builds the scene's solid in [-8, 8]³ at depth 6.
 fn in_cube(text: &str) -> Octree {
     tree(text, &Frame::new([-8.0; 3], 16.0, 6).unwrap())
 }
@@ -25,8 +25,8 @@ fn volume(text: &str) -> Interval {
     in_cube(text).statistics().volume()
 }
 
-/// The volume's interval holds the truth and is no wider than a layer of so many cells around the solid's
-/// `area`.
+/// Checks that the volume's interval contains the truth. Its width is at most a layer of several cells around
+/// the solid's `area`.
 fn check(text: &str, truth: f64, area: f64) {
     let tree = in_cube(text);
     let volume = tree.statistics().volume();
@@ -39,7 +39,7 @@ fn check(text: &str, truth: f64, area: f64) {
     assert!(!tree.view().is_clipped(), "{text}");
 }
 
-/// The same set of points, as far as the finest cells tell.
+/// Checks that two texts describe the same set of points, as far as the finest cells show.
 fn same(a: &str, b: &str) {
     let (a_tree, b_tree) = (in_cube(a), in_cube(b));
     let (p, q) = (a_tree.statistics().volume(), b_tree.statistics().volume());
@@ -52,7 +52,7 @@ fn is_nothing(text: &str) {
     assert_eq!(volume.upper, 0.0, "{text}");
 }
 
-/// The error's line and column, and its words.
+/// Returns an error's line, column and words.
 fn refusal(text: &str) -> (u64, u64, String) {
     match read_scene(text, None) {
         Err(Error::Scene(error)) => (error.line(), error.column(), error.problem().to_owned()),
@@ -137,7 +137,7 @@ fn operations() {
     check(&format!("{turned} {turned} cube([4, 2, 4]);"), 32.0, 64.0);
 }
 
-/// What OpenSCAD's own language says instead of a matrix.
+/// The calls of OpenSCAD's own language that stand for matrices.
 #[test]
 fn moves() {
     let turned = |rows: &str, what: &str| format!("multmatrix([{rows}, [0, 0, 0, 1]]) {what}");
@@ -343,8 +343,8 @@ fn bounds() {
     }
 }
 
-/// Links within each other's matrices, as OpenSCAD dumps an arm: each is moved up by 5 along the one before,
-/// and turned.
+/// The links of an arm with nested matrices, as OpenSCAD dumps them: each link is moved up by 5 along the
+/// previous one and rotated.
 fn arm(links: usize) -> String {
     let link = "cylinder(h = 5, r1 = 1.66, r2 = 1.66, center = false); \
                 multmatrix([[1, 0, 0, -1], [0, 1, 0, -2], [0, 0, 1, 2], [0, 0, 0, 1]]) cube([2, 4, 1]);";
@@ -389,7 +389,7 @@ fn bounds_of_deep_and_shared_nestings_cost_little() {
     assert!(start.elapsed().as_secs_f64() < 5.0, "{:?}", start.elapsed());
 }
 
-/// Every limit says what it is of, and none is called a shortage of memory.
+/// Every limit's message names its subject, and no limit is reported as a shortage of memory.
 #[test]
 fn limits_say_what_they_are_of() {
     let turn = "multmatrix([[0.8,-0.6,0,0],[0.48,0.64,-0.6,0],[0.36,0.48,0.8,0],[0,0,0,1]]) ";
@@ -414,8 +414,8 @@ fn limits_say_what_they_are_of() {
     }
 }
 
-/// A tetrahedron with a facet turned over and one missing encloses points below its lowest corner, as the
-/// fill rule has it.
+/// A tetrahedron with one inverted facet and one missing facet encloses points below its lowest corner under
+/// the fill rule.
 #[test]
 fn bounds_hold_what_a_polyhedron_with_a_turned_facet_encloses() {
     let text = "polyhedron([[0, 0, 0], [4, 0, 0], [0, 4, 0], [0, 0, 4]], [[0, 1, 2], [0, 3, 1], [0, 2, 3]]);";
@@ -491,7 +491,7 @@ impl Shape {
         }
     }
 
-    /// Whether a point is inside, in rounded arithmetic.
+    /// True if a point is inside, in rounded arithmetic.
     fn holds(&self, p: [f64; 3]) -> bool {
         let [x, y, z] = p;
         match self {
@@ -538,7 +538,7 @@ impl Shape {
         }
     }
 
-    /// Numbers with one decimal, hardly any of them a double.
+    /// Numbers with one decimal. Hardly any of them is a double.
     fn number(random: &mut Random, low: f64, high: f64) -> f64 {
         let tenths = ((high - low) * 10.0) as usize + 1;
         ((low * 10.0).round() + random.below(tenths) as f64) / 10.0
@@ -549,7 +549,7 @@ impl Shape {
         Shape::Joined(name, (0..1 + random.below(3)).map(|_| part(random, depth - 1)).collect())
     }
 
-    /// A placement whose dump has six digits, as OpenSCAD writes it.
+    /// A placement with six digits, as in OpenSCAD's dumps.
     fn placed(random: &mut Random, is_flat: bool, of: Shape) -> Shape {
         let number = |random: &mut Random, low, high| Self::number(random, low, high);
         let (sin, cos) = number(random, -3.1, 3.1).sin_cos();
@@ -959,7 +959,7 @@ fn write_seeds() {
     }
 }
 
-/// Numbers that only look random (splitmix64).
+/// Pseudo-random numbers (splitmix64).
 struct Random(u64);
 
 impl Random {

@@ -1,4 +1,4 @@
-//! 3MF packages: what is read from them, and every way in which they are refused.
+//! 3MF packages: what is read from packages, and every way in which packages are refused.
 
 use crate::packages;
 use crate::packages::zip::{CONTENT_TYPES, Entry, RELATIONSHIPS, model, package, tetrahedron, zip};
@@ -25,7 +25,7 @@ fn refused(bytes: &[u8]) -> PackageError {
     }
 }
 
-/// The model part is refused in this line, with these words.
+/// Asserts that the model part is refused in this line, with these words.
 #[track_caller]
 fn assert_refused(text: &str, line: u64, words: &str) {
     let error = refused(&zip(&package(text)));
@@ -353,7 +353,7 @@ fn extensions_that_are_required() {
     assert_refused(&model("requiredextensions=\"unbound\"", "", ""), 2, "stands for nothing");
 }
 
-/// An attribute that stands twice in one element is no well-formed XML, wherever it is.
+/// An attribute that stands twice in one element is not well-formed XML, wherever the element is.
 #[test]
 fn attributes_that_stand_twice() {
     let turn = "transform=\"1 0 0 0 1 0 0 0 1 0 0 0\"";
@@ -407,7 +407,7 @@ fn attributes_that_stand_twice() {
     }
 }
 
-/// Neither many attributes nor many prefixes take more than linear time.
+/// Many attributes or many prefixes take linear time.
 #[test]
 fn many_attributes_and_prefixes() {
     let good = model("", &tetrahedron(1, ""), ITEM);
@@ -449,7 +449,7 @@ fn utf_16() {
     assert_refused(&good.replace("UTF-8", "UTF-16"), 1, "encoding is not UTF-8");
 }
 
-/// Files from before the first standard, as programs of 2013 and 2014 wrote them.
+/// Files from before the first standard, as programs of 2013 and 2014 write them.
 #[test]
 fn the_draft() {
     let colours = "<color id=\"0\" value=\"#FFFFFF\"/><material id=\"3\" colorid=\"0\"/>";
@@ -615,7 +615,7 @@ fn truncated_and_changed() {
     }
 }
 
-/// What the fuzzer begins with is read, and has all that there is to be changed.
+/// The fuzzer's initial inputs are read, and contain every part that the fuzzer can change.
 #[test]
 fn what_the_fuzzer_found_interesting() {
     let corpus = std::path::Path::new(env!("CARGO_MANIFEST_DIR")).join("fuzz/corpus/packages");
@@ -699,7 +699,8 @@ proptest! {
         let _ = read_mesh(&zip(&package(text)), &MeshOptions::default());
     }
 
-    /// A sound model and its relationships with pieces of themselves in other places: an answer or an error.
+    /// A sound model and its relationships, with their own pieces moved to other places, give an answer or an
+    /// error.
     #[test]
     fn shuffled_pieces(
         cuts in prop::collection::vec((0..1800usize, 0..1800usize, 0..40usize), 1..6),
@@ -723,7 +724,7 @@ proptest! {
         }
     }
 
-    /// Meshes as they are written come back.
+    /// Written meshes come back unchanged.
     #[test]
     fn written_meshes(
         vertices in prop::collection::vec(prop::array::uniform3(-1e9..1e9f64), 3..40),

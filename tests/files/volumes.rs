@@ -1,4 +1,4 @@
-//! Files of volumes: what is read from them, every way in which they are refused, and the corpus of the fuzz
+//! Volume files: what is read from them, every way in which they are refused, and the corpus of the fuzz
 //! target `volumes`.
 
 use crate::common::Random;
@@ -12,7 +12,7 @@ use leafless::exchange::{
 use leafless::solid::{Band, Samples, VoxelGrid};
 use leafless::{Control, Error, Frame, Rule, Solid, build, measure};
 
-/// The samples as numbers.
+/// Returns the samples as numbers.
 fn numbers(samples: &Samples<'_>, grid: &VoxelGrid) -> Vec<f64> {
     match samples {
         Samples::Bits(_) => write_raw_volume(samples, grid).unwrap().into_iter().map(f64::from).collect(),
@@ -85,10 +85,10 @@ fn what_is_written_comes_back() {
     }
 }
 
-/// A type, its names, the bytes of three numbers, what they become, and how many are rounded.
+/// A type: its names, the bytes of three numbers, the resulting samples, and the number of rounded samples.
 type Type = (SampleKind, &'static str, &'static str, Vec<Vec<u8>>, [f64; 3], u64);
 
-/// Each type in both orders, with what it becomes.
+/// Each type in both byte orders, with its samples.
 #[test]
 fn types_and_orders() {
     let grid = VoxelGrid::new([3, 1, 1], [0.0; 3], [1.0; 3]).unwrap();
@@ -354,7 +354,7 @@ fn samples_in_another_file() {
     }
 }
 
-/// What a link leads to counts, and not where the link lies.
+/// The target of a link counts, not the link's own place.
 #[cfg(unix)]
 #[test]
 fn links_do_not_lead_out_of_the_folder() {
@@ -591,7 +591,7 @@ fn what_is_refused() {
     assert_eq!(refused(text.as_bytes()), Sample { index: 12 });
 }
 
-/// Headers that ask for more than there is, or than memory has.
+/// Headers that announce more than the file contains, or more than memory holds.
 #[test]
 fn bombs() {
     for encoding in ["raw", "gzip", "ascii"] {
@@ -615,7 +615,7 @@ fn bombs() {
     assert!(matches!(error, VolumeFileError::Damaged { .. }), "{error}");
 }
 
-/// Cut at every length, and every byte changed: clear errors, no panic.
+/// A file cut at every length, and with every byte changed, gives a clear error and no panic.
 #[test]
 fn damaged_files() {
     let mut random = Random(32);
@@ -629,7 +629,8 @@ fn damaged_files() {
     }
 }
 
-/// What a fuzzer does: pieces left out, put in twice, taken from another file, and bytes changed.
+/// Mutates seeds as a fuzzer does: leaves pieces out, repeats them, takes them from another file, and changes
+/// bytes.
 fn mutated(random: &mut Random, seeds: &[Vec<u8>]) -> Vec<u8> {
     let pick = |random: &mut Random| &seeds[random.below(seeds.len() as u64) as usize];
     let mut bytes = pick(random).clone();
@@ -701,7 +702,7 @@ fn write_seeds() {
     }
 }
 
-/// Files that ITK 5 and pynrrd 1.1 wrote of samples x + 10 y + 100 z, and what they say of the place.
+/// Files that ITK 5 and pynrrd 1.1 write for samples x + 10 y + 100 z, and the placement that they state.
 #[test]
 fn files_of_other_programs() {
     let folder = std::path::Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/files/foreign");
@@ -737,7 +738,7 @@ fn files_of_other_programs() {
     assert_eq!(count, 25);
 }
 
-/// What goes on for ever is read no further than a gigabyte.
+/// Endless devices are read no further than a gigabyte.
 #[test]
 #[cfg(target_os = "linux")]
 fn devices_without_an_end_are_refused() {

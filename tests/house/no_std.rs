@@ -1,5 +1,5 @@
-//! Without its features the crate needs no standard library: a program that has none is built, linked and
-//! run.
+//! Without its features the crate needs no standard library: a program without the standard library is built,
+//! linked and run.
 
 // The program takes its memory from the C library as Unix has it.
 #![cfg(unix)]

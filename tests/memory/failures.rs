@@ -1,9 +1,9 @@
-//! What happens when an allocation or a write fails, each of them in turn: an error, no abort, the old file
-//! as it was, and no other file left.
+//! Failing allocations and writes, each of them in turn. A failure is an error, never an abort; the old file
+//! stays as it was, and no other file is left behind.
 //!
-//! The allocator of this test program refuses the n-th request of a thread. Where that ends the process,
-//! because the request was one of those small ones that cannot be refused (see `Error::OutOfMemory`), it is
-//! a child process, and how much was asked for is read from its last words.
+//! This test program's allocator refuses the n-th request of a thread. Small requests cannot be refused
+//! without ending the process (see `Error::OutOfMemory`). Such requests are refused in a child process, and
+//! the size of the request is read from the child's last words.
 
 #![cfg(all(feature = "mmap", unix))]
 
@@ -63,7 +63,7 @@ fn facts() -> Metadata {
     metadata
 }
 
-/// A closed surface: a cube whose faces are cut into squares. Facets that share corners only by position.
+/// A closed surface: a cube whose faces are cut into squares. Facets share corners only by position.
 fn facets() -> Vec<[[f64; 3]; 3]> {
     const N: i32 = 6;
     let mut facets = vec![];
@@ -93,7 +93,7 @@ fn facets() -> Vec<[[f64; 3]; 3]> {
     facets
 }
 
-/// An OBJ of faces with many corners, some of them not convex, before their vertices.
+/// An OBJ of faces with many corners, some faces not convex. The faces stand before their vertices.
 fn polygons() -> String {
     const FACES: u32 = 60;
     // Few corners: the crate that triangulates faces cannot be refused memory.
@@ -124,7 +124,7 @@ fn cracked() -> TriangleMesh {
     TriangleMesh::from_facets(facets).unwrap()
 }
 
-/// A prism over a zigzag band of `corners` corners, an even number, which is nowhere a fan.
+/// A prism over a zigzag band of `corners` corners, an even number. The band is nowhere a fan.
 fn band(corners: u32) -> (Vec<[f64; 3]>, [Vec<u32>; 5]) {
     let half = corners / 2;
     let along = |k: u32| [f64::from(k), f64::from(k % 2) * 0.75];
@@ -146,7 +146,7 @@ fn polyhedron((vertices, lists): &(Vec<[f64; 3]>, [Vec<u32>; 5])) -> Result<Poly
     Polyhedron::new(&PolyhedronArrays { vertices, corners, loops, faces, shells, solids })
 }
 
-/// Everything that allocates, by name. It may fail, and nothing but memory may be a reason.
+/// An operation that allocates. It may fail only for lack of memory.
 type Operation = Box<dyn Fn() -> Result<(), Error>>;
 
 fn operations(directory: &Path) -> Vec<(&'static str, Operation)> {
@@ -703,8 +703,8 @@ fn operations(directory: &Path) -> Vec<(&'static str, Operation)> {
 /// Bytes of the largest request that may end the process.
 const SMALL: u64 = 2048;
 
-/// What the children are told: which operation, from which request on, how large a request must be to count,
-/// and whether all behind it fail too.
+/// The environment variable with a child's task: the operation, the first request to refuse, the size from
+/// which requests count, and whether all later requests fail too.
 const TASK: &str = "LEAFLESS_TEST_FAILING";
 
 fn names(directory: &Path) -> Vec<String> {
@@ -714,17 +714,17 @@ fn names(directory: &Path) -> Vec<String> {
     names
 }
 
-/// The file that is there before anything is tried.
+/// The file that exists before an operation is tried.
 fn old_file() -> Vec<u8> {
     file::to_bytes(&compact(ball(14.0, Rule::Certified).view()).unwrap().with_metadata(facts())).unwrap()
 }
 
-/// How many requests further on the next one is refused: each of the first twenty, and then ever fewer.
+/// Returns the distance to the next request to refuse: each of the first twenty, and then ever fewer.
 fn step(n: u64) -> u64 {
     repeated(1 + n / 20, 1)
 }
 
-/// What the other tests start in a directory of its own; nothing by itself.
+/// The process that other tests start in a directory of its own. By itself it does nothing.
 #[test]
 fn child() {
     let Ok(task) = std::env::var(TASK) else { return };
@@ -764,9 +764,9 @@ fn child() {
     }
 }
 
-/// Runs an operation until no request of more than `spared` bytes is left that could be refused. Returns how
-/// many came back as an error, and how many ended the process. After the first of these, requests are left
-/// out.
+/// Runs an operation until no more request of over `spared` bytes can be refused. Returns the number of
+/// refusals that became errors, and the number that ended the process. After the first ended process,
+/// requests are skipped.
 fn try_all(name: &str, spared: u64, for_good: bool) -> (u64, u64) {
     let directory = tempfile::tempdir().unwrap();
     let (mut first, mut errors) = (1, 0);
@@ -804,9 +804,9 @@ fn try_all(name: &str, spared: u64, for_good: bool) -> (u64, u64) {
     }
 }
 
-/// Runs all operations; tells how many requests came back as an error, and how many ended a process. Where
-/// small requests end it, which takes many processes, memory comes back after a refusal in every other
-/// operation and stays away in the rest.
+/// Runs all operations. Returns the number of refusals that became errors, and the number that ended a
+/// process. Where small requests end the process, many processes are needed. There, memory returns after a
+/// refusal in every other operation and stays refused in the rest.
 fn try_every_operation(spared: u64) -> (u64, u64) {
     let directory = tempfile::tempdir().unwrap();
     std::fs::write(directory.path().join("tree.lfl"), old_file()).unwrap();
@@ -839,17 +839,17 @@ fn small_requests_that_are_fatal_are_small() {
 
 // ---- no more memory than an input is worth ---------------------------------------------------------------
 
-/// Bytes that reading, and making a tree, may need whatever the input.
+/// Bytes that reading (and, below, making a tree) may need, whatever the input.
 const READING: usize = 4 << 10;
 const MAKING: usize = 128 << 10;
 
-/// Notes in `worst` how many times its input `work` held beyond what is `fixed`.
+/// Raises `worst` to the bytes that `work` held beyond `fixed`, divided by the size of its input.
 fn weigh<R>(worst: &mut f64, fixed: usize, input: usize, work: impl FnOnce() -> R) {
     let (_, held) = most_held(work);
     *worst = worst.max(held.saturating_sub(fixed) as f64 / input as f64);
 }
 
-/// What `file` and `OctreeRef` promise for bytes that nobody has checked.
+/// Checks the promise of `file` and `OctreeRef` for unchecked bytes.
 #[test]
 fn memory_is_a_small_multiple_of_the_input() {
     let mut inputs = bodies::seeds::files();
@@ -894,7 +894,7 @@ fn memory_is_a_small_multiple_of_the_input() {
     }
 }
 
-/// What `TriangleMesh` promises.
+/// Checks the promise of `TriangleMesh`.
 #[test]
 fn memory_of_reports_is_that_of_the_edges() {
     let grid: u32 = 200;
@@ -917,7 +917,8 @@ fn memory_of_reports_is_that_of_the_edges() {
     }
 }
 
-/// What `Polyhedron` promises. The part of the triangulation is asked for before it begins.
+/// Checks the promise of `Polyhedron`. The triangulation's memory is reserved before the triangulation
+/// begins.
 #[test]
 fn memory_of_polyhedra_is_a_small_multiple_of_their_corners() {
     for corners in [2_000, 50_000] {
@@ -931,7 +932,7 @@ fn memory_of_polyhedra_is_a_small_multiple_of_their_corners() {
     }
 }
 
-/// What the reader of 3MF promises of parts whose instances come to nothing.
+/// Checks the promise of the 3MF reader for parts whose instances amount to nothing.
 #[cfg(feature = "threemf")]
 #[test]
 fn packages_take_twenty_times_their_parts() {
@@ -967,7 +968,7 @@ fn packages_take_twenty_times_their_parts() {
     assert!(worst > 1.0, "{worst}");
 }
 
-/// What the readers of meshes promise.
+/// Checks the promise of the mesh readers.
 #[test]
 fn meshes_take_a_small_multiple_of_their_files() {
     let mesh = TriangleMesh::from_facets(facets()).unwrap();
@@ -1027,7 +1028,7 @@ fn meshes_take_a_small_multiple_of_their_files() {
     assert!(worst <= 128.0 && worst > 64.0, "{worst} times the file");
 }
 
-/// A tree of many bricks of few kinds: nothing is shorter in a file, and nothing grows more when it is
+/// A tree with many bricks of few kinds. No other tree is shorter in a file, and no other grows more when
 /// copied.
 fn dictionary() -> Octree {
     let frame = frame().with_depth(8).unwrap();
@@ -1037,7 +1038,8 @@ fn dictionary() -> Octree {
 
 // ---- writes that fail ------------------------------------------------------------------------------------
 
-/// Takes `left` calls, each of at most `most` bytes, every second one interrupted; then fails.
+/// A writer that takes `left` calls of at most `most` bytes each, interrupts every second call, and then
+/// fails.
 struct Unreliable {
     left: usize,
     most: usize,
@@ -1103,8 +1105,8 @@ fn each_write_may_fail_or_be_short_or_interrupted() {
     assert!(pieces > 3 && failing(pieces).0 && !failing(pieces + 1).0);
 }
 
-/// A file-size limit by which the system ends the process: nobody can clean up then, but the old file stays.
-/// Where files need no names, nothing else does.
+/// A file-size limit makes the system end the process. No cleanup is possible then, but the old file stays.
+/// Where files need no names, no other file stays.
 #[test]
 fn a_process_that_is_ended_while_it_saves_leaves_the_old_file() {
     use std::os::unix::process::ExitStatusExt;
@@ -1130,7 +1132,7 @@ fn a_process_that_is_ended_while_it_saves_leaves_the_old_file() {
     }
 }
 
-/// What that test starts; nothing by itself.
+/// The process that the test above starts. By itself it does nothing.
 #[test]
 fn limited_child() {
     if std::env::var(TASK).is_ok_and(|task| task == "limited") {

@@ -1,4 +1,4 @@
-//! What objects say of the bytes that they keep, against what the allocator gave out.
+//! The bytes that objects report as kept, against the bytes that the allocator handed out.
 
 use crate::allocator::left;
 use leafless::attribute::{
@@ -14,7 +14,7 @@ use leafless::{
 };
 use std::sync::Arc;
 
-/// All that an object keeps but a few small structs, and no more than it keeps.
+/// Checks that an object reports all bytes that it keeps but for a few small structs, and no more.
 fn is_told(told: u64, kept: usize) {
     let kept = kept as u64;
     assert!(told <= kept && kept - told <= 1024 + kept / 20, "{told} of {kept}");
@@ -78,7 +78,7 @@ fn ball(i: u32) -> Csg {
     Csg::ball([at(0), at(1), at(2)], 0.05 + f64::from(i) * 1e-5).unwrap()
 }
 
-/// As [`is_told`] for expressions, whose exact numbers have room to spare that nobody knows.
+/// As [`is_told`] for expressions. The spare capacity of their exact numbers is unknown.
 fn is_about(told: u64, kept: usize) {
     let kept = kept as u64;
     assert!(told <= kept && kept - told <= kept / 4, "{told} of {kept}");
