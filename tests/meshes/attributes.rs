@@ -1,5 +1,5 @@
-//! Data on meshes: through everything that meshes go through, on polyhedra, and as attributes of space,
-//! against a look at all triangles.
+//! Data on meshes: carried through all mesh operations, on polyhedra, and as attributes of space, against a
+//! search of all triangles.
 
 use crate::common::{Random, alone};
 use leafless::attribute::{
@@ -13,7 +13,7 @@ use std::array::from_fn as array;
 
 type Point = [f64; 3];
 
-/// A label for each triangle, which is its number, and for each corner its place.
+/// Returns two attributes: each triangle's number as its label, and each corner's place.
 fn told(vertices: &[Point], triangles: &[[u32; 3]]) -> Vec<MeshAttribute> {
     let places: Vec<f64> = triangles.iter().flatten().flat_map(|&v| vertices[v as usize]).collect();
     vec![
@@ -26,8 +26,8 @@ fn one(value: Option<[f64; 4]>) -> f64 {
     value.unwrap()[0]
 }
 
-/// Checks that each triangle has the label of one that was given, in their order, and at each corner the
-/// value that `expected` makes of the corner's place; up to `tolerance`.
+/// Checks that each triangle has the label of a triangle that was handed in, in their order. Each corner must
+/// lie at `expected` of its stored place, up to `tolerance`.
 #[track_caller]
 fn check(mesh: &TriangleMesh, given: usize, tolerance: f64, expected: impl Fn(Point) -> Point) {
     let (source, place) = (mesh.attribute("source").unwrap(), mesh.attribute("place").unwrap());
@@ -43,7 +43,7 @@ fn check(mesh: &TriangleMesh, given: usize, tolerance: f64, expected: impl Fn(Po
     }
 }
 
-/// Triangles on a small lattice, many of which are degenerate.
+/// Triangles on a small lattice. Many are degenerate.
 fn lattice_soup(random: &mut Random, count: u32) -> (Vec<Point>, Vec<[u32; 3]>) {
     let vertices = (0..3 * count).map(|_| array(|_| random.between(0.0, 3.0).floor())).collect();
     (vertices, (0..count).map(|t| [3 * t, 3 * t + 1, 3 * t + 2]).collect())
@@ -127,7 +127,7 @@ fn attributes_that_do_not_fit_are_refused() {
     assert_eq!(mesh.attributes(), []);
 }
 
-/// A tetrahedron of this size at a place, its triangles from outside counter-clockwise.
+/// A tetrahedron of this size at a place. Seen from outside, its triangles are counter-clockwise.
 fn tetrahedron(at: Point, size: f64) -> [[Point; 3]; 4] {
     let corners: [Point; 4] = [
         at,
@@ -160,7 +160,7 @@ fn bodies_are_numbered_by_their_first_triangles() {
     assert!(TriangleMesh::new(vec![], vec![]).unwrap().bodies().unwrap().is_empty());
 }
 
-/// Two cubes, the first with a void. The vertices of the second are those of the first, moved.
+/// Two cubes, the first with a void. The second cube's vertices are those of the first, translated.
 fn polyhedron() -> Polyhedron {
     let cube = |low: f64, high: f64, x: f64| {
         (0..8usize).map(move |k| {
@@ -271,8 +271,8 @@ fn dot(a: Point, b: Point) -> f64 {
     a[0] * b[0] + a[1] * b[1] + a[2] * b[2]
 }
 
-/// The distance of a point from a triangle, and the weights of the nearest point: by Ericson's regions,
-/// unlike the library.
+/// Returns the distance of a point from a triangle, and the barycentric weights of the nearest point. It uses
+/// Ericson's regions, unlike the library.
 pub fn distance(p: Point, [a, b, c]: [Point; 3]) -> (f64, Point) {
     let (ab, ac) = (sub(b, a), sub(c, a));
     let at = |weights: Point| {
@@ -309,7 +309,7 @@ pub fn distance(p: Point, [a, b, c]: [Point; 3]) -> (f64, Point) {
     at([va / sum, vb / sum, vc / sum])
 }
 
-/// A torus of 2·n² triangles, or an open piece of it, its vertices a little off.
+/// A torus of 2·n² triangles, or an open piece of it, with slightly moved vertices.
 fn torus(random: &mut Random, n: u32, is_open: bool) -> TriangleMesh {
     let angle = |i: u32| f64::from(i % n) / f64::from(n) * std::f64::consts::TAU;
     let vertices: Vec<Point> = (0..n * n)
@@ -469,7 +469,8 @@ fn ranges_hold_all_values() {
     }
 }
 
-/// A box near a patch of one value, far from others, has exactly that value; near a border it has both.
+/// A box near a patch of one value, far from others, has exactly that value. A box near a border has both
+/// values.
 #[test]
 fn ranges_are_no_wider_than_needed() {
     // A square of 100 × 100 cells, its left half of value 1, its right half of value 2.
@@ -502,7 +503,7 @@ fn ranges_are_no_wider_than_needed() {
     assert_eq!(range(0.0, -200.0, 400.0), (1.0, 2.0));
 }
 
-/// What a million questions cost on a mesh of a hundred thousand triangles.
+/// Measures the time of a million queries on a mesh of a hundred thousand triangles.
 #[test]
 #[ignore = "a measurement"]
 fn a_million_questions() {
@@ -558,7 +559,7 @@ fn a_million_questions() {
     timed("values in order", row.len(), &mut || place.values(&row, &mut values).unwrap());
 }
 
-/// A surface bears what is just inside of it.
+/// A surface has the values just inside of it.
 #[test]
 fn values_just_inside_of_a_surface() {
     // Two materials side by side, which end at the ball.

@@ -1,4 +1,4 @@
-//! Closed triangle meshes as solids, against oracles in exact integers that share nothing with the library.
+//! Closed triangle meshes as solids, against oracles in exact integers that share no code with the library.
 
 use crate::common::{Random, alone, cases, lattice_frame, model, repeated};
 use crate::descended::Descended;
@@ -15,8 +15,8 @@ use proptest::prelude::*;
 const FILLS: [FillRule; 2] = [FillRule::NonZero, FillRule::EvenOdd];
 const RULES: [Rule; 4] = [Rule::Certified, Rule::Sampled, Rule::Inner, Rule::Outer];
 
-/// All four trees of a mesh, shown to be the same by scanning blocks and by descent, and for any number of
-/// threads.
+/// Builds all four trees of a mesh. Checks that block-wise scanning and descent give the same trees, for any
+/// number of threads.
 fn trees(what: &str, mesh: &TriangleMesh, frame: &Frame, fill: FillRule) -> [Octree; 4] {
     let solid = MeshSolid::new(mesh.clone(), fill).unwrap();
     RULES.map(|rule| {
@@ -33,10 +33,10 @@ fn trees(what: &str, mesh: &TriangleMesh, frame: &Frame, fill: FillRule) -> [Oct
     })
 }
 
-/// How far from a triangle a cell may at most be PARTIAL, in cells.
+/// The greatest distance of a PARTIAL cell from a triangle, in cells.
 const TOLERANCE: f64 = 1e-6;
 
-/// Everything that is claimed of a mesh on a frame, cell by cell.
+/// Checks all claims about a mesh on a frame, cell by cell.
 fn verify_with(what: &str, mesh: &TriangleMesh, frame: &Frame, fills: &[FillRule]) {
     let oracle = Oracle::new(mesh, frame);
     let windings = oracle.windings();
@@ -88,12 +88,12 @@ fn verify_with(what: &str, mesh: &TriangleMesh, frame: &Frame, fills: &[FillRule
     }
 }
 
-/// The same for both fill rules.
+/// Checks them for both fill rules.
 fn verify(what: &str, soup: &Soup, frame: &Frame) {
     verify_with(what, &mesh(soup), frame, &FILLS);
 }
 
-/// The exterior is EMPTY if and only if no vertex is beyond the universe.
+/// Returns the expected exterior: EMPTY if and only if no vertex is outside the universe.
 fn exterior(soup: &Soup, frame: &Frame) -> Tag {
     let mesh = mesh(soup);
     let solid = MeshSolid::new(mesh.clone(), FillRule::NonZero).unwrap();
@@ -477,7 +477,7 @@ proptest! {
     }
 }
 
-/// A model as the library reads it, hair cracks closed.
+/// Reads a model and closes its hair cracks.
 fn read(name: &str) -> Option<TriangleMesh> {
     let path = model(name)?;
     let bytes = std::fs::read(path).unwrap();
@@ -489,7 +489,7 @@ fn around(mesh: &TriangleMesh, depth: u8) -> Frame {
     Frame::around(min, max, depth).unwrap()
 }
 
-/// The rules that a mesh allows: one of the models' bodies is not consistently oriented.
+/// Returns the rules that a mesh allows: one of the models' bodies is not consistently oriented.
 fn fills(mesh: &TriangleMesh) -> &'static [FillRule] {
     match mesh.check_closed(FillRule::NonZero) {
         Ok(()) => &FILLS,
@@ -498,7 +498,7 @@ fn fills(mesh: &TriangleMesh) -> &'static [FillRule] {
     }
 }
 
-/// Cell for cell by the oracle, where it is too slow for everything.
+/// Compares sampled trees with the oracle, cell by cell. It serves meshes that are too large for all checks.
 fn assert_sampled(what: &str, mesh: &TriangleMesh, depth: u8) {
     let frame = around(mesh, depth);
     let windings = Oracle::new(mesh, &frame).windings();
@@ -591,7 +591,7 @@ fn the_erased_solid_is_the_same() {
     }
 }
 
-/// A mesh of overlapping closed pieces when no model is at hand.
+/// A mesh of overlapping closed pieces, used when no model is at hand.
 fn generated() -> TriangleMesh {
     mesh(&join(&[
         torus([0.013, 0.021, 0.034], 2.0, 0.7, 60, 36),
@@ -698,7 +698,7 @@ fn hair_cracks_keep_every_variant_inside() {
     }
 }
 
-/// Every third facet with its coordinates changed.
+/// Changes the coordinates of every third facet.
 fn moved_some(soup: &Soup, random: &mut Random, f: impl Fn(f64) -> f64) -> Soup {
     let pick = random.below(3) as usize;
     let change = |(i, facet): (usize, &[[f64; 3]; 3])| {

@@ -1,4 +1,4 @@
-//! Meshes that lie beside the true boundary, compared with true solids whose formulas are known.
+//! Meshes that deviate from the true boundary, compared with true solids of known formulas.
 
 use crate::common::{Random, alone, repeated};
 use crate::shapes::{Soup, block, mesh, prism};
@@ -24,7 +24,7 @@ fn minus(p: Point, q: Point) -> Point {
     [0, 1, 2].map(|k| p[k] - q[k])
 }
 
-/// A ball of radius 1 around the origin: corners lie on it, chords below it.
+/// A ball of radius 1 around the origin. The corners lie on the ball, the chords inside it.
 fn ball_soup(around: usize, down: usize) -> Soup {
     let at = |i: usize, j: usize| {
         let (u, v) = (2.0 * PI * (i % around) as f64 / around as f64, PI * j as f64 / down as f64);
@@ -48,7 +48,7 @@ fn ball_soup(around: usize, down: usize) -> Soup {
     soup
 }
 
-/// How far a ball of radius 1 reaches beyond the triangles, and a little more.
+/// Returns the distance that a ball of radius 1 reaches beyond the triangles, with a small margin.
 fn deflection(soup: &Soup) -> f64 {
     let depth = soup.iter().map(|&[a, b, c]| {
         let (u, v) = (minus(b, a), minus(c, a));
@@ -58,7 +58,7 @@ fn deflection(soup: &Soup) -> f64 {
     (1.0 - depth.fold(1.0, f64::min)) * (1.0 + 1e-9)
 }
 
-/// A cylinder of radius 20 and height 30 in as few segments as a deflection of one half allows.
+/// A cylinder of radius 20 and height 30, in the fewest segments that a deflection of one half allows.
 fn cylinder() -> TriangleMesh {
     let segments = (PI / (1.0 - 0.5 / 20.0f64).acos()).ceil() as usize;
     let polygon: Vec<[f64; 2]> = (0..segments)
@@ -143,7 +143,7 @@ fn open_meshes_are_refused() {
     assert!(matches!(refused, Some(Error::Mesh(MeshError::Open { edges: 3 }))), "{refused:?}");
 }
 
-/// The volume of the true cylinder is 12000 π. The mesh has less.
+/// The volume of the true cylinder is 12000 π. The mesh has a smaller volume.
 #[test]
 fn a_cylinder_in_chords() {
     let truth = PI * 400.0 * 30.0;
@@ -192,8 +192,7 @@ fn a_cylinder_in_chords() {
     }
 }
 
-/// Faces of two solids that lie in one plane as far as their meshes tell may lie on either side of each
-/// other.
+/// Faces of two solids lie in one plane as far as their meshes show. Either solid may reach beyond the other.
 #[test]
 fn contacts_are_not_decided() {
     let stated = |low: f64, deviation: f64| {
@@ -243,7 +242,7 @@ fn deviation_between(a: &MeshSolid, b: &MeshSolid, frame: &Frame) -> Interval {
     found.a_to_b.distance.joined(found.b_to_a.distance)
 }
 
-/// No point of the cylinder is outside, and none beside it inside.
+/// Checks that no point of the cylinder is reported outside, and no point beside it inside.
 fn check_points(tree: &Octree, frame: &Frame, is_stated: bool) {
     let mut random = Random(8);
     let points: Vec<Point> = (0..2000)
@@ -259,7 +258,7 @@ fn check_points(tree: &Octree, frame: &Frame, is_stated: bool) {
     }
 }
 
-/// A ball in chords under a placement that keeps it a ball.
+/// A faceted ball under a placement that keeps it a ball.
 struct Placed {
     solid: MeshSolid,
     centre: Point,
@@ -284,7 +283,7 @@ fn placed_ball(random: &mut Random, size: [usize; 2]) -> Placed {
     Placed { solid: solid(placed), centre, radius }
 }
 
-/// Where a ray is in a ball.
+/// Returns the span of a ray in the ball.
 fn span_of(ball: &Placed, from: Point, way: Point) -> Option<[f64; 2]> {
     let to = minus(ball.centre, from);
     let dot = |p: Point, q: Point| (0..3).map(|k| p[k] * q[k]).sum::<f64>();
@@ -293,7 +292,7 @@ fn span_of(ball: &Placed, from: Point, way: Point) -> Option<[f64; 2]> {
     (root > 0.0).then(|| [(along - root.sqrt()) / size, (along + root.sqrt()) / size])
 }
 
-/// Whatever is told of the mesh is true of the ball, and something is told.
+/// Checks that each answer for the mesh is true of the ball, and that there are answers.
 fn check_ball(random: &mut Random, size: [usize; 2]) {
     const SLOP: f64 = 1e-9;
     let ball = placed_ball(random, size);

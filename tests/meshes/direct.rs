@@ -1,5 +1,5 @@
-//! Rays, points and distances that a mesh answers without cells, beside every triangle by itself and beside
-//! cells.
+//! Rays, points and distances that a mesh answers without cells, compared with an examination of every
+//! triangle and with answers by cells.
 
 use crate::common::{Random, alone};
 use crate::descended::Descended;
@@ -18,7 +18,7 @@ fn has(spans: &[Interval], t: f64) -> bool {
     spans.iter().any(|span| span.contains(t))
 }
 
-/// A block between two corners, with what it adds to the winding number.
+/// A block between two corners, with its contribution to the winding number.
 type Block = (Ints, Ints, i32);
 
 fn blocks(random: &mut Random, count: usize) -> Vec<Block> {
@@ -49,8 +49,8 @@ fn encloses(fill: FillRule, winding: i32) -> bool {
     }
 }
 
-/// On which sides of a point, which is a fraction with the denominator `q`, blocks lie: whether on some,
-/// whether on all.
+/// Examines the eight octants around a point, a fraction with the denominator `q`. Returns whether some
+/// octant is inside, and whether all are.
 fn around(blocks: &[Block], fill: FillRule, p: Ints, q: i64) -> (bool, bool) {
     let inside = |octant: usize| {
         let within = |k: usize, min: Ints, max: Ints| {
@@ -64,7 +64,7 @@ fn around(blocks: &[Block], fill: FillRule, p: Ints, q: i64) -> (bool, bool) {
     (found.contains(&true), !found.contains(&false))
 }
 
-/// Whether a point lies on a facet of a block.
+/// True if a point lies on a facet of a block.
 fn is_on_facet(blocks: &[Block], p: Ints, q: i64) -> bool {
     blocks.iter().any(|(min, max, _)| {
         let is_within = (0..3).all(|k| min[k] * q <= p[k] && p[k] <= max[k] * q);
@@ -74,8 +74,8 @@ fn is_on_facet(blocks: &[Block], p: Ints, q: i64) -> bool {
 
 const RULES: [FillRule; 3] = [FillRule::NonZero, FillRule::EvenOdd, FillRule::Positive];
 
-/// Rays through corners, along edges and in faces of blocks that overlap, nest, touch and are inside out:
-/// what is said of each stretch between planes is what integers say.
+/// Rays through corners, along edges and in faces of blocks that overlap, nest, touch and are inside out. The
+/// answer for each stretch between planes agrees with integer arithmetic.
 #[test]
 fn rays_of_blocks_are_those_of_integers() {
     let mut random = Random(1);
@@ -131,7 +131,7 @@ fn rays_of_blocks_are_those_of_integers() {
     assert!(inside > 1000 && outside > 10_000 && on > 500, "{inside} {outside} {on}");
 }
 
-/// Overlapping, nested and inside-out bodies, slivers, and bodies that share vertices with others.
+/// Overlapping, nested and inside-out bodies, slivers, and bodies that share vertices.
 fn bodies(random: &mut Random, kind: usize) -> Soup {
     match kind {
         0 => shapes::torus([0.1, 0.2, 0.3], 3.0, 1.0, 24, 12),
@@ -157,7 +157,7 @@ fn bodies(random: &mut Random, kind: usize) -> Soup {
     }
 }
 
-/// A point of the box around them, as a rule; a vertex, or a point between vertices, now and then.
+/// A point: usually from the box around the mesh, sometimes a vertex, sometimes between vertices.
 fn point(random: &mut Random, mesh: &TriangleMesh) -> Point {
     let vertex = |random: &mut Random| mesh.vertices()[random.below(mesh.vertices().len() as u64) as usize];
     match random.below(8) {
@@ -202,7 +202,7 @@ fn points_are_those_of_all_triangles() {
     assert!(counts.iter().all(|&count| count > 1000), "{counts:?}");
 }
 
-/// The distance of a point from a triangle, and the nearest point of it.
+/// Returns the distance of a point from a triangle, and the nearest point.
 fn from_triangle([a, b, c]: [Point; 3], p: Point) -> (f64, Point) {
     let minus = |p: Point, q: Point| [0, 1, 2].map(|k| p[k] - q[k]);
     let dot = |p: Point, q: Point| (0..3).map(|k| p[k] * q[k]).sum::<f64>();
@@ -238,8 +238,8 @@ fn is_near(mesh: &TriangleMesh, p: Point, distance: f64) -> bool {
     (0..mesh.triangles().len()).any(|triangle| from_triangle(corners(mesh, triangle), p).0 <= distance)
 }
 
-/// Beside cells, whose intervals hold the answers; and at points of the ray away from the surface beside all
-/// triangles.
+/// Compares rays with intervals by cells, which contain the answers, and compares points of the ray away from
+/// the surface with all triangles.
 #[test]
 fn rays_are_those_of_all_triangles_and_of_cells() {
     let mut random = Random(3);
@@ -318,7 +318,7 @@ fn rays_are_those_of_all_triangles_and_of_cells() {
     assert!(hits > 1500 && checked > 10_000, "{hits} {checked}");
 }
 
-/// Where a ray begins, and where it is at time 1.
+/// Returns the points of a ray at time 0 and at time 1.
 fn ends(ray: &Ray) -> (Point, Point) {
     let text = format!("{ray:?}");
     let numbers: Vec<f64> = text
@@ -426,8 +426,8 @@ fn a_mesh_that_sticks_out_is_cut_by_the_universe() {
     );
 }
 
-/// A turned mesh is known but for the rounding of its vertices; it is asked as any other, and never lies
-/// about its edges.
+/// A rotated mesh is known up to the rounding of its vertices. It is queried like any other mesh, and its
+/// answers at edges are never wrong.
 #[test]
 fn turned_meshes_are_asked_without_cells_too() {
     let turn = Affine::new([[0.6, -0.8, 0.0, 0.1], [0.8, 0.6, 0.0, 0.2], [0.0, 0.0, 1.0, 0.3]]).unwrap();
@@ -462,7 +462,8 @@ fn turned_meshes_are_asked_without_cells_too() {
     }
 }
 
-/// The winding number of an open surface by its definition: solid angles (van Oosterom and Strackee 1983).
+/// The winding number of an open surface by its definition as a sum of solid angles (van Oosterom and
+/// Strackee 1983).
 fn winding_of(mesh: &TriangleMesh, p: Point) -> f64 {
     let sum: f64 = (0..mesh.triangles().len())
         .map(|triangle| {
@@ -518,8 +519,8 @@ fn points_of_open_meshes_are_those_of_solid_angles() {
     assert!(inside > 1000 && undecided == 0, "{inside} {undecided}");
 }
 
-/// Boxes beside points of all of them, and beside cells, which may be undecided where the tree is not, and
-/// the other way round.
+/// Compares the verdicts of boxes with all their points, and with cells. Either method may be undecided where
+/// the other one decides.
 #[test]
 fn boxes_are_those_of_points_and_of_cells() {
     let mut random = Random(8);

@@ -1,5 +1,5 @@
-//! Meshes, rays and points at the ends of what is answered without cells: empty lists, numbers without
-//! bounds, all sizes and places of meshes, triangles without area, and bodies in the same place.
+//! Extreme cases of answers without cells: empty lists, infinite numbers, all sizes and places of meshes,
+//! triangles without area, and bodies at the same place.
 
 use crate::common::{Random, alone};
 use crate::oracle::PointOracle;
@@ -78,7 +78,7 @@ fn points_that_are_no_places() {
     }
 }
 
-/// Numbers that exact arithmetic does not take: next to a vertex around which triangles stand as a fan.
+/// Coordinates that exact arithmetic does not take, beside a vertex with a fan of triangles.
 #[test]
 fn points_next_to_nothing_are_where_they_are() {
     let mut random = Random(5);
@@ -133,7 +133,7 @@ fn a_mesh_that_begins_before_the_universe() {
     }
 }
 
-/// Back to back they bound nothing: the ray is inside before, and comes in by the universe's face.
+/// Triangles back to back bound nothing. The ray is already inside, and enters through the universe's face.
 #[test]
 fn triangles_back_to_back_in_the_face_of_the_universe() {
     let [a, b, c] = [[1.0, 1.0, 1.0], [-3.0, 1.0, -3.0], [1.0, 0.0, 1.0]];
@@ -146,7 +146,7 @@ fn triangles_back_to_back_in_the_face_of_the_universe() {
     }
 }
 
-/// A block in all sizes and places, asked with directions of all lengths from all distances.
+/// A block of all sizes at all places, queried with directions of all lengths from all distances.
 #[test]
 fn meshes_rays_and_points_of_all_sizes() {
     let sizes = [1e-70, 1e-30, 1.0, 1e30, 1e60];
@@ -194,7 +194,7 @@ fn meshes_rays_and_points_of_all_sizes() {
     }
 }
 
-/// A slanted tetrahedron in all sizes: rays from its middle leave it, rays past it miss it.
+/// A tetrahedron of all sizes, with slanted faces. Rays from its middle leave it, and rays past it miss it.
 #[test]
 fn slanted_triangles_of_all_sizes() {
     let mut random = Random(8);
@@ -219,7 +219,7 @@ fn slanted_triangles_of_all_sizes() {
     }
 }
 
-/// Coordinates of 1e9 with small parts.
+/// Coordinates around 1e9 with small fractions.
 #[test]
 fn meshes_far_from_the_origin() {
     let mut random = Random(9);
@@ -251,7 +251,7 @@ fn meshes_far_from_the_origin() {
     }
 }
 
-/// Bodies without volume, and triangles without area, are no solid; they hide nothing.
+/// Bodies without volume, and triangles without area, are no solid. They hide nothing.
 #[test]
 fn triangles_without_area() {
     let line: Soup =
@@ -289,7 +289,7 @@ fn triangles_without_area() {
     }
 }
 
-/// Nodes of the tree have four parts: as many triangles as fill it, one less and one more.
+/// Nodes of the tree have four parts. The counts are those that fill a tree, one less and one more.
 #[test]
 fn trees_of_all_sizes() {
     let mut random = Random(10);
@@ -336,7 +336,7 @@ fn trees_of_all_sizes() {
     }
 }
 
-/// The same body twice, and with its other sense.
+/// The same body twice, with the same and with reversed orientation.
 #[test]
 fn bodies_in_the_same_place() {
     let block = shapes::block([-1.0; 3], [1.0; 3]);

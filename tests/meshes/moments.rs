@@ -1,5 +1,5 @@
-//! The moments of meshes without splitting, against sums in exact arithmetic; and triangles that intersect,
-//! against a slow search in exact arithmetic.
+//! The moments of meshes without splits, against sums in exact arithmetic; intersecting triangles, against a
+//! slow search in exact arithmetic.
 
 use crate::common::exact::Exact;
 use crate::common::{Random, model};
@@ -13,7 +13,7 @@ use leafless::{
 
 use std::slice::from_ref;
 
-/// Bodies, and how often each counts under each rule.
+/// Bodies, and the number of times that each body counts under each rule.
 type Case<'a> = (&'a [Vec<Facet>], [&'a [i32]; 3]);
 type Point = [f64; 3];
 type Facet = [Point; 3];
@@ -52,12 +52,13 @@ fn cube(half: f64) -> Vec<Facet> {
     block([-half; 3], [half; 3])
 }
 
-/// The faces of a tetrahedron, seen from outside counter-clockwise if `d` lies below a, b, c.
+/// The faces of a tetrahedron. Seen from outside they are counter-clockwise if `d` lies below a, b, c.
 fn tetrahedron([a, b, c, d]: [Point; 4]) -> Vec<Facet> {
     vec![[a, b, c], [b, a, d], [c, b, d], [a, c, d]]
 }
 
-/// 20 times 6 times the volume, and the first and second moments about the origin in the same units, exactly.
+/// Exact sums: 20 times 6 times the volume, and the first and second moments about the origin in the same
+/// unit.
 struct Sums {
     volume: Exact,
     first: [Exact; 3],
@@ -90,7 +91,7 @@ impl Sums {
     }
 }
 
-/// lower ≤ numerator / denominator ≤ upper, exactly, and not wider than `width` of `size`.
+/// Checks lower ≤ numerator / denominator ≤ upper, exactly, and that the interval is at most `width` wide.
 #[track_caller]
 fn check(what: &str, interval: Interval, numerator: &Exact, denominator: &Exact, width: f64) {
     let side = |x: f64| Exact::from(x).times(denominator).minus(numerator).sign();
@@ -98,8 +99,8 @@ fn check(what: &str, interval: Interval, numerator: &Exact, denominator: &Exact,
     assert!(interval.width() <= width, "{what} is known too badly: {interval:?}");
 }
 
-/// Everything that is known of a solid which a mesh encloses, of the signed triangles given, against exact
-/// sums. `size` is the extent of the mesh, `far` its distance from the origin.
+/// Checks all measures of the solid that a mesh encloses against exact sums over the signed triangles
+/// `facets`. `size` is the extent of the mesh, `far` its distance from the origin.
 #[track_caller]
 fn check_all(measures: &MassProperties, facets: Vec<(Facet, i32)>, size: f64, far: f64) {
     let sums = Sums::of(facets);
@@ -174,7 +175,7 @@ fn random_tetrahedra_and_blocks() {
     }
 }
 
-/// How often each of some nested shells counts, under each rule.
+/// Nested shells, each with the number of times that it counts under each rule.
 #[test]
 fn nested_shells() {
     let [one, two, three] = [cube(1.0), cube(2.0), cube(3.0)];
@@ -211,7 +212,7 @@ fn nested_shells() {
     }
 }
 
-/// Several bodies side by side, that share vertices and edges, or turned against each other.
+/// Several bodies side by side that share vertices and edges, or have opposite orientations.
 #[test]
 fn bodies_that_touch() {
     let [a, edge, corner] = [[0.0; 3], [1.0, 1.0, 0.0], [1.0; 3]].map(|low| block(low, low.map(|x| x + 1.0)));
@@ -252,7 +253,7 @@ fn what_intersects_is_split() {
     }
 }
 
-/// Of parts with round dimensions nothing is rounded.
+/// Parts with round dimensions have no rounding at all.
 #[test]
 fn round_parts_are_exact() {
     let cavity = turned(&block([11.0, -4.0, 3.25], [12.5, -3.0, 4.0]));
@@ -264,7 +265,7 @@ fn round_parts_are_exact() {
     assert!(inertia.contains(16.0 / 3.0) && inertia.width() < 2e-15, "{inertia:?}");
 }
 
-/// What is clipped is not what the mesh encloses. It is known by cells, up to rounding.
+/// The part within the universe is smaller than the enclosed set. Cells measure it, up to rounding.
 #[test]
 fn clipped_meshes_are_measured_in_the_universe() {
     let solid = MeshSolid::new(mesh(&[cube(1.0)]), FillRule::NonZero).unwrap();
@@ -282,7 +283,7 @@ fn clipped_meshes_are_measured_in_the_universe() {
     assert_eq!((measures.splits, measures.stop_reason), (0, StopReason::Exhausted));
 }
 
-/// Vertices that were rounded may be elsewhere; the exact image is contained.
+/// Rounded vertices may be displaced. The intervals contain the exact image.
 #[test]
 fn placed_meshes_contain_the_exact_image() {
     let turn = [[0.6, -0.8, 0.0, 1e3], [0.8, 0.6, 0.0, 0.1], [0.0, 0.0, 1.0, 0.3]];
@@ -301,7 +302,7 @@ fn placed_meshes_contain_the_exact_image() {
     assert!(measures.volume.width() > 1e-13);
 }
 
-/// Whether two triangles of small integer coordinates have no point in common: by separating axes.
+/// True if two triangles with small integer coordinates have no point in common, by separating axes.
 fn separated(a: &Facet, b: &Facet) -> bool {
     let whole = |facet: &Facet| facet.map(|p| p.map(|x| x as i64));
     let (a, b) = (whole(a), whole(b));
@@ -352,8 +353,8 @@ fn pairs_without_common_vertices() {
     assert!(counts[0] > 5000 && counts[1] > 5000, "{counts:?}");
 }
 
-/// Close to a common vertex triangles are cones: they meet beyond it if a segment across one of them, close
-/// to the vertex, meets the other one. With a common edge it is a segment beside the edge.
+/// Close to a common vertex, triangles are cones. They meet beyond the vertex if a segment across one of
+/// them, close to the vertex, meets the other one. For a common edge, the segment lies beside the edge.
 #[test]
 fn pairs_with_common_vertices() {
     let mut random = Random(4);

@@ -1,5 +1,5 @@
-//! Open meshes at the edge of what doubles can tell: boundary edges that pass close by and end far away, sewn
-//! meshes whose vertices moved in directions of their own, workers that are used again.
+//! Open meshes at the limits of doubles: boundary edges that pass close by and end far away, sewn meshes
+//! whose vertices moved in different directions, and workers that are used again.
 
 use leafless::solid::Parts;
 use leafless::{
@@ -34,7 +34,8 @@ fn winding(vertices: &[Point], triangles: &[[u32; 3]], point: Point) -> f64 {
     angles.sum()
 }
 
-/// FULL and EMPTY cells of depth 6 with a corner that contradicts them, and how many cells are PARTIAL.
+/// Returns the number of FULL and EMPTY cells of depth 6 with a contradicting corner, and the number of
+/// PARTIAL cells.
 fn faults(vertices: &[Point], triangles: &[[u32; 3]]) -> (usize, usize) {
     let frame = Frame::new([0.0; 3], 64.0, 6).unwrap();
     let mesh = TriangleMesh::new(vertices.to_vec(), triangles.to_vec()).unwrap();

@@ -1,4 +1,4 @@
-//! Solids of plane faces: volumes that are known, closedness always, and every way to be refused.
+//! Solids of plane faces: known volumes, closedness in every case, and every refusal.
 
 #![cfg(feature = "std")]
 
@@ -6,7 +6,7 @@ use leafless::error::{MeshError, PolyhedronError};
 use leafless::mesh::{Polyhedron, PolyhedronArrays};
 use leafless::{Error, FillRule};
 
-/// Arrays to be filled part by part.
+/// The arrays of a polyhedron, filled part by part.
 #[derive(Debug, Clone, Default, PartialEq)]
 struct Arrays {
     vertices: Vec<[f64; 3]>,
@@ -17,7 +17,7 @@ struct Arrays {
     solids: Vec<u32>,
 }
 
-/// The loops of a face, outer loop first.
+/// The loops of a face, with the outer loop first.
 type Face = Vec<Vec<u32>>;
 
 impl Arrays {
@@ -26,7 +26,7 @@ impl Arrays {
         Arrays { loops, faces, shells, solids, ..Default::default() }
     }
 
-    /// One solid of shells that have vertices of their own.
+    /// One solid, made of shells with their own vertices.
     fn solid(shells: &[(Vec<[f64; 3]>, Vec<Face>)]) -> Arrays {
         let mut arrays = Arrays::new();
         shells.iter().for_each(|(vertices, faces)| arrays.shell(vertices, faces));
@@ -62,7 +62,8 @@ impl Arrays {
         }
     }
 
-    /// The polyhedron, which is closed, and has as many triangles as its loops demand.
+    /// Builds the polyhedron. Checks that it is closed and has the number of triangles that its loops
+    /// require.
     #[track_caller]
     fn made(&self) -> Polyhedron {
         let polyhedron = Polyhedron::new(&self.view()).unwrap();
@@ -93,8 +94,8 @@ fn turned(faces: &[Face]) -> Vec<Face> {
     faces.iter().map(|face| face.iter().map(reversed).collect()).collect()
 }
 
-/// A prism over a polygon that turns counter-clockwise, with holes that turn clockwise; `place` takes its
-/// coordinates to space without a reflection.
+/// A prism over a counter-clockwise polygon with clockwise holes. `place` maps its coordinates to space
+/// without a reflection.
 fn prism(
     polygon: &[Vec<[f64; 2]>],
     [low, high]: [f64; 2],
@@ -133,7 +134,7 @@ fn block(low: [f64; 3], size: [f64; 3]) -> (Vec<[f64; 3]>, Vec<Face>) {
     prism(&[rectangle([x, y], [size[0], size[1]])], [z, z + size[2]], upright)
 }
 
-/// The same shell inside out: a void.
+/// The same shell with reversed orientation: a void.
 fn void((vertices, faces): (Vec<[f64; 3]>, Vec<Face>)) -> (Vec<[f64; 3]>, Vec<Face>) {
     (vertices, turned(&faces))
 }
@@ -356,8 +357,8 @@ impl Random {
         low + self.below((high - low + 1) as u32) as i32
     }
 
-    /// A polygon around a point, seen from which its corners come one after the other: at most `large` away
-    /// and nowhere nearer than half of `small`, in integers.
+    /// A star-shaped polygon around a point, in integers: its corners are in angular order. They are at most
+    /// `large` away, and no part of the polygon is nearer than half of `small`.
     fn star(&mut self, [x, y]: [i32; 2], small: i32, large: i32) -> Vec<[f64; 2]> {
         let directions = [
             [2, 0],
@@ -393,7 +394,7 @@ fn doubled_area(points: &[[f64; 2]]) -> f64 {
     pairs.map(|(a, b)| a[0] * b[1] - a[1] * b[0]).sum()
 }
 
-/// A prism over a random polygon with holes, moved by a random matrix of integers; six times its volume.
+/// A prism over a random polygon with holes, moved by a random integer matrix; and six times its volume.
 fn random_prism(random: &mut Random) -> ((Vec<[f64; 3]>, Vec<Face>), f64) {
     let mut polygon = vec![random.star([0, 0], 100, 400)];
     for x in -1..=1 {
@@ -488,7 +489,7 @@ fn tolerance() {
     }
 }
 
-/// A block of whose faces 0 is the bottom, 1 the top, both with a hole.
+/// A block with a hole through its bottom (face 0) and top (face 1).
 fn drilled() -> Arrays {
     let shape = [rectangle([0.0, 0.0], [4.0, 4.0]), hole([1.0, 1.0], [2.0, 2.0])];
     Arrays::solid(&[prism(&shape, [0.0, 2.0], upright)])
@@ -577,12 +578,12 @@ fn wrong_corners_and_edges() {
     assert!(matches!(halves, Open { shell: 0, face: 0, .. }));
 }
 
-/// Adds a loop to the first face's.
+/// Adjusts the faces' offsets for one more loop in the first face.
 fn rise(faces: &mut [u32]) {
     faces[1..].iter_mut().for_each(|face| *face += 1);
 }
 
-/// Removes a face of one loop of four corners, the last.
+/// Removes the last face, which has one loop of four corners.
 fn cut(arrays: &mut Arrays, face: usize) {
     assert_eq!(face, arrays.faces.len() - 2);
     arrays.corners.truncate(arrays.corners.len() - 4);
@@ -659,7 +660,7 @@ fn what_meshes_refuse() {
     assert!(matches!(missing, Error::Polyhedron(PolyhedronError::Offsets { array: "loops", index: 0, .. })));
 }
 
-/// Arrays damaged at random are refused or sound, and nothing else.
+/// Randomly damaged arrays are either refused or sound.
 #[test]
 fn random_damage() {
     let mut random = Random(11);
@@ -704,7 +705,7 @@ fn random_damage() {
     assert!(sound > 300 && refused > 10_000, "{sound} {refused}");
 }
 
-/// A block of so many square holes in rows, from top to bottom.
+/// A block with `holes` square through holes in rows.
 fn plate(holes: usize) -> Arrays {
     let mut vertices = vec![];
     let square = |vertices: &mut Vec<[f64; 3]>, [x, y]: [f64; 2], edge: [f64; 2]| -> [Vec<u32>; 2] {
@@ -738,7 +739,7 @@ fn plate(holes: usize) -> Arrays {
     Arrays::solid(&[(vertices, faces)])
 }
 
-/// What is written as polygons is read back as the same solid.
+/// A solid written as polygons is read back as the same solid.
 #[test]
 fn polygons_are_written() {
     use leafless::exchange::{MeshFormat, MeshOptions, WriteOptions, read_mesh, write_polygons};

@@ -1,4 +1,4 @@
-//! What is told about meshes, and where their defects lie, against the definitions.
+//! Reports about meshes, and the places of their defects, against the definitions.
 
 use crate::common;
 use leafless::TriangleMesh;
@@ -30,7 +30,7 @@ fn mesh(facets: &[Vec<[[f64; 3]; 3]>]) -> TriangleMesh {
     TriangleMesh::from_facets(facets.concat()).unwrap()
 }
 
-/// The counts of a mesh that are its own, and not those of how it came in.
+/// Returns the counts that depend on the mesh alone, and not on its construction.
 fn counts(mesh: &TriangleMesh) -> [u64; 10] {
     let MeshReport {
         boundary_edges,
@@ -107,7 +107,7 @@ fn block(low: [f64; 3], high: [f64; 3]) -> Vec<[[f64; 3]; 3]> {
     cube([0.0; 3]).into_iter().map(|facet| facet.map(place)).collect()
 }
 
-/// Bodies that overlap, and those that may.
+/// Returns the number of bodies that overlap, and the number of bodies that may.
 fn overlapping(facets: &[Vec<[[f64; 3]; 3]>]) -> [u64; 2] {
     let report = mesh(facets).report().unwrap();
     [report.overlapping_bodies, report.undecided_bodies]
@@ -158,7 +158,7 @@ fn bodies_that_overlap() {
     assert_eq!(overlapping(&[far(&two), far(&turned(&one))]), [0, 0]);
 }
 
-/// A block whose sides are grids of so many squares along each edge.
+/// A block whose sides are grids of `count` squares along each edge.
 fn divided(low: [f64; 3], high: [f64; 3], count: u32) -> Vec<[[f64; 3]; 3]> {
     let mut facets = vec![];
     for [a, b, c] in block(low, high).chunks_exact(2).map(|pair| pair[0]) {
@@ -183,8 +183,8 @@ fn divided(low: [f64; 3], high: [f64; 3], count: u32) -> Vec<[[f64; 3]; 3]> {
     facets
 }
 
-/// Hundreds of bodies in one of many triangles: each is decided, for which all triangles of the large one
-/// need not be looked at each time.
+/// Hundreds of bodies inside one body of many triangles. Each is decided without an examination of all
+/// triangles of the large body.
 #[test]
 fn many_bodies_in_a_large_one() {
     let outer = divided([0.0; 3], [64.0; 3], 64);
@@ -217,7 +217,7 @@ fn many_bodies_in_a_large_one() {
     assert_eq!(all(&mut (0..1000).flat_map(touching)), [0, 0]);
 }
 
-/// Blocks with whole coordinates, where all can be told cell by cell.
+/// Blocks with integer coordinates, where a cell-by-cell count decides everything.
 #[test]
 fn random_blocks_that_overlap() {
     let mut random = Random(3);
@@ -345,7 +345,7 @@ fn known_places() {
     assert_eq!(mesh(&[a]).defects(9).unwrap(), []);
 }
 
-/// All sets of items that hang together over vertices.
+/// Returns all sets of items that are connected by common vertices.
 fn clusters(items: &[Vec<u32>]) -> Vec<Vec<usize>> {
     let mut label: Vec<usize> = (0..items.len()).collect();
     loop {
@@ -366,10 +366,10 @@ fn clusters(items: &[Vec<u32>]) -> Vec<Vec<usize>> {
     sets.filter(|set: &Vec<usize>| !set.is_empty()).collect()
 }
 
-/// The triangles that use an edge, and whether they run from its lower vertex to its higher one.
+/// The triangles that use an edge, each with whether it runs from the edge's lower vertex to the higher one.
 type Uses = Vec<(usize, bool)>;
 
-/// The report's counts and the defects but for holes, by their definitions.
+/// Returns the report's counts, and the defects except holes, by their definitions.
 fn slow(mesh: &TriangleMesh) -> ([u64; 10], Vec<MeshDefect>) {
     let (vertices, triangles) = (mesh.vertices(), mesh.triangles());
     let mut edges: BTreeMap<(u32, u32), Uses> = BTreeMap::new();

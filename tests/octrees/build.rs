@@ -1,4 +1,4 @@
-//! The laws of solids, and what the builder makes of them, against exact arithmetic.
+//! The laws of solids, and the builder's results, against exact arithmetic.
 
 use crate::common::cubes::{Cubes, Plain};
 use crate::common::exact::Definition;
@@ -25,7 +25,7 @@ fn made<S: Solid>(solid: &S, frame: &Frame, rule: Rule) -> Octree {
     tree
 }
 
-/// A shape by its definition, and as the library has it.
+/// Builds the library's solid for a definition.
 fn shape(definition: Definition) -> AnySolid {
     match definition {
         Definition::Ball { centre, radius } => AnySolid::new(Csg::ball(centre, radius).unwrap()),
@@ -34,7 +34,7 @@ fn shape(definition: Definition) -> AnySolid {
     }
 }
 
-/// Everything that the laws say of a solid whose verdicts should be the best possible ones.
+/// Checks all laws for a solid whose verdicts should be the best possible ones.
 fn assert_exact(definition: Definition, frame: &Frame) {
     let depth = frame.depth();
     let truth = Dense::from_fn(depth, |at| definition.tag(frame, at));
@@ -73,7 +73,7 @@ fn assert_exact(definition: Definition, frame: &Frame) {
     laws(&solid, frame, &truth);
 }
 
-/// Verdicts by splitting from the root, into an array: no builder.
+/// Collects the verdicts into an array by splits from the root, without a builder.
 fn descend(worker: &mut impl Worker) -> Dense {
     fn walk<W: Worker>(worker: &mut W, cell: Cell, part: &W::Part, out: &mut Dense) {
         let mark = worker.mark();
@@ -103,7 +103,8 @@ fn descend(worker: &mut impl Worker) -> Dense {
     out
 }
 
-/// The verdict of one cell by replaying the splits on the way to it, with the worker's memory as it is found.
+/// Returns the verdict of one cell by replaying the splits on the way to it. The worker's memory is used as
+/// it is.
 fn replay(worker: &mut impl Worker, cell: Cell) -> Tag {
     let mut verdict = worker.root().unwrap();
     for level in 0..cell.level {
@@ -127,7 +128,7 @@ fn replay(worker: &mut impl Worker, cell: Cell) -> Tag {
     verdict.tag()
 }
 
-/// The laws, `truth` being what the solid says of the finest cells.
+/// Checks the laws. `truth` has the solid's verdicts for the finest cells.
 fn laws<S: Solid>(solid: &S, frame: &Frame, truth: &Dense) {
     let classifier = solid.on(frame, &alone()).unwrap();
     assert_eq!(classifier.frame(), frame);
@@ -163,7 +164,8 @@ fn laws<S: Solid>(solid: &S, frame: &Frame, truth: &Dense) {
     }
 }
 
-/// Frames: lattice planes that are integers, exact doubles, no doubles at all; far from the origin, tiny.
+/// Frames whose lattice planes are integers, exact doubles, or no doubles at all; far from the origin; and
+/// tiny.
 fn frames(depth: u8) -> Vec<Frame> {
     let frame = |origin, edge| Frame::new(origin, edge, depth).unwrap();
     vec![
@@ -175,7 +177,7 @@ fn frames(depth: u8) -> Vec<Frame> {
     ]
 }
 
-/// A point given in lattice coordinates, rounded.
+/// Converts a point from lattice to model coordinates, rounded.
 fn model(frame: &Frame, at: [f64; 3]) -> [f64; 3] {
     [0, 1, 2].map(|axis| frame.origin()[axis] + at[axis] * frame.cell_size())
 }
@@ -222,8 +224,8 @@ fn verdicts_are_exact_on_a_finer_lattice() {
     }
 }
 
-/// Frames whose origin and cell size have few bits, so that lattice points *and* what is computed from them
-/// are doubles, while most of the roundings on the way are not exact.
+/// Frames whose origin and cell size have few bits. Lattice points *and* the results computed from them are
+/// doubles, but most intermediate roundings are inexact.
 fn short_frames(depth: u8) -> Vec<Frame> {
     let frame = |origin: [f32; 3], edge: f32| Frame::new(origin.map(f64::from), edge as f64, depth).unwrap();
     vec![lattice_frame(depth), frame([0.1, -0.3, 0.7], 0.9), frame([-1000.1; 3], 3.3), frame([0.0; 3], 0.1)]
@@ -428,7 +430,7 @@ fn deeper_trees_only_refine() {
     }
 }
 
-/// Bit-identical for any number of threads, and so are the statistics.
+/// Checks that results and statistics are bit-identical for any number of threads.
 fn threads_agree<S: Solid>(solid: &S, frame: &Frame, rule: Rule) -> Octree {
     let one = made(solid, frame, rule);
     for threads in [2, 16] {
@@ -463,22 +465,22 @@ fn threads_do_not_change_results() {
     }
 }
 
-/// A union of balls whose parts are lists in scratch memory: the balls that still cut the cell. Parts that
-/// refer to released memory would be noticed, as would one that another part overwrites.
+/// A union of balls. Each part is a list in scratch memory of the balls that still cut the cell. The tests
+/// notice a part that refers to released memory, and a part that another part overwrites.
 #[derive(Clone)]
 struct Crowd(Vec<Plain>);
 
-/// A ball on a frame.
+/// A ball's classifier on a frame.
 type PlacedBall = <Plain as Solid>::Classifier;
 
-/// The balls on a frame.
+/// The balls' classifiers on a frame.
 #[derive(Clone)]
 struct CrowdOnFrame {
     balls: Arc<[PlacedBall]>,
     frame: Frame,
 }
 
-/// The balls, and the lists.
+/// The balls' workers, and the lists.
 struct Lists {
     balls: Vec<<PlacedBall as Classifier>::Worker>,
     frame: Frame,
@@ -632,18 +634,18 @@ fn parts_in_scratch_memory_survive_what_the_builder_does() {
     }
 }
 
-/// A solid that fills blocks at once, by looking them up in trees that were built without.
+/// A solid that fills whole blocks from trees that were built without block-wise filling.
 #[derive(Clone)]
 struct Bulk<'a> {
     ball: Plain,
     certified: &'a Octree,
     sampled: &'a Octree,
-    /// What the builder resolves by, and so asks for.
+    /// The builder's rule, and hence the rule that it requests.
     rule: Rule,
     filled: &'a AtomicU64,
 }
 
-/// The same on a frame: handle and worker.
+/// Classifier and worker on a frame.
 #[derive(Clone)]
 struct BulkOnFrame<'a> {
     bulk: Bulk<'a>,

@@ -1,4 +1,4 @@
-//! What is asked of channels: summaries, regions, materials; volumes as attributes.
+//! Queries of channels: summaries, regions and materials; and volumes as attributes.
 
 use crate::common;
 use crate::common::values::{Values, kinds, values_of};
@@ -155,7 +155,7 @@ fn constant(frame: &Frame, value: f64, kind: ValueType) -> leafless::attribute::
     fill_channel(&ConstantAttribute::new(&[value]).unwrap(), &options, &alone()).unwrap()
 }
 
-/// A ball of two metals, of which the densities are known within intervals: the mass holds the analytic one,
+/// A ball of two metals with densities known within intervals. The mass interval contains the analytic mass,
 /// and is as narrow as densities and geometry allow.
 #[test]
 fn the_mass_of_two_materials_holds_the_analytic_one() {
@@ -206,7 +206,7 @@ fn the_mass_of_two_materials_holds_the_analytic_one() {
     assert!(summary.mean[0].contains(exact / all));
 }
 
-/// A region knows what its solid knows: second order where the value does not change.
+/// A region provides all that its solid provides: second order where the value does not change.
 #[test]
 fn a_region_of_a_solid_is_measured_as_fast() {
     let frame = Frame::new([-1.0; 3], 2.0, 20).unwrap();
@@ -249,7 +249,7 @@ fn what_cannot_be_summed_up_is_refused() {
     assert!(matches!(refused, Err(Error::Limit { what: "materials", .. })));
 }
 
-/// On the grid's own frame, the nearest samples are the samples.
+/// On the grid's own frame, the nearest samples are the grid's samples.
 #[test]
 fn a_volume_becomes_a_channel() {
     let grid = VoxelGrid::new([8, 5, 7], [0.0; 3], [0.5; 3]).unwrap();

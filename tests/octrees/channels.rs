@@ -15,7 +15,7 @@ use leafless::{
 };
 use proptest::prelude::*;
 
-/// The tag of a cell of a lattice of `depth`, as a walk down to there meets it.
+/// Returns the tag that a walk down a lattice of `depth` meets at a cell.
 fn tag(dense: &Dense, depth: u8, at: [u32; 3]) -> Tag {
     if dense.depth <= depth {
         return dense.at(at.map(|a| a >> (depth - dense.depth)));
@@ -175,7 +175,7 @@ fn scalar(scalar: ScalarType) -> ValueType {
     ValueType::new(scalar, 1).unwrap()
 }
 
-/// The published rule and the certified one, at a spot that no corner sees.
+/// The published variance rule and the certified rule, at a spot that no corner samples.
 #[test]
 fn variance_misses_a_spot_that_a_range_does_not() {
     let frame = Frame::new([0.0; 3], 8.0, 6).unwrap();
@@ -204,7 +204,7 @@ fn variance_misses_a_spot_that_a_range_does_not() {
     assert_eq!(values(&fill(Criterion::Variance, 0.5)), exact);
 }
 
-/// The sizes of the documentation's table: one value for a uniform part, whatever the depth.
+/// The sizes in the documentation's table: a uniform part has one value, whatever the depth.
 #[test]
 fn simple_channels_are_small() {
     let frame = Frame::new([0.0; 3], 1.0, 10).unwrap();
@@ -443,7 +443,7 @@ fn a_file_without_channels_is_of_the_first_version() {
     assert_eq!(leafless::file::probe_bytes(&bytes).unwrap().version, (0, 1));
 }
 
-/// Sets the checksums of a changed file right.
+/// Changes a file and repairs its checksums.
 fn sealed(mut bytes: Vec<u8>, change: impl FnOnce(&mut Vec<u8>)) -> Vec<u8> {
     change(&mut bytes);
     let field = |bytes: &[u8], at: usize| u64::from_le_bytes(bytes[at..at + 8].try_into().unwrap()) as usize;
@@ -460,14 +460,15 @@ fn sealed(mut bytes: Vec<u8>, change: impl FnOnce(&mut Vec<u8>)) -> Vec<u8> {
     bytes
 }
 
-/// Where a section begins.
+/// Returns the offset of a section.
 fn section(bytes: &[u8], owner: u32, kind: u32) -> usize {
     let sections = leafless::file::probe_bytes(bytes).unwrap().sections;
     let is_it = |section: &&leafless::file::Section| (section.owner, section.kind) == (owner, kind);
     sections.iter().find(is_it).unwrap().offset as usize
 }
 
-/// Two things are wrong, the solid's tree and the record of its channel: whoever verifies names the same one.
+/// The solid's tree and the record of its channel are both damaged. Every way of verifying reports the same
+/// damage first.
 #[test]
 fn all_ways_in_name_the_same_damage_first() {
     let values = Values::from_fn(2, |[x, ..]| Some([f64::from(x), 0.0, 0.0, 0.0]));
@@ -485,7 +486,7 @@ fn all_ways_in_name_the_same_damage_first() {
     assert!(verified.to_string().contains("exterior"), "{verified}");
 }
 
-/// Values of other bits than those that the library stores, and the same value twice.
+/// Values with bits that the library never stores, and repeated values.
 #[test]
 fn wrong_values_are_refused_and_read_as_they_stand() {
     let values = Values::from_fn(1, |[x, ..]| Some([f64::from(x) + 0.5, 2.0, 0.0, 0.0]));
@@ -518,7 +519,7 @@ fn wrong_values_are_refused_and_read_as_they_stand() {
     }
 }
 
-/// As many records of channels as a file can have objects: the 257th is refused, whatever it says.
+/// A file with as many channel records as objects are allowed. The 257th is refused, whatever its content.
 #[test]
 fn thousands_of_records_of_channels_are_refused() {
     let crowd = include_bytes!("../../format_spec/vectors/invalid/channel-count.lfl");
@@ -563,7 +564,7 @@ fn thousands_of_records_of_channels_are_refused() {
     assert!(refused.to_string().contains("channel"), "{refused}");
 }
 
-/// Channels that share all but their values, with one another and with the solid.
+/// Channels that share all sections but their values, with each other and with the solid.
 #[test]
 fn channels_that_share_sections_are_read() {
     let bytes = include_bytes!("../../format_spec/vectors/valid/channels-shared.lfl");

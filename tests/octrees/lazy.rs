@@ -1,5 +1,5 @@
-//! Octrees that are split on demand: against dense recursion over the same cells, counted, limited,
-//! cancelled, frozen and taken up again.
+//! Octrees that are split on demand: compared with dense recursion over the same cells, counted, limited,
+//! cancelled, frozen and resumed.
 
 use crate::common::cubes::{Cubes, Plain};
 use crate::common::{
@@ -20,22 +20,22 @@ use std::sync::atomic::{AtomicBool, AtomicU64, Ordering};
 
 // ---- a solid that finds out late ------------------------------------------------------------------------
 
-/// A dense array as a solid that does not see at once that a cell is of one kind. Its parts lie in scratch
-/// memory.
+/// A dense array as a solid that sometimes recognises uniform cells only after splits. Its parts lie in
+/// scratch memory.
 #[derive(Clone, Copy)]
 struct Late<'a> {
     dense: &'a Dense,
     seed: u8,
 }
 
-/// The same on a frame.
+/// The solid's classifier on a frame.
 #[derive(Clone, Copy)]
 struct LateOnFrame<'a> {
     late: Late<'a>,
     frame: Frame,
 }
 
-/// The same with the cells that parts stand for.
+/// The solid's worker, with the cells that parts stand for.
 struct Cells<'a> {
     late: Late<'a>,
     frame: Frame,
@@ -153,13 +153,13 @@ impl Worker for Cells<'_> {
 
 // ---- what should come out -------------------------------------------------------------------------------
 
-/// Which cells were split; nothing else is remembered.
+/// A model of a lazy octree that remembers only which cells were split.
 struct Model<'a> {
     solid: &'a Late<'a>,
     split: HashSet<Cell>,
-    /// Whether the octree was taken up again: it does not know any more which cells splitting does not help.
+    /// True if the octree was resumed. It no longer remembers which cells cannot be improved by splits.
     resumed: bool,
-    /// Splits that such an octree does not count.
+    /// Number of splits that a resumed octree does not count.
     before: usize,
 }
 
@@ -180,7 +180,7 @@ impl Model<'_> {
         Dense::from_fn(self.solid.dense.depth, |at| self.known(at))
     }
 
-    /// Whether a cell can be split now.
+    /// True if a cell can be split now.
     fn is_open(&self, cell: Cell) -> bool {
         let split = |level: u8| {
             let at = cell.at.map(|a| a >> (cell.level - level));
@@ -192,7 +192,8 @@ impl Model<'_> {
             && cell.level < self.solid.dense.depth
     }
 
-    /// Splits the cells of a zone above `level`, all or those of one level; at most `left`.
+    /// Splits the open cells of a zone above `level`, all of them or those of one level; at most `left`
+    /// cells.
     fn refine(&mut self, zone: &Zone, only: Option<u8>, level: u8, left: &mut u64) -> bool {
         let mut stack = vec![Cell::ROOT];
         while let Some(cell) = stack.pop() {
@@ -218,7 +219,7 @@ impl Model<'_> {
         assert!(self.refine(zone, None, level, &mut left));
     }
 
-    /// What an octree forgets when it is frozen: splits that found out nothing.
+    /// Removes the splits that freezing forgets: splits that decided nothing.
     fn forget(&mut self) {
         let dense = self.dense();
         self.split.retain(|&cell| dense.tag_of(cell) != Some(Tag::Partial));
@@ -226,7 +227,7 @@ impl Model<'_> {
     }
 }
 
-/// A fraction with a denominator above zero.
+/// A fraction with a positive denominator.
 #[derive(Clone, Copy)]
 struct Fraction(i128, i128);
 
@@ -236,8 +237,7 @@ impl Fraction {
     }
 }
 
-/// Whether a zone has the cell, by the words of its documentation. Coordinates are multiples of ½ and not
-/// large.
+/// True if a zone has the cell, by its documentation. Coordinates are multiples of ½ and not large.
 fn meets(zone: &Zone, depth: u8, cell: Cell) -> bool {
     let size = 1u32 << (depth - cell.level);
     let low = cell.at.map(|a| (a * size) as f64);
@@ -280,7 +280,7 @@ fn meets(zone: &Zone, depth: u8, cell: Cell) -> bool {
     }
 }
 
-/// One call.
+/// One call of the interface.
 #[derive(Debug, Clone)]
 enum Call {
     Split(u8, [u32; 3]),
@@ -318,7 +318,7 @@ fn calls() -> impl Strategy<Value = Vec<Call>> {
     proptest::collection::vec(call, 0..16)
 }
 
-/// Everything that an octree says of itself.
+/// Compares everything that an octree reports about itself.
 fn compare(lazy: &LazyOctree<Late<'_>>, model: &Model<'_>) {
     let depth = lazy.frame().depth();
     let dense = model.dense();
@@ -500,7 +500,7 @@ fn callback<'a>(
     Callback::new(Box::new(classify))
 }
 
-/// The slab 0.3 ≤ z ≤ 0.7, known through boxes.
+/// The slab 0.3 ≤ z ≤ 0.7, given by verdicts on boxes.
 fn slab() -> Callback<'static, Classify<'static>> {
     callback(|min, max| {
         Ok(match (min[2], max[2]) {
@@ -659,7 +659,7 @@ fn what_is_no_cell_is_refused() {
 
 // ---- counted --------------------------------------------------------------------------------------------
 
-/// The ball of radius 0.4 around the middle, known through boxes.
+/// The ball of radius 0.4 around the middle, given by verdicts on boxes.
 fn round(min: [f64; 3], max: [f64; 3]) -> Verdict<()> {
     let (mut near, mut far) = (0.0, 0.0);
     for axis in 0..3 {
@@ -674,7 +674,7 @@ fn round(min: [f64; 3], max: [f64; 3]) -> Verdict<()> {
     }
 }
 
-/// The same as a solid whose parts must be had again by splits; every box that it is asked about is noted.
+/// The same ball as a solid that recomputes parts by splits. It records every queried box.
 #[derive(Clone)]
 struct Noted<'a>(&'a Mutex<Vec<([f64; 3], [f64; 3])>>);
 
@@ -1179,8 +1179,8 @@ fn threads_may_have_it_one_after_another() {
     is_send_and_sync::<LazyOctree<MeshSolid>>();
 }
 
-/// Any octree that a file may hold: taken up without a crash, and refined as far as it does not contradict
-/// the solid.
+/// Any octree from a file is resumed without a crash, and refined as long as it does not contradict the
+/// solid.
 #[test]
 #[cfg(all(feature = "mmap", target_endian = "little"))]
 fn damaged_files_are_taken_up_without_a_crash() {

@@ -1,5 +1,5 @@
-//! What octrees say that their cells prove: the bits are those of the table in `src/octree/proof.rs`,
-//! whatever made the tree, and what is claimed is true of the source, point by point.
+//! The proofs that octrees claim for their cells. The bits are those of the table in `src/octree/proof.rs`,
+//! whatever made the tree, and each claim is true of the source, point by point.
 
 #![cfg(feature = "std")]
 
@@ -43,7 +43,7 @@ impl Random {
         RULES[self.below(10).saturating_sub(6) as usize]
     }
 
-    /// A multiple of a quarter.
+    /// Returns a random multiple of a quarter.
     fn quarter(&mut self, low: u64, high: u64) -> f64 {
         (4 * low + self.below(4 * (high - low))) as f64 / 4.0
     }
@@ -51,7 +51,7 @@ impl Random {
 
 // ---- the source, exactly --------------------------------------------------------------------------------
 
-/// What a tree was made from. Numbers are multiples of small powers of two, so that all sums below are exact.
+/// The source of a tree. Numbers are multiples of small powers of two, so that all sums below are exact.
 #[derive(Clone)]
 enum Source {
     Ball([f64; 3], f64),
@@ -60,7 +60,7 @@ enum Source {
     And(Vec<Source>),
     Or(Vec<Source>),
     Xor(Vec<Source>),
-    /// Scaled, then moved.
+    /// A source, scaled and then translated.
     Placed(Arc<Source>, f64, [f64; 3]),
 }
 
@@ -69,7 +69,7 @@ impl Source {
         Source::Not(Arc::new(self))
     }
 
-    /// Whether a point is inside; `None` on the surface of a primitive, where either may be said.
+    /// True if a point is inside; `None` on the surface of a primitive, where both answers are allowed.
     fn contains(&self, point: [f64; 3]) -> Option<bool> {
         let all =
             |parts: &[Source]| parts.iter().map(|part| part.contains(point)).collect::<Option<Vec<bool>>>();
@@ -120,7 +120,7 @@ impl Source {
         }
     }
 
-    /// A few primitives, joined.
+    /// A few primitives, combined.
     fn scene(random: &mut Random) -> Source {
         let parts: Vec<_> = (0..1 + random.below(3)).map(|_| Source::primitive(random)).collect();
         let joined = join(random, parts);
@@ -140,7 +140,7 @@ fn placement(scale: f64, [x, y, z]: [f64; 3]) -> Affine {
     Affine::new([[scale, 0.0, 0.0, x], [0.0, scale, 0.0, y], [0.0, 0.0, scale, z]]).unwrap()
 }
 
-/// Points in a finest cell: the middle, and one near each corner.
+/// Points in a finest cell: the middle, and one point near each corner.
 fn points(cell: [u32; 3], size: f64) -> impl Iterator<Item = [f64; 3]> {
     (0..9).map(move |k| {
         let within = |axis: u32| if k == 8 { 0.5 } else { [0.0625, 0.9375][k >> axis & 1] };
@@ -148,7 +148,7 @@ fn points(cell: [u32; 3], size: f64) -> impl Iterator<Item = [f64; 3]> {
     })
 }
 
-/// How many points of the cells contradict `claim`; only every `stride`-th cell is looked at.
+/// Counts the points of the cells that contradict `claim`; only every `stride`-th cell is examined.
 fn lies(tree: &Octree, claim: Proof, source: &Source, stride: u64) -> usize {
     let (cells, size) = (tree.frame().cells(), tree.frame().cell_size());
     let mut count = 0;
@@ -167,7 +167,7 @@ fn lies(tree: &Octree, claim: Proof, source: &Source, stride: u64) -> usize {
 
 // ---- the table ------------------------------------------------------------------------------------------
 
-/// What should be proven, by the table; displacements up to the last places.
+/// The expected proof by the table. Displacements are exact up to the last places.
 #[derive(Clone, Copy, Debug)]
 struct Claim {
     full: bool,
@@ -186,7 +186,7 @@ impl Claim {
         Claim { full: self.empty, empty: self.full, ..self }
     }
 
-    /// Of unions and intersections.
+    /// Returns the claim for unions and intersections.
     fn joined(claims: &[Claim]) -> Claim {
         Claim {
             full: claims.iter().all(|claim| claim.full),
@@ -210,7 +210,7 @@ impl Claim {
     }
 }
 
-/// A tree, what should be proven of it, and what it was made from.
+/// A tree, its expected proof, and its source.
 #[derive(Clone)]
 struct Grown {
     tree: Octree,
@@ -232,7 +232,8 @@ impl Grown {
     }
 }
 
-/// `solid` built by `rule`; where it cannot say what lies at centres, as it is. Tells which it was.
+/// Builds `solid` by `rule`, or by the certified rule if the solid cannot be sampled at centres. Returns the
+/// rule used, too.
 fn built<S: Solid>(solid: &S, depth: u8, rule: Rule) -> (Octree, Rule) {
     match build(solid, &frame(depth), rule, &CONTROL) {
         Err(Error::NotSampled) if rule == Rule::Sampled => {
@@ -254,7 +255,7 @@ fn leaf(random: &mut Random) -> Grown {
     Grown::new(tree, Claim { displacement, ..claim }, source)
 }
 
-/// An expression over stored trees and primitives, with what should be proven of it.
+/// A random expression over stored trees and primitives, with its expected proof.
 fn expression(random: &mut Random, level: u32) -> (Csg, Claim, Source) {
     if level == 0 {
         if random.below(4) == 0 {
@@ -286,7 +287,7 @@ fn expression(random: &mut Random, level: u32) -> (Csg, Claim, Source) {
     }
 }
 
-/// A tree by so many operations, one on the other.
+/// A tree made by up to `level` nested operations.
 fn grow(random: &mut Random, level: u32) -> Grown {
     if level == 0 {
         return leaf(random);
@@ -404,7 +405,7 @@ fn what_is_claimed_is_what_the_table_says_and_true() {
     assert!(seen.iter().all(|&count| count > 60), "{seen:?}");
 }
 
-/// The table itself, line by line.
+/// The documentation's table, line by line.
 #[test]
 fn the_table_of_the_documentation() {
     let all = [Proof::new(false, false), Proof::new(true, false), Proof::new(false, true), Proof::CERTIFIED];
@@ -428,7 +429,7 @@ fn the_table_of_the_documentation() {
     }
 }
 
-/// The check above sees lies: what is not proven is false somewhere.
+/// The check above notices lies: a claim that is not proven is false somewhere.
 #[test]
 fn a_lie_is_seen() {
     let sources = [
@@ -455,7 +456,7 @@ fn a_lie_is_seen() {
     }
 }
 
-/// Whoever makes a tree by hand says what it proves; equal cells are equal whatever is said of them.
+/// The maker of a tree by hand states its proof. Equal cells are equal trees, whatever the proofs.
 #[test]
 fn what_is_said_of_a_tree() {
     let ball = Csg::ball([8.0; 3], 5.0).unwrap();
@@ -509,7 +510,7 @@ fn files_keep_it() {
     }
 }
 
-/// A cube of facets, of which the upper face was lifted.
+/// A cube of facets whose upper face is lifted.
 fn cracked(by: f64) -> TriangleMesh {
     let corner = |i: usize| [i & 1, i >> 1 & 1, i >> 2].map(|bit| 3.0 + 8.0 * bit as f64);
     let faces = [[0, 2, 3, 1], [4, 5, 7, 6], [0, 1, 5, 4], [2, 6, 7, 3], [0, 4, 6, 2], [1, 3, 7, 5]];

@@ -1,5 +1,5 @@
-//! Shards of an octree: joined they are the whole, byte for byte, and alone they say nothing that is not true
-//! of it.
+//! Shards of an octree. Joined, they are the whole, byte for byte; alone, each makes only true claims about
+//! the whole.
 
 use crate::common::{Random, alone, repeated, shapes};
 use leafless::op::{build_extended_shard, join, shard};
@@ -13,7 +13,7 @@ use leafless::{
 };
 use proptest::prelude::*;
 
-/// How a tree is made of a solid.
+/// A way to make a tree of a solid.
 #[derive(Debug, Clone, Copy)]
 enum Way {
     Plain(Rule),
@@ -79,7 +79,7 @@ fn check<S: Solid>(solid: &S, frame: &Frame, way: Way, level: u8) {
     assert!(bytes(&joined(&cut)) == expected, "cut, {way:?}, level {level} of {}", frame.depth());
 }
 
-/// The top with all that shards know of cells that are not split, and the others with their cells.
+/// Joins the top with all shards whose cells are not split. Returns it and the other shards with their cells.
 fn settled(built: &[Octree], level: u8) -> (Octree, Vec<(Cell, Octree)>) {
     let (mut top, mut shards) = (vec![built[0].clone()], Vec::new());
     let cells = built[0].view().open_cells(level).unwrap();
@@ -90,7 +90,7 @@ fn settled(built: &[Octree], level: u8) -> (Octree, Vec<(Cell, Octree)>) {
     (joined(&top), shards)
 }
 
-/// Statistics and measures of a top and its shards are those of the whole.
+/// Checks that the statistics and measures of a top and its shards are those of the whole.
 fn check_sums(whole: &Octree, (top, shards): (Octree, Vec<(Cell, Octree)>)) {
     let mut all = vec![top.clone()];
     all.extend(shards.iter().map(|(_, shard)| shard.clone()));
@@ -116,7 +116,7 @@ fn check_sums(whole: &Octree, (top, shards): (Octree, Vec<(Cell, Octree)>)) {
     assert_eq!((found.clipped, found.proof), (expected.clipped, expected.proof));
 }
 
-/// As a solid the shards are the whole.
+/// Checks that the shards, as a solid, are the whole.
 fn check_solid(whole: &Octree, sharded: &ShardedOctree) {
     let frame = *whole.frame();
     for frame in [frame, frame.with_depth(1).unwrap(), frame.with_depth((frame.depth() + 1).min(20)).unwrap()]
@@ -203,7 +203,7 @@ fn built_in_shards() {
     }
 }
 
-/// A ball of a host program, which is asked about many boxes at once.
+/// A ball of a host program, which is queried for many boxes at once.
 fn host() -> impl Solid {
     Callback::new(|min: [f64; 3], max: [f64; 3]| {
         let (mut near, mut far) = (0.0, 0.0);
@@ -267,7 +267,7 @@ fn large_enough_for_threads() {
     }
 }
 
-/// The triangles of a mesh by the places of their corners.
+/// Returns the triangles of a mesh by the places of their corners.
 fn places(meshes: &[TriangleMesh]) -> Vec<[[u64; 3]; 3]> {
     let corner = |mesh: &TriangleMesh, vertex: u32| mesh.vertices()[vertex as usize].map(f64::to_bits);
     let all = meshes.iter().flat_map(|mesh| mesh.triangles().iter().map(move |t| t.map(|v| corner(mesh, v))));

@@ -1,4 +1,4 @@
-//! Voxel records, against recursion over dense arrays and against searches without order.
+//! Voxel records, against recursion over dense arrays and against unordered searches.
 
 use crate::common;
 use crate::common::{Dense, Random, alone, cases, lattice_frame, repeated, shapes};
@@ -14,7 +14,7 @@ use leafless::{
 use proptest::prelude::*;
 use std::sync::atomic::AtomicBool;
 
-/// Two numbers that change everywhere, and none in a corner.
+/// An attribute of two components that change everywhere, without a value in a corner.
 fn slope() -> impl Attribute {
     let at = |p: [f64; 3]| p[0] * p[0] + 3.0 * p[1] - 0.5 * p[2];
     let function = move |p: [f64; 3]| (p[0] + p[1] > 0.5).then(|| [at(p), p[2], 0.0, 0.0]);
@@ -32,7 +32,7 @@ fn slope() -> impl Attribute {
     })
 }
 
-/// What the list must be, by its definition.
+/// The expected list, by its definition.
 struct Oracle<'a> {
     dense: &'a Dense,
     frame: Frame,
@@ -45,7 +45,7 @@ struct Oracle<'a> {
 }
 
 impl Oracle<'_> {
-    /// Whether the neighbour of a finest cell of the boundary level lies outside.
+    /// True if the neighbour of a finest cell of the boundary level lies outside.
     fn is_outside(&self, at: [i64; 3]) -> bool {
         let n = 1i64 << self.boundary_level;
         if at.iter().any(|a| !(0..n).contains(a)) {
@@ -178,7 +178,7 @@ proptest! {
     }
 }
 
-/// The arrays are accepted, and nothing else like them.
+/// Checks that the arrays are accepted, and that changed arrays are refused.
 fn check_arrays(records: &VoxelRecords) {
     let view = records.view();
     let frame = view.frame();
@@ -198,7 +198,7 @@ fn check_arrays(records: &VoxelRecords) {
     }
 }
 
-/// What is found by code is what is found by looking at each.
+/// Checks the search by code against an examination of every record.
 fn check_search(records: &VoxelRecords) {
     let view = records.view();
     let depth = view.frame().depth();
@@ -387,7 +387,7 @@ fn an_attribute_that_fails_ends_the_list() {
     assert!(voxels.next().is_none());
 }
 
-/// Records with all that there is: four kinds, two components.
+/// Records with all options: four kinds, two components.
 fn some_records(dense: &Dense, boundary: u8, refined: bool, detail: Option<Detail>) -> VoxelRecords {
     let mut options = VoxelOptions::new().boundary_depth(boundary).outside(true).refined(refined);
     if let Some(detail) = detail {
@@ -396,7 +396,7 @@ fn some_records(dense: &Dense, boundary: u8, refined: bool, detail: Option<Detai
     VoxelRecords::of(dense.octree().view(), &options, Some(&slope()), &alone()).unwrap()
 }
 
-/// Bits, since what is not a number is not equal.
+/// Returns the records as bits, because NaN is not equal to itself.
 fn bits(records: &VoxelRecords) -> (Vec<u64>, Vec<u8>, Vec<u8>, Vec<u64>) {
     let view = records.view();
     let values = view.values().iter().map(|value| value.to_bits()).collect();
@@ -490,7 +490,7 @@ proptest! {
         }
     }
 
-    /// Against dense arrays, and against the octree as a solid under the same map.
+    /// Moved cells, against dense arrays and against the octree as a solid under the same map.
     #[test]
     fn whole_cells_move_as_octrees_do(
         shape in shapes(1..=3),
@@ -658,7 +658,7 @@ fn maps_that_take_cells_to_cells() {
     refused([[1.0, 0.0, 0.0, 1e-17], [0.0, 1.0, 0.0, 0.0], [0.0, 0.0, 1.0, 0.0]]);
 }
 
-/// Whether a cube, seen along a line that an eye or a direction gives, may hide a part of another one.
+/// True if a cube may hide part of another cube, seen from an eye or along a direction.
 fn hides(front: [[f64; 3]; 2], back: [[f64; 3]; 2], from: &Viewpoint) -> bool {
     match *from {
         // Moved on along the direction, for some t > 0, the front one meets the back one.
@@ -758,7 +758,7 @@ mod triangles {
     use super::*;
     use crate::common::exact::Exact;
 
-    /// Whether a triangle and a closed box have a point in common, by clipping the triangle with exact
+    /// True if a triangle and a closed box have a point in common. The triangle is clipped with exact
     /// fractions: a polygon whose corners are integers over one denominator each.
     fn meets(corners: [[i128; 3]; 3], low: [i128; 3], high: [i128; 3]) -> bool {
         // Homogeneous: (x, y, z, w), w > 0.
@@ -885,7 +885,7 @@ mod triangles {
 #[allow(dead_code)]
 mod gear_records;
 
-/// The published gear took 2.33 times fewer voxels where these follow the colour.
+/// On the published gear, voxels that follow the colour are 2.33 times fewer.
 #[test]
 fn adaptive_voxels_are_fewer_and_no_value_is_off() {
     for part in gear_records::parts(&alone()).unwrap() {
@@ -919,7 +919,7 @@ fn adaptive_voxels_are_fewer_and_no_value_is_off() {
     }
 }
 
-/// The parts of voxels that are solid add up to the volume.
+/// The solid parts of voxels add up to the volume.
 #[test]
 fn solid_parts_add_up() {
     let control = alone();
