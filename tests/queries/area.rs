@@ -16,7 +16,7 @@ fn frame() -> Frame {
     Frame::new([-4.0; 3], 8.0, 20).unwrap()
 }
 
-/// A truth that is a rounded double.
+/// Checks a result against a truth that is a rounded double.
 #[track_caller]
 fn holds(found: &SurfaceArea, truth: f64, name: &str) {
     let slack = 1e-12 * truth;
@@ -24,12 +24,12 @@ fn holds(found: &SurfaceArea, truth: f64, name: &str) {
     assert!(area.lower <= truth + slack && truth - slack <= area.upper, "{name}: {truth} {found:?}");
 }
 
-/// The area of a cone's or a frustum's side.
+/// Returns the lateral area of a cone or a frustum.
 fn side(a: f64, b: f64, height: f64) -> f64 {
     PI * (a + b) * ((a - b) * (a - b) + height * height).sqrt()
 }
 
-/// The area of an ellipsoid with two equal radii a and a smaller one c along the axis.
+/// Returns the area of an ellipsoid with two equal radii a and a smaller radius c along the axis.
 fn oblate(a: f64, c: f64) -> f64 {
     let e = (1.0 - c * c / (a * a)).sqrt();
     2.0 * PI * a * a * (1.0 + (1.0 - e * e) / e * e.atanh())
@@ -62,7 +62,8 @@ fn primitives() -> Vec<(&'static str, Csg, f64)> {
     ]
 }
 
-/// A turn by a random angle about a random axis, a scale and an offset; and the scale.
+/// A random placement with its scale: a rotation by a random angle about a random axis, a scale and an
+/// offset.
 fn placement(random: &mut Random) -> (Affine, f64) {
     let [a, b, c] = [0; 3].map(|_| random.between(-1.0, 1.0));
     let turn = glam::DMat3::from_quat(glam::DQuat::from_scaled_axis(glam::DVec3::new(a, b, c) * 3.0));
@@ -229,7 +230,7 @@ fn extended(solid: &Csg, frame: &Frame) -> leafless::Octree {
     build_extended(solid, frame, &SurfaceOptions::default(), &alone()).unwrap()
 }
 
-/// Most faces of the plate lie in planes of the lattice, and so leave no surface in the tree.
+/// Most faces of the plate lie in planes of the lattice, and so the tree stores no surface for them.
 #[test]
 fn an_extended_tree_has_the_area_of_its_source() {
     let turn = Affine::new([[0.36, 0.48, -0.8, 0.0], [-0.8, 0.6, 0.0, 0.0], [0.48, 0.64, 0.6, 0.0]]).unwrap();
@@ -258,8 +259,7 @@ fn an_extended_tree_has_the_area_of_its_source() {
     }
 }
 
-/// Faces in planes of the lattice at each depth of trees, between cells that are decided, and beside cells
-/// that are cut.
+/// Faces in planes of the lattice at every depth of the tree, between decided cells and beside cut cells.
 #[test]
 fn faces_in_planes_of_the_lattice_are_counted_once() {
     let frame = Frame::new([-4.0; 3], 8.0, 12).unwrap();
@@ -302,7 +302,7 @@ fn faces_in_planes_of_the_lattice_are_counted_once() {
     assert!(checked > repeated(75, 300));
 }
 
-/// A surface that vanishes on faces of cells that it crosses, and has different signs on both sides of them.
+/// A surface that vanishes on faces of the cells it crosses, with different signs on both sides of a face.
 #[test]
 fn a_surface_that_holds_faces_is_counted() {
     let frame = Frame::new([-4.0; 3], 8.0, 12).unwrap();
@@ -324,7 +324,7 @@ fn a_surface_that_holds_faces_is_counted() {
     }
 }
 
-/// Two turned cubes of edge 1 that intersect: a mesh that does not know its area without splits.
+/// Two rotated, intersecting cubes of edge 1: a mesh whose area is not known without splits.
 fn intersecting_cubes() -> MeshSolid {
     let turn = glam::DMat3::from_quat(glam::DQuat::from_scaled_axis(glam::DVec3::new(0.3, 0.7, -0.4)));
     let quads = [[0, 4, 6, 2], [1, 3, 7, 5], [0, 1, 5, 4], [2, 6, 7, 3], [0, 2, 3, 1], [4, 5, 7, 6]];
@@ -373,8 +373,8 @@ fn the_same_for_any_number_of_threads() {
     assert_eq!(surface_area(&solid, &frame(), tolerance, &alone()).unwrap(), many);
 }
 
-/// Bounds of the area in a cell by those of cells that are some levels finer, in squares of the cell's half
-/// edge. (Where a solid ends in a wall between two cells the area there is in neither.)
+/// Bounds the area in a cell by the areas of cells some levels finer, in squares of the cell's half edge. (If
+/// a solid ends in the wall between two cells, the area there is in neither.)
 fn by_finer<W: Worker>(worker: &mut W, cell: Cell, part: &W::Part, levels: u8) -> Interval {
     if levels == 0 {
         return worker.area(cell, part).unwrap().unwrap_or(Interval::new(0.0, f64::INFINITY).unwrap());
@@ -393,7 +393,7 @@ fn by_finer<W: Worker>(worker: &mut W, cell: Cell, part: &W::Part, levels: u8) -
     sum
 }
 
-/// Cells of `solid` on the way down to a random one: their areas against those of finer cells.
+/// Compares the areas of the cells of `solid` on the way down to a random cell with the areas of finer cells.
 fn cells_of<S: Solid>(solid: &S, frame: &Frame, seed: u64, random: &mut Random, found: &mut [u64; 2]) {
     let classifier = solid.on(frame, &alone()).unwrap();
     let Some(mut way) = Way::new(classifier.worker().unwrap()) else { return };

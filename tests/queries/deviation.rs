@@ -1,4 +1,4 @@
-//! How far two boundaries are from each other: formulas, an independent sampler, and all kinds of solids.
+//! The deviation of two boundaries: formulas, an independent sampler, and solids of all kinds.
 
 use crate::common::repeated;
 use leafless::op::DexelOptions;
@@ -21,7 +21,7 @@ fn around(half: f64, depth: u8) -> Frame {
     Frame::new([-half; 3], 2.0 * half, depth).unwrap()
 }
 
-/// The answer, of which what holds of all of them is checked.
+/// Computes the deviation, and checks the laws of every answer.
 fn ask<A: Solid, B: Solid>(a: &A, b: &B, frame: &Frame, tolerance: f64) -> Deviation {
     let found = deviation(a, b, frame, tolerance, &alone()).unwrap();
     for way in [found.a_to_b, found.b_to_a] {
@@ -45,7 +45,7 @@ fn ask<A: Solid, B: Solid>(a: &A, b: &B, frame: &Frame, tolerance: f64) -> Devia
     found
 }
 
-/// That both directions hold what is true, to a width.
+/// Checks that both directions contain the truth, up to a width.
 fn holds(found: &Deviation, truth: [f64; 2], width: f64) {
     for (way, truth) in [(found.a_to_b, truth[0]), (found.b_to_a, truth[1])] {
         let Interval { .. } = way.distance;
@@ -104,7 +104,7 @@ fn boxes_moved_and_turned() {
     }
 }
 
-/// A prism in a cylinder of radius r around z.
+/// A prism inscribed in a cylinder of radius r around z.
 fn prism(n: usize, r: f64, low: f64, high: f64, turn: f64) -> TriangleMesh {
     let ring = |z: f64| {
         (0..n).map(move |k| {
@@ -140,7 +140,7 @@ fn a_tessellated_cylinder_beside_its_source() {
     }
 }
 
-/// A ball as a mesh of rings, its radius a function of the direction.
+/// A ball-like mesh of rings. Its radius is a function of the direction.
 fn globe(rings: usize, around: usize, radius: impl Fn(Point) -> f64, turn: f64) -> TriangleMesh {
     let at = |theta: f64, phi: f64| {
         let ((st, ct), (sp, cp)) = (theta.sin_cos(), (phi + turn).sin_cos());
@@ -170,8 +170,8 @@ fn bumpy(size: f64) -> impl Fn(Point) -> f64 {
     move |[x, y, z]| 1.0 + size * ((5.0 * x).sin() + (4.0 * y + 1.0).cos() * (3.0 * z).sin())
 }
 
-/// The square of the distance of a point from a triangle, by the parts of the plane in which the nearest
-/// point may be.
+/// Returns the squared distance of a point from a triangle, by the regions of the plane that the nearest
+/// point may belong to.
 fn square(p: Point, [a, b, c]: [Point; 3]) -> f64 {
     let (u, v, w) = (minus(b, a), minus(c, a), minus(p, a));
     let (uu, uv, vv, uw, vw) = (dot(u, u), dot(u, v), dot(v, v), dot(u, w), dot(v, w));
@@ -190,7 +190,8 @@ fn square(p: Point, [a, b, c]: [Point; 3]) -> f64 {
     of_edge(a, b).min(of_edge(b, c)).min(of_edge(c, a))
 }
 
-/// The greatest distance of random points of one mesh from another, by looking at all triangles.
+/// Returns the greatest distance of random points of one mesh from another mesh, by an examination of all
+/// triangles.
 fn sampled(from: &TriangleMesh, to: &TriangleMesh, count: usize) -> f64 {
     let corners = |mesh: &TriangleMesh| -> Vec<[Point; 3]> {
         mesh.triangles().iter().map(|t| t.map(|v| mesh.vertices()[v as usize])).collect()
@@ -384,7 +385,7 @@ impl Random {
         [0; 3].map(|_| size * (2.0 * self.next() - 1.0))
     }
 
-    /// A body in a ball of radius 1.2.
+    /// A random body in a ball of radius 1.2.
     fn body(&mut self) -> Csg {
         let size = 0.2 + 0.3 * self.next();
         let body = match (self.next() * 5.0) as usize {
@@ -415,7 +416,8 @@ impl Random {
     }
 }
 
-/// What is told of random solids, beside rays that find points of boundaries, whose distances others tell.
+/// Compares random solids with points that rays find on their boundaries. Another query returns the distances
+/// of these points.
 #[test]
 fn random_solids_beside_rays() {
     let mut random = Random(7);

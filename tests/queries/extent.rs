@@ -1,5 +1,5 @@
-//! Bounding boxes by slabs, against formulas of how far shapes reach along a direction, and against the boxes
-//! of octrees, which know no slabs.
+//! Bounding boxes by slabs, against formulas of the shapes' support functions and against the boxes of
+//! octrees, which have no slabs.
 
 use crate::common::alone;
 use glam::{DMat3, DVec3, EulerRot};
@@ -8,7 +8,7 @@ use leafless::{
     Affine, Bounds, Callback, Control, Csg, Frame, Interval, Rule, Solid, Tag, Verdict, bounding_box, build,
 };
 
-/// A solid and how far it reaches along a direction.
+/// A solid and its support function: its reach along a direction.
 struct Known {
     name: &'static str,
     solid: Csg,
@@ -93,7 +93,7 @@ fn primitives() -> Vec<Known> {
     ]
 }
 
-/// Numbers between −1 and 1, pseudo-random.
+/// Pseudo-random numbers between −1 and 1.
 struct Random(u64);
 
 impl Random {
@@ -108,7 +108,7 @@ impl Random {
         DVec3::new(self.next(), self.next(), self.next())
     }
 
-    /// A map that does not squash.
+    /// A random map that flattens nothing.
     fn placement(&mut self) -> (DMat3, DVec3) {
         loop {
             let (matrix, offset) =
@@ -125,7 +125,7 @@ fn affine(matrix: DMat3, offset: DVec3) -> Affine {
     Affine::new([0, 1, 2].map(|i| [rows[i][0], rows[i][1], rows[i][2], offset[i]])).unwrap()
 }
 
-/// The six intervals, so that each is of how far the solid reaches along an outward direction.
+/// Returns the six intervals as reaches along the outward directions.
 fn sides(extent: &Extent) -> [Interval; 6] {
     let [min, max] = extent.corners.unwrap_or_else(|| panic!("{extent:?}"));
     core::array::from_fn(|side| match side {
@@ -211,8 +211,8 @@ fn a_tilted_plate_takes_few_splits() {
     }
 }
 
-/// Random polytopes, thin ones among them: the corners are what all planes hold of the points where three
-/// meet.
+/// Random polytopes, thin ones among them. The corners are the intersection points of three planes that lie
+/// within all planes.
 #[test]
 fn polytopes_against_their_corners() {
     let mut random = Random(7);
@@ -272,8 +272,8 @@ fn polytopes_against_their_corners() {
     assert!((10..150).contains(&empty) && slivers < 10, "{empty} {slivers}");
 }
 
-/// Boxes of expressions whose cells know unions, complements and one side only, beside those of their
-/// octrees.
+/// Bounding boxes of expressions whose cells provide unions, complements or only one side, against the boxes
+/// of their octrees.
 #[test]
 fn expressions_beside_their_octrees() {
     let mut random = Random(3);
@@ -380,8 +380,8 @@ fn flat_thin_and_empty_solids_end() {
     assert!(found.splits < 1000, "{found:?}");
 }
 
-/// What two sides prove of an empty solid, before it is proven empty, may contradict each other: it would end
-/// before it begins. That is a proof, and no box.
+/// Before an empty solid is proven empty, the bounds from two sides may contradict each other: the box would
+/// end before it begins. This contradiction is a proof of emptiness, and no box is returned.
 #[test]
 fn a_box_that_ends_before_it_begins_is_none() {
     let frame = Frame::new([-1.0; 3], 2.0, 20).unwrap();

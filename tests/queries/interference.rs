@@ -1,5 +1,5 @@
-//! Interference and clearance: the published cases, analytic truth for spheres and boxes, dense sampling for
-//! all else, and the set algebra of built octrees.
+//! Interference and clearance: the published cases, analytic truth for spheres and boxes, dense samples for
+//! all others, and the set algebra of built octrees.
 
 use crate::common::cubes::Plain;
 use crate::common::{Dense, Random, alone, model, repeated};
@@ -63,7 +63,7 @@ fn two_balls_take_eighty_splits_at_most() {
     }
 }
 
-/// x² + y² ≤ r² around (64, 64), along z without end.
+/// x² + y² ≤ r² around (64, 64), infinitely long along z.
 fn rod(radius: f64) -> Csg {
     let [a, r] = [64.0, radius];
     let c = [-1.0, -1.0, 0.0, 0.0, 0.0, 0.0, 2.0 * a, 2.0 * a, 0.0, r * r - 2.0 * a * a];
@@ -138,7 +138,7 @@ fn distance(a: [f64; 3], b: [f64; 3]) -> f64 {
     (0..3).map(|axis| (a[axis] - b[axis]).powi(2)).sum::<f64>().sqrt()
 }
 
-/// The ball of an answer lies in its cell.
+/// Checks that the ball of an answer lies in its cell.
 fn check_ball(found: &Interference, frame: &Frame, between: &str) {
     assert_eq!(found.ball.is_some(), found.verdict == Overlap::Overlapping, "{between}: {found:?}");
     assert_eq!(found.ball.is_some(), found.witness.is_some(), "{between}: {found:?}");
@@ -150,7 +150,7 @@ fn check_ball(found: &Interference, frame: &Frame, between: &str) {
     assert!(ball.radius > 0.0 && (0..3).all(is_in), "{between}: {found:?}");
 }
 
-/// What must hold of any answer, if the truth is known but for rounding.
+/// Checks an answer against the true common volume, which is known up to rounding.
 fn check_truth(found: &Interference, common: f64, between: &str) {
     let slack = 1e-9 * (1.0 + common);
     match found.verdict {
@@ -253,7 +253,7 @@ fn balls_and_their_contacts() {
     assert!(counts[0] > most && counts[1] > most, "{counts:?}");
 }
 
-/// A turn by unit quaternions, then an offset.
+/// A rotation by unit quaternions, followed by an offset.
 fn rigid(random: &mut Random, reach: f64) -> Affine {
     let q = loop {
         let q = [0; 4].map(|_| random.between(-1.0, 1.0));
@@ -271,13 +271,13 @@ fn rigid(random: &mut Random, reach: f64) -> Affine {
     Affine::new(turn.map(|[a, b, c]| [a, b, c, random.between(-reach, reach)])).unwrap()
 }
 
-/// The inverse of a rigid map at a point.
+/// Applies the inverse of a rigid map to a point.
 fn back(placement: &Affine, p: [f64; 3]) -> [f64; 3] {
     let m = placement.rows();
     [0, 1, 2].map(|j| (0..3).map(|i| m[i][j] * (p[i] - m[i][3])).sum())
 }
 
-/// A CSG solid with its own rule for points: 1 inside, −1 outside, 0 too close to a surface to say.
+/// A CSG solid with its own point classifier: 1 inside, −1 outside, 0 too close to a surface to decide.
 #[derive(Clone)]
 enum Tree {
     Ball([f64; 3], f64),
@@ -336,7 +336,7 @@ impl Tree {
     }
 }
 
-/// Answers about two solids against points thrown into the universe.
+/// Checks answers about two solids against random points of the universe.
 fn check_points(
     found: &Interference,
     frame: &Frame,
@@ -440,7 +440,7 @@ fn random_trees_in_random_places() {
     assert!(counts[0] > 5 && counts[1] > 5 && counts[2] < 5, "{counts:?}");
 }
 
-/// To the end, the answer is that of the set algebra, cell by cell; and moving parts from memory to memory on
+/// A complete search gives the result of the set algebra, cell by cell. Moving parts from memory to memory on
 /// the way changes nothing.
 #[test]
 fn to_the_end_it_is_the_intersection_of_octrees() {
@@ -558,7 +558,7 @@ fn nothing_everything_and_the_same() {
     assert_eq!((found.points, found.normals), (None, [None; 2]));
 }
 
-/// A mesh is moved by its vertices: what is said of it never contradicts what its own cells say.
+/// A mesh is moved by its vertices. The answers never contradict those of its own cells.
 #[test]
 fn a_mesh_in_other_places() {
     let corners = [[0.0, 0.0, 0.0], [3.0, 0.1, 0.0], [0.2, 2.0, 0.0], [0.7, 0.3, 2.5]];
@@ -599,7 +599,7 @@ fn a_mesh_in_other_places() {
     }
 }
 
-/// The part against itself, as a mesh and as a stored octree, in random places.
+/// A part against itself, as a mesh and as a stored octree, at random places.
 #[test]
 fn a_mesh_against_itself() {
     let Some(path) = model("featuretype.STL") else { return };
@@ -672,7 +672,7 @@ fn solids_of_any_kind() {
     assert_eq!(found.verdict, Overlap::Overlapping);
 }
 
-/// A pin in the bore of a block, with the same play all around: nowhere is nearest.
+/// A pin in the bore of a block, with the same play all around, so that no place is nearest.
 fn pin_and_bore() -> (Csg, Csg) {
     let pin = Csg::cylinder(4.9, 2.0, 18.0).unwrap();
     let bore = Csg::cylinder(5.0, 0.0, 20.0).unwrap();
@@ -680,7 +680,7 @@ fn pin_and_bore() -> (Csg, Csg) {
     (pin, block)
 }
 
-/// Cells of 0.006 could tell the play to 0.01, but not soon; the surfaces tell it at once.
+/// Cells of 0.006 would find the play to 0.01 only slowly. The surfaces give it at once.
 #[test]
 fn a_pin_in_a_bore_ends_by_default() {
     let (pin, block) = pin_and_bore();
@@ -694,7 +694,7 @@ fn a_pin_in_a_bore_ends_by_default() {
     assert!(found.splits.iter().sum::<u64>() <= CLEARANCE_SPLITS / 1000);
 }
 
-/// A tolerance that the finest cells cannot give ends with what they can.
+/// If the finest cells cannot reach a tolerance, the search ends with their best bounds.
 #[test]
 fn cells_that_cannot_tell_more_end_a_search() {
     let (pin, block) = pin_and_bore();
@@ -712,8 +712,8 @@ fn cells_that_cannot_tell_more_end_a_search() {
     }
 }
 
-/// Two foils that are thinner than a cell, one on the other, each with a ball at its far end: nothing near
-/// the contact is FULL, and yet the distance is no greater than that of the balls.
+/// Two foils thinner than a cell, one on the other, each with a ball at its far end. No cell near the contact
+/// is FULL, and yet the upper bound of the distance is at most that of the balls.
 #[test]
 fn full_cells_anywhere_bound_a_distance() {
     let frame = Frame::new([0.0; 3], 16.0, 9).unwrap();
@@ -754,8 +754,7 @@ fn full_cells_of_thin_walls_are_found() {
     assert!(found.distance.upper < 3.2, "{found:?}");
 }
 
-/// Thousands of parts that all run through the same cells: what is remembered of a cell is as large as the
-/// solid.
+/// Thousands of parts that all run through the same cells. The record of a cell is as large as the solid.
 #[test]
 fn searches_end_before_they_take_too_much_memory() {
     let frame = Frame::new([-1.0; 3], 4.0, 12).unwrap();

@@ -22,8 +22,8 @@ fn zero() -> Exact {
     Exact::from(0.0)
 }
 
-/// Volume and moments about the model's origin, without a rounding; all times `factor`, which keeps them sums
-/// of doubles.
+/// Volume and moments about the model's origin, without rounding. All are multiplied by `factor`, which keeps
+/// them sums of doubles.
 #[derive(Clone)]
 struct Sums {
     factor: f64,
@@ -42,7 +42,7 @@ impl Sums {
         }
     }
 
-    /// A finest cell.
+    /// Adds a finest cell.
     fn add_cell(&mut self, frame: &Frame, at: [u32; 3]) {
         assert_eq!(self.factor, 12.0);
         let edge = Exact::from(frame.cell_size());
@@ -61,7 +61,8 @@ impl Sums {
         }
     }
 
-    /// The tetrahedron between the origin and a triangle, negative if that is seen from behind.
+    /// Adds the tetrahedron between the origin and a triangle; it counts as negative if the triangle is seen
+    /// from behind.
     fn add_triangle(&mut self, corners: [[f64; 3]; 3]) {
         assert_eq!(self.factor, 120.0);
         let [a, b, c] = corners.map(|corner| corner.map(Exact::from));
@@ -85,7 +86,7 @@ impl Sums {
         self.volume.sign() == 0
     }
 
-    /// `[numerator, positive denominator]` of the tensor of inertia.
+    /// Returns the inertia tensor's entries, each as `[numerator, positive denominator]`.
     fn tensor(&self, second: &[Exact; 6], denominator: &Exact) -> Vec<(usize, usize, [Exact; 2])> {
         PAIRS
             .iter()
@@ -114,7 +115,7 @@ impl Sums {
     }
 }
 
-/// lower ≤ numerator / denominator ≤ upper, exactly.
+/// True if lower ≤ numerator / denominator ≤ upper, exactly.
 fn contains(interval: Interval, [numerator, denominator]: &[Exact; 2]) -> bool {
     let below = |x: f64| Exact::from(x).times(denominator).minus(numerator).sign() <= 0;
     let above = |x: f64| Exact::from(x).times(denominator).minus(numerator).sign() >= 0;
@@ -151,8 +152,8 @@ fn contains_all(measures: &MassProperties, sums: &Sums) -> Result<(), String> {
     Ok(())
 }
 
-/// Asserts that an interval is as tight as the least and the greatest possible value allow, but for `slack`
-/// of the magnitude.
+/// Asserts that an interval is as tight as the least and the greatest possible value allow, up to `slack` of
+/// the magnitude.
 fn assert_tight(interval: Interval, least: &[Exact; 2], most: &[Exact; 2], slack: f64) {
     let slack = slack * interval.lower.abs().max(interval.upper.abs());
     let narrow = Interval::new(interval.lower + slack, f64::INFINITY).unwrap();
@@ -172,8 +173,8 @@ fn assert_symmetric(measures: &MassProperties) {
     }
 }
 
-/// What the cells of a dense array allow: every choice of the undecided that is tried lies in the intervals,
-/// and what can be exact is.
+/// Checks measures against the cells of a dense array. Every tried choice of the undecided cells lies in the
+/// intervals, and measures that can be exact are.
 fn check_dense(dense: &Dense, frame: &Frame, random: &mut Random) {
     let measures = measure(&DenseSolid { dense, exterior: Tag::Empty }, frame, 0.0, &alone()).unwrap();
     assert_symmetric(&measures);
@@ -261,7 +262,7 @@ fn uniform_universes() {
     }
 }
 
-/// Where all faces are plane, slabs tell everything but for rounding.
+/// If all faces are plane, slabs determine everything up to rounding.
 #[test]
 fn boxes_are_known_at_once() {
     let frame = Frame::new([-4.0; 3], 8.0, 20).unwrap();
@@ -284,7 +285,7 @@ fn boxes_are_known_at_once() {
     assert!(measures.level <= 3 && measures.splits < 40, "{measures:?}");
 }
 
-/// A number that formulas in doubles give, near which the truth is.
+/// Asserts that an interval contains the truth near a number from formulas in doubles.
 fn assert_contains(interval: Interval, value: f64, scale: f64) {
     let error = 1e-13 * scale;
     assert!(interval.lower <= value + error && value - error <= interval.upper, "{value} in {interval:?}");
@@ -346,8 +347,8 @@ fn balls_and_boxes_contain_the_formulas_at_every_depth() {
     }
 }
 
-/// The moments of all undecided cells together bound the centroid of a ball by some 2/√3 of what it takes:
-/// that is the ratio of the root of the mean square to the mean, of a coordinate on a sphere.
+/// The moments of all undecided cells together bound the centroid of a ball at about 2/√3 of the cost: this
+/// is the ratio of the root mean square to the mean of a coordinate's magnitude on a sphere.
 #[test]
 fn the_centroid_is_as_tight_as_it_is_said_to_be() {
     let frame = Frame::new([-1.0; 3], 2.0, 4).unwrap();
@@ -442,8 +443,7 @@ fn budgets_are_kept_and_not_wasted() {
     assert!(measures.volume.width() <= 0.05 * volume * 1.1);
 }
 
-/// A solid that counts, and whose parts lie in scratch memory; a part that is not what it should be is
-/// noticed.
+/// A solid that counts its calls. Its parts lie in scratch memory, and a wrong part is detected.
 struct Counting {
     ball: Plain,
     calls: Arc<AtomicU64>,
@@ -629,7 +629,7 @@ fn a_host_s_shape_that_knows_little() {
     assert!(matches!(measure(&failing, &frame, 0.1, &Control::default()), Err(Error::Callback { code: 7 })));
 }
 
-/// What overflows and underflows is wide, and true.
+/// Intervals that overflow or underflow are wide, and true.
 #[test]
 fn frames_at_the_ends_of_the_range() {
     let large = 2f64.powi(256);
@@ -722,7 +722,7 @@ fn a_mesh_against_the_divergence_theorem() {
 // --- Bounding boxes
 // ----------------------------------------------------------------------------------------------
 
-/// The corners of all finest cells for which `tag` holds, in planes.
+/// Returns the bounding box of all finest cells for which `tag` holds, in planes.
 fn hull(dense: &Dense, tag: impl Fn(Tag) -> bool) -> Option<[[u32; 3]; 2]> {
     let cells: Vec<[u32; 3]> = positions(dense.depth).filter(|&at| tag(dense.at(at))).collect();
     let of = |axis: usize| cells.iter().map(move |at| at[axis]);

@@ -1,5 +1,5 @@
-//! Stored octrees under placements: every answer against all pairs of their cells, and against the search by
-//! cells.
+//! Stored octrees under placements. Every answer is compared with all pairs of their cells, and with the
+//! search by cells.
 
 use crate::common::{Random, alone, cases, pairs_of};
 use leafless::lattice::Cube;
@@ -27,13 +27,13 @@ fn cross(a: Vector, b: Vector) -> Vector {
     })
 }
 
-/// A parallelepiped: its centre, and halves of its edges.
+/// A parallelepiped, by its centre and its half edges.
 struct Block {
     centre: Vector,
     edges: [Vector; 3],
 }
 
-/// How far two parallelepipeds are apart along the best of all axes; negative if they overlap.
+/// Returns the gap of two parallelepipeds along the best of all axes; negative if they overlap.
 fn gap(a: &Block, b: &Block) -> f64 {
     let normals =
         |block: &Block| [0, 1, 2].map(|i| cross(block.edges[(i + 1) % 3], block.edges[(i + 2) % 3]));
@@ -54,7 +54,7 @@ fn linear(placement: &Affine, v: Vector) -> Vector {
     [0, 1, 2].map(|i| rows[i][0] * v[0] + rows[i][1] * v[1] + rows[i][2] * v[2])
 }
 
-/// The cells of a tree that are not EMPTY, placed, and whether each is FULL.
+/// Returns the placed cells of a tree that are not EMPTY, each with whether it is FULL.
 fn blocks(tree: &Octree, placement: &Affine) -> Vec<(Block, bool)> {
     let filter = CellFilter::tags(&[Tag::Full, Tag::Partial]);
     let cells = tree.view().cells(filter);
@@ -69,10 +69,10 @@ fn blocks(tree: &Octree, placement: &Affine) -> Vec<(Block, bool)> {
         .collect()
 }
 
-/// More than rounding, and less than any cell.
+/// A margin larger than rounding, and smaller than any cell.
 const MARGIN: f64 = 1e-9;
 
-/// Holds an answer against all pairs of cells.
+/// Checks an answer against all pairs of cells.
 fn check(a: &Octree, b: &Octree, placement: &Affine, found: &Interference, text: &str) {
     let (first, second) = (blocks(a, &Affine::IDENTITY), blocks(b, placement));
     // The deepest overlap of FULL cells, and of those that are not EMPTY.
@@ -95,7 +95,7 @@ fn check(a: &Octree, b: &Octree, placement: &Affine, found: &Interference, text:
     check_proof(a, b, placement, found, text);
 }
 
-/// Holds the proof of an answer against the cells that it lies in.
+/// Checks the proof of an answer against the cells that contain it.
 fn check_proof(a: &Octree, b: &Octree, placement: &Affine, found: &Interference, text: &str) {
     assert_eq!(found.verdict == Overlap::Overlapping, found.ball.is_some(), "{text}: {found:?}");
     assert!(found.ball.is_some() || found.witness.is_none(), "{text}: {found:?}");
@@ -129,7 +129,7 @@ fn at(a: &Octree, b: &Octree, placements: &[Affine]) -> Vec<Interference> {
     interference_at(a, b, b.frame(), placements, a.frame(), PROOF, &alone()).unwrap()
 }
 
-/// A turn, or another map if `is_rigid` is not set, and then an offset.
+/// A rotation, or another map unless `is_rigid`, followed by an offset.
 fn placement(random: &mut Random, is_rigid: bool, reach: f64) -> Affine {
     let q = loop {
         let q = [0; 4].map(|_| random.between(-1.0, 1.0));
@@ -155,7 +155,7 @@ fn placement(random: &mut Random, is_rigid: bool, reach: f64) -> Affine {
     Affine::new([0, 1, 2].map(|i| [rows[i][0], rows[i][1], rows[i][2], offset[i]])).unwrap()
 }
 
-/// Balls and boxes within 1.5 of the origin, added and cut off.
+/// A random union of balls and boxes within 1.5 of the origin, with parts cut off.
 fn shape(random: &mut Random) -> Csg {
     let mut shape: Option<Csg> = None;
     for _ in 0..1 + random.below(4) {
@@ -254,7 +254,7 @@ fn answers_never_contradict_the_search_by_cells() {
     assert!(counts[0] > 20 && counts[1] > 20, "{counts:?}");
 }
 
-/// Faces, edges and corners that touch are no overlap, and a little more is.
+/// Touching faces, edges and corners are no overlap. Slightly deeper contacts are.
 #[test]
 fn boxes_that_touch() {
     let frame = Frame::new([-8.0; 3], 16.0, 6).unwrap();
@@ -323,7 +323,7 @@ fn a_tree_meets_itself() {
     }
 }
 
-/// The work does not grow with the depth where solids are clearly apart, or clearly in each other.
+/// Where solids are clearly apart or clearly overlap, the work does not grow with the depth.
 #[test]
 fn clear_answers_take_as_long_at_any_depth() {
     let turn =
@@ -378,8 +378,8 @@ fn what_is_no_whole_octree_is_searched_by_cells() {
     }
 }
 
-/// Behind any wrapper it is the same octree. Expressions of octrees are other solids, of which no less is
-/// true.
+/// A wrapped octree is the same octree. Expressions of octrees are other solids; their answers are equal or
+/// undecided.
 #[test]
 fn wrapped_octrees_are_octrees() {
     let mut random = Random(4);

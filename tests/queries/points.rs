@@ -23,7 +23,8 @@ fn membership(tag: Tag) -> Membership {
     }
 }
 
-/// The answer for a point in lattice coordinates: the cell above each plane, the last on the upper face.
+/// Returns the answer for a point in lattice coordinates. A point on a plane belongs to the cell above; on
+/// the upper face, to the last cell.
 fn expected(dense: &Dense, point: [f64; 3]) -> Membership {
     let n = (1u32 << dense.depth) as f64;
     if !point.iter().all(|&x| (0.0..=n).contains(&x)) {
@@ -32,7 +33,7 @@ fn expected(dense: &Dense, point: [f64; 3]) -> Membership {
     membership(dense.at(point.map(|x| x.floor().min(n - 1.0) as u32)))
 }
 
-/// Points in cells, on planes, edges, corners and faces of the universe, beside it, and no points at all.
+/// Points in cells, on planes, edges, corners and faces of the universe and beside it, and invalid points.
 fn points(depth: u8, seed: u64, count: usize) -> Vec<[f64; 3]> {
     let mut random = Random(seed);
     let n = (1u64 << depth) as f64;
@@ -146,7 +147,8 @@ proptest! {
     }
 }
 
-/// A box in the cube [0, n]³ or beside it: with faces on planes and between them, thin ones, and absurd ones.
+/// A box in the cube [0, n]³ or beside it: with faces on planes and between them, thin boxes, and absurd
+/// ones.
 fn a_box(n: f64, random: &mut Random) -> ([f64; 3], [f64; 3]) {
     let (mut min, mut max) = ([0.0; 3], [0.0; 3]);
     let kind = random.below(6);
@@ -167,8 +169,8 @@ fn a_box(n: f64, random: &mut Random) -> ([f64; 3], [f64; 3]) {
     (min, max)
 }
 
-/// The answer for a box, cell by cell. A box without thickness along an axis is one cell thick: in the cell
-/// above it, or the last one.
+/// Returns the answer for a box, cell by cell. A box without thickness along an axis is one cell thick there:
+/// the cell above the box, or the last cell.
 fn region(dense: &Dense, min: [f64; 3], max: [f64; 3]) -> Region {
     let n = 1u32 << dense.depth;
     let (mut empty, mut full, mut partial) = (false, false, false);
@@ -295,14 +297,14 @@ fn batches_on_a_tree_of_many_levels() {
 
 // ---- any solid, without an octree -----------------------------------------------------------------------
 
-/// Answers for points, in one call.
+/// Classifies points in one call.
 fn located<S: Solid>(solid: &S, frame: &Frame, points: &[[f64; 3]], threads: usize) -> Vec<Membership> {
     let mut answers = vec![Membership::Inside; points.len()];
     contains(solid, frame, points, &mut answers, &Control::threads(threads)).unwrap();
     answers
 }
 
-/// Points in lattice coordinates as points of a frame.
+/// Returns points in lattice coordinates as points of a frame.
 fn points_on(frame: &Frame, seed: u64, count: usize) -> Vec<[f64; 3]> {
     let mut points = points(frame.depth(), seed, count);
     for point in &mut points {
@@ -311,7 +313,7 @@ fn points_on(frame: &Frame, seed: u64, count: usize) -> Vec<[f64; 3]> {
     points
 }
 
-/// What a solid says of points and boxes is what its octree says of them.
+/// Checks that a solid's answers for points and boxes are those of its octree.
 fn octree_agrees<S: Solid>(solid: &S, frame: &Frame, seed: u64, count: usize) {
     let tree = build(solid, frame, Rule::Certified, &alone()).unwrap();
     points_agree(solid, &tree, seed, count);
@@ -357,7 +359,7 @@ fn boxes_agree<S: Solid>(solid: &S, tree: &Octree, seed: u64) {
     }
 }
 
-/// A dense array as a function of boxes.
+/// Returns a dense array as a function of boxes.
 fn as_callback(dense: &Dense, frame: Frame) -> impl Solid {
     Callback::new(move |min, max| {
         let at = |axis: usize, x: f64| ((x - frame.origin()[axis]) / frame.cell_size()).round() as u32;

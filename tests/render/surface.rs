@@ -1,5 +1,5 @@
-//! Surfaces of octrees and solids in pictures, against formulas: where they are seen, how deep, cut open, in
-//! the colours of values.
+//! Surfaces of octrees and solids in pictures, against formulas: visibility, depth, cut-open views and
+//! colours of values.
 
 use crate::common::alone;
 use leafless::attribute::FunctionAttribute;
@@ -24,7 +24,7 @@ fn ball() -> Csg {
     Csg::ball(CENTRE, RADIUS).unwrap()
 }
 
-/// Cameras of both lenses, from several sides.
+/// Cameras with both lenses, on several sides.
 fn shots() -> Vec<Shot> {
     let mut shots = Vec::new();
     for (eye, up) in [
@@ -40,7 +40,7 @@ fn shots() -> Vec<Shot> {
     shots
 }
 
-/// The line of sight of a pixel's centre: from, and along, of depth 1.
+/// The line of sight through a pixel's centre: its origin, and its direction scaled to depth 1.
 fn line(camera: &Camera, [x, y]: [u32; 2]) -> ([f64; 3], [f64; 3]) {
     let half = match camera.lens() {
         Lens::Perspective(degrees) => (0.5 * degrees.to_radians()).tan(),
@@ -61,7 +61,7 @@ fn dot(a: [f64; 3], b: [f64; 3]) -> f64 {
     (0..3).map(|axis| a[axis] * b[axis]).sum()
 }
 
-/// When a line meets a ball of a radius, and how near it comes to its centre.
+/// Returns the times at which a line meets a ball of a radius, and the line's distance from the centre.
 fn meets([from, along]: [[f64; 3]; 2], radius: f64) -> (Option<[f64; 2]>, f64) {
     let to = [0, 1, 2].map(|axis| from[axis] - CENTRE[axis]);
     let (a, b, c) = (dot(along, along), dot(to, along), dot(to, to) - radius * radius);
@@ -154,7 +154,7 @@ fn what_is_cut_open_is_flat() {
     }
 }
 
-/// Lines of sight that begin at a wall and hardly part from it pass many cells by.
+/// Lines of sight that begin at a wall and hardly leave it pass many cells.
 #[test]
 fn grazed_walls_are_passed_by() {
     let block = Csg::cuboid([-0.9, -0.5, -0.8], [0.9, 0.5, 0.8]).unwrap();
@@ -296,7 +296,8 @@ fn eyes_may_be_anywhere() {
     }
 }
 
-/// A wall of a single layer of cells has no gradient; a plate of a few is no wall of its rim.
+/// A wall of a single layer of cells has no gradient. A plate a few layers thick is lit by its faces, not by
+/// its rim.
 #[test]
 fn thin_plates_are_lit_as_their_faces() {
     let camera = Camera::new([0.7, -1.5, 2.0], [0.0; 3], [0.0, 0.0, 1.0], Lens::Parallel(0.6)).unwrap();
@@ -318,7 +319,7 @@ fn thin_plates_are_lit_as_their_faces() {
     }
 }
 
-/// What has no end in the universe ends there in a picture.
+/// A picture cuts off unbounded solids at the universe's faces.
 #[test]
 fn faces_of_the_universe_are_flat() {
     let tree = build(&ball().complement(), &frame(7), Rule::Certified, &alone()).unwrap();
@@ -343,7 +344,7 @@ fn faces_of_the_universe_are_flat() {
     }
 }
 
-/// Where a point is seen, in pixels.
+/// Returns the pixel coordinates of a point.
 fn place(camera: &Camera, point: [f64; 3]) -> [f64; 2] {
     let from = [0, 1, 2].map(|axis| point[axis] - camera.eye()[axis]);
     let [x, y, z] = [camera.right(), camera.up(), camera.forward()].map(|side| dot(from, side));
@@ -355,7 +356,8 @@ fn place(camera: &Camera, point: [f64; 3]) -> [f64; 2] {
     [0.5 * f64::from(SIZE[0]) + x / pixel, 0.5 * f64::from(SIZE[1]) - y / pixel]
 }
 
-/// How far a place is from a line between two others, and where along it its foot is, 0 to 1.
+/// Returns a place's distance from a line through two others, and the position of its foot along the line, 0
+/// to 1.
 fn beside(place: [f64; 2], [a, b]: [[f64; 2]; 2]) -> (f64, f64) {
     let (to, from) = ([b[0] - a[0], b[1] - a[1]], [place[0] - a[0], place[1] - a[1]]);
     let along = (from[0] * to[0] + from[1] * to[1]) / (to[0] * to[0] + to[1] * to[1]);
@@ -363,7 +365,7 @@ fn beside(place: [f64; 2], [a, b]: [[f64; 2]; 2]) -> (f64, f64) {
     ((from[0] - foot * to[0]).hypot(from[1] - foot * to[1]), along)
 }
 
-/// The edges of a block that are seen: those of which at least one face is.
+/// Returns the visible edges of a block: those with at least one visible face.
 fn edges_seen(camera: &Camera, corners: [[f64; 3]; 2]) -> Vec<[[f64; 2]; 2]> {
     let faces = |axis: usize, upper: usize| {
         let sign = if upper == 1 { 1.0 } else { -1.0 };
@@ -520,7 +522,7 @@ fn what_is_no_picture_is_refused() {
     assert!(matches!(render(&Shot::new(camera, [8, 8]), &[], &control), Err(Error::Cancelled)));
 }
 
-/// A plate with bores, whose extended tree has large cells: it is shown as the plate, and with faces as its
+/// A plate with bores whose extended tree has large cells. It is shown as the plate, and with `faces` as its
 /// cells.
 #[test]
 fn an_extended_tree_is_shown_as_its_source() {

@@ -1,5 +1,5 @@
-//! A host program whose functions take their time: how often it is called, by how many threads, and how soon
-//! a cancel is answered.
+//! A host program with slow functions: the number of calls, the number of calling threads, and the delay of a
+//! cancel.
 
 use crate::common::exact::Exact;
 use crate::common::{Random, Way};
@@ -18,7 +18,7 @@ use std::sync::{Arc, Mutex};
 use std::thread::{self, ThreadId};
 use std::time::{Duration, Instant};
 
-/// What was asked of the host.
+/// The recorded calls of the host.
 #[derive(Default)]
 struct Calls {
     boxes: AtomicU64,
@@ -26,7 +26,7 @@ struct Calls {
     largest: AtomicU64,
     points: AtomicU64,
     threads: Mutex<HashSet<ThreadId>>,
-    /// Calls that began after the cancel.
+    /// Number of calls that began after the cancel.
     late: AtomicU64,
     cancelled: AtomicBool,
     under_way: AtomicU64,
@@ -55,7 +55,7 @@ impl Calls {
 const CENTRE: [f64; 3] = [0.45, 0.5, 0.55];
 const RADIUS: f64 = 0.3;
 
-/// The ball, by the least and the greatest distance of a box, with some room for rounding.
+/// Classifies a box against the ball by its least and greatest distance, with some room for rounding.
 fn ball(min: [f64; 3], max: [f64; 3]) -> Verdict<()> {
     let (mut near, mut far) = (0.0, 0.0);
     for axis in 0..3 {
@@ -73,13 +73,13 @@ fn ball(min: [f64; 3], max: [f64; 3]) -> Verdict<()> {
     }
 }
 
-/// The signed distance from the ball's surface.
+/// Returns the signed distance from the ball's surface.
 fn distance(point: [f64; 3]) -> f64 {
     let square: f64 = (0..3).map(|axis| (point[axis] - CENTRE[axis]).powi(2)).sum();
     square.sqrt() - RADIUS
 }
 
-/// The host's ball; each call takes `pause`.
+/// The host's ball. Each call takes `pause`.
 fn host(calls: &Arc<Calls>, pause: Duration, many: bool) -> AnySolid {
     let rest = move || {
         if !pause.is_zero() {
@@ -120,7 +120,7 @@ fn unit(depth: u8) -> Frame {
     Frame::new([0.0; 3], 1.0, depth).unwrap()
 }
 
-/// Boxes of all cells that are split, and the universe.
+/// Returns the number of boxes of all split cells, and of the universe.
 fn needed(tree: &Octree) -> u64 {
     8 * tree.statistics().nodes() + 1
 }
@@ -188,7 +188,8 @@ fn deep_builds_ask_in_batches() {
     assert!((host.lower - exact.lower).abs() < 1e-6 && (host.upper - exact.upper).abs() < 1e-6);
 }
 
-/// Extended trees too are asked level by level: a call a level and thread, however many cells there are.
+/// Extended trees, too, query the host level by level: a call for each level and thread, however many cells
+/// there are.
 #[test]
 fn extended_builds_ask_level_by_level() {
     let plain =
@@ -269,8 +270,7 @@ fn measures_use_threads() {
     assert_eq!(calls.boxes.load(Relaxed), 8 * found.splits + 1);
 }
 
-/// Runs work in another thread, cancels it once the host has been called some times, and returns what it came
-/// to.
+/// Runs work in another thread, cancels it after some calls of the host, and returns its result.
 fn cancelled(
     calls: &Arc<Calls>,
     work: impl FnOnce(&Control<'_>) -> Result<(), Error> + Send,
@@ -355,8 +355,7 @@ fn distances_decide_cells() {
     assert!(classified.load(Relaxed) < asked.load(Relaxed));
 }
 
-/// The ways in which a host's solid is part of another one that is just as large, or has a box in a corner
-/// besides.
+/// Wraps a host's solid in several solids of the same size, or of the same size plus a box in a corner.
 fn wrapped(solid: AnySolid) -> Vec<(&'static str, AnySolid)> {
     let corner = || Csg::cuboid([0.0625; 3], [0.125; 3]).unwrap();
     // Turns about the ball's centre, by the angle whose cosine is 0.8, and by a quarter.
@@ -385,8 +384,8 @@ fn wrapped(solid: AnySolid) -> Vec<(&'static str, AnySolid)> {
     ]
 }
 
-/// How many more boxes a turned shape may be asked about: cells of a turned lattice have larger boxes around
-/// them.
+/// The factor by which a rotated shape may receive more boxes. Cells of a rotated lattice have larger
+/// bounding boxes.
 const TURNED: u64 = 3;
 
 #[test]
@@ -457,7 +456,7 @@ fn wrapped_hosts_are_asked_by_several_threads() {
     }
 }
 
-/// A ball by its definition, moved, against exact arithmetic.
+/// A moved ball by its definition, against exact arithmetic.
 #[test]
 fn what_is_proven_of_a_moved_host_is_true() {
     let mut random = Random(77);
@@ -558,8 +557,7 @@ fn errors_and_cancels_pass_through_wrappers() {
     }
 }
 
-/// With a host of 50 ms a call, as `cargo test --release --test solids host:: -- --ignored --nocapture`
-/// prints it.
+/// A host with 50 ms a call. Printed by `cargo test --release --test solids host:: -- --ignored --nocapture`.
 #[test]
 #[ignore = "takes three minutes: prints calls, threads and times"]
 fn fifty_milliseconds_a_call() {

@@ -1,4 +1,4 @@
-//! Solids: half-spaces and expressions of them, transforms, volumes, shapes of a host program.
+//! Solids: half-spaces and expressions of them, transforms, volumes, and shapes of a host program.
 
 #[path = "../../fuzz/bodies/csg.rs"]
 mod any_bytes;

@@ -1,5 +1,4 @@
-//! A solid that was made outside of the library: what it says of cells, in exact arithmetic, and how it
-//! converges.
+//! A solid defined outside the library: its cells in exact arithmetic, and its convergence.
 
 use crate::common::exact::Exact;
 use crate::common::slabs::told;
@@ -12,12 +11,12 @@ use std::f64::consts::PI;
 #[path = "../../examples/metaball.rs"]
 mod example;
 
-/// All coordinates of its planes and of points between them are doubles.
+/// A frame in which all coordinates of planes, and of points between them, are doubles.
 fn frame() -> Frame {
     Frame::new([-2.0; 3], 4.0, 20).unwrap()
 }
 
-/// 1 if a point lies in the solid, 0 on its boundary: the sign of Σ rᵢ² / dᵢ² − 1 times all dᵢ².
+/// Returns 1 if a point lies in the solid, 0 on its boundary: the sign of Σ rᵢ² / dᵢ² − 1, times all dᵢ².
 fn sign(balls: &[Ball], p: [f64; 3]) -> i32 {
     let squares: Vec<Exact> = balls
         .iter()

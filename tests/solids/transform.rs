@@ -14,7 +14,7 @@ use leafless::{
 use proptest::prelude::*;
 use std::f64::consts::PI;
 
-/// A box under a map, exactly.
+/// The exact image of a box under a map.
 struct Placed {
     rows: [[Exact; 4]; 3],
     min: [f64; 3],
@@ -60,7 +60,7 @@ impl Placed {
             .collect()
     }
 
-    /// Whether a point lies in the box or on it: by Cramer's rule, without a division.
+    /// True if a point lies in the box or on it, by Cramer's rule without a division.
     fn contains(&self, point: &Vector) -> bool {
         let [a, b, c] = [self.column(0), self.column(1), self.column(2)];
         let determinant = dot(&a, &cross(&b, &c));
@@ -74,7 +74,7 @@ impl Placed {
         })
     }
 
-    /// Whether a plane lies between the box and these corners of a cube.
+    /// True if a plane separates the box from these corners of a cube.
     fn is_apart(&self, cube: &[Vector]) -> bool {
         let own = self.corners();
         let columns = [0, 1, 2].map(|j| self.column(j));
@@ -93,7 +93,7 @@ impl Placed {
         })
     }
 
-    /// Whether what is said of a cell is true.
+    /// True if a cell's tag agrees with the box.
     fn agrees(&self, frame: &Frame, at: [u32; 3], tag: Tag) -> bool {
         let corners: Vec<Vector> = (0..8u32)
             .map(|k| [0, 1, 2].map(|axis| Exact::plane(frame, axis, at[axis] + (k >> axis & 1))))
@@ -106,7 +106,7 @@ impl Placed {
     }
 }
 
-/// Maps that are anything, and maps of short numbers, under which faces meet lattice planes.
+/// Arbitrary maps, and maps of short numbers that take faces to lattice planes.
 fn placement(random: &mut Random) -> Affine {
     const TURNS: [[[f64; 3]; 3]; 4] = [
         [[0.6, -0.8, 0.0], [0.8, 0.6, 0.0], [0.0, 0.0, 1.0]],
@@ -214,7 +214,7 @@ fn volumes_contain_the_truth_and_close_in_on_it() {
     }
 }
 
-/// A map of the lattice onto itself: where cell `at` of a universe of 2^depth cells comes from, times
+/// A map of the lattice onto itself. It gives the source of cell `at` of a universe of 2^depth cells, times
 /// 2^scale.
 #[derive(Debug, Clone, Copy)]
 struct Move {
@@ -243,7 +243,7 @@ impl Move {
         .unwrap()
     }
 
-    /// The range of source coordinates, in quarters of a cell, of the cell at `at`.
+    /// Returns the range of source coordinates of the cell at `at`, in quarters of a cell.
     fn source(&self, at: [u32; 3]) -> [(i64, i64); 3] {
         let mut ranges = [(0, 0); 3];
         for i in 0..3 {
@@ -256,7 +256,8 @@ impl Move {
         ranges
     }
 
-    /// What a dense array becomes: undecided is only what touches cells that differ, or that are undecided.
+    /// Returns the image of a dense array. A cell is undecided only if it touches cells that differ or that
+    /// are undecided.
     fn apply(&self, dense: &Dense, exterior: Tag) -> Dense {
         Dense::from_fn(dense.depth, |at| {
             let ranges = self.source(at).map(|(low, high)| (low.div_euclid(4), (high + 3).div_euclid(4)));
@@ -405,8 +406,8 @@ fn extreme_numbers_prove_nothing_wrong() {
     }
 }
 
-/// The universe's inverse image began beyond the numbers that a frame may have, and the error named an origin
-/// that nobody had given.
+/// The inverse image of the universe began beyond the numbers that a frame may have. The error once named an
+/// origin that no caller had given.
 #[test]
 fn a_universe_at_the_end_of_all_numbers_is_refused_for_the_placement() {
     let frame = Frame::new([-1.0, 2f64.powi(256), 2.5], 2f64.powi(-20), 1).unwrap();
@@ -417,7 +418,8 @@ fn a_universe_at_the_end_of_all_numbers_is_refused_for_the_placement() {
     assert!(matches!(found, Err(Error::Argument { name: "placement", .. })), "{:?}", found.err());
 }
 
-/// Rounding errors of thousands of cells took all memory: each cell that a centre may be in was gathered.
+/// Gathering each cell that may contain a centre once took all memory, because rounding errors spanned
+/// thousands of cells.
 #[test]
 fn cells_far_smaller_than_rounding_errors_are_not_gathered() {
     let own = Frame::new([-2.0; 3], 4.0, 20).unwrap();
@@ -472,7 +474,7 @@ fn part() -> Csg {
     block.difference(&Csg::ball([0.4, 0.3, 0.2], 0.3).unwrap()).unwrap()
 }
 
-/// How many cells told of which: enclosures, moments, areas and crossings.
+/// Numbers of cells that provide enclosures, moments, areas and crossings.
 type Told = [u32; 4];
 
 #[test]
@@ -485,7 +487,7 @@ fn maps_of_the_lattice_hand_on_exactly_what_is_known_of_cells() {
     assert!(told.iter().all(|&told| told > 50), "{told:?}");
 }
 
-/// Walks down both ways at once: from cells to the cells of which they are the images.
+/// Descends a moved and an unmoved solid together, from cells to the cells whose images they are.
 fn handed_on<S: Solid + Clone>(solid: &S) -> Told {
     let mut told = [0; 4];
     let frame = Frame::new([-1.0; 3], 2.0, 5).unwrap();
@@ -598,7 +600,7 @@ fn measures_of_what_is_moved_converge_with_the_number_of_splits() {
     }
 }
 
-/// Octrees of samples, sampled again on lattices that are turned, coarser and finer.
+/// Octrees of samples, sampled again on rotated, coarser and finer lattices.
 #[test]
 fn nearest_cells_decide_every_centre() {
     let frame = lattice_frame(6);
@@ -646,7 +648,7 @@ fn nearest_cells_decide_every_centre() {
     assert!(matches!(build(&nearest, &coarse, Rule::Sampled, &control), Err(Error::NotSampled)));
 }
 
-/// Each centre by the cell that holds its inverse image, looked up one by one.
+/// Compares each centre with the cell that contains its inverse image, looked up one by one.
 #[test]
 fn nearest_cells_are_those_that_hold_the_inverse_image() {
     let own = Frame::new([0.0; 3], 8.0, 4).unwrap();

@@ -11,8 +11,8 @@ use leafless::{
 use std::sync::Arc;
 use std::sync::atomic::AtomicBool;
 
-/// For each plane of half cells of an axis: how many planes between voxels lie below or on it, and how many
-/// below. In exact arithmetic.
+/// Exact counts for each plane of half cells along an axis: the planes between voxels below or on it, and
+/// those below it.
 struct Oracle<'s> {
     sampled: &'s Sampled,
     band: Band,
@@ -39,7 +39,7 @@ impl<'s> Oracle<'s> {
         Oracle { sampled, band, frame: *frame, planes }
     }
 
-    /// The best verdict.
+    /// Returns the best possible verdict.
     fn tag(&self, cell: Cell) -> Tag {
         let shift = 1 + self.frame.depth() - cell.level;
         // Voxel j lies between planes j and j + 1, here counted on by one: 0 is all below, n + 1 all above
@@ -66,14 +66,14 @@ impl<'s> Oracle<'s> {
         }
     }
 
-    /// Whether a centre is inside, shifted upward.
+    /// True if a centre, shifted upward, is inside.
     fn sample(&self, at: [u32; 3]) -> bool {
         let voxel = [0, 1, 2].map(|axis| self.planes[axis][2 * at[axis] as usize + 1][0].wrapping_sub(1));
         self.sampled.contains(&self.band, voxel)
     }
 }
 
-/// Frames over a grid: the one that it offers and others on its lattice, and such as lie anyhow.
+/// Frames over a grid: its own frame, others on its lattice, and frames at arbitrary places.
 fn frames(random: &mut Random, grid: &VoxelGrid) -> Vec<Frame> {
     let mut frames = Vec::new();
     if let Ok(own) = grid.frame() {
@@ -97,7 +97,7 @@ fn frames(random: &mut Random, grid: &VoxelGrid) -> Vec<Frame> {
     frames
 }
 
-/// All that the worker says, at all levels, in both forms.
+/// Checks all verdicts of the worker, at all levels, in both forms.
 fn check_verdicts(volume: &Volume<'_>, oracle: &Oracle<'_>) {
     let classifier = volume.on(&oracle.frame, &alone()).unwrap();
     let mut worker = classifier.worker().unwrap();
@@ -183,7 +183,7 @@ fn long_and_flat_volumes() {
     }
 }
 
-/// The centre rule on the volume's own frame is the bitmap, and nothing is left open.
+/// The centre rule on the volume's own frame gives the bitmap, and no cell is open.
 #[test]
 fn own_frames_have_the_bitmap() {
     let mut random = Random(18);
@@ -310,7 +310,7 @@ fn points() {
     }
 }
 
-/// Where the frame lies so far from the grid's corner that doubles cannot tell voxels apart.
+/// A frame so far from the grid's corner that doubles cannot distinguish voxels.
 #[test]
 fn far_away() {
     for corner in [1e16, -3e17, 1e22] {
@@ -478,7 +478,7 @@ fn what_is_refused() {
     assert_eq!(tree.statistics().volume().lower, f64::from(1 << 20));
 }
 
-/// A part as a tomograph sees it: noise, a casting with bores and a pore, in Hounsfield units.
+/// A part as in a tomograph: noise, a casting with bores and a pore, in Hounsfield units.
 #[test]
 fn a_scanned_part() {
     let extents = [96, 80, 64];

@@ -1,4 +1,4 @@
-//! Boundaries of solids that know their surfaces.
+//! Boundaries of solids that provide their surfaces.
 
 use crate::common::surfaces::euler_of_manifold;
 use crate::common::{Random, alone, repeated};
@@ -17,7 +17,7 @@ pub fn of<S: Solid>(solid: &S, depth: u8, tolerance: f64) -> Boundary {
     boundary(solid, &frame, tolerance, &alone()).unwrap()
 }
 
-/// Each edge has two triangles, which run along it in opposite directions.
+/// Asserts that each edge has two triangles, which use it in opposite directions.
 pub fn assert_manifold(mesh: &TriangleMesh, text: &str) {
     let mut edges: BTreeMap<(u32, u32), u32> = BTreeMap::new();
     for triangle in mesh.triangles() {
@@ -39,7 +39,8 @@ pub fn plate() -> Csg {
     Csg::cuboid([0.0; 3], [80.0, 60.0, 10.0]).unwrap().difference(&bore).unwrap()
 }
 
-/// How far a point is from the boundary of the plate with its bore: the least of the ways to its seven faces.
+/// Returns the distance of a point from the boundary of the plate with its bore: the least distance from its
+/// seven faces.
 fn away_from_plate([x, y, z]: [f64; 3]) -> f64 {
     let beside = |c: f64, most: f64| (-c).max(c - most).max(0.0);
     let away = |a: f64, b: f64, c: f64| a.hypot(b).hypot(c);
@@ -52,7 +53,7 @@ fn away_from_plate([x, y, z]: [f64; 3]) -> f64 {
     sides.into_iter().fold((radius - 5.0).hypot(bz).min(ends), f64::min)
 }
 
-/// A point of the boundary of the plate: as many in each of the seven faces.
+/// A random point of the plate's boundary. The seven faces are equally likely.
 fn point_of_plate(random: &mut Random) -> [f64; 3] {
     let mut point = [80.0, 60.0, 10.0].map(|most| random.between(0.0, most));
     match random.below(7) {
@@ -74,7 +75,7 @@ fn point_of_plate(random: &mut Random) -> [f64; 3] {
     point
 }
 
-/// What is proven of the plate holds at so many points of the mesh, and at as many of the boundary.
+/// Checks the proven deviation of the plate at `samples` points of the mesh, and at as many of the boundary.
 fn check_plate(shares: &[f64], samples: usize) {
     for share in shares {
         let tolerance = 80.0 * share;
@@ -110,7 +111,7 @@ fn samples_of_the_plate() {
     check_plate(&[1e-3, 1e-4], 4000);
 }
 
-/// A box has eight vertices, which are its corners to the last digits, however it lies.
+/// A box has eight vertices. They are its corners to the last digits, in any orientation.
 #[test]
 fn boxes_have_twelve_triangles() {
     let (low, high) = ([0.0, -1.0, 2.5], [10.0, 20.0, 32.0]);
@@ -135,7 +136,7 @@ fn boxes_have_twelve_triangles() {
     }
 }
 
-/// How far a point is from a triangle.
+/// Returns the distance of a point from a triangle.
 fn away_from_triangle(p: [f64; 3], [a, b, c]: [[f64; 3]; 3]) -> f64 {
     let minus = |p: [f64; 3], q: [f64; 3]| [0, 1, 2].map(|k| p[k] - q[k]);
     let dot = |p: [f64; 3], q: [f64; 3]| p[0] * q[0] + p[1] * q[1] + p[2] * q[2];
@@ -165,8 +166,7 @@ pub fn away_from_mesh(p: [f64; 3], mesh: &TriangleMesh) -> f64 {
         .fold(f64::INFINITY, f64::min)
 }
 
-/// What is said to be proven of a mesh holds for points of the mesh, and for points of the boundary that rays
-/// find.
+/// Checks the proven deviation of a mesh at points of the mesh, and at points of the boundary that rays find.
 pub fn assert_deviation(solid: &Csg, found: &Boundary, random: &mut Random, text: &str) {
     let (mesh, most) = (found.mesh(), found.report().deviation);
     if mesh.triangles().is_empty() {
@@ -210,7 +210,7 @@ pub fn assert_deviation(solid: &Csg, found: &Boundary, random: &mut Random, text
     }
 }
 
-/// The plate with one bore: few triangles, sharp edges, and what is proven of the deviation.
+/// The plate with one bore: few triangles, sharp edges, and the proven deviation.
 #[test]
 fn a_plate_with_a_bore() {
     for (share, most) in [(1e-3, 500), (1e-4, 1500), (1e-5, 5000)] {
@@ -235,7 +235,7 @@ fn a_plate_with_a_bore() {
     assert!(found.distance().upper <= 1.1 * tolerance, "{found:?}");
 }
 
-/// Solids of which the number of triangles, the genus and the volume are known.
+/// Solids with a known number of triangles, genus and volume.
 #[test]
 fn known_solids() {
     let cube = |x: f64, y: f64, z: f64| Csg::cuboid([x, y, z], [x + 1.0, y + 1.0, z + 1.0]).unwrap();
@@ -264,7 +264,7 @@ fn known_solids() {
     }
 }
 
-/// Curved solids: closed, without intersections, and as exact as they should be.
+/// Curved solids: closed, without intersections, and within the tolerance.
 #[test]
 fn curved_solids() {
     let crossed = Csg::cylinder(4.0, -9.0, 9.0).unwrap().placed(&turn()).unwrap();
@@ -329,7 +329,7 @@ fn primitive(random: &mut Random) -> Csg {
     shape.unwrap().placed(&Affine::new(rows).unwrap()).unwrap()
 }
 
-/// Two to five primitives.
+/// A random scene of two to five primitives.
 pub fn random_scene(random: &mut Random) -> Csg {
     let mut solid = primitive(random);
     for _ in 0..1 + random.below(4) {
@@ -343,7 +343,7 @@ pub fn random_scene(random: &mut Random) -> Csg {
     solid
 }
 
-/// Scenes of two to five primitives: closed, manifold, no intersecting pair, and the volume.
+/// Scenes of two to five primitives: closed, manifold, without intersecting pairs, and with the right volume.
 #[test]
 fn random_scenes() {
     check_scenes(0..repeated(3, 8));
@@ -401,8 +401,8 @@ fn check_scenes(scenes: std::ops::Range<usize>) {
     assert!(beyond <= 1 + scenes.len() / 20, "{beyond}");
 }
 
-/// An octree that keeps its surfaces has the boundary of its source, also where faces lie in planes of its
-/// lattice.
+/// An octree that keeps its surfaces has its source's boundary, also where faces lie in planes of the
+/// octree's lattice.
 #[test]
 fn stored_octrees() {
     let frame = Frame::new([-10.0, -10.0, -20.0], 120.0, 9).unwrap();
@@ -432,7 +432,7 @@ fn threads() {
     assert_eq!(one.mesh().vertices(), other.mesh().vertices());
 }
 
-/// A stored octree with a cut of which no surface tells does not take minutes.
+/// A stored octree with a cut that no surface explains does not take minutes.
 #[test]
 fn an_octree_with_a_shared_cut() {
     let path = concat!(env!("CARGO_MANIFEST_DIR"), "/format_spec/vectors/valid/cut-shared.lfl");
@@ -474,8 +474,8 @@ fn refusals() {
     assert!(matches!(boundary(&tree, &frame, 0.1, &alone()), Err(Error::Argument { name: "solid", .. })));
 }
 
-/// The boundary of a closed mesh is that mesh, with fewer triangles; what lies inside of another body is none
-/// of it.
+/// The boundary of a closed mesh is the mesh itself, with fewer triangles. Parts inside another body do not
+/// belong to it.
 #[test]
 fn meshes() {
     let frame = Frame::new([-1.0; 3], 2.0, 8).unwrap();
@@ -501,8 +501,8 @@ fn meshes() {
     assert!((0.001..0.0011).contains(&found.report().deviation), "{:?}", found.report());
 }
 
-/// A turned part whose surfaces meet three at a time in circles: a chamfer on a round, a countersink in a
-/// bore, a counterbore, on a flange with four holes.
+/// A lathe-turned part whose surfaces meet three at a time in circles: a chamfer on a round, a countersink in
+/// a bore, a counterbore, on a flange with four holes.
 fn turned_part() -> Csg {
     let about = |x: f64, y: f64, radii: [f64; 2], low: f64, high: f64| {
         Csg::frustum_between([x, y, low], [x, y, high], radii).unwrap()
@@ -524,7 +524,7 @@ fn turned_part() -> Csg {
     Csg::union_of(body).unwrap().difference(&Csg::union_of(tools).unwrap()).unwrap()
 }
 
-/// How far a point is from each of its surfaces.
+/// Returns the distances of a point from each of its surfaces.
 fn away_from_turned_part([x, y, z]: [f64; 3]) -> Vec<f64> {
     let (r, slope) = (x.hypot(y), 0.5f64.sqrt());
     let hole = (x.abs() - 24.0).hypot(y.abs() - 24.0) - 3.0;

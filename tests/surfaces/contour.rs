@@ -16,7 +16,7 @@ fn turn() -> Affine {
     Affine::new([[0.36, 0.48, -0.8, 1.0], [-0.8, 0.6, 0.0, 2.0], [0.48, 0.64, 0.6, 3.0]]).unwrap()
 }
 
-/// The exact faces of a solid, as a mesh of which nothing else is known.
+/// The exact faces of a solid, as a plain mesh.
 fn meshed(solid: &Csg, tolerance: f64) -> MeshSolid {
     let bounds = solid.bounds().unwrap();
     let frame = Frame::around(bounds.min, bounds.max, 14).unwrap();
@@ -29,8 +29,7 @@ fn frame_of(mesh: &TriangleMesh, depth: u8) -> Frame {
     Frame::around(low, high, depth).unwrap()
 }
 
-/// A block with a pocket, turned: few triangles, vertices in its corners, and what is proven of the
-/// deviation.
+/// A rotated block with a pocket: few triangles, vertices in its corners, and the proven deviation.
 #[test]
 fn sharp_edges_of_meshes_stay() {
     let pocket = Csg::cuboid([2.0, 2.0, 3.0], [6.0, 4.0, 9.0]).unwrap();
@@ -56,8 +55,8 @@ fn sharp_edges_of_meshes_stay() {
     assert!(proven <= tolerance, "{proven}");
 }
 
-/// Of balls, of all kinds of solids, the true deviation is known at each vertex and each middle of a
-/// triangle: never more than is proven.
+/// For balls as solids of all kinds, the true deviation is known at each vertex and each triangle's middle.
+/// It never exceeds the proven deviation.
 #[test]
 fn what_is_proven_is_not_contradicted() {
     let (centre, radius, tolerance) = ([0.5, 0.25, 0.0], 4.0, 0.1);
@@ -107,8 +106,8 @@ fn what_is_proven_is_not_contradicted() {
     assert_eq!(found.report().deviation, f64::INFINITY);
 }
 
-/// Hosts whose functions are no numbers, say different things of one place, or end in the middle: closed
-/// manifolds, or their own error.
+/// Hosts whose functions return NaN, give different answers for one place, or end in the middle. The result
+/// is a closed manifold, or the host's error.
 #[test]
 fn hosts_that_contradict_themselves() {
     let frame = Frame::new([-8.0; 3], 16.0, 5).unwrap();
@@ -174,7 +173,7 @@ fn hosts_that_contradict_themselves() {
     assert!(matches!(contour(&cube, &frame, 0.1, &control), Err(Error::Cancelled)));
 }
 
-/// Expressions, expressions with meshes in them, volumes and stored octrees: closed manifolds of about the
+/// Expressions, expressions that contain meshes, volumes and stored octrees: closed manifolds of about the
 /// right volume.
 #[test]
 fn solids_of_all_kinds() {
@@ -205,7 +204,7 @@ fn solids_of_all_kinds() {
     }
 }
 
-/// Random expressions of meshes: manifolds, whatever they look like.
+/// Random expressions of meshes always give manifolds.
 #[test]
 fn random_scenes_give_manifolds() {
     let mut random = Random(11);

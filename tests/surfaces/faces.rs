@@ -1,4 +1,4 @@
-//! Faces of boundaries: polygons, regions, shells, and the surfaces that they lie on.
+//! Faces of boundaries: polygons, regions, shells, and their underlying surfaces.
 
 use crate::boundary::{of, plate, random_scene, turn};
 use crate::common::{Random, alone, repeated};
@@ -20,7 +20,7 @@ fn faces_of(solid: &Csg, tolerance: f64) -> (Boundary, BoundaryFaces) {
     (found, faces)
 }
 
-/// The corners of each loop of a face.
+/// Returns the corners of each loop of a face.
 fn loops(arrays: &PolyhedronArrays, face: usize) -> Vec<Vec<u32>> {
     let part = |offsets: &[u32], k: usize| offsets[k] as usize..offsets[k + 1] as usize;
     part(arrays.faces, face).map(|k| arrays.corners[part(arrays.loops, k)].to_vec()).collect()
@@ -38,7 +38,7 @@ fn dot(a: [f64; 3], b: [f64; 3]) -> f64 {
     (0..3).map(|k| a[k] * b[k]).sum()
 }
 
-/// Half the sum of the cross products of a loop's corners: its area, along its normal.
+/// Returns half the sum of the cross products of a loop's corners: its area, along its normal.
 fn vector_area(vertices: &[[f64; 3]], corners: &[u32]) -> [f64; 3] {
     let origin = vertices[corners[0] as usize];
     let mut sum = [0.0; 3];
@@ -49,8 +49,8 @@ fn vector_area(vertices: &[[f64; 3]], corners: &[u32]) -> [f64; 3] {
     sum
 }
 
-/// What must hold of all faces: loops are paired, a region has the area of its triangles, holes run against
-/// their outer loop, plane faces have no corner that no third face has, and each region lies on one surface.
+/// Checks all faces: loops are paired, a region has the area of its triangles, holes run against their outer
+/// loop, each corner of a plane face belongs to a third face, and each region lies on one surface.
 fn assert_faces(found: &Boundary, faces: &BoundaryFaces, text: &str) {
     let (mesh, arrays) = (found.mesh(), faces.arrays());
     assert_eq!(arrays.vertices, mesh.vertices());
@@ -114,7 +114,7 @@ fn assert_faces(found: &Boundary, faces: &BoundaryFaces, text: &str) {
     assert_eq!(faces.region_of(end), None);
 }
 
-/// The polyhedron of the faces has the volume of the mesh.
+/// Checks that the polyhedron of the faces has the volume of the mesh.
 fn assert_polyhedron(found: &Boundary, faces: &BoundaryFaces) -> Polyhedron {
     let polyhedron = Polyhedron::new(&faces.arrays()).unwrap();
     let (own, mesh) = (polyhedron.mesh().volume(), found.mesh().volume());
@@ -194,7 +194,7 @@ fn a_plate_with_a_bore() {
     assert_eq!(faces.regions().len(), 7);
 }
 
-/// Faces of several solids in one plane are one, and a corner stays where a third face ends.
+/// Faces of several solids in one plane are one face. A corner stays where a third face ends.
 #[test]
 fn solids_in_the_shape_of_an_l_and_a_t() {
     let arm = cuboid([0.0, 0.0, 0.0], [3.0, 1.0, 1.0]);
@@ -231,7 +231,7 @@ fn voids_belong_to_their_solids() {
     assert!((polyhedron.mesh().volume() - 2.0 * (1000.0 - 512.0) - (216.0 - 64.0)).abs() < 1e-9);
 }
 
-/// Boxes that touch in an edge, and in a corner.
+/// Boxes that touch in an edge, and boxes that touch in a corner.
 #[test]
 fn solids_that_touch_themselves() {
     let first = cuboid([0.0; 3], [1.0, 1.0, 2.0]);

@@ -1,4 +1,4 @@
-//! Surfaces of solids that are no octrees: samples at corners, vertices on the surface.
+//! Surfaces of solids other than octrees: samples at corners, vertices on the surface.
 
 use crate::common::surfaces::{assert_balanced, components, euler_of_manifold};
 use crate::common::{Random, alone, lattice_frame, model};
@@ -13,7 +13,7 @@ fn crossings<S: Solid>(solid: &S, frame: &Frame) -> TriangleMesh {
     marching_cubes_solid(solid, frame, VertexPlacement::Crossing, &alone()).unwrap()
 }
 
-/// Vertices of a ball lie on it, and area and volume converge with second order.
+/// Vertices of a ball lie on the ball, and area and volume converge to second order.
 #[test]
 fn balls_of_second_order() {
     let (centre, radius) = ([0.03, -0.02, 0.01], 0.8);
@@ -64,7 +64,7 @@ fn boxes() {
     }
 }
 
-/// The mesh of a solid within a solid's own mesh: every vertex lies on one of its triangles.
+/// Returns the distance of a point from a mesh. Every vertex of a solid's surface lies on the solid's mesh.
 fn distance_to(mesh: &TriangleMesh, p: [f64; 3]) -> f64 {
     let minus = |a: [f64; 3], b: [f64; 3]| [a[0] - b[0], a[1] - b[1], a[2] - b[2]];
     let dot = |a: [f64; 3], b: [f64; 3]| a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
@@ -111,7 +111,7 @@ fn bumped() -> MeshSolid {
     MeshSolid::new(TriangleMesh::new(corners, triangles).unwrap(), FillRule::NonZero).unwrap()
 }
 
-/// Segments cross a mesh where they first meet a triangle, and the normal leads out there.
+/// Segments cross a mesh where they first meet a triangle. The normal there points outward.
 #[test]
 fn segments_cross_meshes() {
     let solid = bumped();
@@ -226,7 +226,7 @@ fn midpoints_and_threads() {
     }
 }
 
-/// Solids without slabs: verdicts narrow a crossing down.
+/// Without slabs, verdicts narrow a crossing down.
 #[test]
 fn verdicts_alone() {
     let size = |p: [f64; 3]| p.iter().map(|x| x.abs()).sum::<f64>();

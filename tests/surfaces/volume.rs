@@ -10,7 +10,7 @@ use leafless::{
 use std::f64::consts::PI;
 use std::sync::atomic::AtomicBool;
 
-/// The radius less the distance from a centre, at the centres of voxels.
+/// Returns the radius minus the distance from a centre, at the centres of voxels.
 fn distances(grid: &VoxelGrid, centre: [f64; 3], radius: f64) -> Vec<f32> {
     let [nx, ny, nz] = grid.extents();
     let places = (0..nz).flat_map(|z| (0..ny).flat_map(move |y| (0..nx).map(move |x| [x, y, z])));
@@ -22,7 +22,8 @@ fn volume<'a>(samples: &'a [f32], grid: &VoxelGrid) -> Volume<'a> {
     Volume::new(samples.into(), grid, Band::at_least(0.0).unwrap(), &alone()).unwrap()
 }
 
-/// Vertices of a ball's distances lie on it to second order, and area and volume converge with second order.
+/// Vertices from a ball's distances lie on the ball to second order, and area and volume converge to second
+/// order.
 #[test]
 fn balls_of_second_order() {
     let (centre, radius) = ([0.53, 0.48, 0.51], 0.4f64);
@@ -56,7 +57,7 @@ fn balls_of_second_order() {
     }
 }
 
-/// Octrees of a volume: as the volume itself, and half-way where they were cut.
+/// Octrees of a volume: vertices as in the volume itself, and halfway where the octree was cut.
 #[test]
 fn octrees_with_their_volumes() {
     let grid = VoxelGrid::new([40, 37, 33], [-2.5, 1.0, 0.25], [0.125; 3]).unwrap();
@@ -110,7 +111,7 @@ fn octrees_with_their_volumes() {
     assert!((of_source.volume() / own.volume() - 1.0).abs() < 1e-3);
 }
 
-/// Few values, so that samples lie on the surface; all kinds of samples, up to the border.
+/// Few different values, so that samples lie on the surface; all kinds of samples, up to the border.
 #[test]
 fn samples_on_the_surface() {
     let mut random = Random(5);

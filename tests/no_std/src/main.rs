@@ -1,6 +1,6 @@
-//! A program that has no standard library: only an allocator and a way to stop.
+//! A program without the standard library. It has only an allocator and a way to stop.
 //!
-//! It builds two solids, combines them and asks for points. Its exit code says which step was wrong.
+//! It builds two solids, combines them and queries points. Its exit code says which step was wrong.
 
 #![no_std]
 #![no_main]

@@ -12,7 +12,7 @@ use leafless::{
     xor,
 };
 
-/// A solid twice: as a model, and as an octree.
+/// A solid in two forms: a model and an octree.
 #[derive(Clone)]
 struct Pair {
     model: Model,
@@ -25,7 +25,7 @@ impl Pair {
     }
 }
 
-/// Solids that have something to do with each other: some are parts of others, or touch them.
+/// Solids that interact: some are parts of others, or touch them.
 fn pool(maker: &mut Maker<'_>, count: usize) -> Vec<Pair> {
     let frame = maker.frame;
     let mut pool: Vec<Pair> = Vec::new();
@@ -51,7 +51,7 @@ fn pool(maker: &mut Maker<'_>, count: usize) -> Vec<Pair> {
     pool
 }
 
-/// A random operation of some solids of the pool.
+/// Applies a random operation to some solids of the pool.
 fn operation(pool: &[Pair], random: &mut Random, threads: usize) -> Pair {
     let mut pick = |_| pool[random.below(pool.len() as u64) as usize].clone();
     let [a, b] = [0, 1].map(&mut pick);
@@ -83,7 +83,7 @@ fn operation(pool: &[Pair], random: &mut Random, threads: usize) -> Pair {
     Pair { model, tree: tree.unwrap() }
 }
 
-/// Whether a tree, or one that it was made of, gave up somewhere.
+/// True if a tree has cells that were given up.
 fn gave_up(tree: &Octree) -> bool {
     match tree.view().cuts() {
         Some(cuts) => cuts.given_up > 0,
@@ -153,14 +153,14 @@ fn a_million_points_of_combined_trees() {
     no_lies(3000, 6, 120);
 }
 
-/// Equal bytes: whatever is stored.
+/// Asserts that all stored data are equal.
 fn assert_same(a: &Octree, b: &Octree, what: &str) {
     assert_eq!(a.view().cuts(), b.view().cuts(), "{what}");
     assert_eq!((a, Solid::fingerprint(a)), (b, Solid::fingerprint(b)), "{what}");
     assert_eq!(a.proof(), b.proof(), "{what}");
 }
 
-/// The laws of sets; those that hold byte for byte, and those that hold where nothing was given up.
+/// The laws of sets: laws that hold byte for byte, and laws that hold where no cell was given up.
 #[test]
 fn laws_of_sets() {
     let (mut whole, mut cells, mut compared) = (0, 0, 0);
@@ -325,7 +325,7 @@ fn memory_does_not_grow_with_history() {
     assert_same(&whole, &blank, "all bores are filled");
 }
 
-/// The example of the documentation: a plate, and twenty bores one by one.
+/// The documentation's example: a plate, and twenty bores one by one.
 #[test]
 fn twenty_bores_one_by_one() {
     let frame = Frame::around([0.0; 3], [80.0, 60.0, 10.0], 20).unwrap();
@@ -348,7 +348,7 @@ fn twenty_bores_one_by_one() {
     assert!(volume.contains(truth) && volume.width() < 1.01e-6 * truth);
 }
 
-/// Forty balls out of a block, one of which touches it and another cuts nothing.
+/// Forty balls cut out of a block. One touches the block, and one cuts nothing.
 fn cut_block() -> (Frame, Vec<Octree>) {
     let frame = Frame::new([-1.0; 3], 2.0, 9).unwrap();
     let block = extended(&Csg::cuboid([-0.75; 3], [0.75; 3]).unwrap(), &frame);
@@ -362,8 +362,7 @@ fn cut_block() -> (Frame, Vec<Octree>) {
     (frame, [block].into_iter().chain(balls).chain(others).collect())
 }
 
-/// Limits and a cancel end the work with an error, at any point, and what is made afterwards is the same as
-/// before.
+/// Limits and cancels end the work with an error, at any point. A tree made afterwards is the same as before.
 #[test]
 fn limits_and_cancels_are_errors() {
     use core::sync::atomic::{AtomicBool, AtomicUsize, Ordering::Relaxed};
@@ -421,7 +420,7 @@ fn limits_and_cancels_are_errors() {
     );
 }
 
-/// Whatever takes a tree with surfaces and gives one keeps them, or says that it does not.
+/// Every function from trees with surfaces to trees keeps the surfaces, or reports that it does not.
 #[test]
 fn nothing_drops_surfaces_in_silence() {
     use leafless::attribute::{
@@ -514,8 +513,7 @@ fn nothing_drops_surfaces_in_silence() {
     std::fs::remove_dir_all(&folder).unwrap();
 }
 
-/// Slabs are one only where they have the same origin: what lies in the width of two is not known to be the
-/// same.
+/// Slabs are equal only if they have the same origin. The sets within the widths of two slabs may differ.
 #[test]
 fn meshes_that_differ_within_a_slab() {
     let frame = Frame::new([-1.013, -1.017, -1.009], 2.0, 7).unwrap();

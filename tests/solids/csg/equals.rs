@@ -1,4 +1,4 @@
-//! Operands of expressions that are equal are one: the same solid, without the doubt of coincident faces.
+//! Equal operands of an expression are one solid, without the doubt of coincident faces.
 
 use leafless::query::surface_area;
 use leafless::{Affine, Control, Csg, Frame, Rule, build, measure};
@@ -35,14 +35,14 @@ fn a_thousand_cubes_have_the_area_of_one() {
     assert!(volume.contains(6.0) && volume.width() < 1e-9);
 }
 
-/// The volume, and how many cells were split for it.
+/// Returns the volume's bounds, and the number of cells split for it.
 fn volume(csg: &Csg) -> (f64, f64, u64) {
     let control = Control { max_splits: Some(2_000), ..Control::threads(1) };
     let measured = measure(csg, &frame(), 0.0, &control).unwrap();
     (measured.volume.lower, measured.volume.upper, measured.splits)
 }
 
-/// Surfaces are one from both sides, whatever factor their coefficients have, wherever they come from.
+/// Equal surfaces are one: from both sides, with any factor of their coefficients, and from any source.
 #[test]
 fn what_coincides_leaves_no_doubt() {
     let ball = || Csg::ball([0.1, 0.2, 0.3], 0.7).unwrap();
@@ -64,7 +64,7 @@ fn what_coincides_leaves_no_doubt() {
     assert_eq!(volume(&Csg::intersection_of([lid, below]).unwrap()).1, 0.0);
 }
 
-/// Solids that touch have nothing in common, straight and turned.
+/// Touching solids have no common points, in place and rotated.
 #[test]
 fn contact_is_no_overlap() {
     let (sine, cosine) = 0.7f64.sin_cos();

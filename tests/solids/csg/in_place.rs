@@ -1,5 +1,4 @@
-//! Cuts that are asked where they lie, without a worker: against exact arithmetic, and against the tree as a
-//! solid.
+//! Cuts queried in place, without a worker, against exact arithmetic and against the tree as a solid.
 
 use super::model::{Model, Point};
 use super::oracle::frames;
@@ -18,7 +17,7 @@ fn exact(p: [f64; 3]) -> Point {
     [x, y, z, Exact::from(1.0)]
 }
 
-/// Random models with their extended trees, of which some PARTIAL cell keeps something.
+/// Random models with their extended trees. At least one PARTIAL cell of each tree keeps surfaces.
 fn models(count: usize, seed: u64) -> impl Iterator<Item = (Model, Csg, Octree, Random)> {
     let made = (0..).filter_map(move |k| {
         let mut random = Random(seed ^ k);
@@ -41,8 +40,7 @@ fn make(maker: &mut Maker<'_>) -> Model {
     }
 }
 
-/// A point anywhere in the universe, or near the surface: between an inner and an outer point that halving
-/// has brought together.
+/// A point anywhere in the universe, or near the surface: bisected between an inner and an outer point.
 fn point(model: &Model, frame: &Frame, random: &mut Random) -> [f64; 3] {
     let mut any = || frame.origin().map(|origin| origin + frame.edge() * random.unit());
     let (mut a, mut b) = (any(), any());
@@ -90,7 +88,7 @@ fn points_in_place_do_not_lie() {
     assert!(decided > 10_000 && 20 * open < decided, "{decided} {open}");
 }
 
-/// The point of a ray at a time, exactly.
+/// Returns the exact point of a ray at a time.
 fn along(ray: ([f64; 3], [f64; 3]), t: f64) -> Point {
     let [x, y, z] =
         [0, 1, 2].map(|axis| Exact::from(ray.0[axis]).plus(&Exact::from(ray.1[axis]).times(&Exact::from(t))));
@@ -187,12 +185,12 @@ fn boxes_in_place_do_not_lie() {
     assert!(found[..3].iter().all(|&count| count > 100), "{found:?}");
 }
 
-/// A number of a surface.
+/// Returns the i-th number of a surface.
 fn number(surface: &StoredSurface<'_>, i: usize) -> Exact {
     surface.number(i).iter().fold(Exact::from(0.0), |sum, &term| sum.plus(&Exact::from(term)))
 }
 
-/// The sign of a surface's function that is a polynomial and not placed.
+/// Returns the sign of a surface's function if it is a polynomial without placement.
 fn side(surface: &StoredSurface<'_>, p: [f64; 3]) -> Option<i32> {
     if surface.placements().next().is_some() {
         return None;
@@ -223,7 +221,7 @@ fn side(surface: &StoredSurface<'_>, p: [f64; 3]) -> Option<i32> {
     Some(value.sign())
 }
 
-/// The function that is read of a cell is what the solid is there; below a cell it is the same one.
+/// The function of a cell describes the solid in the cell. Descendants of the cell have the same function.
 #[test]
 fn functions_of_cells_are_the_solid() {
     let (mut judged, mut functions) = (0, 0);
@@ -257,8 +255,8 @@ fn functions_of_cells_are_the_solid() {
     assert!(functions > 1000 && judged > 300, "{functions} {judged}");
 }
 
-/// A tree without cuts that is made of one with them is that of the expression, but where groups of that
-/// decide a cell by boxes.
+/// The plain tree of a tree with cuts equals the tree of its expression, except where operand groups of the
+/// expression decide a cell by boxes.
 #[test]
 fn plain_trees_are_those_of_the_expression() {
     let (mut same, mut all) = (0, 0);

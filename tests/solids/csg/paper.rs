@@ -1,5 +1,4 @@
-//! The published classification, written down as slowly as it was published: all vertices, then all
-//! half-spaces.
+//! The published classification, as slow as published: all vertices, then all half-spaces.
 
 use super::extremes::{Separable, corners};
 use crate::common::exact::Exact;
@@ -7,15 +6,15 @@ use crate::common::{Dense, Random, alone, lattice_frame, positions};
 use leafless::solid::{HalfSpace, Parts, Touch};
 use leafless::{Cell, Classifier, Csg, Frame, Rule, Solid, Tag, Verdict, Worker, build};
 
-/// A primitive as the library has it, and its half-spaces.
+/// A primitive in the library's form, and its half-spaces.
 #[derive(Clone)]
 struct Primitive {
     csg: Csg,
     half_spaces: Vec<Separable>,
 }
 
-/// A vertex on the surface is inside; vertices that do not agree make a cell PARTIAL, those that do the
-/// half-spaces decide.
+/// Classifies a cell. A vertex on the surface is inside. If the vertices disagree, the cell is PARTIAL; if
+/// they agree, the half-spaces decide.
 fn classify(primitive: &Primitive, frame: &Frame, cell: Cell) -> Tag {
     let [x, y, z] = corners(frame, cell);
     let inside = |vertex: usize| {
@@ -30,7 +29,7 @@ fn classify(primitive: &Primitive, frame: &Frame, cell: Cell) -> Tag {
     }
 }
 
-/// Compares all splits above the frame's depth; returns the tags of the finest cells.
+/// Compares all splits above the frame's depth. Returns the tags of the finest cells.
 fn compare(primitive: &Primitive, frame: &Frame) -> Dense {
     let csg = primitive.csg.with_touch(Touch::Paper);
     let n = primitive.half_spaces.len() as u64;
@@ -74,7 +73,7 @@ fn compare(primitive: &Primitive, frame: &Frame) -> Dense {
     out
 }
 
-/// Coordinates that are multiples of a quarter of a cell.
+/// A random coordinate, a multiple of a quarter of a cell.
 fn number(random: &mut Random, n: f64) -> f64 {
     (random.between(-0.2, 1.2) * n * 4.0).round() / 4.0
 }

@@ -1,5 +1,5 @@
-//! Expressions in which one other solid is all that is open, in the whole universe or in a part of it: what
-//! that solid does in bulk, the expression does.
+//! Expressions in which only one other solid is open, in the whole universe or in a part of it. The
+//! expression passes that solid's block-wise work on.
 
 use crate::common::cubes::Plain;
 use crate::common::{alone, repeated};
@@ -35,7 +35,7 @@ fn torus(centre: [f64; 3], major: f64, minor: f64, [around, across]: [u32; 2]) -
     mesh
 }
 
-/// An octahedron that the library does not know: |x| + |y| + |z| ≤ r.
+/// An octahedron that is not a primitive of the library: |x| + |y| + |z| ≤ r.
 fn octahedron(r: f64) -> AnySolid {
     let sum = |p: [f64; 3]| p.iter().map(|c| c.abs()).sum::<f64>();
     let bounds = Bounds::new([-r; 3], [r; 3]).unwrap();
@@ -63,7 +63,7 @@ fn built(solid: &impl Solid, frame: &Frame, rule: Rule) -> Octree {
     tree
 }
 
-/// Whether two trees have the same cells, whatever is known of the space around them.
+/// True if two trees have the same cells, whatever their exteriors.
 fn same_cells(a: &Octree, b: &Octree) -> bool {
     [Rule::Inner, Rule::Outer].into_iter().all(|rule| {
         let [a, b] = [a, b].map(|tree| resolve(tree.view(), rule, &alone()).unwrap());
@@ -71,7 +71,7 @@ fn same_cells(a: &Octree, b: &Octree) -> bool {
     })
 }
 
-/// Whether `a` decides what `b` does, in the same way.
+/// True if `a` decides every cell that `b` decides, in the same way.
 fn no_looser(a: &Octree, b: &Octree) -> bool {
     let within = |a: &Octree, b: &Octree| {
         difference(a.view(), b.view(), &alone()).unwrap().view().root_tag() == Tag::Empty

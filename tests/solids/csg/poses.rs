@@ -1,4 +1,5 @@
-//! Many poses of a block among many balls: the union is prepared once, and a pose costs what is near it.
+//! Many poses of a block among many balls. The union is prepared once, and a pose costs only its
+//! neighbourhood.
 
 use crate::common::cubes::Plain;
 use crate::common::{Random, alone};
@@ -6,7 +7,7 @@ use leafless::query::{Overlap, interference_at};
 use leafless::solid::SplitCounter;
 use leafless::{Affine, Csg, Frame};
 
-/// Evaluations of half-spaces for each pose, among `n` balls.
+/// Returns the number of half-space evaluations for each pose among `n` balls.
 fn evaluations(n: u32) -> f64 {
     const POSES: usize = 1000;
     let mut random = Random(n as u64);
@@ -43,7 +44,7 @@ fn a_pose_costs_what_is_near_it() {
     assert!(few > 0.0 && many < 3.0 * few, "{few}, then {many}");
 }
 
-/// The same with the union moved past the block, which lies on a frame of its own size.
+/// The same, with the union moved past the block. The block's frame is of the block's size.
 fn evaluations_of_a_moved_union(n: u32) -> f64 {
     const POSES: usize = 1000;
     let mut random = Random(n as u64);

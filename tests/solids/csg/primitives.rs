@@ -1,6 +1,6 @@
 //! Half-spaces and primitives under random placements, against exact arithmetic.
 //!
-//! By default there are some 10⁵ points of each; a million each take some minutes:
+//! By default there are about 10⁵ points for each. A million points each take some minutes:
 //! `cargo test --release --test solids csg::primitives -- --ignored`
 
 use crate::common::exact::Exact;
@@ -14,13 +14,13 @@ use std::f64::consts::PI;
 use std::sync::atomic::{AtomicUsize, Ordering::Relaxed};
 use std::sync::{Arc, Mutex};
 
-/// A point in a primitive's own space: numerators, and their common denominator, which is positive.
+/// A point in a primitive's own space: numerators, and their positive common denominator.
 struct Point {
     at: [Exact; 3],
     w: Exact,
 }
 
-/// Σ of products of exact numbers.
+/// Returns the sum of exact numbers.
 fn sum(terms: impl IntoIterator<Item = Exact>) -> Exact {
     terms.into_iter().fold(Exact::from(0.0), |sum, term| sum.plus(&term))
 }
@@ -38,7 +38,7 @@ fn pow(base: &Exact, n: u32) -> Exact {
 }
 
 impl Point {
-    /// The point whose image is `p`.
+    /// Returns the point with the image `p`.
     fn before(placement: &Affine, p: [f64; 3]) -> Point {
         let m = placement.rows().map(|row| row.map(Exact::from));
         let d: Vec<Exact> = (0..3).map(|i| Exact::from(p[i]).minus(&m[i][3])).collect();
@@ -53,7 +53,7 @@ impl Point {
         Point { at: at.map(|c| c.times(&flip)), w: w.times(&flip) }
     }
 
-    /// The coordinate less a number, times w.
+    /// Returns the coordinate minus a number, times w.
     fn beyond(&self, axis: usize, x: f64) -> Exact {
         self.at[axis].minus(&self.w.times(&x.into()))
     }
@@ -62,7 +62,7 @@ impl Point {
         self.beyond(axis, low).sign().min(-self.beyond(axis, high).sign())
     }
 
-    /// Sign of n · p + d.
+    /// Returns the sign of n · p + d.
     fn plane(&self, n: [f64; 3], d: f64) -> i32 {
         let products = (0..3).map(|axis| self.at[axis].times(&n[axis].into()));
         sum(products.chain([self.w.times(&d.into())])).sign()
@@ -77,7 +77,7 @@ struct Shape {
     solid: Csg,
     side: Side,
     volume: Option<f64>,
-    /// A box around it.
+    /// A box around the shape.
     bounds: ([f64; 3], [f64; 3]),
 }
 
@@ -107,7 +107,7 @@ fn polygon_area(corners: &[[f64; 2]]) -> f64 {
     pairs.map(|(a, b)| a[0] * b[1] - a[1] * b[0]).sum::<f64>().abs() / 2.0
 }
 
-/// The sign of 2 R ρ − (x² + y² + z² + R² − r²), without a root.
+/// Returns the sign of 2 R ρ − (x² + y² + z² + R² − r²), without a root.
 fn torus_side(p: &Point, major: f64, minor: f64) -> i32 {
     let [x, y, z] = p.at.each_ref().map(|c| pow(c, 2));
     let rho = x.plus(&y);
@@ -134,7 +134,7 @@ fn quadric_side(p: &Point, c: [f64; 10]) -> i32 {
     sum(pairs.iter().zip(c).map(|((a, b), c)| a.times(b).times(&c.into()))).sign()
 }
 
-/// Volume of the points with |x|^p + |y|^q + |z|^r ≤ 1.
+/// Returns the volume of the points with |x|^p + |y|^q + |z|^r ≤ 1.
 fn superball_volume(exponents: [f64; 3]) -> f64 {
     let g = |x: f64| libm::tgamma(1.0 + x);
     let [p, q, r] = exponents.map(|n| 1.0 / n);
@@ -329,7 +329,7 @@ fn shapes() -> Vec<Shape> {
     shapes
 }
 
-/// SplitMix64.
+/// A SplitMix64 generator.
 struct Random(u64);
 
 impl Random {
@@ -349,7 +349,7 @@ impl Random {
         low + (high - low) * (self.bits() >> 11) as f64 / (1u64 << 53) as f64
     }
 
-    /// Scaled, sheared and mirrored ones; some take axes to axes, some have short numbers.
+    /// Scaled, sheared and mirrored placements. Some take axes to axes, some have short numbers.
     fn placement(&mut self) -> Affine {
         loop {
             let (kind, length) = (self.below(4), self.below(4));
@@ -383,7 +383,7 @@ fn determinant(m: &[[f64; 4]; 3]) -> f64 {
         .sum()
 }
 
-/// A cube around the image of a box, somewhat larger; its lattice planes are short numbers if it is `neat`.
+/// A cube slightly larger than the image of a box. If it is `neat`, its lattice planes are short numbers.
 fn frame_around((min, max): ([f64; 3], [f64; 3]), placement: &Affine, neat: bool, depth: u8) -> Frame {
     let corners: Vec<[f64; 3]> = (0..8)
         .map(|k| {
@@ -405,7 +405,7 @@ fn built(solid: &Csg, frame: &Frame) -> Octree {
     build(solid, frame, Rule::Certified, &Control::threads(1)).unwrap()
 }
 
-/// Points of random cells (corners, middles and random ones) against the cells' tags.
+/// Compares points of random cells (corners, middles and random ones) with the cells' tags.
 fn check_points(
     shape: &Shape,
     placement: &Affine,
@@ -479,7 +479,7 @@ fn points_never_contradict_cells_at_length() {
     check_all_points(100, 10_000, 2);
 }
 
-/// Along the axes, two points make what a cylinder or frustum around z is when it is moved there.
+/// Along the axes, two points make the same solid as a cylinder or frustum around z moved there.
 #[test]
 fn two_points_along_an_axis_are_as_good_as_heights() {
     let frame = Frame::new([-2.0; 3], 4.0, 6).unwrap();
@@ -556,7 +556,7 @@ fn volumes_contain_the_truth_at_every_depth() {
     }
 }
 
-/// What cells at depth `depth` of [−2, 2]³ say.
+/// Returns the volume from cells at depth `depth` of [−2, 2]³.
 fn volume_on_lattice(solid: impl Into<Csg>, depth: u8) -> Interval {
     built(&solid.into(), &Frame::new([-2.0; 3], 4.0, depth).unwrap()).statistics().volume()
 }
@@ -782,7 +782,7 @@ fn what_is_refused() {
     assert!(Csg::torus(0.0, 1.0).is_ok() && Csg::wedge([1.0; 3], 0.0).is_ok());
 }
 
-/// A ball of radius 1 by a host's functions, and how often they were asked.
+/// A ball of radius 1 as a host's functions, which count their calls.
 fn host_ball(asked: &Arc<[AtomicUsize; 2]>) -> HalfSpace {
     let [values, ranges] = [asked.clone(), asked.clone()];
     HalfSpace::host(

@@ -1,4 +1,4 @@
-//! Expressions of few half-spaces that occur more than once: the verdicts are those of truth tables.
+//! Expressions of few half-spaces that occur more than once. The verdicts are those of truth tables.
 
 use super::model::Model;
 use super::oracle::frames;
@@ -14,7 +14,7 @@ fn built(csg: &Csg, frame: &Frame, rule: Rule) -> Octree {
     build(csg, frame, rule, &alone()).unwrap()
 }
 
-/// Asserts that an expression is decided as a whole: by its root, and in all trees.
+/// Asserts that an expression is decided as a whole, by its root and in all trees.
 fn assert_decided(what: &str, csg: &Csg, tag: Tag) {
     for depth in 1..=4 {
         let frames = frames(depth);
@@ -206,7 +206,7 @@ impl Tree {
         }
     }
 
-    /// The value for all choices of what is undecided.
+    /// Returns the value for all choices of the undecided half-spaces.
     fn tag(&self, tags: &[Tag]) -> Tag {
         let mut seen = [false; 2];
         for inside in 0..1u32 << tags.len() {
@@ -227,7 +227,7 @@ impl Tree {
     }
 }
 
-/// A primitive of one half-space.
+/// A random primitive with a single half-space.
 fn half_space(maker: &mut Maker<'_>) -> Model {
     loop {
         let model = match maker.below(4) {
@@ -247,8 +247,8 @@ fn half_space(maker: &mut Maker<'_>) -> Model {
     }
 }
 
-/// Verdicts of the universe, cell by cell as far as the splits go: not looser than any choice of what the
-/// half-spaces leave open, each on its own, and never beyond exact arithmetic.
+/// Compares verdicts of the universe, cell by cell as far as the splits go. They are at least as tight as all
+/// independent choices of the undecided half-spaces allow, and never contradict exact arithmetic.
 #[test]
 fn random_expressions_of_few_half_spaces() {
     let (mut tighter, mut found, mut made) = (0, Found::default(), 0);
