@@ -5,8 +5,9 @@
 //! LEAFLESS_C_CHECK=valgrind cargo test --test c_api     # also: address, address-all, thread
 //! ```
 //!
-//! The libraries are built as these tests are, by the same profile, of the same compiled parts. Every program
-//! is compiled and linked as a user would do it, and run; `README.md` here tells what each is for.
+//! The libraries are built like these tests, with the same profile and from the same compiled parts. Every
+//! program is compiled, linked and run as a user would do it. `README.md` in this folder explains the purpose
+//! of each.
 
 #![cfg(unix)]
 
@@ -41,7 +42,7 @@ fn header() -> Header {
     Header::read(&text("include/leafless.h"))
 }
 
-/// Compiles a program of this folder, runs it, and returns what it prints.
+/// Compiles a program of this folder, runs it, and returns its output.
 fn run(name: &str, standard: Standard, link: Link, arguments: &[&str]) -> String {
     let kit = kit();
     let source = root().join("c_tests").join(format!("{name}.{}", standard.extension()));
@@ -49,7 +50,7 @@ fn run(name: &str, standard: Standard, link: Link, arguments: &[&str]) -> String
     kit.run(&program, arguments)
 }
 
-/// The programs are documented to be complete: no file of the folder is left out.
+/// The list of programs is documented as complete. No file of the folder may be missing from it.
 #[test]
 fn every_file_is_used() {
     let driver = text("c_tests/main.rs") + &text("c_tests/kit.rs");
@@ -92,7 +93,7 @@ fn header_in_two_files() {
     kit().run(&program, &[]);
 }
 
-/// What the header's texts speak of, it declares.
+/// The header declares everything that its texts mention.
 #[test]
 fn header_speaks_of_nothing_else() {
     let header = header();
@@ -312,7 +313,7 @@ fn options() {
     run("options", C99, Link::Static, &[]);
 }
 
-/// Structs that the library fills, by older and newer programs; the program tries every function that fills
+/// Older and newer programs with structs that the library fills. The program tries every function that fills
 /// one.
 #[test]
 fn outputs() {
@@ -378,7 +379,7 @@ fn threads() {
     run("threads", CPP17, Link::Shared, &[]);
 }
 
-/// What a careless host does.
+/// The mistakes of a careless host.
 #[test]
 fn attacks() {
     run("attack", CPP17, Link::Static, &[]);
@@ -407,7 +408,7 @@ fn golden() {
     assert!(valid > 20 && points > 500 && invalid > 50, "{told}");
 }
 
-/// A smoke test: figures come from more points, see the file.
+/// A smoke test. Real figures need more points, see the file.
 #[test]
 fn boundary() {
     for language in [C99, CPP17] {
@@ -419,7 +420,7 @@ fn boundary() {
 // --- What users read
 // --------------------------------------------------------------------------------------------
 
-/// The first block of a language in a text.
+/// Returns the first block of a language in a text.
 fn block(text: &str, language: &str) -> String {
     let opening = format!("```{language}\n");
     let (_, rest) = text.split_once(&opening).unwrap_or_else(|| panic!("there is no block in {language}"));
@@ -502,7 +503,7 @@ fn native_libraries_are_documented() {
     assert_eq!(list.trim(), kit.native_libraries, "include/README.md and rustc name different libraries");
 }
 
-/// Lines of a tool's output, as words.
+/// Returns the lines of a tool's output, split into words.
 fn table(program: &str, arguments: &[&str], file: &Path) -> Vec<Vec<String>> {
     let told = Command::new(program).args(arguments).arg(file).output();
     let told = told.unwrap_or_else(|error| panic!("{program} (of binutils) cannot be run: {error}"));
@@ -539,7 +540,7 @@ fn shared_library_exports_the_header() {
     assert_eq!(soname.expect("a SONAME").last().unwrap(), "[libleafless.so.0]");
 }
 
-/// Whatever of the static library another library could clash with is Rust's own, or has the prefix.
+/// Every name of the static library that could clash with another library belongs to Rust or has the prefix.
 #[test]
 #[cfg(target_os = "linux")]
 fn static_library_has_no_other_names() {
@@ -564,7 +565,7 @@ fn static_library_has_no_other_names() {
     assert_eq!(ours, sorted_functions());
 }
 
-/// The names of an archive's symbols that are global, defined, and neither weak nor hidden.
+/// Returns an archive's symbols that are global, defined, and neither weak nor hidden.
 #[cfg(target_os = "linux")]
 fn elf_symbols(archive: &Path) -> Vec<String> {
     // Num: Value Size Type Bind Vis Ndx Name
@@ -577,7 +578,7 @@ fn elf_symbols(archive: &Path) -> Vec<String> {
         .collect()
 }
 
-/// With a sanitizer, it is really there.
+/// With a sanitizer, the program really contains it.
 #[test]
 fn sanitizer_is_in() {
     let kit = kit();
@@ -589,7 +590,7 @@ fn sanitizer_is_in() {
     }
 }
 
-/// What fails is seen to fail, by this kit and by the checker.
+/// This kit and the checker detect failing programs.
 #[test]
 fn failing_programs_fail() {
     let kit: &Kit = kit();

@@ -1,14 +1,14 @@
-//! What is installed is all that programs elsewhere need: by CMake, by `pkg-config`, and by the commands of
-//! `include/README.md`. The programs are those of `packaging/consumers`.
+//! An installation contains all that programs elsewhere need: for CMake, for `pkg-config`, and for the
+//! commands of `include/README.md`. The programs are those of `packaging/consumers`.
 //!
-//! The program that installs takes the libraries that the kit has built, so that nothing is built twice.
+//! The installing program takes the libraries that the kit has built, so that nothing is built twice.
 
 use crate::kit::{self, Kit, Standard, kit, output};
 use crate::{CPP17, root, text};
 use std::path::{Path, PathBuf};
 use std::process::Command;
 
-/// The installing program, with the kit's libraries.
+/// Returns the installing program, with the kit's libraries.
 fn installer(kit: &Kit) -> Command {
     let mut command = Command::new(env!("CARGO_BIN_EXE_leafless-install"));
     command.env_remove("DESTDIR").arg("--libraries").arg(kit.libraries());
@@ -19,7 +19,7 @@ fn succeed(command: &mut Command) -> String {
     output(command).unwrap_or_else(|problem| panic!("{problem}")).0
 }
 
-/// Whether these programs can be run; if not, says that the test is skipped.
+/// True if these programs can be run; otherwise reports that the test is skipped.
 fn have(test: &str, programs: &[&str]) -> bool {
     for program in programs {
         if !Command::new(program).arg("--version").output().is_ok_and(|told| told.status.success()) {
@@ -45,7 +45,7 @@ fn consumers(kit: &Kit, name: &str) -> PathBuf {
     folder
 }
 
-/// An installation that has been moved to another place.
+/// Makes an installation and moves it to another place.
 fn moved_prefix(kit: &Kit, folder: &Path, options: &[&str]) -> PathBuf {
     let (first, second) = (folder.join("first"), folder.join("moved/second"));
     succeed(installer(kit).arg("--prefix").arg(&first).args(options));
@@ -54,7 +54,7 @@ fn moved_prefix(kit: &Kit, folder: &Path, options: &[&str]) -> PathBuf {
     second
 }
 
-/// Makes a program `cargo` that runs the installing one with the kit's libraries, and builds nothing.
+/// Makes a program `cargo` that runs the installing program with the kit's libraries, and builds nothing.
 fn cargo_that_installs(kit: &Kit, folder: &Path) -> PathBuf {
     let script = format!(
         "#!/bin/sh\nexport HOME='{}'\ntest \"$1\" = run || exit 0\nwhile test \"$1\" != --; do shift; done\nshift\n\
@@ -70,19 +70,19 @@ fn cargo_that_installs(kit: &Kit, folder: &Path) -> PathBuf {
     cargo
 }
 
-/// Runs a consumer, which tells the volume of a bored ball.
+/// Runs a consumer. It prints the volume of a bored ball.
 fn tells_the_volume(kit: &Kit, program: &Path) {
     let told = kit.run(program, &[]);
     let bounds: Vec<f64> = told.split_whitespace().filter_map(|word| word.parse().ok()).collect();
     assert!(matches!(bounds[..], [least, most] if least <= 1.481 && 1.481 <= most), "{told}");
 }
 
-/// Whether a program loads the shared library when it starts.
+/// True if a program loads the shared library when it starts.
 fn loads_the_library(program: &Path) -> bool {
     String::from_utf8_lossy(&std::fs::read(program).unwrap()).contains("libleafless.so.0")
 }
 
-/// The notices name what is linked into the libraries, with licences and their texts, and nothing else.
+/// The notices name exactly the packages linked into the libraries, with licences and their texts.
 fn third_party(file: &Path) {
     let all = std::fs::read_to_string(file).unwrap();
     let (list, texts) = all.split_once("\n----").expect("texts behind the list");
@@ -200,7 +200,8 @@ fn programs_by_cmake() {
     }
 }
 
-/// The examples in C++ are a project of CMake, with that for Open CASCADE where it is installed.
+/// The examples in C++ are a CMake project, which includes the Open CASCADE example where Open CASCADE is
+/// installed.
 #[test]
 fn open_cascade() {
     let kit = kit();
@@ -253,7 +254,7 @@ fn open_cascade() {
     }
 }
 
-/// Which versions a program may ask for, and that parts that are not installed are missed.
+/// The versions that a program may request, and the errors for parts that are not installed.
 #[test]
 fn what_cmake_finds() {
     let kit = kit();
@@ -349,7 +350,7 @@ fn programs_by_pkg_config() {
     );
 }
 
-/// The command lines of `include/README.md` work word by word, with another `cargo`.
+/// The command lines of `include/README.md` work word by word, with a substitute for `cargo`.
 #[test]
 fn documented_commands() {
     let kit = kit();
@@ -413,7 +414,7 @@ fn documented_commands() {
     assert_eq!([count("cargo run"), count("cmake"), count("export"), count("g++")], [1, 2, 1, 3]);
 }
 
-/// A plugin exports its own functions only, as `include/README.md` says, and works.
+/// A plugin exports only its own functions, as `include/README.md` says, and works.
 #[test]
 #[cfg(target_os = "linux")]
 fn plugin() {
@@ -440,7 +441,8 @@ fn plugin() {
     kit.run(&folder.join("host"), &[]);
 }
 
-/// A program may hold another static library that the same rustc made, and with the shared library any other.
+/// A program may contain another static library made by the same rustc. With the shared library, it may
+/// contain any other.
 #[test]
 #[cfg(target_os = "linux")]
 fn beside_another_library_of_rust() {
@@ -477,7 +479,7 @@ int main(void) { return other_caught() && leafless_test_panic() == LEAFLESS_E_PA
     assert_eq!(make(&whole, "-lleafless"), Ok(()));
 }
 
-/// The port for vcpkg, with functions of our own in place of vcpkg's.
+/// The port for vcpkg, with substitutes for vcpkg's functions.
 #[test]
 fn vcpkg_port() {
     let kit = kit();
@@ -532,7 +534,7 @@ include(\"${{port}}/portfile.cmake\")\n",
     }
 }
 
-/// What `cargo cinstall` puts into a prefix is all that programs in C and C++ need.
+/// The prefix that `cargo cinstall` fills has all that programs in C and C++ need.
 #[test]
 #[cfg(target_os = "linux")]
 fn installed_by_cargo_c() {

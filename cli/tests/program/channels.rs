@@ -47,7 +47,8 @@ fn contains(interval: &Value, value: f64) -> bool {
     interval["lower"].as_f64().unwrap() <= value && value <= interval["upper"].as_f64().unwrap()
 }
 
-/// Boxes in the universe [0, 8]³ of 16³ cells: whole, its left half and its right half with some overlap.
+/// Boxes in the universe [0, 8]³ of 16³ cells: the whole box, its left half and its right half, with some
+/// overlap.
 fn files(path: &Path) {
     let frame = Frame::new([0.0; 3], 8.0, 4).unwrap();
     for (name, min, max) in [

@@ -1,4 +1,4 @@
-//! Tri-dexel models with the program `leafless`: made, combined, converted, and their surfaces.
+//! Tri-dexel models with the program `leafless`: construction, combination, conversion and surfaces.
 
 use crate::place::{Place, block, stl};
 use leafless::dexel::{DexelEnds, DexelNormals};
@@ -21,7 +21,7 @@ fn json(place: &Place, line: &str) -> Value {
 const BOUNDS: &str = "--bounds 0,0,0,8";
 
 /// `cube.stl`, the cube [1.1, 3.3]³, `bar.stl`, the box [2.2, 6.2] × [1.7, 2.7] × [0.6, 2.6], and models of
-/// both of 64 cells to an axis.
+/// both with 64 cells along an axis.
 fn models() -> Place {
     let place = Place::new();
     place.write("cube.stl", stl(&block([1.1f32; 3].map(f64::from), [3.3f32; 3].map(f64::from))));
@@ -370,7 +370,8 @@ fn surfaces_are_closed() {
     assert!(!place.files().contains(&"no.stl".into()));
 }
 
-/// Dual contouring of what is no tri-dexel model yet keeps the edges of a cube and lies on a ball.
+/// Dual contouring of meshes and scenes, by way of a tri-dexel model, keeps the edges of a cube and lies on a
+/// ball.
 #[test]
 fn dual_contouring_of_meshes_and_scenes() {
     let place = models();
@@ -498,7 +499,8 @@ fn damage_is_told_as_what_it_is() {
     }
 }
 
-/// A file of three short intervals at depth 20 takes no time, and what is not seen of it is told.
+/// A file with three short intervals at depth 20 takes almost no time. The output says what the commands
+/// cannot see of it.
 #[test]
 fn depth_20_takes_no_time() {
     let file = concat!(env!("CARGO_MANIFEST_DIR"), "/../format_spec/vectors/valid/dexel-depth-20.lfl");

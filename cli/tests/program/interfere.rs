@@ -82,7 +82,7 @@ fn solids_and_meshes() {
     assert_eq!((&found["verdict"], &found["clearance"]["upper"]), (&"undecided".into(), &Value::Null));
 }
 
-/// Whether two solids are far enough apart, by the exit code; and the points that are nearest.
+/// The exit code says whether two solids are far enough apart. The nearest points are printed.
 #[test]
 fn gaps_and_points() {
     let folder = tempfile::tempdir().unwrap();
@@ -108,7 +108,7 @@ fn gaps_and_points() {
     assert!(text.lines().any(|line| line.starts_with("nearest")), "{text}");
 }
 
-/// Clearances and gaps in the places of a file.
+/// Clearances and gaps at the places of a file.
 #[test]
 fn many_places() {
     let folder = tempfile::tempdir().unwrap();
@@ -156,7 +156,7 @@ fn many_places() {
     assert_eq!(run(path, &["interfere", "a.csg", "b.csg", "--clearance"]).status.code(), Some(2));
 }
 
-/// The area that a polygon has in [0, w] × [0, h], counter-clockwise.
+/// Returns the area of a counter-clockwise polygon in [0, w] × [0, h].
 fn clipped_area(polygon: [[f64; 2]; 4], size: [f64; 2]) -> f64 {
     let mut points = polygon.to_vec();
     for (axis, limit, sign) in [(0, 0.0, 1.0), (1, 0.0, 1.0), (0, size[0], -1.0), (1, size[1], -1.0)] {

@@ -4,7 +4,7 @@ use crate::place::{Place, Run, block, stl};
 use serde_json::{Value, json};
 use std::io::Cursor;
 
-/// A cube of 10 as a scene, as a mesh and as a solid, a ring, and a slab.
+/// A cube of edge 10 as a scene, as a mesh and as a solid, a ring, and a slab.
 fn parts() -> Place {
     let place = Place::new();
     place.write("cube.csg", "cube([10, 10, 10]);");
@@ -31,7 +31,7 @@ fn layout(place: &Place, name: &str) -> Value {
     serde_json::from_slice(&place.bytes(name)).unwrap()
 }
 
-/// All that is said on standard error is one line with these words; the report is there all the same.
+/// Asserts that standard error is one line with these words, and that the report is printed all the same.
 #[track_caller]
 fn left(run: &Run, words: &[&str]) {
     assert!(run.code == Some(1) && run.errors.lines().count() == 1 && !run.bytes.is_empty(), "{run:?}");
@@ -116,7 +116,7 @@ fn boxes_fill_a_box() {
     holds(&place.run("measure o.csg --json").good().json()["volume"], 4800.0, 100.0);
 }
 
-/// What all three files say is the same, and other commands read them.
+/// All three output files agree, and other commands read them.
 #[test]
 fn outputs_are_read_back() {
     let place = parts();
@@ -191,7 +191,7 @@ fn outputs_are_read_back() {
     place.run("layout --check piped.json").good();
 }
 
-/// A name that ends like a number of copies, a container that is a mesh, turns, and aims.
+/// A name that ends like a number of copies, a mesh as a container, rotations, and objectives.
 #[test]
 fn options() {
     let place = parts();
@@ -247,7 +247,7 @@ fn the_same_seed_gives_the_same_bytes() {
     assert!(seen[0] == seen[1] && seen[0] == seen[2]);
 }
 
-/// Copies that are moved into each other, into an obstacle, and out of the container.
+/// Copies moved into each other, into an obstacle, and out of the container.
 #[test]
 fn what_is_changed_is_seen() {
     let place = parts();

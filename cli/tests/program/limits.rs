@@ -1,5 +1,5 @@
-//! Small inputs do not take everything: every command ends soon, within the memory that it is given, or
-//! refuses at once and says what it would take.
+//! Small inputs take limited resources. Every command ends soon and within its memory limit, or refuses at
+//! once and says what it would need.
 
 use crate::commands::{COMMANDS, attempt, run, vectors};
 use crate::place;
@@ -10,10 +10,10 @@ use leafless::{
 };
 use std::path::PathBuf;
 
-/// What every command is allowed, and what some are that take longer for it.
+/// The memory limit of every command, and a smaller limit for commands that then take longer.
 const ALLOWED: &str = "1G";
 const LITTLE: &str = "160M";
-/// A universe that is one cell, or that has one finest cell, of a tag.
+/// A universe of one tag, or an EMPTY universe with one finest cell of a tag.
 #[derive(Clone)]
 struct One {
     frame: Frame,
@@ -93,7 +93,7 @@ impl Worker for One {
     }
 }
 
-/// Trees of one cell at depths 1, 10 and 20, and the same with all around it turned inside out.
+/// Trees of one cell at depths 1, 10 and 20, and complements of some.
 fn trees(place: &Place) -> Vec<PathBuf> {
     let mut paths = vec![];
     let mut save = |name: String, tree: &Octree| {
@@ -118,8 +118,8 @@ fn trees(place: &Place) -> Vec<PathBuf> {
     paths
 }
 
-/// Files in turn, on as many threads as there are processors: of each one command in so many, another one for
-/// each file.
+/// Runs commands on files, on as many threads as there are processors. Each file gets every `every`-th
+/// command, starting from a different one.
 fn in_turn(paths: &[PathBuf], allowed: &str, every: usize) {
     let next = std::sync::atomic::AtomicUsize::new(0);
     std::thread::scope(|scope| {
@@ -147,7 +147,7 @@ fn test_vectors_take_little() {
     in_turn(&vectors(), LITTLE, 17);
 }
 
-/// Minutes: `--test program limits:: -- --ignored`.
+/// Takes minutes: `--test program limits:: -- --ignored`.
 #[test]
 #[ignore = "minutes"]
 fn every_command_on_every_file_takes_little() {

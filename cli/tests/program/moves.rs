@@ -1,9 +1,9 @@
-//! What is read is moved: by each option, in the order of the command line, at each command that reads.
+//! Inputs are moved: by each option, in the order of the command line, at each command that reads them.
 
 use crate::place::{Place, block, meshes, solids, stl};
 use serde_json::Value;
 
-/// The ends of the volume that a report tells.
+/// Returns the bounds of the volume in a report.
 fn volume(report: &Value) -> (f64, f64) {
     let end = |name: &str| report["volume"][name].as_f64().unwrap();
     (end("lower"), end("upper"))
@@ -15,7 +15,7 @@ fn holds(report: &Value, truth: f64, width: f64) {
     assert!(lower <= truth && truth <= upper && upper - lower <= width, "{lower} to {upper}, not {truth}");
 }
 
-/// The corners of the mesh in a file.
+/// Returns the lowest and highest corner of a file's mesh.
 fn corners(place: &Place, file: &str) -> [Vec<f64>; 2] {
     let info = place.run(&format!("info {file} --json")).good().json();
     ["min", "max"].map(|end| {
@@ -186,7 +186,7 @@ fn volumes_are_moved() {
     assert!(!mesh.text().is_empty() && corners(&place, "out.ply")[0][2] >= 4.0);
 }
 
-/// A mesh whose undecided cells keep layers of its surface, moved or not.
+/// Undecided cells of a mesh keep layers of its surface, moved or not.
 #[test]
 fn meshes_keep_surfaces() {
     let place = Place::new();
@@ -219,7 +219,7 @@ fn meshes_keep_surfaces() {
         .bad(2, &["--surfaces", "full.raw"]);
 }
 
-/// A scene whose cells keep surfaces, moved when it is made.
+/// The cells of a scene keep surfaces. The scene is moved when the octree is made.
 #[test]
 fn scenes_keep_surfaces_where_they_are_moved() {
     let place = Place::new();

@@ -6,7 +6,7 @@ use leafless::query::DistanceTo;
 use leafless::{Tag, file};
 use serde_json::{Value, json};
 
-/// The numbers on each line.
+/// Returns the numbers on each line.
 fn intervals(run: &Run) -> Vec<[f64; 2]> {
     let line = |line: &str| {
         let numbers: Vec<f64> = line.split(' ').map(|x| x.parse().unwrap()).collect();
@@ -71,7 +71,7 @@ fn distances_agree_with_the_library() {
     }
 }
 
-/// Of meshes and scenes cells are split until the distance is known well enough.
+/// For meshes and scenes, cells are split until the distance is known to the tolerance.
 #[test]
 fn distances_from_meshes_and_scenes() {
     let place = solids();

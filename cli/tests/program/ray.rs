@@ -7,7 +7,7 @@ use serde_json::Value;
 use std::io::{Read, Write};
 use std::process::Stdio;
 
-/// The numbers on each line; none on that of a miss.
+/// Returns the numbers on each line; `None` for the line of a miss.
 fn hits(run: &Run) -> Vec<Option<Vec<f64>>> {
     let line = |line: &str| (line != "miss").then(|| line.split(' ').map(|x| x.parse().unwrap()).collect());
     run.text().lines().map(line).collect()
@@ -50,7 +50,7 @@ fn json_lines() {
     assert_eq!(cell << (5 - level), 4, "{hit}");
 }
 
-/// A closed mesh answers itself, and tells the triangle; cells have none.
+/// A closed mesh answers directly, and reports the triangle. Cells have no triangle.
 #[test]
 fn triangles_of_meshes() {
     let place = solids();
@@ -73,7 +73,7 @@ fn triangles_of_meshes() {
     assert_eq!(run.json()["surface"], Value::Null);
 }
 
-/// Meshes and scenes are split as deep as it takes; what may be missed has no upper bound.
+/// Meshes and scenes are split as deep as needed. A hit that may be a miss has no upper bound.
 #[test]
 fn meshes_and_scenes() {
     let place = solids();
@@ -106,7 +106,7 @@ fn meshes_and_scenes() {
     );
 }
 
-/// A sampled solid proves nothing; its cells are the solid if that is asked for.
+/// A sampled solid proves nothing. With the option, its cells are the solid.
 #[test]
 fn cells_that_prove_nothing() {
     let place = solids();
@@ -150,7 +150,7 @@ fn agrees_with_the_library() {
     many(&solids(), 30_000);
 }
 
-/// In bounded memory: 10^6 rays.
+/// A million rays in bounded memory.
 #[test]
 #[ignore = "takes ten seconds"]
 fn agrees_with_the_library_on_a_million_rays() {

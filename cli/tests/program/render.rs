@@ -179,7 +179,7 @@ fn cameras_and_legends_fit_what_is_shown() {
     }
 }
 
-/// Which quarter of a slice of a corner with three arms is empty: of the box around what is FULL.
+/// Returns the empty quarter of the FULL cells' bounding box, in a slice through a corner with three arms.
 fn empty_quarter(place: &Place, line: &str) -> String {
     place
         .run(&format!("render {line} -o out.png --view slice --no-legend --size 200x200 --samples 1"))

@@ -1,4 +1,4 @@
-//! The program on scenes: how curves are drawn, and what is told of the meshes in them.
+//! The program on scenes: the drawing of curves, and the reports about meshes in scenes.
 
 use crate::place::Place;
 

@@ -1,4 +1,4 @@
-//! Pictures on terminals: what `render --show` writes, decoded.
+//! Pictures on terminals: the output of `render --show`, decoded.
 
 use crate::place::{Place, Run, block, stl};
 use base64::Engine;
@@ -7,7 +7,7 @@ use std::collections::HashMap;
 use std::io::Cursor;
 use std::process::Command;
 
-/// An image of pixels with red, green and blue, where there is anything.
+/// An image with red, green and blue for each pixel that is not empty.
 #[derive(PartialEq)]
 struct Image {
     width: usize,
@@ -19,7 +19,8 @@ impl Image {
         [self.width, self.pixels.len() / self.width]
     }
 
-    /// The greatest and the mean difference of what both show; nothing if they do not show the same pixels.
+    /// Returns the greatest and the mean difference of the two images; `None` if they do not show the same
+    /// pixels.
     fn difference(&self, other: &Image) -> Option<(u8, f64)> {
         assert_eq!(self.size(), other.size());
         let (mut greatest, mut sum) = (0, 0.0);
@@ -53,13 +54,14 @@ fn opaque([r, g, b, a]: [u8; 4]) -> Option<[u8; 3]> {
     (a >= 128).then_some([r, g, b])
 }
 
-/// A picture as a terminal shows it in its own size.
+/// Decodes a picture that a terminal shows in its own size.
 fn image(png: &[u8]) -> Image {
     let (width, pixels) = rgba(png);
     Image { width, pixels: pixels.into_iter().map(opaque).collect() }
 }
 
-/// The picture at 3/8 of its size: each pixel is repeated thrice each way, and the mean of 8 × 8 is taken.
+/// Returns the picture at 3/8 of its size: each pixel is repeated three times in each direction, and blocks
+/// of 8 × 8 are averaged.
 fn three_eighths(png: &[u8]) -> Vec<[f64; 4]> {
     let (width, pixels) = rgba(png);
     let height = pixels.len() / width;
@@ -89,7 +91,7 @@ fn three_eighths(png: &[u8]) -> Vec<[f64; 4]> {
     found
 }
 
-/// Half blocks as a terminal shows them; of 256 colours the numbers are told instead, as grey values.
+/// Decodes half blocks. Numbers of 256 colours are returned as grey values.
 fn blocks(text: &str) -> Image {
     let (mut width, mut pixels) = (0, Vec::new());
     for line in text.lines() {
@@ -128,7 +130,7 @@ fn blocks(text: &str) -> Image {
     Image { width, pixels }
 }
 
-/// Sixels as a terminal shows them, and how many colours they have.
+/// Decodes sixels. Returns the number of their colours, too.
 fn sixels(text: &str) -> (Image, usize) {
     let body = text.strip_prefix("\x1bP7;1q\"1;1;").and_then(|body| body.strip_suffix("\x1b\\\n")).unwrap();
     let mut rest = body.as_bytes();
@@ -171,7 +173,7 @@ fn sixels(text: &str) -> (Image, usize) {
     (Image { width, pixels }, palette.len())
 }
 
-/// The file that comes by kitty's protocol.
+/// Returns the file that was sent by kitty's protocol.
 fn kitty(text: &str) -> Vec<u8> {
     let pieces: Vec<&str> = text.strip_suffix('\n').unwrap().split_inclusive("\x1b\\").collect();
     let mut data = String::new();
@@ -196,7 +198,7 @@ fn part() -> Place {
     place
 }
 
-/// The program in an environment that tells nothing but this of a terminal.
+/// Returns the program with an environment that describes the terminal only by `environment`.
 fn command(place: &Place, line: &str, environment: &[(&str, &str)]) -> Command {
     let mut command = place.command(line.split_whitespace());
     command.args(["--samples", "1"]);
@@ -356,15 +358,15 @@ mod terminal {
     use std::io::{Read, Write};
     use std::process::Stdio;
 
-    /// What a run wrote to a terminal.
+    /// The output of a run on a terminal.
     struct Session {
         code: Option<i32>,
         text: String,
         errors: String,
     }
 
-    /// Runs the program on a terminal of 100 × 30 cells of 8 × 16 pixels, which answers so when it is asked
-    /// what it is.
+    /// Runs the program on a terminal of 100 × 30 cells of 8 × 16 pixels. The terminal sends `answer` when
+    /// the program queries its kind.
     fn session(place: &Place, line: &str, environment: &[(&str, &str)], answer: &str) -> Session {
         let mut master = File::from(openpt(OpenptFlags::RDWR | OpenptFlags::NOCTTY).unwrap());
         grantpt(&master).unwrap();
@@ -423,7 +425,7 @@ mod terminal {
         )
     }
 
-    /// The picture, without the question before it.
+    /// Returns the picture without the query before it.
     fn picture(session: &Session) -> &str {
         assert!(session.code == Some(0) && session.errors.contains("shown"), "{}", session.errors);
         let wipe = "\x1b8\x1b[K";

@@ -1,4 +1,4 @@
-//! The program `leafless`, from outside: every subcommand, what it prints, what it leaves behind.
+//! The program `leafless`, from outside: every subcommand, its output, and the files it leaves.
 
 use crate::place::{Place, Run, block, meshes, solids, stl};
 use crate::{models, zip};
@@ -295,7 +295,7 @@ fn meshes_that_are_refused() {
     place.run("voxelize turned.stl -o out.lfl --depth 4 --fill evenodd").good();
 }
 
-/// The figures that were published for the sphere, from a scene.
+/// The published figures of the sphere, from a scene.
 #[test]
 fn a_scene_becomes_a_solid() {
     let place = Place::new();
@@ -368,8 +368,8 @@ fn a_scene_becomes_a_solid() {
     assert!(out.code == Some(0) && out.errors.contains("outside of the bounds"), "{out:?}");
 }
 
-/// Cells in which the surface is known well enough are left whole, by any number of threads, and in scenes of
-/// which not all is half-spaces.
+/// Cells with a well-known surface are left whole, with any number of threads, and also in scenes with other
+/// solids than half-spaces.
 #[test]
 fn adaptive_octrees_of_scenes_are_coarse() {
     let place = Place::new();
@@ -401,7 +401,7 @@ fn adaptive_octrees_of_scenes_are_coarse() {
     assert!(place.run(line).good().json()["splits"].is_null());
 }
 
-/// A solid whose cells keep surfaces is asked, shown and meshed as its scene is, and gives cells of any
+/// A solid whose cells keep surfaces is queried, shown and meshed like its scene, and gives cells of any
 /// level.
 #[test]
 fn octrees_that_keep_surfaces_are_taken_as_solids() {
@@ -458,8 +458,8 @@ fn octrees_that_keep_surfaces_are_taken_as_solids() {
     assert!(first[2] <= 4.0 && first[3] >= 4.0 && first[3] - first[2] < 1e-3, "{first:?}");
 }
 
-/// Undecided cells keep the surfaces that cross them: a small file, which knows the volume and the points as
-/// the scene does.
+/// Undecided cells keep the surfaces that cross them. The file is small, and gives volume and points like the
+/// scene.
 #[test]
 fn octrees_of_scenes_keep_their_surfaces() {
     let place = Place::new();
@@ -718,7 +718,7 @@ fn info_of_meshes() {
     place.run("info notes.txt").bad(1, &["notes.txt: ", "solid (.lfl)", "mesh (STL", "scene (.csg)"]);
 }
 
-/// A cube, and in its corner a sixth of one that counts twice.
+/// A cube, and a sixth of another cube in its corner, which counts twice.
 #[test]
 fn info_of_bodies_that_overlap() {
     let place = Place::new();
@@ -762,7 +762,7 @@ fn info_of_bodies_that_overlap() {
     }
 }
 
-/// What departs from its format is read, and said on standard error and in JSON.
+/// Files that depart from their format are read, with a warning on standard error and in JSON.
 #[test]
 fn warnings_about_files() {
     let place = Place::new();
@@ -1240,8 +1240,7 @@ fn booleans_are_those_of_the_library() {
     );
 }
 
-/// A plate, a bore and a pin of the bore's own radius, whose cells keep surfaces: what comes of them is as
-/// sharp.
+/// A plate, a bore and a pin of the bore's radius, whose cells keep surfaces. Results are equally sharp.
 #[test]
 fn set_operations_keep_surfaces() {
     let place = Place::new();
@@ -1418,7 +1417,7 @@ fn contains_agrees_with_the_library_on_many_points() {
     assert!(met.iter().all(|&n| n > 100), "{met:?}");
 }
 
-/// Starts the program with pipes to talk through.
+/// Starts the program with pipes to communicate through.
 fn start(place: &Place, line: &str) -> Child {
     let mut command = place.command(line.split_whitespace());
     command.stdin(Stdio::piped()).stdout(Stdio::piped()).stderr(Stdio::piped()).spawn().unwrap()
@@ -1580,7 +1579,7 @@ fn the_volume_of_a_machined_part() {
     }
 }
 
-/// Name and unit of a result are those that all operands have; units that differ are told.
+/// The result has the name and unit that all operands share. Different units are reported.
 #[test]
 fn set_operations_keep_what_the_operands_agree_on() {
     let place = Place::new();

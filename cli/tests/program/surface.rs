@@ -53,7 +53,7 @@ fn every_format_has_the_same_mesh() {
     assert_eq!(mesh(&place, "piped.ply").triangles(), mesh(&place, "ball.off").triangles());
 }
 
-/// Vertices lie on the ball, and area and volume come near its own from below.
+/// Vertices lie on the ball, and area and volume approach the ball's from below.
 #[test]
 fn vertices_lie_on_the_surface() {
     let place = ball();
@@ -142,7 +142,7 @@ fn what_is_refused() {
     place.run("mesh slab.lfl").bad(2, &["--output"]);
 }
 
-/// Shrink leaves few triangles, without cracks; its published form has cracks.
+/// Shrink leaves few triangles and no cracks. Its published form has cracks.
 #[test]
 fn plane_parts_are_shrunk() {
     let place = solids();
@@ -203,7 +203,7 @@ fn normals_are_written_if_asked_for() {
     assert_eq!(mesh(&place, "ball.ply").triangles(), mesh(&place, "plain.ply").triangles());
 }
 
-/// The report is the one of the mesh that is read back.
+/// Checks that the report describes the mesh that is read back.
 #[track_caller]
 fn same_as_read(place: &Place, report: &Value) {
     let name = report["output"].as_str().unwrap();
@@ -234,7 +234,7 @@ fn moved(by: f64, what: &str) -> String {
     format!("multmatrix([[1,0,0,{by}],[0,1,0,{by}],[0,0,1,{by}],[0,0,0,1]]) {what}")
 }
 
-/// What single precision breaks is not written as STL, unless one asks for it.
+/// A mesh that single precision breaks is not written as STL, unless `--lossy` allows it.
 #[test]
 fn losses_are_said() {
     let place = Place::new();
@@ -301,7 +301,7 @@ fn losses_are_said() {
     assert!(!place.files().contains(&"new.stl".to_owned()));
 }
 
-/// A cube in one axis far away is flat, whose front and back stay.
+/// A cube far away along one axis becomes flat; its front and back remain.
 #[test]
 fn flat_figures_are_refused() {
     let place = Place::new();
@@ -313,7 +313,7 @@ fn flat_figures_are_refused() {
     assert_eq!((&report["volume"], &report["broken"]), (&Value::from(0.0), &Value::Bool(true)));
 }
 
-/// What rounding makes degenerate is mended, and how that was done is told.
+/// Triangles that become degenerate by rounding are repaired, and the repairs are reported.
 #[test]
 fn degenerate_triangles_are_mended() {
     let place = Place::new();
@@ -342,7 +342,7 @@ fn degenerate_triangles_are_mended() {
 const PLATE: &str = "difference() { cube(size = [80, 60, 10]); multmatrix([[1,0,0,40],[0,1,0,30],[0,0,1,-1],[0,0,0,1]]) \
                      cylinder(h = 12, r1 = 5, r2 = 5, $fn = 0); }";
 
-/// Plane faces as polygons, and what the surfaces are.
+/// Plane faces as polygons, and the kinds of the surfaces.
 #[test]
 fn faces_are_told() {
     let place = Place::new();
@@ -395,7 +395,7 @@ fn faces_are_told() {
     assert!(!place.files().iter().any(|name| name.starts_with("x.")));
 }
 
-/// Values on triangles: of channels of octrees, of materials of tri-dexel models, and of colours of meshes.
+/// Values on triangles: from channels of octrees, materials of tri-dexel models, and colours of meshes.
 #[test]
 fn triangles_bear_values() {
     let place = Place::new();
@@ -474,8 +474,8 @@ fn solids_from_files_are_meshed_at_coarser_levels() {
     place.run("mesh cube.lfl -o no.ply --depth 6").bad(2, &["--depth 6", "cube.lfl", "5"]);
 }
 
-/// A plate with a bore: few triangles, sharp edges, and within the tolerance by proof, from a scene and from
-/// a solid that keeps its surfaces.
+/// A plate with a bore, from a scene and from a solid that keeps its surfaces: few triangles, sharp edges,
+/// and provably within the tolerance.
 #[test]
 fn faces_of_a_plate_with_a_bore() {
     let place = solids();
@@ -536,8 +536,8 @@ fn faces_of_a_plate_with_a_bore() {
     place.run("mesh plate.csg -o out.ply --method faces --tolerance 0").bad(1, &["tolerance"]);
 }
 
-/// Where nobody says how, the method is the one that knows most of the shape, and the report says which it
-/// was.
+/// Without `--method`, the program chooses the method that uses the most knowledge of the shape, and reports
+/// it.
 #[test]
 fn what_is_known_of_the_shape_decides() {
     let place = solids();
@@ -594,7 +594,7 @@ fn what_is_known_of_the_shape_decides() {
         .bad(1, &["hold all of the solid"]);
 }
 
-/// Triangles are taken out of any surface; what is told of the distance from the solid stays true.
+/// Triangles of any surface are removed. The reported distance from the solid stays true.
 #[test]
 fn triangles_are_taken_out() {
     let place = ball();

@@ -1,4 +1,4 @@
-//! The program tells the truth about what it was given: kinds of files, bounds, proof, digits.
+//! The program reports truthfully about its inputs: kinds of files, bounds, proofs, digits.
 
 use crate::place::{Place, Run, block, meshes, solids, stl};
 use serde_json::Value;
@@ -14,7 +14,7 @@ fn warned(run: Run) -> Run {
     run
 }
 
-/// Whether what is printed of a number contains `truth`.
+/// True if the printed interval or number contains `truth`.
 fn told(text: &str, truth: f64) -> bool {
     let number = |text: &str| text.parse::<f64>().unwrap_or_else(|_| panic!("{text:?}"));
     if let Some((middle, doubt)) = text.split_once(" ± ") {
@@ -26,13 +26,13 @@ fn told(text: &str, truth: f64) -> bool {
     }
 }
 
-/// Whether bounds hold a number, and nothing much else.
+/// True if bounds contain a number, and little else.
 fn near(bounds: &Value, truth: f64) -> bool {
     let [lower, upper] = ["lower", "upper"].map(|end| bounds[end].as_f64().unwrap());
     lower <= truth && truth <= upper && upper - lower < 1e-8 * truth
 }
 
-/// The value of a line of a report.
+/// Returns the value of a line of a report.
 fn line<'t>(text: &'t str, name: &str) -> &'t str {
     let found = text.lines().find_map(|line| line.strip_prefix(name)?.strip_prefix(' '));
     found.unwrap_or_else(|| panic!("no {name}:\n{text}")).trim()
@@ -239,7 +239,7 @@ fn frames_of_round_parts_are_aligned() {
     assert!((edge - (0.7 - 0.0617) * 33.0 / 32.0).abs() < 1e-7, "{edge}");
 }
 
-/// Four bores along z, four rounded edges.
+/// A plate with four bores along z and four rounded edges.
 fn rounded_plate() -> String {
     let at = |x: i32, y: i32, shape: &str| {
         format!("multmatrix([[1, 0, 0, {x}], [0, 1, 0, {y}], [0, 0, 1, 0], [0, 0, 0, 1]]) {shape}")
@@ -364,7 +364,7 @@ fn an_open_mesh_is_told_of_wherever_it_is_read() {
     warned(place.run("voxelize open.stl -o open.lfl --depth 4"));
 }
 
-/// A cylinder in chords: the volume of the true one is 12000 π, and the mesh has less.
+/// A faceted cylinder. The true volume is 12000 π, and the mesh's is smaller.
 #[test]
 fn a_stated_deviation_is_believed() {
     use std::f64::consts::PI;

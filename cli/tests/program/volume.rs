@@ -1,4 +1,4 @@
-//! Volumes on the command line: NRRD and MetaImage, wherever solids are asked or made.
+//! Volumes on the command line: NRRD and MetaImage, wherever solids are queried or made.
 
 use crate::place::Place;
 use serde_json::Value;
@@ -122,7 +122,7 @@ fn volumes_answer_like_solids() {
     assert_eq!(json(&place, "info ball.mhd --json")["extents"], serde_json::json!([16, 14, 12]));
 }
 
-/// The same samples without a header, as bytes and as big-endian numbers of 16 bits behind a header of five
+/// The same samples without a header: as bytes, and as big-endian numbers of 16 bits behind a header of five
 /// bytes.
 #[test]
 fn raw_volumes() {
@@ -159,7 +159,7 @@ fn raw_volumes() {
     place.run("info ball.lfl --extents 16,14,12").bad(2, &["--extents", "ball.lfl"]);
 }
 
-/// Cells become voxels, and these the same cells.
+/// Cells become voxels, and the voxels become the same cells.
 #[test]
 fn bitmaps() {
     let place = place();
@@ -218,7 +218,7 @@ fn what_is_refused() {
     assert!(!place.files().contains(&"b.lfl".to_owned()));
 }
 
-/// A data file that cannot be had is named, and a link leads to none outside of the header's folder.
+/// A missing data file is named in the error. A link cannot lead outside the header's folder.
 #[cfg(unix)]
 #[test]
 fn data_files() {
@@ -236,7 +236,7 @@ fn data_files() {
     place.run("info in/way.mhd").good();
 }
 
-/// What a header cannot mean is refused in words.
+/// Meaningless values in a header are refused with a clear message.
 #[test]
 fn nonsense_in_headers() {
     let place = place();
@@ -252,7 +252,7 @@ fn nonsense_in_headers() {
     }
 }
 
-/// A corner that no origin of a NRRD leads back to is warned of.
+/// The program warns if a corner cannot be restored from any origin in a NRRD.
 #[test]
 fn a_rounded_corner_is_said() {
     let place = Place::new();

@@ -2,7 +2,7 @@
 
 use crate::place::solids;
 
-/// The slab is [2, 6] × [2, 6] × [0, 2] in [0, 8]³, with 32 cells an axis: four a unit.
+/// The slab is [2, 6] × [2, 6] × [0, 2] in [0, 8]³, with 32 cells along an axis: four to a unit.
 #[test]
 fn records_as_lines() {
     let place = solids();
