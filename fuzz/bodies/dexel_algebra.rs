@@ -1,5 +1,5 @@
-//! Any bytes as tri-dexel models, and as triangles: the laws of sets, changes in place, closed surfaces, and
-//! the same samples along all three axes.
+//! Any bytes as tri-dexel models and as triangles: the laws of sets, changes in place, closed surfaces, and
+//! equal samples along all three axes.
 
 use leafless::dexel::{Dexel, DexelEditor, DexelEnd, DexelEnds, DexelFormat, DexelNormals};
 use leafless::op::{DexelOptions, octree_from_dexels};
@@ -9,7 +9,7 @@ use leafless::{
 };
 use std::collections::HashMap;
 
-/// Bytes from the front; zeros behind the end.
+/// The remaining bytes from the front; zeros behind the end.
 struct Bytes<'a>(&'a [u8]);
 
 impl Bytes<'_> {
@@ -20,7 +20,7 @@ impl Bytes<'_> {
     }
 }
 
-/// Reads two models, or triangles; checks what the library says of them.
+/// Reads two models or triangles, and checks the library's results.
 pub fn dexel_algebra(data: &[u8]) {
     let mut bytes = Bytes(data);
     let (depth, form) = (bytes.next(), bytes.next());
@@ -40,7 +40,7 @@ pub fn dexel_algebra(data: &[u8]) {
     }
 }
 
-/// A model of what the bytes say; `None` if they say what no model is.
+/// Returns the model that the bytes describe; `None` if they describe none.
 fn model(
     bytes: &mut Bytes<'_>,
     frame: &Frame,
@@ -79,7 +79,7 @@ fn model(
     }
 }
 
-/// Every edge is run along as often in one direction as in the other.
+/// True if triangles use every edge equally often in both directions.
 fn is_balanced(mesh: &TriangleMesh) -> bool {
     let mut edges: HashMap<(u32, u32), i64> = HashMap::new();
     for &[a, b, c] in mesh.triangles() {
@@ -170,7 +170,7 @@ fn triangles(bytes: &mut Bytes<'_>, frame: &Frame, format: DexelFormat) {
     }
 }
 
-/// Inputs of all kinds to begin with.
+/// Initial inputs of all kinds.
 pub fn seeds() -> Vec<Vec<u8>> {
     let octahedron = [
         &[2, 128, 3][..],

@@ -1,4 +1,4 @@
-//! The questions of the target `measures`. Each is asked under some budget; the answer must hold for the unit
+//! The queries of the target `measures`. Each runs under some budget, and the answer must hold for the unit
 //! cells.
 
 use super::dense::Dense;
@@ -13,7 +13,7 @@ use leafless::{
 };
 use std::fmt::Debug;
 
-/// One question about two solids.
+/// Runs one query about two solids.
 pub fn ask(bytes: &mut Bytes<'_>, frame: &Frame, a: &Scene, b: &Scene) {
     let code = bytes.byte();
     let budget = bytes.budget();
@@ -44,12 +44,11 @@ struct Asked<'a> {
     b: &'a Scene,
     budget: Option<u64>,
     tolerance: f64,
-    /// Whether two threads must say the same.
+    /// True if two threads must give the same answer.
     threads: bool,
 }
 
-/// A ray, and its pieces between places where it changes cells: from, to, and whether the piece is in the
-/// solid.
+/// A ray, and its pieces between changes of cells: start, end, and whether the piece is in the solid.
 struct Known {
     from: [f64; 3],
     direction: [f64; 3],
@@ -57,14 +56,14 @@ struct Known {
     pieces: Vec<(f64, f64, bool)>,
 }
 
-/// Whether an interval contains a number that was rounded.
+/// True if an interval contains a rounded number.
 fn holds(found: Interval, truth: f64) -> bool {
     let slack = if truth.is_finite() { 1e-12 * (1.0 + truth.abs()) } else { 0.0 };
     found.lower <= truth + slack && truth - slack <= found.upper
 }
 
 impl Asked<'_> {
-    /// What one thread answers, and two.
+    /// Returns the answer of one thread. If `threads`, two threads must give the same.
     fn by_threads<T: PartialEq + Debug>(&self, ask: impl Fn(&Control<'_>) -> Result<T, Error>) -> T {
         let one = control(self.budget);
         let found = ask(&one).expect("nothing is wrong with the question");
@@ -240,7 +239,7 @@ impl Asked<'_> {
         }
     }
 
-    /// Points with coordinates in quarters, some outside of the universe, some on faces.
+    /// Points with coordinates in quarters. Some are outside the universe, some on faces.
     fn some_points(&self, bytes: &mut Bytes<'_>) -> Vec<[f64; 3]> {
         (0..1 + bytes.below(6)).map(|_| [0; 3].map(|_: i32| bytes.byte() as f64 / 8.0 - 8.0)).collect()
     }
@@ -309,8 +308,8 @@ impl Asked<'_> {
         assert!(found.upper_least <= within, "{found:?}, {within}");
     }
 
-    /// Rays whose direction is of small whole numbers, from points that are on no edge; the places where they
-    /// change cells, and whether they are in the solid between these.
+    /// A ray with a direction of small integers, from a point on no edge, with its changes of cells and
+    /// whether it is in the solid between them.
     fn some_ray(&self, bytes: &mut Bytes<'_>) -> Option<Known> {
         let from = [0.125, 0.375, 0.6875].map(|part| bytes.below(20) as f64 - 2.0 + part);
         let direction = [0; 3].map(|_: i32| bytes.below(5) as f64 - 2.0);
@@ -369,7 +368,7 @@ impl Asked<'_> {
         }
     }
 
-    /// Whether a point of a ray is in the closed solid, but for rounding.
+    /// True if a point of a ray is in the closed solid, up to rounding.
     fn touches(&self, known: &Known, t: f64) -> bool {
         let point = [0, 1, 2].map(|axis| known.from[axis] + t * known.direction[axis]);
         (0..27).any(|k: i32| {
