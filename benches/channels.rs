@@ -41,7 +41,7 @@ fn between(low: [f64; 3], high: [f64; 3], of: impl Fn([f64; 3]) -> f64) -> Value
     ValueRange::Within([Interval::new(of(low), of(high)).unwrap(); 4])
 }
 
-/// The channels of the table, each with the size of its queries.
+/// The channels of the table, with their names.
 fn channels(solid: &Octree, threads: usize) -> Vec<(&'static str, Channel)> {
     let frame = *solid.frame();
     let constant = ConstantAttribute::new(&[200.0, 100.0, 50.0, 255.0]).expect("a value");
