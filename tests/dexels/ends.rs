@@ -117,7 +117,8 @@ fn check(model: &TriDexel, name: &str) {
         }
         assert_eq!(met, extent, "{name}");
     }
-    // Exactly there and back; by coordinates alone as far as these can tell.
+    // The round trip is exact. With coordinates alone, it is exact as far as coordinates can distinguish
+    // ends.
     assert_eq!(&again(view, |_, dexel| dexel).unwrap(), model, "{name}: there and back, {frame:?}");
     let bare = |_: usize, Dexel { start, end, material }: Dexel| Dexel {
         start: DexelEnd { cells: None, ..start },

@@ -169,7 +169,7 @@ fn a_model_with_normals_becomes_an_octree_with_surfaces() {
     assert!(tree.view().cuts().is_some() && tree.proof().full && tree.proof().empty);
     let exact = 4.0 / 3.0 * std::f64::consts::PI * f64::powi(radius, 3);
     let found = measure(&tree, tree.frame(), 1e-3 * exact, &CONTROL).unwrap().volume;
-    // It is that of the reconstructed surface, which is near the ball's and not on it.
+    // The volume is that of the reconstructed surface, which is near the ball's surface and not on it.
     let middle = 0.5 * found.lower + 0.5 * found.upper;
     assert!((middle / exact - 1.0).abs() < 5e-3, "{found:?} {exact}");
 }

@@ -166,7 +166,7 @@ fn expressions_are_sampled_as_octrees_are() {
     let part = ball.difference(&Csg::union_of(bars.clone()).unwrap()).unwrap();
     check_samples(&part, &frame(5), "ball less bars");
     check_samples(&Csg::xor_of([ball.clone(), bars[0].clone()]).unwrap(), &frame(4), "xor");
-    // More half-spaces than a ray of a large cell is asked of, in groups.
+    // More half-spaces, in groups, than a ray of a large cell evaluates.
     let many = (0..60).map(|i| {
         let at = |k: u32| f64::from(i * k % 17) / 10.0 - 0.8;
         Csg::ball([at(3), at(5), at(7)], 0.12).unwrap()
@@ -353,7 +353,7 @@ fn ends_lie_where_the_surface_is() {
 fn triangles_tell_their_numbers_and_normals() {
     let (frame, control) = (frame(5), Control::default());
     let mesh = octahedron(0.8).placed(&turn()).unwrap();
-    // Inside out it is the same solid, with the same outward normals.
+    // Inside out, it is the same solid with the same outward normals.
     let turned = TriangleMesh::new(
         mesh.vertices().to_vec(),
         mesh.triangles().iter().map(|&[a, b, c]| [a, c, b]).collect(),
@@ -532,7 +532,7 @@ fn operands_must_fit() {
         dexelize(&ball, &frame(4), &none, &control),
         Err(Error::Argument { name: "directions", .. })
     ));
-    // Fixed-point ends and doubles meet in doubles; what one operand does not carry is unknown.
+    // Fixed-point ends and doubles combine to doubles. Attributes that one operand lacks are unknown.
     let (fine, marked) = (model(4, &doubles()), model(4, &all_marks(DexelEnds::Fixed)));
     let mixed = fine.view().difference(marked.view(), &control).unwrap();
     assert_eq!(mixed.view().format(), DexelFormat { ends: DexelEnds::Double, ..marked.view().format() });
@@ -551,11 +551,11 @@ fn a_subtraction_shows_the_other_side() {
     let dexels: Vec<_> = part.view().rays(2).unwrap().dexels([16, 16]).collect();
     assert_eq!(dexels.len(), 2);
     let z = |end: leafless::dexel::DexelEnd| end.normal.unwrap()[2];
-    // Into the hole the outward normal leads up, though the ball's own led down there.
+    // The outward normal points up into the hole, although the ball's own normal there points down.
     assert!(z(dexels[0].start) < -0.99 && z(dexels[0].end) > 0.99);
     assert!(z(dexels[1].start) < -0.99 && z(dexels[1].end) > 0.99);
     assert_eq!((dexels[0].end.surface, dexels[1].start.surface), (Some(0), Some(0)));
-    // Intervals of one material that touch are one; of two they are two, with a face between.
+    // Touching intervals of one material are merged. Of two materials, they stay two with a face between.
     let half = |min: f64, max: f64, material| {
         let half = Csg::cuboid([-0.7, -0.7, min], [0.7, 0.7, max]).unwrap();
         dexelize(&half, &frame, &marks, &control).unwrap().view().with_material(material, &control).unwrap()
@@ -643,7 +643,7 @@ fn changes_in_place_are_set_operations() {
             whole = made;
             let [change, other] = changes;
             assert_eq!(change, other, "step {step}");
-            // What the change says is what the models before and after it differ by.
+            // The reported change is the difference of the models before and after it.
             let difference = |a: &TriDexel, b: &TriDexel| a.view().difference(b.view(), &control).unwrap();
             let parts = [difference(&before, &whole), difference(&whole, &before)];
             for (told, part) in [change.removed, change.added].iter().zip(&parts) {

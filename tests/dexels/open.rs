@@ -41,7 +41,8 @@ fn ball(holes: impl Fn(u32, u32) -> bool) -> TriangleMesh {
 }
 
 fn meshes() -> Vec<(&'static str, TriangleMesh)> {
-    // Its lid is missing: vertices on centres, so that rays run along the edges of whatever closes the hole.
+    // The box has no lid. Its vertices lie on centres, so that rays run along the edges of any membrane over
+    // the hole.
     let box_of = |low: f64, high: f64| {
         let vertices: Vec<_> =
             (0..8).map(|k| [0, 1, 2].map(|axis| if k >> axis & 1 != 0 { high } else { low })).collect();
@@ -115,7 +116,7 @@ fn check_ends(name: &str, mesh: &TriangleMesh, fill: FillRule, model: &TriDexel,
                     continue;
                 }
                 free += 1;
-                // 2^-36 of the edge, and what is rounded in the sums over what they change along the ray.
+                // 2^-36 of the edge, plus the rounding of the sums divided by their change along the ray.
                 let step = scale * 1e-6;
                 let inward = if side == 0 { step } else { -step };
                 let [here, there] =

@@ -177,9 +177,9 @@ fn surfaces_lead_back_to_closed_meshes() {
             assert!(surface.volume() > 0.0);
             let far = points(&surface, 4000).iter().map(|&(p, _)| source.distance(p)).fold(0.0, f64::max);
             assert!(far <= most, "{name}, {way}: {} cells from the source", far / cell);
-            // Where walls and gaps are at least two cells, nothing of the source is far from the surface. Of
-            // marching cubes that holds where balls of this size touch from both sides: it cuts corners off
-            // by up to 1.15 cells.
+            // Where walls and gaps are at least two cells wide, all of the source is near the surface. For
+            // marching cubes this holds where balls of this size touch from both sides: marching cubes cuts
+            // corners off by up to 1.15 cells.
             let back = Nearest::new(&surface, 2.0 * cell);
             let contains = |p: DVec3| fine.contains(p.to_array()) == Membership::Inside;
             let is_wide = |&(p, n): &(DVec3, DVec3)| {
@@ -229,8 +229,8 @@ fn dual_contouring_keeps_the_edges_of_a_part() {
             let [a, b] = [*a, *b].map(|v| DVec3::from(mesh.vertices()[v as usize]));
             for k in 1..8 {
                 let p = a.lerp(b, f64::from(k) / 8.0);
-                // In a cube between eight centres on one side there is no vertex; the edge is cut off there
-                // by what its neighbours have, since no vertex leaves its own cube.
+                // A cube between eight centres on one side has no vertex. The edge is cut off there as far as
+                // the neighbours' vertices, since no vertex leaves its own cube.
                 let has_vertex = |p: DVec3| {
                     let corner = ((p - DVec3::from(frame.origin())) / cell - 0.5).floor();
                     let inside = |k: i32| {
@@ -339,7 +339,7 @@ fn what_directions_lose_of_a_sphere() {
             let options = DexelOptions { directions, format, ..DexelOptions::default() };
             lost(&dexelize(&ball, &frame, &options, &control).unwrap())
         });
-        // Four caps, two, and none but what lies behind the rays nearest to the poles.
+        // Four caps, two caps, and none except the parts behind the rays nearest to the poles.
         let h = frame.cell_size();
         let cap = |height: f64| height * height * (3.0 - height) / 4.0;
         let pole = 1.0 - (1.0 - h * h / 2.0).sqrt();
@@ -378,7 +378,8 @@ fn parts_of_the_paper_have_their_volumes() {
         println!("{}: {off:e}", part.name);
         assert!(off.abs() < 1e-3, "{}: {} for {}", part.name, mesh.volume(), part.volume);
         for (material, volume) in (1..).zip(&part.materials) {
-            // Rays along z cross each ply from end to end; how many there are is off by those at the rim.
+            // Rays along z cross each ply from end to end. The error comes from the number of rays at the
+            // rim.
             let found = part.volume_of(material, 2);
             assert!((found / volume - 1.0).abs() < 0.01, "material {material}: {found} for {volume}");
         }

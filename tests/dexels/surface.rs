@@ -94,7 +94,7 @@ const SOME_DIRECTIONS: [[bool; 3]; 7] = [
 #[test]
 fn octrees_hold_the_centres() -> Result<(), Error> {
     for depth in [1, 2, 5, 6, 7] {
-        // A frame of which doubles are exact.
+        // A frame that is exact in doubles.
         let frame = Frame::new([-1.0, 0.5, 2.0], 4.0, depth)?;
         for (seed, directions) in (1u64..).zip(SOME_DIRECTIONS) {
             let ends = if seed % 2 == 0 { DexelEnds::Double } else { DexelEnds::Fixed };
@@ -271,7 +271,7 @@ fn check_in_cubes(model: &TriDexel, mesh: &TriangleMesh) {
     };
     for vertex in mesh.vertices() {
         let place = [0, 1, 2].map(|axis| (vertex[axis] - frame.origin()[axis]) / frame.cell_size() - 0.5);
-        // On the common faces of cubes it may be that of any.
+        // On common faces of cubes, the tag may be that of any of the cubes.
         let choices = place.map(|c| [(c - 1e-9).floor() as i64, (c + 1e-9).floor() as i64]);
         let found = (0..8).any(|choice| {
             let cube = [0, 1, 2].map(|axis| choices[axis][choice >> axis & 1]);
@@ -446,7 +446,7 @@ fn dual_contouring_keeps_turned_edges() {
         met += u32::from(seen.len() == 3);
     }
     assert!(met > 0);
-    // What is cut off of edges, elsewhere, is far less than marching cubes cuts off.
+    // The volume cut off of edges elsewhere is far less than with marching cubes.
     let volume = 8.0 * half[0] * half[1] * half[2];
     let rough = volume - surface(cubes, &model).0.volume();
     assert!((mesh.volume() - volume).abs() < 0.125 * rough, "{} {volume} {rough}", mesh.volume());
@@ -471,7 +471,7 @@ fn whatever_rays_say_surfaces_are_closed() {
             check_in_cubes(&model, &surface(dual, &model).0);
         }
     }
-    // Nothing, and everything.
+    // The empty set, and everything.
     let frame = Frame::new([0.0; 3], 4.0, 2).unwrap();
     let nothing = boxes(&frame, FORMAT, ALL, &[]);
     let none =
@@ -621,7 +621,7 @@ fn models_are_solids() -> Result<(), Error> {
     let volume = 4.0 / 3.0 * PI * 0.512;
     let truth = measure(&solid.as_truth(), &other, 1e-9, &control)?;
     assert!(truth.exact && (truth.volume.lower / volume - 1.0).abs() < 0.01);
-    // Of the ball the rays prove nothing.
+    // Rays prove nothing about the ball.
     let unproven = measure(&solid, &Frame::new([-1.5; 3], 3.0, 3)?, 1e-3, &control)?;
     assert!(unproven.volume.lower <= 0.0 && unproven.volume.upper >= 27.0, "{:?}", unproven.volume);
     let nothing = boxes(&frame, FORMAT, ALL, &[]);
@@ -645,7 +645,7 @@ fn voxels_lie_between_centres() -> Result<(), Error> {
             let voxels = dexel_voxels(model.view(), &COLOURS, &Control::default())?;
             let n = frame.cells();
             let deciding = directions.iter().rposition(|&has| has).unwrap();
-            // Dense: which centres lie inside, and of what they are made.
+            // A dense array: the centres that lie inside, and their materials.
             let centre = |k: u32| frame.origin()[deciding] + (f64::from(k) + 0.5) * frame.cell_size();
             let rays = model.view().rays(deciding).unwrap();
             let made_of = |cell: [u32; 3]| {
@@ -794,7 +794,7 @@ fn a_body_of_one_centre_is_a_closed_mesh() {
             let extent = mesh.bounds();
             assert!((0..3).all(|axis| (extent.1[axis] - extent.0[axis] - size).abs() < 1e-9));
         }
-        // That of dual contouring is the cuboid itself.
+        // The surface by dual contouring is the cuboid itself.
         let [_, (mesh, _)] = both_surfaces(&model);
         assert_eq!((mesh.vertices().len(), mesh.triangles().len()), (8, 12));
     }
@@ -805,10 +805,10 @@ fn bodies_that_doubles_cannot_tell_from_their_centres_are_counted() {
     let mut random = Random(31);
     let (mut gone, mut there) = (0, 0);
     for round in 0..60 {
-        // Near the origin ends are told apart to 2^-50, far from it to a millionth of a cell.
+        // Near the origin, ends are distinguished to 2^-50; far from it, to a millionth of a cell.
         let origin = if round % 2 == 0 { 1e9 } else { 0.0 };
         let frame = Frame::new([origin; 3], 8.0, 3).unwrap();
-        // One body in each octant: they do not touch.
+        // One body in each octant, so that they do not touch.
         let mut bodies = Vec::new();
         for octant in 0..8u32 {
             let thin = random.below(4) != 0;
@@ -854,7 +854,7 @@ fn bodies_that_doubles_cannot_tell_from_their_centres_are_counted() {
 fn intervals_that_hold_no_centre_are_counted() {
     let frame = Frame::new([0.0; 3], 8.0, 3).unwrap();
     let control = Control::default();
-    // A plate between centres: rays of one direction meet it, and none of them has a centre.
+    // A plate between centres. Rays of one direction meet it, and it contains no centre.
     let plate = Csg::cuboid([1.0, 1.0, 2.6], [7.0, 7.0, 3.4]).unwrap();
     let model = dexelize(&plate, &frame, &DexelOptions::default(), &control).unwrap();
     assert_eq!(model.view().without_centres(), 36);
@@ -909,7 +909,7 @@ fn at_the_greatest_depth_work_is_that_of_what_is_stored() {
             octree_from_dexels(wire.view(), &limited).unwrap().statistics().volume().lower,
             f64::from(cells)
         );
-        // Another one far away: between them there are too many rays.
+        // Another body far away, with too many rays between the two.
         if axis < 2 {
             let other = block([900_000.0; 3], [900_001.0; 3], [0, 1, 2].map(|a| a == axis));
             let joined = wire.view().union(other.view(), &Control::default());

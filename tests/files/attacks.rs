@@ -31,7 +31,7 @@ fn any_bytes(body: fn(&[u8]), seeds: std::ops::Range<u64>, most: u64) {
         let mut random = Random(seed);
         let length = 1 + random.next() % most;
         let data: Vec<u8> = (0..length).map(|_| random.next() as u8).collect();
-        // A test that fails says what it was given.
+        // A failing test prints its input.
         let result = std::panic::catch_unwind(|| body(&data));
         assert!(result.is_ok(), "input {seed}: {data:?}");
     }
@@ -51,7 +51,7 @@ fn corpus(target: &str, body: fn(&[u8])) {
     assert!(count > 100, "{target}: {count} inputs");
 }
 
-// ---- what was found ------------------------------------------------------------------------------------
+// ---- findings ------------------------------------------------------------------------------------------
 
 /// The points of a box by their coordinates. The image of a box under an affine map has an exact range.
 struct Places;
@@ -74,7 +74,7 @@ impl Attribute for Places {
 
 #[test]
 fn the_range_of_a_moved_attribute_holds_values_whose_summands_cancel() {
-    // 2^20 x + (1 + 2^-40) y - 2^20, of which the sum of the first two loses the small bit.
+    // 2^20 x + (1 + 2^-40) y - 2^20. The sum of the first two terms loses the small bit.
     let (large, bit) = (2f64.powi(20), 2f64.powi(-40));
     let rows = [[large, 1.0 + bit, 0.0, -large], [1.0, 0.0, 0.0, 0.0], [0.0, 0.0, 1.0, 0.0]];
     let moved = MovedAttribute::new(Places, Affine::new(rows).unwrap());

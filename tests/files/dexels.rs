@@ -59,7 +59,7 @@ fn agrees(view: &TriDexelRef<'_>, model: &Dexels) {
         let [us, vs] = rays.window();
         let size = us.len() * vs.len();
         let mut met = 0;
-        // A universe of many rays is asked for those of the window alone.
+        // In a universe with many rays, only the rays of the window are queried.
         for (v, u) in vs.flat_map(|v| us.clone().map(move |u| (v, u))) {
             let list = expected.get(&[v, u]).map_or(&[][..], |list| list);
             assert_eq!(rays.dexels([u, v]).count(), list.len());
@@ -368,7 +368,7 @@ fn each_kind_of_file_is_refused_where_the_other_is_wanted() {
     }
     let error = dexels::open(&octree).unwrap_err().to_string();
     assert!(error.contains("example.lfl") && error.contains("holds an octree"), "{error}");
-    // It is said of the header alone, before the rest is read.
+    // The header alone is enough for the refusal, before the rest is read.
     let path = scratch.path().join("beginning.lfl");
     std::fs::write(&path, &models[..128]).unwrap();
     assert_eq!(refused(file::open(&path)), wrong(1));

@@ -88,7 +88,7 @@ fn vectors(kind: &str) -> Vec<(PathBuf, String)> {
 #[test]
 fn it_gives_the_facts_of_every_valid_vector() {
     for (path, text) in vectors("valid") {
-        // What no reader can know, or need not print.
+        // Facts that a reader cannot know, or need not print.
         let apart =
             ["about", "canonical", "origin-decimal", "edge-decimal", "point", "cut-point", "value", "cell"];
         let facts = text.lines().filter(|line| !apart.contains(&line.split(':').next().unwrap()));
@@ -117,7 +117,7 @@ fn it_gives_the_facts_of_every_valid_vector() {
             let expected: Vec<&str> = points.iter().map(|(_, answer)| *answer).collect();
             assert_eq!(answers.split_whitespace().collect::<Vec<_>>(), expected, "{}", path.display());
         }
-        // Every point of a channel is asked of all channels.
+        // Every point of a channel is queried in all channels.
         let channels = text.lines().filter(|line| line.starts_with("channel: ")).count();
         let values: Vec<Vec<&str>> = text
             .lines()
@@ -219,7 +219,7 @@ fn it_agrees_with_the_library_on_what_the_library_writes() {
         let expected = points.iter().map(|&point| word(tags.contains(point)));
         assert_eq!(answers.split_whitespace().collect::<Vec<_>>(), expected.collect::<Vec<_>>());
 
-        // With the cuts intervals leave open what exact signs decide, and only that.
+        // With cuts, intervals leave points undecided that exact signs decide, and only those.
         let (_, answers) = run(&["--cut-points"], &path, &questions);
         let mut expected = vec![Membership::Undecided; points.len()];
         let certified = tree.view().with_proof(Proof::CERTIFIED);

@@ -145,7 +145,7 @@ fn without_its_sections_of_cuts_a_file_is_that_of_the_tree() {
         }
         let mut older = made.bytes.clone();
         make_vectors::put(&mut older, 10, 3, 2);
-        // (What only a newer version may say: flags and reserved bytes of sections.)
+        // (Only newer versions may use these flags and reserved bytes of sections.)
         let sections = number(&older, 96, 4) as usize;
         for at in (0..sections).map(|i| 128 + make_vectors::ENTRY * i) {
             older[at + 11] = 0;
@@ -349,7 +349,7 @@ fn owned(tree: &Octree, facts: &Facts<'_>, bytes: &[u8]) {
     assert_eq!(tree.metadata().iter().collect::<Vec<_>>(), metadata);
     channels(tree, facts);
     cuts(tree, facts);
-    // What the writer makes of it is this file, unless it is one that the writer would not make.
+    // The writer makes this file of the tree, unless the file is not canonical.
     assert_eq!(file::to_bytes(tree).unwrap() == bytes, facts.one("canonical") == "yes");
 }
 
@@ -518,7 +518,7 @@ fn each_reason_of_the_library_has_a_vector() {
     }
     assert_eq!((names[0], names[9], names[12]), ("objects", "dictionary segments", "value base"));
     assert_eq!((names[13], names[23]), ("cut heads", "moments"));
-    // (Those of channels are sections of other objects.)
+    // (The sections of channels belong to other objects.)
     let of_solid = names.iter().take(10).chain(&names[13..]);
     of_solid.for_each(|name| seen(&format!("Checksum {{ name: {name:?}")));
     for name in ["the header", "the section table", "an unknown section", "a section of another object"] {
@@ -549,7 +549,7 @@ fn each_reason_of_the_library_has_a_vector() {
     assert_eq!(count, 10 + 18);
 }
 
-// ---- what the reader accepts ----------------------------------------------------------------------------
+// ---- accepted files -------------------------------------------------------------------------------------
 
 /// Sets each single byte of small files to every eighth value, with right checksums, once with a solid's
 /// record that repeats the header and once with the old record. A file that is then verified must be
@@ -588,7 +588,7 @@ fn accept(every: usize) -> usize {
         let changes = (0..vector.bytes.len()).flat_map(|at| values(at).map(move |value| (at, value)));
         for ((at, value), mirrored) in changes.flat_map(|change| [(change, false), (change, true)]) {
             let mut bytes = vector.bytes.clone();
-            // Behind the header there is nothing that the record repeats.
+            // The solid's record repeats only header fields.
             if bytes[at] == value || mirrored && at >= 128 {
                 continue;
             }
@@ -600,14 +600,14 @@ fn accept(every: usize) -> usize {
             let Ok(tree) = file::from_bytes(&bytes) else { continue };
             accepted += 1;
             if tree.view().cuts().is_some() {
-                // What was verified is a solid.
+                // A verified tree is a solid.
                 let frame = tree.frame();
                 let points = [0.3, 0.6].map(|t| frame.origin().map(|c| c + t * frame.edge()));
                 let mut answers = [Membership::Undecided; 2];
                 contains(&tree, frame, &points, &mut answers, &Control::threads(1)).unwrap();
             }
             let written = file::to_bytes(&tree).unwrap();
-            // The oldest version that knows the objects is the one that the writer names.
+            // The writer states the oldest version that supports the objects.
             let other = number(&bytes, 10, 2) != number(&written, 10, 2);
             let unknown = make_vectors::has_unknown_parts(&bytes);
             assert!(
@@ -664,8 +664,8 @@ fn the_tables_fit_the_constants() {
             end += size(&row[1]);
         }
         assert_eq!(end, length);
-        // Some lines of the tables are one field of the structure: the origin, extents; others none by their
-        // name.
+        // Some lines of the tables are one field of the structure (the origin, the extents). Other lines have
+        // no field of their name.
         let offsets = offsets(of);
         assert!(offsets.is_subset(&found), "{offsets:?}, {found:?}");
         let apart: Vec<_> = found.difference(&offsets).copied().collect();
@@ -799,7 +799,7 @@ fn dictionaries_of_several_segments() {
         make_vectors::put(&mut bytes, at, value, length);
         make_vectors::seal(&mut bytes);
         let aligned = Aligned::new(&bytes);
-        // Whatever the dictionary says, reading in place may begin.
+        // Reading in place may begin, whatever the dictionary contains.
         if let Ok(view) = file::view(aligned.bytes()) {
             assert!(view.check().is_err());
             view.contains([0.0; 3]);
@@ -820,7 +820,7 @@ fn dictionaries_of_several_segments() {
     assert_eq!(unused, format!("Damaged(DictionaryOrder {{ entry: {second} }})"));
     assert!(verdict(start + 8, second - 1, 8).starts_with("Damaged(Dictionary { brick: "));
     assert_eq!(verdict(start + 8, 0, 8), brick(0));
-    // An index that leads to an entry of the next segment: there is one, but it is not the brick's.
+    // An index leads to an entry of the next segment. This entry exists, but it is not the brick's.
     assert!(second < 65_536);
     assert_eq!(verdict(sections[indices].offset as usize, second, 2), brick(0));
     // Other shifts need another number of segments.

@@ -68,9 +68,9 @@ fn small_files() -> Vec<Vec<u8>> {
         let file = File::parse(bytes).unwrap();
         file.sections.iter().any(|section| section.kind() == kind)
     };
-    // Without an element, with raw bricks, with elements, with a dictionary, with metadata, with a section
-    // that nobody knows, with one of an application, with other objects, of a later version, with channels,
-    // with cuts of one cell and with splits.
+    // A file without elements, and files with raw bricks, with elements, with a dictionary, with metadata,
+    // with an unknown section, with an application's section, with other objects, of a later version, with
+    // channels, with cuts of one cell, and with splits.
     let mut chosen = vec![files[0].clone()];
     for kind in [BRICKS, PLANES, bodies::layout::ENTRIES, bodies::layout::METADATA, 17, 1 << 31] {
         chosen.extend(files.iter().find(|bytes| has(bytes, kind)).cloned());
@@ -124,7 +124,7 @@ fn write_seeds() {
 fn the_seeds_are_good() {
     for bytes in seeds::files() {
         assert!(read_in_all_ways(&bytes, true));
-        // Taken apart and put together, it is the same.
+        // Split and assembled again, it is the same file.
         let parts = File::parse(&bytes).unwrap();
         assert_eq!(parts.clone().assemble(&Repairs::NONE), bytes);
         assert_eq!(parts.assemble(&Repairs::ALL), bytes);
@@ -192,7 +192,7 @@ fn files_cut_at_every_length() {
         for length in 0..bytes.len() {
             let cut = &bytes[..length];
             assert!(!read_in_all_ways(cut, true), "{length}");
-            // As someone would cut it who knows where the length stands, and the checksums.
+            // An attacker who knows the length field and the checksums cuts the file like this.
             let mut shorter = cut.to_vec();
             if length >= 128 {
                 put(&mut shorter, 24, length as u64, 8);
@@ -207,7 +207,7 @@ fn files_cut_at_every_length() {
                 exercise(&bytes);
             }
         }
-        // Nor may anything follow.
+        // Nothing may follow, either.
         for more in [1, 8, 64] {
             assert!(!read_in_all_ways(&[&bytes[..], &vec![0; more]].concat(), true));
         }
@@ -234,8 +234,8 @@ fn every_byte_and_the_first_bits_flipped() {
                     viewed += 1;
                     exercise(&sealed);
                 }
-                // What is good with right checksums is another tree's file, to the byte: there is no field
-                // that does not matter, but for those that a later version may have given a meaning.
+                // A good file with right checksums is the file of another tree, to the byte. Every field
+                // matters, except those reserved for later versions.
                 if good {
                     verified += 1;
                     let written = file::to_bytes(&file::from_bytes(&sealed).unwrap()).unwrap();
@@ -579,7 +579,7 @@ fn tables_without_records_are_not_taken_for_one() {
     let vectors = Path::new(env!("CARGO_MANIFEST_DIR")).join("format_spec/vectors/valid");
     let bytes = std::fs::read(vectors.join("cut-cell-slabs-alone.lfl")).unwrap();
     let mut file = File::parse(&bytes).unwrap();
-    // As many slabs that face the other way, of other origins.
+    // As many slabs of other origins that face the other way.
     for slab in file.section(CELL_SLABS).unwrap().bytes.chunks_exact_mut(16) {
         slab[15] ^= 0x80;
     }

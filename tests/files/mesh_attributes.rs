@@ -56,7 +56,7 @@ fn materials_come_back_by_name() {
         #[cfg(feature = "threemf")]
         {
             assert_eq!(materials(&back(&mesh, MeshFormat::ThreeMf, false)), expected);
-            // Each material has a colour, that of its first triangle.
+            // Each material has the colour of its first triangle.
             let colours: Vec<f64> =
                 labels.iter().flat_map(|&l| [f64::from(l % 7), 2.0, 255.0, 7.0]).collect();
             mesh.add_attribute(MeshAttribute::per_triangle("colour", 4, &colours).unwrap()).unwrap();
@@ -67,13 +67,13 @@ fn materials_come_back_by_name() {
             }
         }
     }
-    // What has no name, or none on one line, gets one.
+    // A material without a name, or without a name on one line, gets a name.
     let mut mesh = strip(3);
     let names = vec!["two\nlines".to_owned(), String::new()];
     mesh.add_attribute(MeshAttribute::labels("material", vec![0, 1, 2]).unwrap().named(names)).unwrap();
     let names = ["two lines", "material_1", "material_2"].map(|name| Some(name.to_owned()));
     assert_eq!(materials(&back(&mesh, MeshFormat::Obj, true)), names);
-    // Groups are as long as they can be.
+    // Groups have the greatest possible length.
     let mesh = &mut strip(4);
     mesh.add_attribute(MeshAttribute::labels("material", vec![1, 1, 0, u32::MAX]).unwrap()).unwrap();
     let bytes = write_mesh(mesh, MeshFormat::Obj, &WriteOptions::default()).unwrap();
@@ -124,7 +124,8 @@ fn colours_come_back() {
         let found = back(&mesh, MeshFormat::Ply, false);
         assert_eq!(values(&found, "colour")[0], values(&mesh, "colour")[0], "the first corner's counts");
     }
-    // Three numbers are opaque, others are rounded, and what has none is not seen.
+    // Three numbers are an opaque colour, other values are rounded, and triangles without a value are
+    // transparent.
     let mut mesh = strip(3);
     let numbers = [0.4, 254.6, 300.0, f64::NAN, 0.0, 0.0, -7.0, 1.0, 2.0];
     mesh.add_attribute(MeshAttribute::per_triangle("colour", 3, &numbers).unwrap()).unwrap();

@@ -236,8 +236,7 @@ mod ply {
 
     #[test]
     fn vertices_that_are_welded_keep_their_colours() {
-        // Two triangles, each with vertices of its own, and a third one that is degenerate once they are
-        // welded.
+        // Two triangles with vertices of their own, and a third triangle that is degenerate after welding.
         let row = |place: [f64; 3], red: f64| [place.to_vec(), vec![red, 0.0, 0.0]].concat();
         let [a, b, c, d] = [[0., 0., 0.], [1., 0., 0.], [1., 1., 0.], [0., 1., 0.]];
         let vertices = [(a, 1.), (b, 2.), (c, 3.), (a, 4.), (c, 5.), (d, 6.)];
@@ -393,7 +392,7 @@ mod threemf {
         let mesh = read_model(&resources, items).mesh;
         assert_eq!(mesh.triangles().len(), 12);
         let found = colours(&mesh);
-        // Turned round, the triangle has its colours at the same vertices.
+        // Reversed, the triangle keeps the colours of its vertices.
         assert_eq!(found[2], [RED, BLUE, GREEN]);
         assert_eq!(found[10], [RED, GREEN, BLUE]);
         assert_eq!((found[0], found[4], found[7], found[11]), ([RED; 3], [GREEN; 3], [GREEN; 3], [RED; 3]));

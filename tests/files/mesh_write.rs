@@ -112,7 +112,7 @@ proptest! {
                 let half = coordinates().map(|x| x.abs() as f32).map(|x| x.next_up() - x).fold(0.0, f32::max) / 2.0;
                 let slack = if text { f64::from(half) } else { 0.0 };
                 prop_assert!((told.rounding - moved).abs() <= slack, "{} {moved}", told.rounding);
-                // Vertices are put together, and none apart.
+                // Vertices are merged, and never separated.
                 prop_assert!(!mesh.report().unwrap().is_closed() || report.is_closed());
             }
         }
@@ -241,7 +241,7 @@ fn placed_meshes_come_back() {
     for (own, expected) in back.mesh.vertices().iter().zip(&expected) {
         assert!((0..3).all(|k| (own[k] - expected[k]).abs() < 1e-14), "{own:?} {expected:?}");
     }
-    // What is mirrored is not inside out.
+    // A mirrored mesh is not inside out.
     let volume = 2.0 * small.volume() + 2.0 * large.volume();
     assert!((back.mesh.volume() - volume).abs() < 1e-12, "{} {volume}", back.mesh.volume());
     let objects_of = back.mesh.attributes().iter().find(|attribute| attribute.name() == "object").unwrap();
@@ -337,7 +337,7 @@ fn deviations_are_written_and_told() {
             }
             assert_eq!((back.format, back.deviation), (format, Some(deviation)));
             assert_eq!((back.mesh.deviation(), back.mesh.vertices()), (0.0, mesh.vertices()));
-            // It is as long as before.
+            // The file is as long as before.
             let unit = Some(LengthUnit::Inch);
             let inches = MeshOptions { unit, target: Some(LengthUnit::Millimetre), ..MeshOptions::default() };
             let back = read_mesh(&bytes, &inches).unwrap().deviation.unwrap();
@@ -350,7 +350,7 @@ fn deviations_are_written_and_told() {
             assert!(matches!(error, Error::Argument { name: "deviation", .. }), "{error}");
         }
     }
-    // What is no number is no word.
+    // A word that is not a number is no deviation.
     for word in ["-1", "nan", "inf", "", "0.5 mm", "1e999"] {
         let text = format!("# leafless deviation {word}\nv 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n");
         assert_eq!(read_mesh(text.as_bytes(), &MeshOptions::default()).unwrap().deviation, None, "{word}");

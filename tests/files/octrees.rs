@@ -255,7 +255,7 @@ fn read_all(tree: &OctreeRef<'_>) {
         assert_eq!(cursor.contains(point), answer);
     }
     for level in [0, 3, 6] {
-        // Of a damaged tree less may be known by way of a table, and nothing else.
+        // For a damaged tree, a table may decide fewer points, and nothing else may differ.
         let table = PointTable::new(tree, level).unwrap();
         let known = points.iter().map(|&point| table.contains(point));
         known.zip(&answers).for_each(|(known, &answer)| {
@@ -279,12 +279,12 @@ fn read_all(tree: &OctreeRef<'_>) {
 }
 
 fn write(path: &Path, bytes: &[u8]) {
-    // Some file systems flush a file to disk that is cut to nothing and written again.
+    // Some file systems flush a file to disk if it is truncated and written again.
     let _ = std::fs::remove_file(path);
     std::fs::write(path, bytes).unwrap();
 }
 
-// ---- what goes in comes out -----------------------------------------------------------------------------
+// ---- round trips ----------------------------------------------------------------------------------------
 
 #[test]
 fn every_way_in_gives_the_tree_back() {
@@ -303,7 +303,7 @@ fn every_way_in_gives_the_tree_back() {
             assert_eq!(back.metadata(), tree.metadata());
             assert_eq!(back.statistics(), tree.statistics());
             back.view().check().unwrap();
-            // However its bricks are coded and wherever they lie, it is the same file.
+            // However its bricks are coded and wherever they lie, the tree is written as the same file.
             assert_eq!(file::to_bytes(back).unwrap(), bytes);
         };
         same(&file::from_bytes(&bytes).unwrap());
@@ -321,7 +321,7 @@ fn every_way_in_gives_the_tree_back() {
         same(&compact(&view).unwrap().with_metadata(tree.metadata().clone()));
         file::verify(aligned.bytes()).unwrap();
         file::verify_path(&path).unwrap();
-        // What lives as long as the program needs no copy.
+        // Bytes with the program's lifetime need no copy.
         same(&file::from_static(Box::leak(Box::new(Aligned::new(&bytes))).bytes()).unwrap());
 
         let probe = file::probe(&path).unwrap();
@@ -393,7 +393,7 @@ fn a_file_byte_by_byte() {
             put(&mut expected, 128 + ENTRY * i + at, value, length);
         }
     }
-    // The object: a solid without a parent, which must be known; then what the header says of it.
+    // The object: a solid without a parent, which readers must understand, followed by the header's fields.
     put(&mut expected, 320, 1, 4);
     put(&mut expected, 324, u32::MAX.into(), 4);
     put(&mut expected, 328, 1, 4);
@@ -456,7 +456,7 @@ fn metadata_have_a_limit() {
     assert!(matches!(refused, Err(Error::Argument { name: "metadata", .. })));
 }
 
-// ---- what is damaged is refused -------------------------------------------------------------------------
+// ---- damaged files are refused --------------------------------------------------------------------------
 
 #[test]
 fn a_shorter_or_longer_file_is_refused() {
@@ -482,7 +482,7 @@ fn a_shorter_or_longer_file_is_refused() {
             is_length(format_error(unsafe { file::map(&path) }));
             is_length(format_error(unsafe { file::map_verified(&path) }));
         }
-        // Of bytes the first ones are enough.
+        // Probing needs only the first bytes.
         assert_eq!(file::probe_bytes(cut).is_ok(), length >= head);
         assert_eq!(file::probe_from(cut).is_ok(), length >= head);
     }
@@ -541,7 +541,7 @@ fn changes_with_right_checksums_never_panic() {
                     _ => random(256) as u8,
                 };
             }
-            // Mostly, what was changed in the header stands in the record of the solid, too.
+            // In most rounds, the solid's record repeats the changed header.
             if round % 8 != 0 && number(all, 128 + 16, 8) == number(&bytes, 128 + 16, 8) {
                 mirror(all);
             }
@@ -742,7 +742,7 @@ fn each_field_is_checked() {
     assert_eq!(field(&bytes, 72, 1 << 40, 8), FormatError::Section { name: "planes" });
     assert_eq!(field(&bytes, 80, 1, 8), FormatError::Section { name: "bricks" });
     assert_eq!(field(&bytes, 67, 1, 1), FormatError::Section { name: "bricks" });
-    // A section that is unknown or missing, and objects that are not there.
+    // Unknown and missing sections, and owners that do not exist.
     let last = 128 + ENTRY * (file::probe_bytes(&bytes).unwrap().sections.len() - 1);
     assert_eq!(field(&bytes, last, 20, 4), FormatError::Required { name: "section", value: 20 });
     let missing = changed(&bytes, false, |bytes| {
@@ -751,13 +751,13 @@ fn each_field_is_checked() {
     });
     assert_eq!(format_error(view(missing)), FormatError::Section { name: "bricks" });
     assert_eq!(field(&bytes, 128, 2, 4), FormatError::Section { name: "objects" });
-    // Each byte of the solid's record says what the header says, or is 0.
+    // Each byte of the solid's record repeats the header, or is 0.
     let (record, _) = mirrored(&bytes);
     for at in 0..128 {
         let other = changed(&bytes, true, |bytes| bytes[record + at] ^= 1);
         assert_eq!(format_error(view(other)), FormatError::Object, "byte {at}");
     }
-    // Levels whose elements are not the stored ones.
+    // Levels whose elements are not the stored elements.
     let levels = file::probe_bytes(&bytes).unwrap().sections[2].offset as usize;
     for level in [0, 2] {
         for nodes in [0, 2, u64::MAX] {
@@ -975,7 +975,7 @@ mod save {
         let verifier = std::thread::spawn(move || file::verify_path(path));
         file::save(&tree, &pipe).unwrap();
         verifier.join().unwrap().unwrap();
-        // What is piped in may be cut or go on, too.
+        // Piped input may be cut short or continue, too.
         let bytes = file::to_bytes(&tree).unwrap();
         for sent in [bytes[..bytes.len() - 1].to_vec(), [&bytes[..], b"x"].concat()] {
             let (path, same) = (pipe.clone(), pipe.clone());
@@ -1055,7 +1055,7 @@ mod save {
             file::replace(&path, |file| {
                 file.write_all(text.as_bytes())?;
                 assert_eq!(fs::read(&path).ok(), old);
-                // A process that is killed now leaves nothing.
+                // A process killed at this moment leaves nothing behind.
                 #[cfg(target_os = "linux")]
                 if has_unnamed_files(directory.path()) {
                     assert_eq!(names(directory.path()).len(), usize::from(old.is_some()));
@@ -1179,7 +1179,7 @@ mod save {
         use std::os::unix::process::CommandExt;
         let mut command = Command::new(program);
         if fs::write(directory.join("probe"), "").is_ok() {
-            // Nothing binds this one.
+            // Permissions do not bind this user.
             fs::remove_file(directory.join("probe")).unwrap();
             command.uid(65534).gid(65534);
         }
@@ -1270,7 +1270,7 @@ fn errors_name_the_file() {
             assert_eq!(text(file::map(&missing)), expected);
             assert_eq!(text(file::map_verified(&missing)), expected);
         }
-        // The temporary file beside it is nobody's business.
+        // The error does not mention the temporary file beside it.
         let tree = small();
         let path = directory.path().join("no/part.lfl");
         assert_eq!(text(file::save(&tree, &path)), format!("{}: No such file or directory", path.display()));

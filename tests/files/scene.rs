@@ -125,7 +125,7 @@ fn operations() {
     check(&format!("difference() {pair}"), 4.0, 0.0);
     check("cube(2); multmatrix([[1,0,0,2],[0,1,0,0],[0,0,1,0],[0,0,0,1]]) cube(2);", 16.0, 0.0);
     check("difference() { cube(4); cube(2); cube([4, 1, 1]); }", 64.0 - 8.0 - 2.0, 0.0);
-    // Without braces, and what does not count.
+    // Without braces, and calls that have no effect.
     check("color(\"red\") render() cube(2);", 8.0, 0.0);
     check("group() { cube(2); %cube(4); *cube(4); #cube(1); group(); group() {} ; ; }", 8.0, 0.0);
     check("difference() { %sphere(7); cube(4); cube(2); }", 56.0, 0.0);
@@ -232,7 +232,7 @@ fn prisms() {
     check("linear_extrude(height = 2) intersection() { square(6); circle(4); }", PI * 8.0, PI * 16.0);
     let star = "polygon(points = [[0, 6], [-1, 1], [-6, 0], [-1, -1], [0, -6], [1, -1], [6, 0], [1, 1]], paths = undef);";
     check(&format!("linear_extrude(height = 2, center = true) {star}"), 48.0, 160.0);
-    // An ellipse that is turned.
+    // A rotated ellipse.
     let ellipse = "multmatrix([[1.6, -0.6, 0, 0], [1.2, 0.8, 0, 0], [0, 0, 1, 0], [0, 0, 0, 1]]) circle(2);";
     check(&format!("linear_extrude(height = 2) {ellipse}"), PI * 16.0, PI * 30.0);
     // A skew prism: the direction has any length.
@@ -258,7 +258,7 @@ fn tapered_prisms() {
     // Oblique, as the circle is not in the middle: Cavalieri.
     let beside = "multmatrix([[1,0,0,1.5],[0,1,0,0],[0,0,1,0],[0,0,0,1]]) circle(2);";
     check(&format!("linear_extrude(height = 3, scale = 2) {beside}"), PI * (4.0 + 8.0 + 16.0), PI * 50.0);
-    // ∫ (1 + (a − 1) t) (1 + (b − 1) t) dt · A · h, here for a = 2, b = 0: 2/3, whatever the figure of lines.
+    // ∫ (1 + (a − 1) t) (1 + (b − 1) t) dt · A · h, here for a = 2, b = 0: 2/3, for any figure of lines.
     check("linear_extrude(height = 3, scale = [2, 0]) square(4, true);", 16.0 * 3.0 * 2.0 / 3.0, 100.0);
     let triangle = "polygon(points = [[1, 0], [3, 1], [0, 3]]);";
     check(&format!("linear_extrude(height = 3, scale = [2, 0]) {triangle}"), 2.5 * 3.0 * 2.0 / 3.0, 40.0);
@@ -290,7 +290,7 @@ fn bodies_of_revolution() {
     check(&format!("{whole} {half}"), PI * 256.0 / 3.0, PI * 64.0);
     let half = format!("intersection() {{ circle(4); {} }}", at(0.0, -5.0, "square([5, 10]);"));
     check(&format!("{whole} {half}"), PI * 256.0 / 3.0, PI * 64.0);
-    // Rings: circles that are moved, turned, scaled.
+    // Rings: circles that are moved, rotated or scaled.
     same(&format!("{whole} {}", at(5.0, 0.0, "circle(2);")), "torus(5, 2);");
     same(&format!("{whole} {}", at(-5.0, 0.0, "circle(2);")), "torus(5, 2);");
     let raised = "multmatrix([[1,0,0,0],[0,1,0,0],[0,0,1,1.5],[0,0,0,1]])";
@@ -686,7 +686,7 @@ fn files_beside_the_scene() {
         assert!(volume.upper - volume.lower <= width, "{text}: {volume:?}");
     };
     check("mesh(\"block.stl\");", 2.0, 0.0);
-    // Hair cracks are closed, as they are wherever a file is read.
+    // Hair cracks are closed, as for every file that is read.
     let mut cracked = String::new();
     for (at, triangle) in block().triangles().iter().enumerate() {
         for vertex in triangle.map(|vertex| block().vertices()[vertex as usize]) {
@@ -707,7 +707,7 @@ fn files_beside_the_scene() {
     );
     check("octree(\"part.lfl\");", 56.0, 0.0);
     check("difference() { octree(file = \"part.lfl\"); mesh(file = \"block.stl\"); }", 56.0, 0.0);
-    // Placements: exact ones, one that has to be rounded, and several around operations.
+    // Placements: exact ones, one that is rounded, and several around operations.
     let moved = "multmatrix([[0, -1, 0, 2.5], [1, 0, 0, 0.25], [0, 0, 2, 0], [0, 0, 0, 1]])";
     check(&format!("{moved} mesh(\"block.stl\");"), 4.0, 0.0);
     check(&format!("{moved} {moved} mesh(\"block.stl\");"), 8.0, 16.0);
@@ -743,7 +743,7 @@ fn files_beside_the_scene() {
     std::fs::write(folder.path().join("latin.csg"), b"cube(1);\n// gr\xFC\xDFe").unwrap();
     let error = leafless::scene::open_scene(folder.path().join("latin.csg")).err().unwrap();
     assert_eq!(error.cause().to_string(), "line 2, column 6: the text is not UTF-8");
-    // Without a folder there are no files.
+    // Without a folder, no files can be read.
     let (line, column, problem) = refusal("mesh(\"block.stl\");");
     assert!((line, column) == (1, 6) && problem.contains("folder"), "{problem}");
     assert!(read_scene("mesh(\"block.stl\");", Some(Path::new(folder.path()))).is_ok());

@@ -94,7 +94,7 @@ fn small_numbers_of_fragments_are_prisms_and_pyramids() {
         check(&scene, truth);
         assert_eq!((scene.report().polygons, scene.report().exact), (polygons, 0), "{text}");
         check(&drawn(&text, Facets::Polygon), truth);
-        // Round, they are larger.
+        // With exact curves, they are larger.
         let round = drawn(&text, Facets::Exact);
         assert_eq!((round.report().polygons, round.report().exact), (0, polygons), "{text}");
         if !text.contains("difference") {
@@ -145,7 +145,7 @@ fn all_curves_as_polygons_have_the_volumes_of_openscad() {
     let auto = read_scene(&text, None).unwrap();
     assert_eq!((auto.report().polygons, auto.report().exact), (0, 5));
     assert!(volume(&auto).lower > 250.0);
-    // A figure with a circle in it is turned exactly, and none of a polygon's sides is counted.
+    // A figure with a circle in it is revolved exactly, and no side of a polygon is counted.
     let mixed =
         "rotate_extrude($fn = 6) multmatrix([[1,0,0,5],[0,1,0,0],[0,0,1,0],[0,0,0,1]]) circle(r = 2);";
     let mixed = read_scene(mixed, None).unwrap();
@@ -208,7 +208,7 @@ fn a_polyhedron_that_is_inside_out_is_a_solid_and_is_told_of() {
         .replace("[0, 2, 1], [0, 1, 3], [0, 3, 2], [1, 2, 3]", "[0, 1, 2], [0, 3, 1], [0, 2, 3], [1, 3, 2]");
     assert_eq!(read_scene(&other, None).unwrap().report().meshes[0].report.inside_out_bodies, 1);
     check(&read_scene(&other, None).unwrap(), 10.666_666_7);
-    // One facet turned over, and one missing.
+    // One facet is inverted, and one is missing.
     let turned = text.replace("[1, 2, 3]", "[1, 3, 2]");
     let report = &read_scene(&turned, None).unwrap().report().meshes[0].clone();
     assert_eq!((report.turned, report.report.misoriented_edges, report.report.boundary_edges), (1, 3, 0));

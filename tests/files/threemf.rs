@@ -55,10 +55,10 @@ fn one_object() {
     assert_eq!(file.mesh.vertices(), expected);
     assert_eq!(file.mesh.triangles(), [[0, 2, 1], [0, 1, 3], [1, 2, 3], [2, 0, 3]]);
     file.mesh.check_closed(FillRule::NonZero).unwrap();
-    // Numbers are those nearest to what is written.
+    // Numbers are the doubles nearest to the text.
     let text = model("", &tetrahedron(1, "").replace("x=\"1\"", "x=\" 0.1\n\""), ITEM);
     assert_eq!(read_model(text).mesh.vertices()[1][0], 0.1);
-    // What is not placed is not built, and an empty build is no error here.
+    // An object that is not placed is not built. An empty build is no error here.
     assert_eq!(read_model(model("", &tetrahedron(1, ""), "")).mesh.triangles().len(), 0);
 }
 
@@ -79,7 +79,7 @@ fn units() {
         let converted = read_mesh(&bytes, &options).unwrap();
         assert_eq!(converted.unit, Some(LengthUnit::Inch));
         assert!((converted.mesh.bounds().1[0] / inches - 1.0).abs() < 1e-15);
-        // What the caller says counts.
+        // The caller's unit takes precedence.
         let options = MeshOptions { unit: Some(LengthUnit::Inch), ..options };
         assert_eq!(read_mesh(&bytes, &options).unwrap().mesh.bounds().1, [1.0; 3]);
     }
@@ -89,7 +89,7 @@ fn units() {
 #[test]
 fn items_and_components_are_placed() {
     let move_x = |x: f64| format!("transform=\"1 0 0 0 1 0 0 0 1 {x} 0 0\"");
-    // 2 is two tetrahedra, 3 two of those, the second scaled by 2.
+    // Object 2 is two tetrahedra. Object 3 is two of object 2, the second scaled by 2.
     let resources = format!(
         "{}
         <object id=\"2\"><components>
@@ -346,7 +346,7 @@ fn extensions_that_are_required() {
     ] {
         let attributes = format!("requiredextensions=\"p x\" xmlns:x=\"{uri}\"");
         assert_refused(&model(&attributes, &tetrahedron(1, ""), ITEM), 2, name);
-        // Otherwise they may be ignored.
+        // Otherwise the reader may ignore them.
         let attributes = attributes.replace("required", "recommended");
         assert_eq!(read_model(model(&attributes, &tetrahedron(1, ""), ITEM)).mesh.triangles().len(), 4);
     }
@@ -442,7 +442,7 @@ fn utf_16() {
         let mut lone = encoded(&good, big, true);
         lone.extend(if big { [0xD8, 0] } else { [0, 0xD8] });
         assert_broken(&zip(&package(lone)), part, "no UTF-16 text from character");
-        // What the declaration says must be so.
+        // The declared encoding must be the real one.
         let wrong = encoded(&good.replace("UTF-8", "ISO-8859-1"), big, true);
         assert_broken(&zip(&package(wrong)), part, "encoding is not UTF-16");
     }
@@ -459,7 +459,7 @@ fn the_draft() {
     assert_ne!(draft, text);
     let [new, old] = [text, draft].map(read_model);
     assert_eq!((old.mesh.vertices(), old.mesh.triangles()), (new.mesh.vertices(), new.mesh.triangles()));
-    // One triangle refers to properties that are not there. In the draft that has no meaning.
+    // One triangle refers to missing properties. In the draft, the reference has no meaning.
     assert_eq!(new.warnings, [MeshWarning::Properties { triangles: 1 }]);
     assert_eq!(old.warnings, [MeshWarning::Draft]);
     assert_eq!(old.warnings[0].to_string(), "this is 3MF of the draft 0.93; it was read as 1.0");
@@ -565,7 +565,7 @@ fn bombs() {
     }
     let text = model("", &resources, "<item objectid=\"61\"/>");
     assert_broken(&zip(&package(&text)), "3D/3dmodel.model", "2^25");
-    // Nothing, 2^60 times, is nothing.
+    // An empty object, 2^60 times, is empty.
     assert_eq!(read_model(text.replace("<triangle ", "<nothing ")).mesh.triangles().len(), 0);
     let supports = text.replace("<object id=\"1\"", "<object type=\"support\" id=\"1\"");
     assert_eq!(read_model(supports).skipped, 1 << 60);

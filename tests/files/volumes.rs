@@ -68,7 +68,8 @@ fn what_is_written_comes_back() {
         let (again, rounded) = read_raw_volume(&bytes, &layout).unwrap();
         assert!(same(&numbers(&again, &grid), &sampled.values) && rounded == 0);
     }
-    // Any other grid moves by less than two last places, and only if no origin tells its corner.
+    // Any other grid moves by less than two last places, and only if its corner cannot be computed from any
+    // origin.
     for _ in 0..100 {
         let grid = grid(&mut random, [2, 1, 1], false);
         let file = read(&write_nrrd(&vec![0u8; 2].into(), &grid, NrrdEncoding::Raw).unwrap());
@@ -292,12 +293,12 @@ fn encodings() {
         format!("CompressedData = True\nCompressedDataSize = {}\nElementDataFile = LOCAL\n", zlib.len());
     let file = [META.as_bytes(), fields.as_bytes(), &zlib].concat();
     assert_eq!(values(&read(&file))[11], 12.0);
-    // With bytes before, and none said of the length.
+    // With bytes before the data, and no stated length.
     let fields = "CompressedData = True\nHeaderSize = 3\nElementDataFile = LOCAL\nabc";
     let file = [META.as_bytes(), fields.as_bytes(), &zlib].concat();
     assert_eq!(values(&read(&file))[11], 12.0);
 
-    // Two members of gzip, the first with a name, of which the first byte and a line are skipped.
+    // Two gzip members, the first with a name. Its first byte and one line are skipped.
     let member = |data: &[u8], name: bool| {
         let flags = if name { 8 } else { 0 };
         let mut bytes = vec![0x1F, 0x8B, 8, flags, 0, 0, 0, 0, 0, 3];
@@ -312,7 +313,7 @@ fn encodings() {
     let file = [header.as_bytes(), &first, &second].concat();
     assert_eq!(values(&read(&file)), (1..=12).map(f64::from).collect::<Vec<_>>());
     for at in header.len()..file.len() {
-        // The header of a member has bytes that say nothing.
+        // A member's header has bytes without meaning.
         let mut wrong = file.clone();
         wrong[at] ^= 1 << (at % 8);
         if let Ok(found) = read_volume(&wrong, None) {
@@ -341,7 +342,7 @@ fn samples_in_another_file() {
     assert_eq!(volume_data_file(&nrrd("")).unwrap(), None);
     assert_eq!(values(&read_volume(&header, Some(DATA)).unwrap())[11], 12.0);
     assert!(matches!(refused(&header), VolumeFileError::Missing { .. }));
-    // Errors name the file that they are about.
+    // Errors name the file with the problem.
     for (name, data, about) in [
         ("b.mhd", "b.raw", "b.raw"),
         ("c.mhd", "../c.raw", "c.mhd"),
@@ -418,7 +419,7 @@ fn links_do_not_lead_out_of_the_folder() {
         assert!(open_volume(&link).is_err());
         std::fs::remove_file(place("other/a.raw")).unwrap();
     }
-    // What is not there is named as the header names it.
+    // A missing file is named as in the header.
     symlink("nowhere.raw", place("in/dangling.raw")).unwrap();
     for data in ["none.raw", "dangling.raw"] {
         for header in headers("in", "missing", data) {
@@ -444,7 +445,7 @@ fn files_become_solids() {
         let frame = Frame::aligned(bounds.min, bounds.max, 7).unwrap();
         let found = measure(&solid, &frame, 1e-3, &control).unwrap();
         assert!(found.volume.contains(6.0 * volume) && found.volume.width() < 1e-2, "{found:?}");
-        // Half of the range, which none reaches.
+        // Half of the range, which no sample reaches.
         let none = file.solid(None, &control).unwrap();
         assert_eq!(build(&none, &frame, Rule::Outer, &control).unwrap().statistics().volume().upper, 0.0);
     }
@@ -554,7 +555,7 @@ fn what_is_refused() {
     for space in ["RAS", "left-posterior-superior", "3D-right-handed", "ScannerXYZ"] {
         assert_eq!(values(&read(&nrrd(&format!("space: {space}\n"))))[11], 12.0);
     }
-    // Axes with directions may be said to have nothing else.
+    // Axes with directions may state that they have no spacings.
     let nans = "space directions: (1,0,0) (0,1,0) (0,0,1)\nspacings: nan nan nan\n";
     assert_eq!(lies(&nrrd(nans)), ([-0.5; 3], [1.0; 3], None));
     for (field, wrong) in [
@@ -608,7 +609,7 @@ fn bombs() {
     assert!(matches!(result, Err(Error::OutOfMemory | Error::VolumeFile(_))), "{result:?}");
     let header = NRRD.to_string() + "line skip: 18446744073709551615\n\n";
     assert!(matches!(refused(&[header.as_bytes(), DATA].concat()), VolumeFileError::Missing { .. }));
-    // What is compressed is longer than was said.
+    // The compressed data are longer than stated.
     let zlib = miniz_oxide::deflate::compress_to_vec_zlib(&[7; 1000], 9);
     let header = META.to_string() + "CompressedData = True\nElementDataFile = LOCAL\n";
     let error = refused(&[header.as_bytes(), &zlib].concat());

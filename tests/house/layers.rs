@@ -391,7 +391,7 @@ fn violations(sources: &Sources) -> Vec<String> {
                     found.push(format!("{name}: {said} goes through the crate's root"));
                 }
             }
-            // One producer must not know another, by whatever name.
+            // A producer must not use another producer, by any name.
             if first == "solid" && target.first() == Some(first) {
                 let producer =
                     |name: &str| !SHARED.contains(&name) && sources.contains_key(&path(&["solid", name]));
@@ -443,7 +443,7 @@ fn the_order_is_kept() {
     for module in [&["octree", "view"][..], &["solid", "callback"], &["op"], &["control"]] {
         assert!(sources.contains_key(&path(module)), "{module:?} was not read");
     }
-    // The checker sees what the sources are known to use.
+    // The checker finds uses that are known to exist.
     let build = mentions(&sources[&path(&["op", "build"])]);
     assert!(build.iter().any(|mention| mention.path == path(&["crate", "solid", "Subtree"])));
     assert!(origins(&sources, &path(&["solid"])).contains_key("Callback"));
@@ -562,7 +562,7 @@ mod checker {
             let expected = ["ball uses slab", "slab uses ball"].map(String::from).to_vec();
             assert_eq!(found, [("solid".to_string(), expected)], "{ball} {slab}");
         }
-        // Over three files, of which one lies in a folder of its own.
+        // A circle over three files, one of them in its own folder.
         let found = circles_with(&[
             top,
             (&["solid", "ball"], "use super::slab::Slab;"),
@@ -571,7 +571,7 @@ mod checker {
             (&["solid", "mesh", "scan"], "use crate::solid::Ball;"),
         ]);
         assert_eq!(found[0].1, ["ball uses slab", "mesh uses ball", "slab uses mesh"]);
-        // Parents and children, tests, and what leads one way.
+        // Parents and children, tests, and uses in one direction.
         let found = circles_with(&[
             top,
             (&["solid", "ball"], "use super::Solid; mod tests { use super::super::slab::Slab; }"),

@@ -11,7 +11,8 @@ use std::process::Command;
 fn a_program_without_the_standard_library_builds_links_and_runs() {
     let root = Path::new(env!("CARGO_MANIFEST_DIR"));
     let template = root.join("tests/no_std");
-    // A copy, so that nothing is written beside the sources; with the versions that the crate is tested with.
+    // A copy, so that nothing is written beside the sources. It has the versions with which the crate is
+    // tested.
     let copy = Path::new(env!("CARGO_TARGET_TMPDIR")).join("no_std");
     std::fs::create_dir_all(copy.join("src")).unwrap();
     let manifest = std::fs::read_to_string(template.join("Cargo.toml")).unwrap();
@@ -29,7 +30,7 @@ fn a_program_without_the_standard_library_builds_links_and_runs() {
         .arg(&target)
         // Configuration is looked for where this crate's is.
         .current_dir(root)
-        // What was set for building these tests is not meant for a program of its own.
+        // Settings for the build of these tests must not apply to a separate program.
         .env_remove("CARGO_BUILD_TARGET")
         .output()
         .unwrap();
@@ -39,7 +40,7 @@ fn a_program_without_the_standard_library_builds_links_and_runs() {
     let run = Command::new(&program).output().unwrap();
     assert_eq!(run.status.code(), Some(42), "{run:?}");
 
-    // The linker leaves out what the program does not use: meshes need no feature of their own.
+    // The linker leaves out unused code, so that meshes need no feature of their own.
     #[cfg(target_os = "linux")]
     {
         let bytes = std::fs::read(&program).unwrap();

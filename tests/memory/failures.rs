@@ -43,7 +43,7 @@ use std::path::Path;
 use std::process::Command;
 use std::sync::Arc;
 
-// ---- what is tried --------------------------------------------------------------------------------------
+// ---- tried operations -----------------------------------------------------------------------------------
 
 const CONTROL: Control<'static> =
     Control { threads: 1, max_nodes: None, max_bytes: None, max_splits: None, cancel: None, progress: None };
@@ -189,7 +189,7 @@ fn operations(directory: &Path) -> Vec<(&'static str, Operation)> {
         });
         build(&slab, &frame(), Rule::Certified, &CONTROL)
     });
-    // A comb of 400 teeth, a torus, and a power that is turned.
+    // A comb of 400 teeth, a torus, and a rotated power.
     let tooth = |i: u32| [[i as f64 / 40.0, 1.0], [(i as f64 + 0.5) / 40.0, 1.5 + (i % 7) as f64]];
     let comb =
         [&[[0.0, 0.0]][..], (0..400).flat_map(tooth).collect::<Vec<_>>().as_slice(), &[[11.0, 0.0]]].concat();
@@ -198,7 +198,7 @@ fn operations(directory: &Path) -> Vec<(&'static str, Operation)> {
         let rounded = Csg::from(HalfSpace::power([(-1.0, 0.0, 6); 3], 1.0)?).placed(&turned)?;
         let all =
             Csg::union_of([Csg::prism(&comb, 2.0, 20.0)?, rounded])?.difference(&Csg::torus(9.0, 4.0)?)?;
-        // A refusal of memory means that there is none, too.
+        // If memory is refused, there is no fingerprint.
         let _ = leafless::Solid::fingerprint(&all);
         build(&all, &frame(), Rule::Certified, &CONTROL)
     });
@@ -311,7 +311,7 @@ fn operations(directory: &Path) -> Vec<(&'static str, Operation)> {
         let mut lazy = LazyOctree::new(solid()?, &frame())?;
         let found = lazy.refine(&Zone::Whole, 5, &CONTROL).and_then(|_| lazy.freeze(&CONTROL));
         if found.is_err() {
-            // What it was before the refusal is an octree, too, and goes on.
+            // The octree that remains after the refusal can be refined further.
             lazy.refine(&Zone::Point([12.0; 3]), 6, &CONTROL)?;
             lazy.freeze(&CONTROL)?.view().check()?;
         }
@@ -577,7 +577,7 @@ fn operations(directory: &Path) -> Vec<(&'static str, Operation)> {
     operation!("compact again", [coded], compact(coded.view()));
     operation!("check", [coded], coded.view().check());
     operation!("statistics", [a], complement(a.view(), &CONTROL).map(|tree| tree.statistics()));
-    // (To the finest cells it takes as many requests, and a hundred times as long.)
+    // (Down to the finest cells it needs as many requests, and takes a hundred times as long.)
     operation!("measure", [], measure(&Csg::ball([15.0; 3], 9.0)?, &frame(), 1e-3, &CONTROL));
     operation!("measure a mesh", [closed], {
         let solid = MeshSolid::new(closed.clone(), FillRule::NonZero)?;
@@ -774,7 +774,7 @@ fn try_all(name: &str, spared: u64, for_good: bool) -> (u64, u64) {
     loop {
         let mut command = Command::new(std::env::current_exe().unwrap());
         command.args(["--exact", "failures::child", "--nocapture"]).current_dir(directory.path());
-        // What a process says before it ends needs memory for a backtrace.
+        // A backtrace would need memory before the process ends.
         command.env("RUST_BACKTRACE", "0");
         let output = command.env(TASK, format!("{name},{first},{spared},{for_good}")).output().unwrap();
         let text = String::from_utf8_lossy(&output.stderr);
@@ -796,7 +796,7 @@ fn try_all(name: &str, spared: u64, for_good: bool) -> (u64, u64) {
         errors += text.lines().filter(|line| line.starts_with("request ")).count() as u64 - 1;
         fatal += 1;
         first = if fatal < 3 { n + 1 } else { 2 * n + 1 };
-        // What a process leaves behind that was ended.
+        // Files that an ended process left behind.
         for name in names(directory.path()) {
             assert!(name == "tree.lfl" || name.starts_with(".leafless-"));
             std::fs::remove_file(directory.path().join(name)).unwrap();
@@ -837,7 +837,7 @@ fn small_requests_that_are_fatal_are_small() {
     assert!(errors > 500, "{errors} errors");
 }
 
-// ---- no more memory than an input is worth ---------------------------------------------------------------
+// ---- memory in proportion to the input -------------------------------------------------------------------
 
 /// Bytes that reading (and, below, making a tree) may need, whatever the input.
 const READING: usize = 4 << 10;
@@ -925,7 +925,7 @@ fn memory_of_polyhedra_is_a_small_multiple_of_their_corners() {
         let arrays = band(corners);
         let (made, held) = most_held(|| polyhedron(&arrays));
         assert_eq!(made.unwrap().mesh().triangles().len() as u32, 4 * corners - 4);
-        // The prism has six times as many corners.
+        // The prism has six times as many corners as the band.
         let allowed = (MAKING as u32 + 320 * corners + 100 * 6 * corners) as usize;
         assert!(held <= allowed, "{held} bytes, not {allowed}");
         println!("{} bytes a corner of the face", held / corners as usize);
@@ -995,7 +995,8 @@ fn meshes_take_a_small_multiple_of_their_files() {
         header.bytes().chain(corners.iter().flatten().copied()).chain(face).collect(),
         exchange::read_ply,
     ));
-    // What takes the least text for each vertex, face and corner; and claims of what is not there.
+    // Files with the least text for each vertex, face and corner, and files that announce more than they
+    // contain.
     files.push(("v 0 0 0\n".repeat(5000).into_bytes(), exchange::read_obj));
     let vertices: String = (0..9999).map(|i| format!("v 0 0 {i}\n")).collect();
     files.push((vertices.into_bytes(), exchange::read_obj));
