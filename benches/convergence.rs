@@ -56,7 +56,7 @@ fn passes(
         let splits = 2f64.powf(budget as f64 / 4.0) as u64;
         let (found, spent) = measured(&Control { max_splits: Some(splits), ..Control::default() })?;
         let width = 2.0 * found.width() / (found.upper + found.lower);
-        // Once there is rounding alone, more splits do not help.
+        // Once only rounding remains, more splits do not help.
         let is_better =
             points.last().is_none_or(|&(last, least)| last < spent as f64 && width < 0.98 * least);
         if is_better && spent > 0 && width.is_finite() {

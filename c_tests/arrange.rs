@@ -208,7 +208,7 @@ fn defined_at(source: &str, name: &str) -> Option<usize> {
 /// file of `capi/src`.
 pub fn arranged(raw: &str, sections: &[Section], read: impl Fn(&str) -> String) -> (String, String) {
     let mut items = items(raw);
-    // Each with the section, the file in it and the place in the file where it is defined.
+    // Each item with its section, its file in the section, and its place in the file.
     let mut placed: Vec<(bool, usize, usize, usize, Item)> = Vec::new();
     for (k, section) in sections.iter().enumerate() {
         for (f, file) in section.files.iter().enumerate() {

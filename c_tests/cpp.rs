@@ -198,7 +198,7 @@ impl Translator<'_> {
         while let Some(p) = list.get(i) {
             let next = |k: usize| list.get(i + k);
             let (name, base) = (p.name.as_str(), p.base.as_str());
-            // (Corners of rectangles of rays are NULL both, or none of them.)
+            // (The two corners of a rectangle of rays are both NULL or both not.)
             let is_corner = p.is_const && p.array == Some(2);
             let may_be_null = is_corner || (self.nullable)(&function.name, name);
             if i == 0 && p.pointers == 1 && class.is_some_and(|class| base == format!("leafless_{class}")) {
@@ -222,7 +222,7 @@ impl Translator<'_> {
                 && next(1).is_some_and(|capacity| capacity.name.ends_with("capacity"))
                 && (function.name.ends_with("_next") || !next(2).is_some_and(Parameter::is_count))
             {
-                // Filled as far as there is room for it.
+                // Filled as far as there is room.
                 made.parameters.push((format!("span<{}> {name}", p.element()), None));
                 made.arguments.push(pointer_to(p));
                 made.arguments.push(format!("{name}.size()"));
@@ -357,7 +357,7 @@ impl Translator<'_> {
                 i += 1;
             }
         }
-        // Only what stands at the end may be left out.
+        // Only the last parameters may have defaults.
         let last = made.parameters.iter().rposition(|(_, default)| default.is_none()).map_or(0, |at| at + 1);
         made.parameters[..last].iter_mut().for_each(|(_, default)| *default = None);
         made
@@ -497,7 +497,7 @@ fn write_function(
     let space = if result.ends_with('*') { "" } else { " " };
     let qualifier = if class.is_some() && made.has_self && made.is_const { " const" } else { "" };
     let is_static = if class.is_some() && !made.has_self { "static " } else { "" };
-    // What changes its object may be called for that alone.
+    // A call may be made only for the changes to its object.
     let changes = made.has_self && !made.is_const;
     let discards = if changes || returned(made) == "void" && is_fallible { "" } else { "[[nodiscard]] " };
     let indent = if class.is_some() { "    " } else { "" };

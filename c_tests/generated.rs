@@ -177,7 +177,8 @@ fn every_comment_has_the_fixed_order() {
     // `boundary` has a function for tests.
     assert_eq!(functions.len() + 1, exported);
     let sources = std::fs::read_dir(root().join("capi/src")).unwrap().count();
-    // And `lib.rs` and `number.rs`, which export nothing themselves, and `layout.rs`, which is for tests.
+    // Three more: `lib.rs` and `number.rs`, which export nothing themselves, and `layout.rs`, which is for
+    // tests.
     assert_eq!(sources, files().count() + 3);
 }
 

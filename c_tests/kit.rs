@@ -90,7 +90,7 @@ impl Kit {
         kit.triple =
             version.lines().find_map(|line| line.strip_prefix("host: ")).ok_or("rustc has no host")?.into();
         for standard in [Standard::C(""), Standard::Cpp("")] {
-            // Asked before the long work: without a compiler these tests have failed.
+            // This check runs before the long work: without a compiler these tests fail.
             output(kit.compiler(standard)?.arg("--version")).map_err(|problem| {
                 format!("a compiler for C and one for C++ are needed, such as gcc and g++ (or set CC and CXX): {problem}")
             })?;
@@ -115,7 +115,7 @@ impl Kit {
             (None, _) => Command::new(std::env::var_os("RUSTC").unwrap_or_else(|| program.into())),
         };
         if let Some(flags) = self.check.rust_flags() {
-            // What cargo has set for this very test is not meant for another toolchain.
+            // Cargo's settings for this test must not apply to another toolchain.
             for variable in ["RUSTC", "CARGO", "RUSTUP_TOOLCHAIN", "CARGO_ENCODED_RUSTFLAGS"] {
                 command.env_remove(variable);
             }
@@ -141,7 +141,7 @@ impl Kit {
             command.args(["--test", "c_api"]);
         }
         output(&mut command)?;
-        // What the standard library needs is what the library needs.
+        // The library needs the libraries that the standard library needs.
         let source = self.folder("native").join("empty.rs");
         std::fs::write(&source, "").map_err(|error| error.to_string())?;
         let mut rustc = self.rust("rustc");
@@ -235,7 +235,7 @@ impl Kit {
         standard: Standard,
         link: Link,
     ) -> Result<PathBuf, String> {
-        // With a sanitizer's runtime there is the static library only.
+        // With a sanitizer's runtime, only the static library exists.
         let link = if self.runtime.is_some() { Link::Static } else { link };
         let (Standard::C(year) | Standard::Cpp(year)) = standard;
         let folder =

@@ -99,7 +99,7 @@ fn header_speaks_of_nothing_else() {
     let header = header();
     for word in header::words(&text("include/leafless.h")) {
         let known = header.names().any(|name| name == word || word.strip_suffix('s') == Some(name));
-        // The guard, what tests define, and the name of what is no status.
+        // The guard, the tests' macro, and the name of an unknown status.
         let other = ["LEAFLESS_H", "LEAFLESS_TEST", "LEAFLESS_E_UNKNOWN"].contains(&word.as_str());
         assert!(known || other, "the header speaks of {word}");
     }
@@ -132,7 +132,7 @@ fn layout() {
     let lines =
         header.structs.iter().map(|(_, fields)| 1 + fields.len()).sum::<usize>() + header.values.len();
     assert_eq!(c.lines().count(), lines);
-    // Some that everybody knows, so that the comparison is one.
+    // A well-known size, so that the comparison is meaningful.
     assert!(c.lines().any(|line| line == "leafless_frame 40"), "{c}");
     assert!(c.lines().any(|line| line == "LEAFLESS_E_PANIC 17"), "{c}");
     assert!(lines > 100, "{lines}");
@@ -144,7 +144,7 @@ fn version() {
     run("version", C99, Link::Shared, &[env!("CARGO_PKG_VERSION")]);
 }
 
-// --- What the functions do
+// --- The functions
 // --------------------------------------------------------------------------------------
 
 #[test]
@@ -178,7 +178,8 @@ fn null() {
                 .iter()
                 .any(|check| flat.contains(&format!("{check}({name}, {parameter},")));
             let freed = name.ends_with("_free") && flat.contains(&format!("{name}(NULL)"));
-            // The host's own, which the library does not look at; and texts, whose buffers may be absent.
+            // The host's own pointer, which the library does not read; and texts, whose buffers may be
+            // absent.
             let own = matches!(name.as_str(), "leafless_last_error" | "leafless_test_layout");
             assert!(
                 tried || freed || own,
@@ -417,7 +418,7 @@ fn boundary() {
     }
 }
 
-// --- What users read
+// --- The documentation
 // --------------------------------------------------------------------------------------------
 
 /// Returns the first block of a language in a text.
@@ -455,8 +456,8 @@ fn header_example() {
     std::fs::write(&source, format!("{includes}int main(void) {{\n{}\n{end}", lines.join("\n"))).unwrap();
     let program = kit().compile("header_example", &[source], C99, Link::Static);
     let told = kit().run(&program, &[]);
-    // A ball of radius 0.75 with a bore of radius 0.25: what is left is 4π/3 times the third power of half
-    // the bore's length.
+    // A ball of radius 0.75 with a bore of radius 0.25. The rest has 4π/3 times the third power of half the
+    // bore's length.
     let bounds: Vec<f64> = told.split(" to ").map(|bound| bound.trim().parse().unwrap()).collect();
     let truth = 4.0 / 3.0 * std::f64::consts::PI * (0.75f64.powi(2) - 0.25f64.powi(2)).powf(1.5);
     assert!(bounds[0] <= truth && truth <= bounds[1] && bounds[1] - bounds[0] < 0.2, "{told} {truth}");
@@ -548,7 +549,7 @@ fn static_library_has_no_other_names() {
         return;
     }
     let library = kit().libraries().join("libleafless.a");
-    // Strong and global; hidden ones and weak ones give way.
+    // Strong and global names. Hidden and weak names give way.
     let mut ours = Vec::new();
     for object in elf_symbols(&library) {
         let name = object.as_str();
@@ -610,7 +611,7 @@ fn failing_programs_fail() {
 
     let watched = |checks: &[Check]| checks.contains(&kit.check);
     let octree = "leafless_octree *octree = check_ball(4, LEAFLESS_RULE_CERTIFIED);";
-    // An octree that is never given back.
+    // An octree that is never freed.
     assert_eq!(
         fails("leaks", &format!("{{ {octree} CHECK(octree != nullptr); }} (void)check_cube();")),
         watched(&[Check::Address, Check::AddressAll, Check::Valgrind])

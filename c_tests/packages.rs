@@ -98,7 +98,7 @@ fn third_party(file: &Path) {
     for name in ["rayon", "num-bigint", "crc32fast", "png"] {
         assert!(lines.iter().any(|line| line.starts_with(&format!("{name} "))), "{name}");
     }
-    // What runs while it is built, or in tests only, is not linked.
+    // Packages that run only at build time or in tests are not linked.
     for name in ["proptest", "cbindgen", "syn", "criterion", "leafless"] {
         assert!(!lines.iter().any(|line| line.starts_with(&format!("{name} "))), "{name}");
     }
@@ -146,7 +146,7 @@ fn installed_files() {
     }
     for name in &lib[lib.len() - 4..] {
         let text = text(folder.join("usr").join(name));
-        // Nothing is left to fill in, and no place is fixed.
+        // No placeholder is left, and no path is fixed.
         assert!(!text.contains('@') && !text.contains("/usr"), "{name}: {text}");
     }
     let only_static = install(&["--prefix", "/usr", "--only", "static"]).unwrap();
@@ -229,8 +229,8 @@ fn open_cascade() {
         let (lower, upper) = line.split_once(" to ").unwrap_or((line, line));
         [lower, upper].map(|bound| bound.trim().parse::<f64>().unwrap())
     };
-    // The block less its bore, of 4345 square millimetres in all. What lies within the deflection of its
-    // facets is not known.
+    // The block minus its bore, 4345 square millimetres in all. Points within the deflection of its facets
+    // are unknown.
     let truth = 40.0 * 24.0 * 16.0 - std::f64::consts::PI * 6.0 * 6.0 * 16.0;
     let [[by_them, _], triangles, distances] =
         ["volume by Open CASCADE", "volume by triangles", "volume by distances"].map(bounds);
@@ -549,7 +549,7 @@ fn installed_by_cargo_c() {
     let words = line.split_whitespace().skip(1);
     let words = words.map(|word| if word.starts_with('/') { prefix.as_os_str() } else { word.as_ref() });
     succeed(kit.rust("cargo").args(words).arg("--libdir").arg("lib"));
-    // The same files as by the program of this repository, but for those of CMake and of the static library
+    // The same files as from this repository's program, except those of CMake and of the static library
     // alone.
     let files = |prefix: &Path| {
         let told = succeed(Command::new("find").args([".", "!", "-type", "d"]).current_dir(prefix));

@@ -84,7 +84,7 @@ fn headers_are_silent() {
             assert!(told.is_empty(), "{}", told.join("\n"));
         }
     }
-    // It is seen that something is seen.
+    // The check detects warnings.
     let strict = [&CLANG[..], &["-Wpadded"]].concat();
     if Command::new("clang").arg("--version").output().is_ok() {
         assert!(!warnings(kit, "clang", PROGRAMS[0], &strict).is_empty());

@@ -455,8 +455,8 @@ impl Model {
     fn stored(&self, cuts: &Cuts) -> Stored {
         let (cells, first) = self.partial_cells();
         let mut all = Stored { first, ..Stored::default() };
-        // The surfaces of all tables in the order of their first use; then those of records first, and then
-        // group by group.
+        // The surfaces of all tables in the order of their first use; after that, those of records first,
+        // then group by group.
         let mut met: Vec<usize> = vec![];
         let mut walk = VecDeque::from(cells.clone());
         while let Some(cell) = walk.pop_front() {
@@ -546,7 +546,7 @@ impl Stored {
             let mut counts: Vec<usize> = surface.numbers.iter().map(Vec::len).collect();
             let first = words.len() as u32;
             words.extend(surface.numbers.iter().flatten().map(|c| c.to_bits()));
-            // The number of a slab, if it is not its place.
+            // The number of a slab, if it differs from its place.
             if let Some((_, number)) = surface.origin.filter(|&(_, number)| number != i as u64) {
                 counts.push(1);
                 words.push(number);
@@ -597,7 +597,7 @@ impl Parts {
     }
 }
 
-// ---- what is expected -----------------------------------------------------------------------------------
+// ---- expected results -----------------------------------------------------------------------------------
 
 impl Model {
     /// Returns the cuts' part of a text, as keys and values.
@@ -673,7 +673,7 @@ impl Model {
                 *count += 1;
             }
         }
-        // Outside of the universe, and where points are none.
+        // Points outside the universe, and invalid points.
         let outside = points(&self.frame).into_iter().filter(|&point| cell_of(&self.frame, point).is_none());
         outside.for_each(|point| line(point, "undecided"));
         lines
@@ -1119,7 +1119,7 @@ pub(super) fn valid() -> Vec<Valid> {
         let cuts = model.cuts.clone().expect("cuts");
         parts.add_cuts(&model, &cuts);
         put(&mut parts.head, 10, 3, 2);
-        // As unknown sections they may be anything.
+        // As unknown sections they may have any content.
         parts.section(FIRST).bytes.truncate(4);
         parts.section(HEADS).bytes.fill(0xF0);
     });
@@ -1600,7 +1600,7 @@ fn slabs_of_cells(list: &mut List) {
 /// Invalid moments.
 fn moments(list: &mut List) {
     let model = ball_with_moments();
-    // Places: the point from 0 on, the volume from 3, the first moments from 5, the second ones from 11.
+    // Offsets: the point from 0 on, the volume from 3, the first moments from 5, the second moments from 11.
     let legal = model.cuts.as_ref().and_then(|cuts| cuts.moments).expect("moments");
     assert!(legal[3] > 0.0 && legal[7] < 0.0 && legal[5..7] == [0.0; 2]);
     for (of, about, place, value) in [

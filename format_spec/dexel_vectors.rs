@@ -371,7 +371,7 @@ pub fn valid() -> Vec<ValidDexels> {
         parts.object(9, 1, 0);
         parts.sections.push(Section::new(VALUES, (F32, 4), vec![0x3F; 32]).of(1));
         parts.sections.push(Section::new(APPLICATION, (U16, 1), vec![1; 6]));
-        // What a kind means to an octree it need not mean to a tri-dexel model.
+        // A kind's meaning for octrees does not apply to tri-dexel models.
         parts.sections.push(Section::new(PLANES, (U8, 1), vec![2; 5]).flagged(0));
         parts.sections.push(Section::new(WINDOWS, (U8, 3), vec![3; 9]).of(2));
     });

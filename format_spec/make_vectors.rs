@@ -100,7 +100,7 @@ impl Classifier for Model {
         self.exterior
     }
 
-    // What the file shall claim is set once the tree is made.
+    // The file's claim is set once the tree is made.
     fn proof(&self) -> Proof {
         Proof::CERTIFIED
     }
@@ -660,7 +660,7 @@ pub fn valid() -> Vec<Valid> {
         for (kind, element) in own {
             parts.sections.push(Section::new(kind, element, vec![0x3F; 32]).of(1).flagged(0));
         }
-        // What a kind means to the solid it need not mean to another object; nor whether it is required.
+        // A kind's meaning for the solid does not apply to another object; nor does its being required.
         parts.sections.push(Section::new(REL, (F64, 2), vec![0; 16]).of(2).flagged(0));
         let levels = parts.shared(LEVELS, 3, LEVELS);
         let metadata = parts.shared(METADATA, 3, APPLICATION);
@@ -730,7 +730,7 @@ pub fn valid() -> Vec<Valid> {
         parts.sections.push(Section::new(17, (F64, 1), vec![2; 24]).of(1));
         parts.sections.push(Section::new(APPLICATION, (U8, 1), vec![3; 3]).of(1));
         parts.sections.push(Section::new(VALUES, (U8, 1), vec![4; 3]).of(2));
-        // What a kind means to a channel it need not mean to the solid.
+        // A kind's meaning for a channel does not apply to the solid.
         parts.sections.push(Section::new(VALUES, (F32, 3), vec![5; 12]).flagged(0));
         parts.sort();
         parts.bytes()
@@ -947,7 +947,7 @@ fn cell_of(frame: &Frame, point: [f64; 3]) -> Option<[u32; 3]> {
 fn points(frame: &Frame) -> Vec<[f64; 3]> {
     let (origin, edge, cells) = (frame.origin(), frame.edge(), frame.cells());
     let size = edge / cells as f64;
-    // Rounded; which cell it is in is found out in integers.
+    // Rounded points. Their cells are determined in integers.
     let at = |t: [f64; 3]| [0, 1, 2].map(|axis| origin[axis] + t[axis] * size);
     let end = cells as f64;
     let mut points = vec![
@@ -970,7 +970,7 @@ fn points(frame: &Frame) -> Vec<[f64; 3]> {
         at([0.5, 0.5, 524_287.5].map(|t| t % end)),
         at([262_144.0, 5.0, 6.0].map(|t| t % end)),
         at([2.5, 3.5, 4.5]),
-        // Those of the specification's example.
+        // The points of the specification's example.
         [2.5, 2.5, 3.5],
         [2.0, 1.0, 1.0],
         [3.0, 4.0, 4.5],
@@ -1085,7 +1085,7 @@ pub fn mirror(bytes: &mut [u8]) {
     for (from, to, length) in MIRRORED {
         bytes.copy_within(from..from + length, start + to);
     }
-    // What a tri-dexel model stores.
+    // The byte that says what a tri-dexel model stores.
     if number(bytes, start, 4) == 3 {
         bytes.copy_within(71..72, start + 21);
     }
@@ -1745,7 +1745,7 @@ fn table(list: &mut List) {
     one("section-required", "objects", "objects that are not", "section flags", at(OBJECTS) + FLAGS, 0, 4);
     one("section-required", "metadata", "metadata that are", "section flags", at(METADATA) + FLAGS, 1, 4);
 
-    // What the elements are.
+    // Element types and components.
     let mut strange = |of: &str, about, kind: u64, components: u64| {
         let bytes = changed(&raw, |bytes| {
             put(bytes, at(PLANES) + TYPE, kind, 1);
@@ -1769,7 +1769,7 @@ fn table(list: &mut List) {
     let about = "planes in an unknown encoding of a newer minor version";
     list.add("table-encoding", "newer", about, required("section encoding", 1), newer);
 
-    // Where they are.
+    // Offsets, lengths and counts.
     let extent = |kind: u64, length: u64, count: u64| {
         changed(&raw, |bytes| {
             put(bytes, at(kind) + LENGTH, length, 8);
@@ -1792,7 +1792,7 @@ fn table(list: &mut List) {
     let far = changed(&extent(BRICKS, 64, 4), |bytes| put(bytes, at(BRICKS) + OFFSET, u64::MAX - 63, 8));
     list.add("section-beyond", "overflow", "its end is 2^64", field("section length", 64), far);
 
-    // What must be known.
+    // Kinds that readers must understand.
     let unknown = |kind: u64| with(&raw, at(BRICKS), kind, 4);
     let about = "a required section of kind 20";
     list.add("section-unknown", "", about, required("section", 20), unknown(20));
@@ -1802,7 +1802,7 @@ fn table(list: &mut List) {
     let about = "a required section of a newer minor version";
     list.add("section-unknown", "newer", about, required("section", u32::MAX.into()), newer);
 
-    // Whose they are, and in which order.
+    // Owners and order.
     let mut parts = |rule, of: &str, about, error: String, change: &dyn Fn(&mut Parts)| {
         let mut parts = Parts::of(&example());
         change(&mut parts);
@@ -1863,7 +1863,7 @@ fn table(list: &mut List) {
     let mut same = |of: &str, about, change: &dyn Fn(&mut Vec<u8>)| {
         let bytes = changed(&shared, change);
         let value = number(&bytes, last + SAME, 4);
-        // Checksums are made right by whoever changes bytes, also where that is what is wrong.
+        // Checksums are repaired by the program that changes bytes, even where they are the error.
         list.add("table-same", of, about, field("shared section", value), bytes);
     };
     same("itself", "a section that shares its own bytes", &|bytes| put(bytes, last + SAME, 9, 4));
@@ -1910,7 +1910,7 @@ fn table(list: &mut List) {
         let at = entry(base, kind);
         let of = name.replace(' ', "-");
         let other = changed(base, |bytes| {
-            // Of the same size, but of another type; bytes have none but their own.
+            // Elements of the same size with another type. Bytes have only their own type.
             let (element, count) = (number(bytes, at + TYPE, 1), number(bytes, at + COUNT, 8));
             match element {
                 RECORD => put(bytes, at + TYPE, U64, 1),
@@ -1952,7 +1952,7 @@ fn table(list: &mut List) {
     let about = "one plane in the header, two in the section";
     list.add("section-size", "header", about, section("bricks"), bytes);
 
-    // Of what is too long only the beginning is there.
+    // Only the beginning of a file that is too long.
     let mut begun = |rule, of: &str, about, error: String, kind, length: usize| {
         let mut parts = Parts::of(&example());
         parts.section(kind).bytes.resize(length, 0);
@@ -1984,7 +1984,7 @@ fn objects(list: &mut List) {
     };
     let raw = records(&|_| {});
     let solid = offset(&raw, OBJECTS);
-    // The record alone, behind the back of what makes it right.
+    // Only the record, without the repair.
     let mut other = |of: &str, about, at: usize, value: u64, length: usize| {
         let mut bytes = raw.clone();
         assert_ne!(number(&bytes, solid + at, length), value);
@@ -2656,7 +2656,7 @@ fn channel_contents(list: &mut List) {
     list.add("dictionary-index", "channel", about, error, with(&coded, entry + 6, 1, 2));
 }
 
-// ---- what is too large for the folder -------------------------------------------------------------------
+// ---- vectors too large for the folder -------------------------------------------------------------------
 
 fn many() -> Model {
     Model::plain(8, |cell| {
@@ -2685,7 +2685,7 @@ pub fn many_bricks_in_small_segments() -> Vec<u8> {
     Parts::of(&many()).in_small_segments().bytes()
 }
 
-// ---- what lists them ------------------------------------------------------------------------------------
+// ---- the list of vectors --------------------------------------------------------------------------------
 
 fn readme(valid: &[Valid], invalid: &[Invalid]) -> String {
     let mut text = String::from(include_str!("vectors.md"));

@@ -382,7 +382,7 @@ impl World<'_> {
         self.cells.asked.store(0, Relaxed);
         let found = fill_channel(self.attribute, &options, &CONTROL);
         assert!(self.cells.asked.load(Relaxed) <= self.most(), "{:?} times", self.cells.asked);
-        // What cannot be kept is an error, if somebody had to look at it.
+        // A value that cannot be stored is an error, if a query needed it.
         let needed = |at: [u32; 3]| !within || tag(solid, at) != Tag::Empty;
         let kept = |at: [u32; 3]| self.truth(at).map(|value| value_type.nearest(value)).transpose();
         if self.honest {
@@ -491,7 +491,7 @@ impl World<'_> {
         {
             options = options.detail(detail);
         }
-        // A detail may ask for more voxels than there is memory; then there are no records.
+        // A detail may require more voxels than memory holds. Then there are no records.
         let control = Control { max_bytes: Some(1 << 18), ..CONTROL };
         let Ok(records) = VoxelRecords::of(solid.view(), &options, Some(self.attribute), &control) else {
             return;
@@ -506,7 +506,7 @@ impl World<'_> {
             let centre = [0, 1, 2]
                 .map(|axis| records.frame().origin()[axis] + f64::from(2 * record.cell.at[axis] + 1) * half);
             let value = self.attribute.value(centre).expect("it has values");
-            // A record whose first number is none has no value.
+            // A record whose first number is NaN has no value.
             let has_numbers = value.is_none_or(|value| !value.iter().any(|c| c.is_nan()));
             if has_numbers {
                 assert_eq!(bits(record.value), bits(value), "{record:?}");

@@ -196,7 +196,7 @@ pub fn csg(data: &[u8]) {
             let dexels = dexelize(&csg, &frame, &options, &control).expect("as much");
             dexels.view().check().expect("a sound model");
             let found = octree_from_dexels(dexels.view(), &control).expect("memory");
-            // (What lies outside of the universe no ray tells.)
+            // (Rays show nothing about points outside the universe.)
             let n = frame.cells();
             for i in 0..n * n * n {
                 let at = [i % n, i / n % n, i / n / n];

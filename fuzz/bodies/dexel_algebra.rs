@@ -53,7 +53,7 @@ fn model(
         let count = bytes.next() % 4;
         for _ in 0..count {
             let [gap, length, what] = [bytes.next(), bytes.next(), bytes.next()];
-            // Eighths of cells, and now and then next to nothing.
+            // Eighths of cells, and sometimes almost nothing.
             let step = |byte: u8| if byte == 255 { 1e-12 } else { f64::from(byte % 32) / 8.0 };
             let end = |at: f64, flip: f64| DexelEnd {
                 surface: (what & 1 != 0).then_some(u32::from(what)),
@@ -110,7 +110,7 @@ fn models(bytes: &mut Bytes<'_>, frame: &Frame, format: DexelFormat, form: u8) {
     assert!(less(&p, &q) == and(&p, &not(&q)));
     assert!(xor(&p, &q) == or(&less(&p, &q), &less(&q, &p)));
     assert!(or(&less(&p, &and(&p, &q)), &and(&p, &q)) == p);
-    // What they carry changes nothing of where they are.
+    // Attributes of ends do not change their places.
     for (whole, expected) in
         [(or(&a, &b), or(&p, &q)), (less(&a, &b), less(&p, &q)), (xor(&a, &b), xor(&p, &q))]
     {
@@ -156,7 +156,7 @@ fn triangles(bytes: &mut Bytes<'_>, frame: &Frame, format: DexelFormat) {
             let model = dexelize(&solid, frame, &options, &control).expect("rays");
             model.view().check().expect("a sound model");
             let found = octree_from_dexels(model.view(), &control).expect("an octree");
-            // (What lies outside of the universe no ray tells.)
+            // (Rays show nothing about points outside the universe.)
             let n = frame.cells();
             for i in 0..n * n * n {
                 let at = [i % n, i / n % n, i / n / n];

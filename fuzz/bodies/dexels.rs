@@ -24,8 +24,8 @@ pub fn dexels_in_all_ways(data: &[u8], as_a_file: bool) -> bool {
     let copied = dexels::from_bytes(bytes);
     let still = dexels::from_static(bytes);
     let verified = outcome(&copied);
-    // Each way in demands what the one before it does, and then more. (What is no text is found behind
-    // checksums, too.)
+    // Each way in requires what the previous one requires, and more. (Invalid text is found behind checksums,
+    // too.)
     assert!(
         viewed.is_ok()
             || still.is_err() && outcome(&still) == outcome(&viewed) && verified == outcome(&viewed)
@@ -112,7 +112,7 @@ fn changed(model: &TriDexel) {
         results.extend([view.complement(&CONTROL), edited()]);
     }
     if small {
-        // What else meets all rays.
+        // Other operations on all rays.
         let others = [
             octree_from_dexels(view, &CONTROL).map(drop),
             dexel_voxels(view, &[], &CONTROL).map(drop),

@@ -401,7 +401,7 @@ fn plumpness([a, b, c]: Facet) -> f64 {
     length(cross(u, v))
 }
 
-// ---- what bytes make -----------------------------------------------------------------------------------------
+// ---- random scenes ---------------------------------------------------------------------------------------------
 
 /// The parameters of random corners.
 struct Corners {
@@ -447,7 +447,7 @@ fn soup(bytes: &mut Bytes<'_>, corners: &Corners) -> Vec<Facet> {
                 let [a, b, c, d] = [0; 4].map(|_| corners.corner(bytes));
                 vec![[a, c, b], [a, b, d], [b, c, d], [c, a, d]]
             }
-            // Once more.
+            // The same corner once more.
             6 => last,
             // A triangle and its other side.
             _ => {
@@ -618,8 +618,8 @@ pub fn layers(data: &[u8]) {
                 let all =
                     scene.moved.iter().map(|facet| from_triangle(*facet, p)).fold(f64::INFINITY, f64::min);
                 let is_far = all > 2.0 * tolerance + 1e-9 * (scene.size + place.size);
-                // (A facet without thickness, whose plane goes on beyond it, may be taken for a body. Planes
-                // are up to 2^-22 wide.)
+                // (A facet without thickness may be taken for a body, because its plane continues beyond it.
+                // Planes are up to 2^-22 wide.)
                 let is_beside =
                     || scene.is_near_to_a_plane(p, 1e-6 * (scene.size + place.size)) || scene.has_a_needle();
                 assert!(!is_known || !is_far || is_beside(), "undecided {all} from the surface: {}", told());
@@ -699,7 +699,7 @@ fn ask_ray(bytes: &mut Bytes<'_>, scene: &Scene, corners: &Corners) {
             assert!(!is_outer, "beyond the universe, or behind its end: {t} {spans:?} {told}");
             continue;
         }
-        // (Nothing is known of what is that near to the universe's faces, in doubles.)
+        // (In doubles, places so near the universe's faces are unknown.)
         if scene.is_in_universe(&place).is_none() {
             continue;
         }
@@ -724,7 +724,7 @@ fn ask_ray(bytes: &mut Bytes<'_>, scene: &Scene, corners: &Corners) {
     }
     match (upper, outer.first()) {
         (Some(hit), Some(span)) => assert!(span.lower <= hit.t.upper, "{told}"),
-        // (Of a ray along a facet one may prove that it meets nothing, and the other not. Nothing is missed,
+        // (For a ray along a facet, one answer may prove a miss while the other does not. Nothing is missed,
         // see above.)
         (None, _) => {}
         (Some(_), None) => panic!("{told}"),
@@ -746,7 +746,7 @@ fn ask_ray(bytes: &mut Bytes<'_>, scene: &Scene, corners: &Corners) {
                 let turn = dot(normal, hit.normal) / length(normal);
                 assert!(turn.abs() > 1.0 - 1e-6, "another normal: {turn} {told}");
                 let against = dot(hit.normal, way.map(|c| c / length(way)));
-                // (Of what is only touched nobody sees the side.)
+                // (The side of a mere contact is unknown.)
                 let goes_in =
                     is_proven && inner.iter().any(|span| span.lower == hit.t.upper && span.width() > 0.0);
                 assert!(!goes_in || against < 1e-6, "not outward: {against} {told}");
@@ -760,12 +760,12 @@ fn ask_ray(bytes: &mut Bytes<'_>, scene: &Scene, corners: &Corners) {
         for k in 0..5 {
             let near = at(|axis| from[axis] + (end[axis] - from[axis]) * f64::from(k) / 4.0);
             let place = Place::new(near);
-            // (A point beside the segment, but for its ends, where it is far from the surface.)
+            // (A point beside the segment, away from its ends, where the segment is far from the surface.)
             let is_clear = !scene.is_near(near, 1e-9 * (scene.size + length(from) + length(end)));
             if is_clear && scene.is_in_universe(&place) == Some(true) && scene.holds(&place) == Some(true) {
                 assert_ne!(sight, Sight::Clear, "{near:?} {told}");
-                // (Of a moved mesh nothing is known of a ray that comes near to an edge, and of one with
-                // holes nothing of a ray that comes near to its rim; then the cells are asked.)
+                // (For a moved mesh, a ray near an edge is undecided; for a mesh with holes, a ray near the
+                // rim. Then the cells are queried.)
                 let is_told = scene.motion.is_none() && !scene.is_open;
                 assert!(sight == Sight::Blocked || !is_told, "{near:?} {told}");
             }
@@ -782,7 +782,7 @@ fn ask_point(bytes: &mut Bytes<'_>, scene: &Scene, corners: &Corners) {
     let told = format!("{p:?} {:?} {:?} {:?}", scene.facets, scene.fill, scene.frame);
     let all = scene.moved.iter().map(|facet| from_triangle(*facet, p)).fold(f64::INFINITY, f64::min);
     let margin = 1e-9 * (scene.size + place.size);
-    // The tree is there before or after.
+    // The tree is built before or after.
     let mut answers = [Membership::Undecided];
     let ask = |answers: &mut [Membership; 1]| {
         contains(&scene.solid, &scene.frame, &[p], answers, &CONTROL).expect("points");
@@ -804,7 +804,7 @@ fn ask_point(bytes: &mut Bytes<'_>, scene: &Scene, corners: &Corners) {
         let distance = found[0].distance;
         let told = format!("{to:?} {:?} {told}", found[0]);
         let Some(near) = found[0].nearest else { continue };
-        // (Where cells were asked, no triangle is known.)
+        // (Where cells were queried, no triangle is known.)
         let Some(surface) = near.surface else { continue };
         let facet = scene.moved[surface as usize];
         let size = distance.lower.abs().max(distance.upper.abs());
@@ -824,7 +824,7 @@ fn ask_point(bytes: &mut Bytes<'_>, scene: &Scene, corners: &Corners) {
         }
         // (From far away many points are as near, but for rounding.)
         if to == DistanceTo::Boundary && size < 1e6 * scene.size {
-            // (Next to nothing from the surface, all that is near is as near, but for rounding.)
+            // (Almost on the surface, all nearby points are equally near, up to rounding.)
             if size > margin {
                 bounds_the_solid(scene, near.point, facet, &told);
             }

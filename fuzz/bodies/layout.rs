@@ -351,7 +351,7 @@ fn mended_slab(slab: &[u8], depth: usize) -> Vec<u8> {
     let index = (home >> 61 & 3).min(2);
     let octants = home & ((1 << 61) - 1);
     let is_level = |level: &usize| octants >> (3 * level) == 1;
-    // A cell of the first level is always there.
+    // A cell of the first level always exists.
     let cell = (0..=depth).find(is_level).map_or(8 | octants & 7, |_| octants);
     let part = |shift: u32, bits: u32| planes >> shift & ((1 << bits) - 1);
     let component = |own: u64| if own == 0x8000 { 0 } else { own };
@@ -700,7 +700,7 @@ impl File {
                 let level = levels[record] + 1;
                 levels.extend([level; 8]);
             }
-            // Different ones of those that were used, or that may be next.
+            // Different surfaces, each already used or next in order.
             let mut own: Vec<usize> = vec![];
             while own.len() < count {
                 let drawn = drawn.next().map_or(0, |&id| id);
@@ -711,7 +711,7 @@ impl File {
             heads.push(head);
             record += 1;
         }
-        // Those that are left, with their doubles.
+        // The remaining records, with their doubles.
         let used = kept.groups[0].next;
         let mut records = self.bytes(SURFACES)[..16 * used].to_vec();
         let (old, mut doubles) = (self.bytes(NUMBERS).to_vec(), vec![]);
@@ -748,7 +748,7 @@ impl File {
         }
         self.set(CELL_SLABS, slabs);
         self.set(GROUPS, groups);
-        // Those of one solid.
+        // Moments of a single solid.
         if let Some(moments) = self.section(MOMENTS) {
             moments.bytes.truncate(8 * 23);
         }
@@ -820,7 +820,7 @@ impl File {
             for (from, to, length) in MIRRORED {
                 record[to..to + length].copy_from_slice(&self.header[from..from + length]);
             }
-            // Values, which solids have not, and what is reserved.
+            // Values, which solids do not have, and reserved bytes.
             for (values, reserved) in [(19..21, 21..24), (64..76, 76..80), (104..112, 112..128)] {
                 record[values].fill(0);
                 if !newer {
@@ -875,7 +875,7 @@ impl File {
             self.repair_counts();
         }
         if repairs.objects && repairs.counts {
-            // What was counted stands in the record of the solid, too.
+            // The solid's record repeats the counts.
             self.repair_objects();
         }
         if repairs.places {
@@ -893,7 +893,7 @@ impl File {
             if repairs.places {
                 put(entry, 16, shared.map_or(bytes.len() as u64, |of| number(&of, 16, 8)), 8);
                 put(entry, 24, length as u64, 8);
-                // How many elements there are in an encoding that nobody knows is the entry's word.
+                // In an unknown encoding, the entry's number of elements counts.
                 let count =
                     if raw && entry[8] < 7 { (length / size) as u64 } else { number(entry, 32, 8).max(1) };
                 put(entry, 32, shared.map_or(count, |of| number(&of, 32, 8)), 8);

@@ -75,7 +75,7 @@ fn together<R: Solid>(solid: &OctreeRef<'_>, region: &R, tree: &OctreeRef<'_>, u
     assert!(found.verdict != Overlap::Disjoint || found.volume.lower == 0.0);
     let apart = clearance(solid, region, frame, 0.0, &SOME).expect("both are solids on the frame");
     assert!(apart.distance.lower <= apart.distance.upper);
-    // What overlaps is not apart.
+    // Overlapping solids have distance 0.
     assert!(found.verdict != Overlap::Overlapping || apart.distance.lower == 0.0);
     classify_in(solid, region, frame, &SOME).expect("both are solids on the frame");
 }

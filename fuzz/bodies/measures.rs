@@ -227,7 +227,7 @@ fn moved(bytes: &mut Bytes<'_>, frame: &Frame, scene: Scene) -> Scene {
         0 => scene.solid.placed(&placement).expect("it can be moved"),
         1 => AnySolid::new(Csg::solid(scene.solid).placed(&placement).expect("it can be moved")),
         2 => AnySolid::new(Transform::of(scene.solid, &placement)),
-        // What is outside of its own frame is not known.
+        // Parts outside its own frame are unknown.
         _ => AnySolid::new(Transform::new(scene.solid, frame, &placement)),
     };
     Scene { solid, truth }

@@ -172,7 +172,7 @@ fn change_tag(file: &mut File, random: &mut Random) {
         return;
     };
     let at = 8 * planes * random.below(section.bytes.len() / (8 * planes));
-    // Near the first cells more often: of an odd depth the root has eight.
+    // Near the first cells more often: the root of an odd depth has eight.
     let cell = if random.one_in(2) { random.below(8) } else { random.below(64) };
     for plane in 0..planes {
         if random.one_in(2) {
@@ -309,8 +309,8 @@ fn change_double(file: &mut File, kind: u32, random: &mut Random) {
 /// Changes cuts; adds cuts if there are none, or removes them.
 fn change_cuts(file: &mut File, random: &mut Random) {
     if file.section(CUT_HEADS).is_none() {
-        // A plane, a quadric and a slab, and slabs of cells of two origins. How many cuts there must be is
-        // repaired.
+        // A plane, a quadric and a slab, and slabs of cells of two origins. The number of cuts is repaired
+        // later.
         put(&mut file.header, 10, 4, 2);
         file.header[67] = if random.one_in(8) { file.header[67] } else { 2 };
         let surfaces = [[0, 0o1111, 0, 0], [1, 0o1_001_000_111, 4, 0], [4, 0o11111, 9, 0]];
@@ -371,7 +371,7 @@ fn change_cuts(file: &mut File, random: &mut Random) {
 fn change(file: &mut File, random: &mut Random, blind: Blind<'_>) {
     match random.below(32) {
         0 => change_field(&mut file.header, &HEADER_FIELDS, random),
-        // Depth, tags, bricks and counts, which the rest hangs on.
+        // Depth, tags, bricks and counts, on which the rest depends.
         1 => change_field(&mut file.header, &HEADER_FIELDS[11..22], random),
         2 => file.header[64] = 1 + random.below(20) as u8,
         3 => {

@@ -33,7 +33,7 @@ pub fn ask(tree: &OctreeRef<'_>, questions: &[u8], verified: bool) {
     if tree.cuts().is_some() {
         ask_cuts(tree, &points, verified);
     }
-    // What follows is about the cells.
+    // The checks below concern the cells.
     let tree = &tree.without_cuts();
     ask_points(tree, &points);
     ask_boxes(tree, &points);
@@ -87,9 +87,9 @@ fn ask_cuts(tree: &OctreeRef<'_>, points: &[[f64; 3]], verified: bool) {
     }
     let mut exact = vec![Membership::Inside; points.len()];
     contains(&solid, &frame, points, &mut exact, &CONTROL).expect("it is a solid");
-    // Slabs of a solid are wider by what is rounded on its universe, which may be far larger than they are.
-    // Of a tree that is not verified, such as one whose octants should be one PARTIAL universe, the solid may
-    // know less.
+    // A solid's slabs are wider by the rounding on its universe, which may be far larger than the slabs. For
+    // an unverified tree (for example one whose octants should be a single PARTIAL universe), the solid may
+    // decide less.
     let surfaces = tree.cuts().map_or(0, |cuts| cuts.surfaces as u32);
     let has_slabs =
         (0..surfaces).any(|id| tree.surface(id).is_none_or(|surface| surface.kind() == SurfaceKind::Slab));
@@ -189,7 +189,7 @@ fn ask_cut_rays(tree: &OctreeRef<'_>, points: &[[f64; 3]], is_solid: bool) {
         let exact = |on| cast_rays(&solid, frame, &rays, on, &SOME).expect("it is a solid");
         let (exact_full, exact_upper) = (exact(Obstacle::Full), exact(Obstacle::Upper));
         for (i, ray) in rays.iter().enumerate() {
-            // What is hit for sure may be hit, and when it may be.
+            // A proven hit is a possible hit, at a possible time.
             for (sure, perhaps) in [(full[i], exact_upper[i]), (exact_full[i], upper[i])] {
                 let overlap = |a: RayHit, b: RayHit| a.t.lower <= b.t.upper && b.t.lower <= a.t.upper;
                 let agree = sure.is_none_or(|sure| perhaps.is_some_and(|perhaps| overlap(sure, perhaps)));
@@ -233,7 +233,7 @@ fn ask_pictures(tree: &OctreeRef<'_>, points: &[[f64; 3]]) {
         for (seen, lined) in surface.depths().iter().zip(take(&OctreeLayer::new(tree, outlined)).depths()) {
             assert!(seen == lined || (seen - lined).abs() <= 1e-6 * seen.abs());
         }
-        // What the pixel in the middle shows is there, but for rounding.
+        // The middle pixel shows a part of the surface, up to rounding.
         let depth = f64::from(surface.depths()[17]);
         if depth.is_finite() {
             let (eye, along) = (camera.eye(), camera.forward());
@@ -606,7 +606,7 @@ fn on_demand(tree: &OctreeRef<'_>, points: &[[f64; 3]]) {
             _ => Zone::Box { min: pair[0], max: pair[1] },
         };
         let max_splits = if k % 3 == 0 { Some(20) } else { None };
-        // Numbers that are none are refused.
+        // Invalid numbers are refused.
         let _ = lazy.refine(&zone, level, &Control { max_splits, ..CONTROL });
         let at = pair[0].map(|c| c.to_bits() as u32 >> (32 - level.clamp(1, 20)));
         let cell = Cell { level, at };
@@ -626,7 +626,7 @@ fn on_demand(tree: &OctreeRef<'_>, points: &[[f64; 3]]) {
     assert_eq!(lazy.statistics().volume(), frozen.statistics().volume());
     lazy.refine(&Zone::Whole, frame.depth(), &CONTROL).expect("enough memory");
     let whole = lazy.freeze(&CONTROL).expect("enough memory");
-    // Subtrees are copied as they are: whether what is in them is sound, only a check tells.
+    // Subtrees are copied unchanged. Only a check shows whether they are sound.
     let built = build(tree, frame, Rule::Certified, &CONTROL);
     assert!(tree.check().is_err() || whole == built.expect("it is sound"));
 }

@@ -299,7 +299,7 @@ fn ordered(bytes: &mut Bytes<'_>, view: &VoxelRecordsRef<'_>) {
             let meet = across
                 .iter()
                 .all(|&a| range(near, a).0 < range(far, a).1 && range(far, a).0 < range(near, a).1);
-            // Seen along the axis, what has the smaller coordinates is in front.
+            // Seen along the axis, records with smaller coordinates are in front.
             assert!(!meet || range(near, axis).0 < range(far, axis).1, "{near} before {far}");
             assert!(!meet || range(near, axis).1 <= range(far, axis).0, "{near} before {far}");
         }

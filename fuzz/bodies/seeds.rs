@@ -216,7 +216,7 @@ pub fn files() -> Vec<Vec<u8>> {
             file.header[115] = 9;
         }),
         newer(9, &|file| file.sections.push(Section::new(17, b"colours!".to_vec()))),
-        // Two objects that nobody knows: of one the bytes are the solid's.
+        // Two unknown objects. One has the solid's bytes.
         newer(10, &|file| {
             let of = file.sections.iter().position(|section| section.is(PLANES)).expect("planes");
             let objects = file.section(OBJECTS).expect("objects");

@@ -16,12 +16,12 @@ pub fn set_algebra(data: &[u8]) {
     let Ok(a) = file::view(first.bytes()) else { return };
     let sure = file::verify(first.bytes()).is_ok();
     in_shards(&a, sure);
-    // The laws are those of the cells.
+    // The laws hold for the cells.
     let plain = a.without_cuts();
     alone(&plain, sure);
     match file::view(second.bytes()) {
         Ok(b) => {
-            // What is not of one solid is refused, and nothing worse.
+            // Trees of different solids are refused without harm.
             match join(&[a, b], &BUDGET) {
                 Err(Error::Argument { name: "trees", .. } | Error::FrameMismatch { .. }) => {}
                 result => drop(sharp(result, false)),
@@ -61,8 +61,8 @@ fn in_shards(a: &OctreeRef<'_>, sure: bool) {
     if sure && a.cuts().is_none() {
         assert!(join(&[*a], &BUDGET).is_ok_and(|same| same == joined));
     } else if sure && let Some((.., again)) = cut_and_joined(joined.view(), sure) {
-        // (A file may hold functions that say more than they need to. Of what was joined once nothing
-        // changes.)
+        // (A file may contain functions that are longer than necessary. After one join nothing changes any
+        // more.)
         assert!(again == joined);
     }
     let is_split =
@@ -109,8 +109,8 @@ fn with_surfaces(a: &OctreeRef<'_>, b: &OctreeRef<'_>, sure: bool) {
     let inverse = sharp(complement(a, &BUDGET), sure);
     let same = sharp(union(a, a, &BUDGET), sure);
     if let (true, Some(inverse), Some(same)) = (sure, inverse, same) {
-        // (A file may hold functions that say more than they need to, in more cells than they need. Of
-        // results nothing does.)
+        // (A file may contain functions that are longer than necessary, in more cells than necessary. Results
+        // do not.)
         let back = not(&inverse);
         let twice = back.as_ref().and_then(|back| not(&not(back)?));
         assert!(twice.is_none() || twice == back);
@@ -223,7 +223,7 @@ fn sound(result: Result<Octree, Error>, most: u64, sure: bool) -> Option<Octree>
     if sure {
         tree.view().check().expect("of good operands comes a good result");
     }
-    // Its links are its own, whatever the operands' were.
+    // Its links are its own, whatever the operands' links are.
     let links = tree.view().on(tree.frame(), &CONTROL);
     assert!(!matches!(links, Err(Error::Damaged(_))));
     let _ = (tree.statistics(), tree.view().check());
@@ -284,7 +284,7 @@ fn together(a: &OctreeRef<'_>, b: &OctreeRef<'_>, sure: bool) {
         let result = sound(operation(a, b, &CONTROL), most, sure);
         let turned = sound(operation(b, a, &CONTROL), most, sure);
         let alike = sound(operation(a, a, &CONTROL), 2 * size(a), false);
-        // What comes of damaged operands is as good as any other operand.
+        // Results of damaged operands are operands like any other.
         if let (Some(result), Some(turned)) = (&result, &turned) {
             let most = size(result.view()) + size(turned.view());
             sound(operation(result.view(), turned.view(), &CONTROL), most, sure);

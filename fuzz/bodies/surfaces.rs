@@ -208,7 +208,7 @@ pub fn boundaries(data: &[u8]) {
             let told = format!("tolerance {tolerance} depth {depth} stored {is_stored}");
             check_deviation(&solid, found.mesh(), found.report().deviation, &told);
         }
-        // An octree without a cell that keeps surfaces knows none.
+        // An octree without a cell that keeps surfaces provides none.
         Err(Error::Limit { .. } | Error::Argument { name: "solid", .. }) => {}
         Err(error) => panic!("{error}"),
     }
@@ -218,7 +218,7 @@ pub fn boundaries(data: &[u8]) {
 fn any_solid(bytes: &mut Bytes<'_>) -> (AnySolid, bool) {
     match bytes.below(6) {
         0 => (AnySolid::new(expression(bytes)), true),
-        // A mesh of a few triangles, as it is: closed, open, or with triangles that intersect.
+        // A mesh of a few triangles: closed, open, or with intersecting triangles.
         1 => (facets(bytes), true),
         2 => {
             let mesh = Csg::solid(facets(bytes));
@@ -287,7 +287,7 @@ fn facets(bytes: &mut Bytes<'_>) -> AnySolid {
     let vertices: Vec<[f64; 3]> = (0..count).map(|_| [0; 3].map(|_: i32| bytes.around(6))).collect();
     let mut faces = vec![[0, 2, 1], [0, 1, 3], [1, 2, 3], [2, 0, 3]];
     for vertex in 4..count {
-        // A vertex on a face that is there, or a face that is missing.
+        // Move a vertex onto an existing face, or remove a face.
         let at = bytes.below(faces.len());
         let [a, b, c] = faces.swap_remove(at);
         if bytes.below(16) != 0 {
@@ -320,7 +320,7 @@ pub fn contours(data: &[u8]) {
                 check_deviation(&solid, found.mesh(), found.report().deviation, &told);
             }
         }
-        // A mesh with holes has no end, and that of no triangle at all no inside.
+        // A mesh with holes is unbounded, and a mesh without triangles has no inside.
         Err(Error::Limit { .. } | Error::Argument { name: "frame", .. }) => {}
         Err(error) => panic!("{error}"),
     }

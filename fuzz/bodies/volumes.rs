@@ -49,7 +49,7 @@ fn read(bytes: &[u8], data: Option<&[u8]>) {
     let Ok(VolumeFile { samples, grid, .. }) = read_volume(bytes, data) else { return };
     let length = (bytes.len() + data.map_or(0, <[u8]>::len)) as u64;
     assert!(grid.count() <= 1032 * length);
-    // What is long is only worth to be read.
+    // Long volumes are only read.
     if grid.count() < 1 << 16 {
         check(&samples, &grid);
     }

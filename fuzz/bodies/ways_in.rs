@@ -38,7 +38,7 @@ pub fn read_in_all_ways(data: &[u8], as_a_file: bool) -> bool {
         (Err(a), Err(b)) => assert_eq!(a.to_string(), b.to_string()),
         (a, b) => panic!("{a:?} and {b:?}"),
     }
-    // Each way in demands what the one before it does, and then more.
+    // Each way in requires what the previous one requires, and more.
     assert_eq!(outcome(&copied), verified);
     if let Err(refused) = outcome(&viewed) {
         assert_eq!(verified, Err(refused));
@@ -68,7 +68,7 @@ pub fn read_in_all_ways(data: &[u8], as_a_file: bool) -> bool {
 
 /// Returns the bytes with a static lifetime. Callers must drop all data read from them before the bytes.
 fn lasting(bytes: &[u8]) -> &'static [u8] {
-    // SAFETY: see above; all callers drop what they read before they return.
+    // SAFETY: see above; all callers drop the data read before they return.
     #[allow(unsafe_code)]
     unsafe {
         std::slice::from_raw_parts(bytes.as_ptr(), bytes.len())
@@ -97,7 +97,7 @@ fn good(tree: &Octree) {
     let metadata = |tree: &Octree| tree.channels().iter().map(|c| c.metadata().clone()).collect::<Vec<_>>();
     assert_eq!(metadata(&back), metadata(tree));
     assert_eq!(file::to_bytes(&back).expect("a verified tree can be written"), written);
-    // What the statistics say is what a walk over all cells meets.
+    // The statistics agree with a walk over all cells.
     let walked = walk(Cursor::new(tree.view()));
     let statistics = tree.statistics();
     let depth = tree.frame().depth();
@@ -143,7 +143,7 @@ fn through_a_file(
             assert_eq!(&outcome(&mapped), viewed);
         }
         if let Ok(tree) = &mapped {
-            // Whatever a level table says, statistics are made of it without a panic.
+            // Statistics do not panic, whatever the level table contains.
             let statistics = tree.statistics();
             let _ = (statistics.volume(), statistics.nodes(), statistics.cells(Tag::Full));
             assert_eq!(tree, &tree.clone());

@@ -60,7 +60,7 @@ fn attributes_follow_their_triangles() {
         assert_eq!((mesh.vertices(), mesh.triangles()), (plain.vertices(), plain.triangles()));
         assert_eq!(mesh.report().unwrap().facets_read, u64::from(count));
         check(&mesh, count as usize, 0.0, |p| p);
-        // What is flattened loses triangles, and corners of several places become one vertex.
+        // Flattening loses triangles, and corners at several places become one vertex.
         let flat = mesh.transformed(|[x, y, _]| [x, y, 0.0]).unwrap();
         assert!(count < 300 || flat.triangles().len() < mesh.triangles().len());
         check(&flat, count as usize, 0.0, |[x, y, _]| [x, y, 0.0]);
@@ -77,8 +77,8 @@ fn attributes_follow_their_triangles() {
 
 #[test]
 fn attributes_follow_sewing() {
-    // A tetrahedron whose faces do not share vertices, one of which is off a little, a sliver that the sewing
-    // makes degenerate, and a triangle that is degenerate as it is given.
+    // A tetrahedron whose faces do not share vertices, with one vertex slightly off, a sliver that becomes
+    // degenerate by sewing, and a triangle that is degenerate from the start.
     let corners = [[0.0, 0.0, 0.0], [1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]];
     let mut vertices: Vec<Point> = Vec::new();
     let mut triangles: Vec<[u32; 3]> = Vec::new();
@@ -251,7 +251,7 @@ fn faces_of_triangles_that_are_dropped() {
         shells: &[0, 8],
         solids: &[0, 1],
     });
-    // It may be refused, for a loop that touches itself; if it is not, each triangle lies in its face.
+    // The loop may touch itself, so that the polyhedron is refused. Otherwise each triangle lies in its face.
     let Ok(polyhedron) = polyhedron else { return };
     let parts = polyhedron.parts(PolyhedronPart::Face).unwrap();
     assert_eq!(parts.len(), polyhedron.mesh().triangles().len());
@@ -356,7 +356,8 @@ fn the_nearest_triangle_decides() {
             let size = 1.0 + least;
             let found = one(*number) as usize;
             assert!(of(found) <= least + 1e-13 * size);
-            // If no other one is as near it is the only right answer; where they touch, the first one is.
+            // If no other triangle is equally near, the answer is unique. Where triangles touch, the first
+            // one is the answer.
             let first = (0..count).find(|&t| of(t) <= least + 1e-12 * size).unwrap();
             let alone = (0..count).filter(|&t| of(t) <= least + 1e-12 * size).count() == 1;
             assert!(!alone || found == first);
@@ -390,7 +391,7 @@ fn points_and_triangles_without_values() {
     assert_eq!(range([0.4, 0.4, 0.0], [0.6, 0.6, 0.1]), ValueRange::Unknown);
     assert_eq!(range([-9.0; 3], [9.0; 3]), ValueRange::Unknown);
     assert_eq!(range([0.0; 3], [1e300, 1.0, 1.0]), ValueRange::Unknown);
-    // Of a corner without a value the whole triangle has none.
+    // If a corner has no value, the whole triangle has none.
     let shade = MeshAttribute::per_corner("shade", 1, &[1.0, 2.0, f64::NAN, 1., 2., 3., 1., 1., 1.]).unwrap();
     let shade = heat.with(shade).unwrap();
     assert_eq!(shade.value([0.8, 0.2, 1.0]).unwrap(), None);
@@ -551,7 +552,7 @@ fn a_million_questions() {
             }
         }
     }
-    // Points in order, as those of a row of voxels.
+    // Points in order, like a row of voxels.
     let row: Vec<Point> = (0..1_000_000)
         .map(|k| [f64::from(k % 1000) / 333.0 - 1.5, f64::from(k / 1000) / 333.0 - 1.5, 0.1])
         .collect();
@@ -583,7 +584,7 @@ fn values_just_inside_of_a_surface() {
     // Values that many have are stored once, and threads do not matter.
     assert!(found.bytes() < 4 * mesh.triangles().len() as u64 + 512);
     assert_eq!(sample_triangles(&mesh, &sides, "material", depth, &Control::threads(4)).unwrap(), found);
-    // Of an octree's channel it is the same.
+    // The same for an octree's channel.
     let value_type = ValueType::new(ScalarType::U8, 1).unwrap();
     let options = FillOptions { value_type, frame, solid: None, detail: None };
     let channel = fill_channel(&sides, &options, &alone()).unwrap();
@@ -592,7 +593,7 @@ fn values_just_inside_of_a_surface() {
     assert!(others * 10 < mesh.triangles().len(), "{others}");
     assert!((0..mesh.triangles().len()).all(|t| of_cells.value(t, 0).is_some()));
 
-    // Where it is thin, and where nothing is.
+    // An attribute in a thin layer, and an attribute without values.
     let sheet = block([0.0; 3], [1.0, 1.0, 0.01]);
     let thin =
         FunctionAttribute::new(2, |p: Point| (0.0..0.01).contains(&p[2]).then_some([p[2], 1.0, 0.0, 0.0]));

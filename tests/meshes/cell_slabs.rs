@@ -184,7 +184,7 @@ fn set_algebra_of_two_origins() {
     for tree in [&a, &b, &joint, &less] {
         assert!(cell_slabs(tree) > 1000);
         assert!(bytes(&not(&not(tree))) == bytes(tree));
-        // With itself: the same, and nothing is left to simplify the next time.
+        // An operation with itself gives the same, and the next one has nothing to simplify.
         for of in [union as Operation, intersection] {
             let once = of(tree.view(), tree.view(), control).unwrap();
             assert!(bytes(&of(once.view(), tree.view(), control).unwrap()) == bytes(&once));

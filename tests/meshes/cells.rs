@@ -251,7 +251,7 @@ struct Found {
 fn walk(bodies: &[Body], rule: FillRule, frame: &Frame, stray: bool, random: &mut Random, found: &mut Found) {
     let mut facets: Vec<_> = bodies.iter().flat_map(Body::facets).collect();
     if stray {
-        // A triangle that is far away, and so small that it decides nothing: but the surface is open.
+        // A triangle far away, too small to decide anything. It makes the surface open.
         let far = 64.0 * frame.edge();
         facets.push([
             [far, 0.0, 0.0],
@@ -353,7 +353,7 @@ fn areas_are_those_of_triangles() {
         (within(false), FillRule::NonZero, area_of(0.6)),
         (within(false), FillRule::EvenOdd, area_of(0.6) + area_of(0.1)),
         (across.clone(), FillRule::EvenOdd, area_of(0.6) + area_of(0.1)),
-        // What of either lies in the other one is no boundary.
+        // The part of either boundary inside the other body is no boundary.
         (across, FillRule::NonZero, area_of(0.6) + area_of(0.1) - hidden - section),
     ] {
         let facets: Vec<_> = [&large, &second].into_iter().flat_map(Body::facets).collect();

@@ -42,7 +42,7 @@ fn verify_with(what: &str, mesh: &TriangleMesh, frame: &Frame, fills: &[FillRule
     let windings = oracle.windings();
     let displacement = mesh.displacement() / frame.cell_size();
     let contacts = oracle.contacts(TOLERANCE + 2.0 * displacement);
-    // What is documented of lattice-aligned parts: contact is not overlap.
+    // The documentation of lattice-aligned parts says that contact is not overlap.
     let grain = (1u64 << (15 - frame.depth().min(15))) as f64;
     let cells = frame.cells() as f64;
     let is_aligned = |axis: usize, x: f64| {
@@ -130,8 +130,8 @@ fn blocks_on_the_lattice_leave_nothing_undecided() {
 
 #[test]
 fn faces_between_the_first_centres_of_scanned_blocks() {
-    // Every offset of a face within a block of 64³, on every axis, seen from a block whose lowest layer is
-    // cut by it: what the lowest centre's line passes first must not be lost.
+    // Every offset of a face within a block of 64³, on every axis. The face cuts the lowest layer of a block.
+    // The first crossing of the lowest centre's line must not be lost.
     let frame = lattice_frame(7);
     for offset in [0.25, 0.5, 0.75, 1.0, 1.25, 1.5, 2.0, 62.75, 63.0, 63.5, 63.75, 64.0, 64.25, 64.5, 65.0] {
         for axis in 0..3 {
@@ -141,7 +141,7 @@ fn faces_between_the_first_centres_of_scanned_blocks() {
             let mesh = mesh(&soup);
             let tree = &trees("offset", &mesh, &frame, FillRule::NonZero)[1];
             let count = |low: f64, high: f64| (high - 0.5).floor() - (low - 0.5).ceil() + 1.0;
-            // A face through centres: the shifted ones lie above it.
+            // For a face through centres, the shifted centres lie above it.
             let closed = |low: f64, high: f64| count(low, high) - ((high - 0.5).fract() == 0.0) as i32 as f64;
             let expected: f64 = (0..3).map(|axis| closed(low[axis], [100.0, 101.25, 102.5][axis])).product();
             assert_eq!(tree.statistics().volume_cells().0, expected as u64, "offset {offset} axis {axis}");
@@ -210,7 +210,7 @@ fn touching_nested_and_repeated_bodies() {
         verify("body in a void", &join(&[a.clone(), inside_out(b.clone()), c.clone()]), &frame);
         verify("nested", &join(&[a.clone(), b.clone(), c.clone()]), &frame);
         verify("inside out", &inside_out(a.clone()), &frame);
-        // Copies: winding numbers beyond what the bitmaps hold, and back to nothing.
+        // Copies, with winding numbers beyond the bitmaps' range, and back to zero.
         for copies in [2usize, 4, 5].into_iter().skip(if depth < 6 { 0 } else { repeated(2, 0) }) {
             let many: Soup = (0..copies).flat_map(|_| b.clone()).collect();
             verify("copies", &many, &frame);
@@ -246,8 +246,7 @@ fn triangles_without_area_do_nothing() {
         };
         verify("aligned crack", &cracked(0.5, [1.0; 3], [5.0, n - 1.0, 4.0]), &frame);
         verify("crack", &cracked(0.25, [1.5, 1.25, 0.75], [n - 0.5, n - 1.0, 4.125]), &frame);
-        // Whole bodies without area or volume: alone on the lattice's diagonal, within one cell, and flat
-        // ones.
+        // Whole bodies without area or volume: on the lattice's diagonal, within one cell, and flat bodies.
         let body = block([n / 2.0; 3], [n - 1.0; 3]);
         let segment = |p: [f64; 3], d: [f64; 3]| {
             let at = |t: f64| [0, 1, 2].map(|axis| p[axis] + d[axis] * t);
@@ -410,7 +409,7 @@ fn tiny_coordinates() {
                 let mut low = [-width; 3];
                 let mut high = [width; 3];
                 (low[axis], high[axis]) = (-1.25, 1.75);
-                // Coordinates below 2^-256 count as zero: what is left of the needle has no volume then.
+                // Coordinates below 2^-256 count as zero. Then the rest of the needle has no volume.
                 let soup = block(low, high);
                 let mesh = mesh(&soup);
                 match mesh.triangles() {
@@ -573,7 +572,7 @@ fn models_by_scan_and_by_descent_are_the_same() {
 
 #[test]
 fn the_erased_solid_is_the_same() {
-    // AnySolid wants what it holds to live as long as the program.
+    // AnySolid requires content with the program's lifetime.
     let soup = join(&[torus([0.1, 0.2, 0.3], 2.0, 0.7, 40, 24), octahedron([2.0, 0.0, 0.3], 1.1)]);
     let mesh: &'static TriangleMesh = Box::leak(Box::new(mesh(&soup)));
     for depth in [5, 6, 8] {
@@ -678,7 +677,7 @@ fn hair_cracks_keep_every_variant_inside() {
                 let solid = MeshSolid::new(sewn.clone(), FillRule::NonZero).unwrap();
                 let tree = |rule| build(&solid, &frame, rule, &alone()).unwrap();
                 let (inner, outer) = (tree(Rule::Inner), tree(Rule::Outer));
-                // Both ways to close the cracks: every noisy coordinate as it is, and none.
+                // Two ways to close the cracks: keep every noisy coordinate, or none.
                 for closed in [base.clone(), moved(&base, |p| p.map(|x| if x == 0.0 { noise } else { x }))] {
                     let closed = mesh(&closed);
                     let solid = MeshSolid::new(closed.clone(), FillRule::NonZero).unwrap();
@@ -687,7 +686,7 @@ fn hair_cracks_keep_every_variant_inside() {
                         let left = difference(a.view(), b.view(), &alone()).unwrap();
                         left.view().root_tag() == Tag::Empty
                     };
-                    // Nothing that one of them proves may be contradicted.
+                    // The closed meshes must not contradict the proofs.
                     assert!(within(&inner, &tree(Rule::Sampled)), "{noise} {depth}");
                     assert!(within(&tree(Rule::Sampled), &outer), "{noise} {depth}");
                     assert!(within(&inner, &tree(Rule::Inner)), "{noise} {depth}");

@@ -94,7 +94,7 @@ fn what_is_stated() {
     assert_eq!(stated.try_clone().unwrap().sewn().unwrap().deviation(), 0.25);
     assert_eq!(stated.transformed(|p| p).unwrap().deviation(), 0.0);
     assert_eq!(stated.try_clone().unwrap().with_deviation(0.0).unwrap().displacement(), 0.0);
-    // A turn changes no lengths, and a map along the axes stretches as much as its longest one.
+    // A rotation keeps lengths. A map along the axes stretches by its greatest factor.
     let turn = Affine::new([[0.6, -0.8, 0.0, 0.1], [0.8, 0.6, 0.0, 0.2], [0.0, 0.0, 1.0, 0.3]]).unwrap();
     let turned = stated.placed(&turn).unwrap();
     assert!((0.25..0.2500001).contains(&turned.deviation()) && turned.displacement() > turned.deviation());
@@ -183,7 +183,7 @@ fn a_cylinder_in_chords() {
         for tree in [&certified, &extended, &exact] {
             assert_eq!(tree.proof().displacement(), deviation);
             let volume = measure(tree, &frame, 1e-4, &alone()).unwrap().volume;
-            // (What is known of the mesh itself may hold the truth by chance where cells are large.)
+            // (Where cells are large, the bounds of the mesh itself may contain the truth by chance.)
             assert!(deviation == 0.0 || volume.contains(truth), "{volume:?}");
             check_points(tree, &frame, deviation > 0.0);
         }
@@ -222,7 +222,7 @@ fn contacts_are_not_decided() {
         assert!(volume.contains(0.0) && volume.contains(common * side * side), "{volume:?}");
         let whole = union(kept_a.view(), kept_b.view(), &alone()).unwrap();
         let volume = measure(&whole, &frame, 1e-3, &alone()).unwrap().volume;
-        // They may leave a gap, too.
+        // The solids may have a gap, too.
         let small = 1.0 - common;
         assert!(
             volume.contains(2.0 * small.powi(3))
@@ -231,7 +231,7 @@ fn contacts_are_not_decided() {
         let point = [0.5, 0.5, 1.0];
         let inside = is_inside(&whole, &frame, &[point])[0];
         assert!(deviation == 0.0 || inside == Membership::Undecided, "{inside:?}");
-        // Nor is a boundary that of another solid of the same mesh.
+        // The boundary of another solid of the same mesh may also lie elsewhere.
         let apart = deviation_between(&a, &stated(0.0, deviation), &frame);
         assert!(apart.lower == 0.0 && apart.upper >= common, "{apart:?}");
     }
@@ -314,7 +314,7 @@ fn check_ball(random: &mut Random, size: [usize; 2]) {
         match answer {
             Membership::Inside => assert!(depth_of(p) > -SLOP),
             Membership::Outside => assert!(depth_of(p) < SLOP),
-            // (Along an axis or a diagonal the way out is told but near to edges.)
+            // (For a ray along an axis or a diagonal, the exit is undecided only near edges.)
             Membership::Undecided => assert!(depth_of(p).abs() < 8.0 * off + 0.01, "{} {off}", depth_of(p)),
         }
     }
@@ -383,7 +383,7 @@ fn check_ball(random: &mut Random, size: [usize; 2]) {
     let whole = measure(solid, &frame, 1e-3, &Control { max_splits: Some(2000), ..alone() }).unwrap();
     let volume = 4.0 / 3.0 * PI * radius.powi(3);
     assert!(whole.volume.contains(volume), "{whole:?}");
-    // (Of the coarsest nothing may be proven solid.)
+    // (For the coarsest mesh, possibly no point is proven inside.)
     if let Some(centroid) = whole.centroid {
         assert!((0..3).all(|k| centroid[k].contains(centre[k])), "{centroid:?} {centre:?}");
     }
@@ -445,7 +445,7 @@ fn check_ball(random: &mut Random, size: [usize; 2]) {
 #[test]
 fn balls_in_chords_under_any_placement() {
     let mut random = Random(31);
-    // (The coarser they are, the longer they take.)
+    // (Coarser meshes take longer.)
     for size in [[4, 2], [5, 3], [8, 4], [12, 7], [24, 12]].into_iter().skip(repeated(3, 0)) {
         check_ball(&mut random, size);
     }

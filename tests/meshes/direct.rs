@@ -268,8 +268,8 @@ fn rays_are_those_of_all_triangles_and_of_cells() {
                 let place = format!("{round} {fill:?} {on:?} {ray:?} {own:?} {by_cells:?}");
                 match (own, by_cells) {
                     (Some(own), Some(by_cells)) => {
-                        // (Points at which it only touches count for cells that they lie in, and not for
-                        // others.)
+                        // (Where the ray only touches the surface, a point counts for the cells that contain
+                        // it, and not for others.)
                         let touches = own.t.upper <= by_cells.t.lower && {
                             let (from, to) = ends(ray);
                             let at = [0, 1, 2].map(|k| from[k] + own.t.upper * (to[k] - from[k]));
@@ -279,13 +279,13 @@ fn rays_are_those_of_all_triangles_and_of_cells() {
                         assert_eq!(own.cell.level, 7);
                         hits += 1;
                     }
-                    // Of cells that it only touches nothing is said.
+                    // Cells report nothing about a surface that the ray only touches.
                     (Some(own), None) if on == Obstacle::Upper => {
                         let (from, to) = ends(ray);
                         let at = [0, 1, 2].map(|k| from[k] + own.t.lower * (to[k] - from[k]));
                         assert!(is_near(&mesh, at, 1e-9), "{place}");
                     }
-                    // Cells may not prove what is thin.
+                    // Cells may be unable to prove thin parts.
                     (Some(own), None) => assert!(own.t.upper.is_finite(), "{place}"),
                     (None, Some(by_cells)) if on == Obstacle::Upper => {
                         assert!(by_cells.t.upper == f64::INFINITY, "{place}");
@@ -345,7 +345,7 @@ fn distances_are_those_of_all_triangles_and_of_cells() {
             for ((&p, own), by_cells) in points.iter().zip(&own).zip(&by_cells) {
                 let place = format!("{round} {to:?} {p:?} {own:?} {by_cells:?}");
                 assert!(own.distance.common(by_cells.distance).is_some(), "{place}");
-                // (Where cells were asked, no triangle is known.)
+                // (Where cells were queried, no triangle is known.)
                 let Some((near, surface)) = own.nearest.and_then(|near| Some((near, near.surface?))) else {
                     continue;
                 };
@@ -386,7 +386,7 @@ fn facets_within_other_bodies_are_no_hits() {
     assert!(hit.t.contains(1.0) && hit.normal == [1.0, 0.0, 0.0]);
     let facet = solid.mesh().triangles()[hit.surface.unwrap() as usize];
     assert!(facet.iter().all(|&v| solid.mesh().vertices()[v as usize][0] == 6.0));
-    // Its nearest point from within both is none of the facets within the other one.
+    // From inside both bodies, the nearest point is on no facet inside the other body.
     let near = distances(&solid, &frame, &[[1.5, 2.0, 2.0]], DistanceTo::Boundary, 1e-6, &alone()).unwrap();
     assert!(near[0].distance.contains(-1.5), "{near:?}");
 }
@@ -411,7 +411,7 @@ fn a_mesh_that_sticks_out_is_cut_by_the_universe() {
     assert_eq!(hits[0].unwrap().cell.at[0], 0);
     assert!(hits[1].unwrap().t.contains(5.0));
     assert_eq!(hits[2].unwrap().t, Interval::exactly(0.0));
-    // Beyond the universe nothing counts.
+    // Parts outside the universe do not count.
     let spans = ray_spans(&solid, &frame, &rays[0], &alone()).unwrap();
     assert_eq!(
         (spans.inner, spans.outer),
@@ -434,7 +434,7 @@ fn turned_meshes_are_asked_without_cells_too() {
     let back = Affine::new([[0.6, 0.8, 0.0, -0.22], [-0.8, 0.6, 0.0, -0.04], [0.0, 0.0, 1.0, -0.3]]).unwrap();
     let solid = MeshSolid::new(shapes::mesh(&shapes::block([-3.0; 3], [3.0; 3])), FillRule::NonZero).unwrap();
     let frame = Frame::new([-8.0; 3], 16.0, 20).unwrap();
-    // The tree of the source is there, and its order is taken over.
+    // The source's tree already exists, and its order is reused.
     cast_rays(&solid, &frame, &[Ray::new([0.0; 3], [1.0; 3]).unwrap()], Obstacle::Full, &alone()).unwrap();
     let turned = solid.placed(&turn).unwrap();
     assert!(turned.mesh().displacement() > 0.0);

@@ -116,14 +116,14 @@ fn points_next_to_nothing_are_where_they_are() {
 #[test]
 fn a_mesh_that_begins_before_the_universe() {
     let solid = solid(&shapes::block([-3.0; 3], [3.0; 3]), FillRule::NonZero);
-    // The universe cuts it, and the ray is in the solid before it is in the universe.
+    // The universe cuts it. The ray is in the solid before it is in the universe.
     let frame = Frame::new([-1.0; 3], 8.0, 5).unwrap();
     let hit = first(&solid, &frame, ray([-8.0, 0.5, 0.5], [1.0, 0.0, 0.0])).unwrap();
     assert!(hit.t.contains(7.0) && hit.surface.is_none() && hit.normal == [-1.0, 0.0, 0.0], "{hit:?}");
     let sight = |from, to| line_of_sight(&solid, &frame, from, to, &alone()).unwrap();
     assert_eq!(sight([-8.0, 0.5, 0.5], [0.0, 0.5, 0.5]), Sight::Blocked);
     assert_eq!(sight([6.0, 0.5, 0.5], [4.0, 0.5, 0.5]), Sight::Clear);
-    // Two bodies, of which the first one lies before the universe.
+    // Two bodies. The first one lies before the universe.
     let mut soup = shapes::block([-6.0, 0.0, 0.0], [-5.0, 1.0, 1.0]);
     soup.extend(shapes::block([2.0, 0.0, 0.0], [3.0, 1.0, 1.0]));
     for fill in [FillRule::NonZero, FillRule::EvenOdd, FillRule::Positive] {
@@ -275,7 +275,7 @@ fn triangles_without_area() {
         }
         let found = distances(&alone_there, &frame, &[[5.0; 3]], DistanceTo::Solid, 0.0, &alone()).unwrap();
         assert!(found[0].nearest.is_none() && found[0].distance.upper == f64::INFINITY, "{found:?}");
-        // Beside a body it changes nothing.
+        // Beside a body, it changes nothing.
         let mut soup = shapes::block([-1.0; 3], [1.0; 3]);
         soup.extend(flat.iter());
         let with_body = solid(&soup, FillRule::NonZero);
@@ -294,7 +294,7 @@ fn triangles_without_area() {
 fn trees_of_all_sizes() {
     let mut random = Random(10);
     let frame = Frame::new([-4.0; 3], 128.0, 6).unwrap();
-    // Bodies of four triangles, and of a strip around a prism as many as one likes.
+    // Bodies of four triangles, and a strip around a prism of any number of triangles.
     for count in (4..=24).chain([62, 64, 66, 254, 256, 258, 1022, 1024, 1026]).filter(|count| count % 2 == 0)
     {
         // A double pyramid has twice as many triangles as corners on its rim.
@@ -396,8 +396,7 @@ fn bodies_in_the_same_place() {
 #[test]
 fn threads_change_nothing() {
     let mut random = Random(11);
-    // Enough triangles that the tree is made on several threads, and enough questions that they are shared
-    // out.
+    // Enough triangles to build the tree on several threads, and enough queries to share them out.
     let mut soup = shapes::torus([0.1, 0.2, 0.3], 3.0, 1.0, 96, 64);
     soup.extend(shapes::octahedron([0.5; 3], 3.0));
     let frame = frame();
@@ -429,6 +428,6 @@ fn whoever_cancels_gets_no_tree() {
     is_cancelled(line_of_sight(&solid, &frame, [0.0; 3], [4.0; 3], &control).map(|_| ()));
     is_cancelled(contains(&solid, &frame, &[[0.5; 3]], &mut [Membership::Undecided], &control));
     is_cancelled(distances(&solid, &frame, &[[0.5; 3]], DistanceTo::Solid, 0.0, &control).map(|_| ()));
-    // Whoever does not, gets it afterwards.
+    // Without the cancel, the answer comes afterwards.
     assert!(first(&solid, &frame, line).unwrap().t.contains(2.0));
 }

@@ -97,7 +97,7 @@ impl Oracle {
     /// Returns all triangles that a ray may meet, in order of time.
     fn meetings(&self, from: Point, way: Point) -> Vec<Meeting> {
         let mut found = Vec::new();
-        // What doubles lose of positions.
+        // Rounding errors of positions in doubles.
         let far = from.iter().fold(self.size, |most, c| most.max(c.abs()));
         self.collect(&self.boxes, from, way, 1e-14 * far + self.displacement, &mut found);
         found.sort_by(|a, b| a.from.total_cmp(&b.from));
@@ -383,7 +383,7 @@ impl Trial<'_> {
         }
         let Some(hit) = full else { return };
         assert!(hit.t.upper.is_finite(), "{}", told());
-        // Something of the solid begins there: a stretch inside, or a triangle that may be met.
+        // A part of the solid begins there: a stretch inside, or a triangle that the ray may meet.
         let is_there =
             |&Meeting { from, to, .. }: &Meeting| from - fine <= hit.t.upper && hit.t.lower <= to + fine;
         let met: Vec<&Meeting> = meetings.iter().filter(|meeting| is_there(meeting)).collect();

@@ -259,7 +259,7 @@ fn check_ray(
         line_of_sight(cells, frame, from, end, &alone()).unwrap(),
     );
     let is_same = sight == by_cells || sight == Sight::Undecided || by_cells == Sight::Undecided;
-    // (What touches the surface is blocked to the tree and may be clear to cells.)
+    // (Contact with the surface is blocked for the tree, and may be clear for cells.)
     let touches = || (0..=1000).any(|k| from_mesh(mesh, along(from, way, f64::from(k) / 1000.0)) < 0.05);
     assert!(is_same || touches(), "{sight:?} {by_cells:?} {place}");
 }

@@ -233,7 +233,7 @@ fn moments_of_meshes_are_kept() {
     assert!(found.exact && found.splits == 0 && found.volume == own.volume);
     assert_eq!(found.centroid, own.centroid());
 
-    // Without them the cells say less, and nothing else.
+    // Without moments the cells give wider bounds, and all else is the same.
     let bare = tree.without_moments();
     assert_eq!((&bare, bare.view().moments()), (&tree, None));
     let few = Control { max_splits: Some(10_000), ..alone() };
@@ -249,12 +249,12 @@ fn moments_of_meshes_are_kept() {
     assert_eq!(compact(tree.view()).unwrap().view().moments(), Some(own));
     let again = build_extended(&tree, tree.frame(), &options, &alone()).unwrap();
     assert_eq!(again.view().moments(), Some(own));
-    // What is another solid has not.
+    // A different solid has no stored moments.
     let ball =
         build_extended(&Csg::ball([1.0, 0.0, 0.0], 0.3).unwrap(), tree.frame(), &options, &alone()).unwrap();
     assert_eq!(difference(tree.view(), ball.view(), &alone()).unwrap().view().moments(), None);
     assert_eq!(complement(tree.view(), &alone()).unwrap().view().moments(), None);
-    // Nor has a mesh whose triangles intersect, nor what the universe cuts off.
+    // A mesh with intersecting triangles has none, either, nor has a mesh cut off by the universe.
     let crossed = joined(&[shapes::block([0.0; 3], [1.0; 3]), turned(&shapes::block([0.0; 3], [1.0; 3]))]);
     assert_eq!(built(&crossed).view().moments(), None);
     let inner = Frame::new([0.0; 3], 1.0, 8).unwrap();
@@ -314,7 +314,7 @@ fn check_booleans(name: &str, trial: &Trial, random: &mut Random, count: usize) 
             assert!(known > count / 5, "{name} {what} {other_name}: {known} of {count}");
         }
     }
-    // Of a set less itself nothing is left, though its slabs are known within a width alone.
+    // A set minus itself is empty, although its slabs are known only within a width.
     let none = difference(trial.tree.view(), trial.tree.view(), &alone()).unwrap();
     let given_up = trial.tree.view().cuts().map_or(0, |cuts| cuts.given_up);
     assert!(given_up > 0 || none.statistics().nodes() == 0, "{name}");
@@ -407,8 +407,7 @@ fn turned_stored(name: &str, trial: &Trial, turns: usize, count: usize) -> Vec<(
     let unit = 2f64.powi(reach.log2().ceil() as i32 - 45);
     let mut points = trial.points(&mut random, count);
     points.iter_mut().for_each(|p| *p = p.map(|c| (c / unit).round() * unit + 0.0));
-    // (On a facet that is parallel to its rays the oracle decides by a shift: such points count as
-    // undecided.)
+    // (On a facet parallel to its rays, the oracle decides by a shift. Such points count as undecided.)
     let truth_off_surface = |p: Point| {
         let truth = trial.truth(p)?;
         let beside =

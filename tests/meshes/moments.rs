@@ -158,7 +158,7 @@ fn random_tetrahedra_and_blocks() {
             let high = [0, 1, 2].map(|_| scale * random.between(0.1, 1.0) + far);
             block(low, high)
         };
-        // Whichever way it turns, NonZero and EvenOdd enclose it.
+        // With either orientation, NonZero and EvenOdd enclose it.
         let sign = if mesh(from_ref(&facets)).volume() > 0.0 { 1 } else { -1 };
         for rule in RULES {
             let measures = measured(mesh(from_ref(&facets)), rule);
@@ -223,7 +223,7 @@ fn bodies_that_touch() {
             assert!(inside_out.contains(if rule == FillRule::Positive { 1.0 } else { 2.0 }), "{rule:?}");
         }
     }
-    // One triangle turned over: only parity means something.
+    // With one inverted triangle, only parity is meaningful.
     let mut one_turned = a.clone();
     one_turned[3].swap(0, 1);
     let one_turned = mesh(&[one_turned]);
@@ -277,7 +277,7 @@ fn clipped_meshes_are_measured_in_the_universe() {
     let whole = Frame::new([-1.0; 3], 2.0, 5).unwrap();
     let measures = measure(&solid, &whole, 1e-12, &control).unwrap();
     assert_eq!((measures.clipped, measures.splits, measures.stop_reason), (false, 0, StopReason::Tolerance));
-    // Nothing is to be had by splitting where more is asked for than rounding allows.
+    // Splits cannot reach a tolerance below rounding.
     let third = MeshSolid::new(mesh(&[cube(1.0 / 3.0)]), FillRule::NonZero).unwrap();
     let measures = measure(&third, &whole, 0.0, &control).unwrap();
     assert_eq!((measures.splits, measures.stop_reason), (0, StopReason::Exhausted));
@@ -298,7 +298,7 @@ fn placed_meshes_contain_the_exact_image() {
     let determinant = p.times(&p).plus(&q.times(&q));
     let sums = Sums::of(facets.into_iter().map(|facet| (facet, sign)));
     check("volume", measures.volume, &sums.volume.times(&determinant), &Exact::from(120.0), 1e-10);
-    // It is not nothing that is added for it.
+    // The added error is not zero.
     assert!(measures.volume.width() > 1e-13);
 }
 
@@ -416,7 +416,7 @@ fn models() {
     let pairs = bunny.intersecting_pairs(100, &Control::default()).unwrap();
     assert_eq!((pairs.count, pairs.pairs.len(), pairs.is_complete), (11, 11, true));
     assert!(matches!(moments(&bunny, FillRule::NonZero), MeshMoments::Intersecting(_)));
-    // A body inside out, which shares edges with nobody: parity says what it encloses.
+    // An inside-out body that shares no edges. Parity defines the enclosed set.
     let multibody = model_mesh("multibody.stl").unwrap();
     assert_eq!(moments(&multibody, FillRule::NonZero), MeshMoments::Open);
     let volume = known(&multibody, FillRule::EvenOdd).volume;

@@ -149,7 +149,7 @@ fn the_oracle_agrees_with_integers_and_with_itself() {
             }
         }
     }
-    // A rectangle over whose corner the point stands: atan(ab / (h·√(a² + b² + h²))).
+    // A rectangle with the point above its corner: atan(ab / (h·√(a² + b² + h²))).
     for (a, b, h) in [(1.0f64, 2.0f64, 0.5f64), (3.0, 0.1, 1e-6), (1e-3, 1e-3, 4.0), (7.0, 5.0, -3.0)] {
         let mut plate =
             Soupy::new(&vec![[[0.0; 3], [a, 0.0, 0.0], [a, b, 0.0]], [[0.0; 3], [a, b, 0.0], [0.0, b, 0.0]]]);
@@ -236,7 +236,7 @@ fn the_checks_see_lies() {
         let is_seen = each().any(|(i, fill)| !findings_of(lie, i, fill).faults.is_empty());
         assert!(is_seen, "{lie:?} was not seen");
     }
-    // Who decides too little tells no lie, but is seen.
+    // A solid that decides too little tells no lie, but the checks notice it.
     let coward = findings(Lie::Coward);
     assert!(coward.faults.is_empty() && coward.left_open * 100 > coward.decidable, "{coward:?}");
 }
@@ -293,7 +293,7 @@ fn damaged_shapes(fill: FillRule) {
     let effort = Effort { points: 250, centres: 160, corners: 40, shares: 50 };
     let (variants, total) = damage_all(2, 0, 0, Some((fill, repeated(8, 1))), effort);
     assert!(variants > repeated(16, 130));
-    // Most of what no triangle meets is decided, though many of these soups are nothing but holes.
+    // Most cells that no triangle meets are decided, though many of these soups consist of holes.
     assert!(total.clear_open * 5 < total.clear);
     total.judge();
 }
@@ -398,8 +398,8 @@ fn holes_and_meshes_outside_of_the_universe() {
         ("sheet", sheet(centre, 24.0, 1.5, 0)),
     ];
     let frames = [
-        // Parts of it, by the faces, an edge and a corner; a cube within; one beside; one that sees it from
-        // afar; and one in which it is a speck.
+        // Universes that cut it by faces, an edge and a corner; a cube inside; one beside; one far away; and
+        // one in which it is tiny.
         ([16.1, 0.0, 0.0], 32.0),
         ([0.0, 0.0, 16.05], 32.0),
         ([-16.0, -16.1, 0.0], 32.3),
@@ -581,7 +581,8 @@ fn what_is_undecided_halves_with_every_level() {
             assert!((0.4..0.6).contains(&ratio), "{name}: {ratio}, {open:?}");
         }
         println!("{name}: {:?}", open[4..].windows(2).map(|pair| pair[1] / pair[0]).collect::<Vec<_>>());
-        // Neither more of it than a layer of cells on the surface and on membranes no larger than it.
+        // The undecided volume is at most one layer of cells on the surface and on membranes no larger than
+        // the surface.
         let area: f64 = soup.iter().map(area).sum();
         let layer = open[7] / (area * frame.cell_size());
         assert!((1.0..4.5).contains(&layer), "{name}: a layer of {layer} cells");

@@ -106,7 +106,7 @@ impl Oracle {
             approximate,
             size,
         };
-        // A triangle without area bounds nothing: the solid is the same with and without it.
+        // A triangle without area bounds nothing. The solid is the same with and without it.
         let proper = oracle.triangles.iter().copied().filter(|&t| !oracle.is_flat(t)).collect();
         oracle.triangles = proper;
         oracle

@@ -217,7 +217,7 @@ fn nested_voids_and_several_solids() {
 
 #[test]
 fn voids_may_touch_their_shell() {
-    // The void's first vertices lie in the outer shell's faces and edges, its last ones within.
+    // The void's first vertices lie in the outer shell's faces and edges, its last ones inside.
     let pyramid = |apex: [f64; 3]| {
         let vertices = vec![[0.0, 4.0, 0.0], [8.0, 4.0, 0.0], [8.0, 4.0, 8.0], [0.0, 4.0, 8.0], apex];
         let faces = [vec![3, 2, 1, 0], vec![0, 1, 4], vec![1, 2, 4], vec![2, 3, 4], vec![3, 0, 4]];
@@ -477,10 +477,10 @@ fn tolerance() {
     let polyhedron = Polyhedron::with_tolerance(&arrays.view(), 1.2e-8).unwrap();
     assert_eq!(polyhedron.deviation(), deviation);
     polyhedron.mesh().check_closed(FillRule::NonZero).unwrap();
-    // Half of it is within the tolerance that is a fraction of the extent.
+    // Half of it is within the tolerance, a fraction of the extent.
     vertices[1][2] = 1.0 + 1.9e-8;
     Arrays::solid(&[(vertices, faces)]).made();
-    // None at all, for coordinates that allow it.
+    // Coordinates that allow exact planes have no deviation at all.
     let exact = Arrays::solid(&[block([0.0; 3], [10.0, 10.0, 1.0])]);
     Polyhedron::with_tolerance(&exact.view(), 0.0).unwrap();
     for bad in [-1e-300, f64::NAN, f64::NEG_INFINITY] {
@@ -540,7 +540,7 @@ fn wrong_corners_and_edges() {
     assert_eq!(damaged(&|a| a.corners[5] = 16), Vertex { corner: 5, vertex: 16, vertices: 16 });
     assert_eq!(damaged(&|a| a.corners[1] = 6), NoLength { face: 0, from: 6, to: 6 });
     assert_eq!(damaged(&|a| a.vertices[12] = a.vertices[14]), NoLength { face: 0, from: 14, to: 12 });
-    // The first loop cut in two: of two corners each, and of three and one.
+    // The first loop is cut in two: of two corners each, and of three and one.
     assert_eq!(
         damaged(&|a| {
             a.loops.insert(1, 2);
@@ -557,7 +557,7 @@ fn wrong_corners_and_edges() {
     );
     // A face left out: its edges are open, the first of them in the order of the faces.
     assert_eq!(damaged(&|a| cut(a, 9)), Open { shell: 0, face: 0, from: 8, to: 14 });
-    // One side turned over.
+    // One side is inverted.
     let side = damaged(&|a| a.corners[16..20].reverse());
     assert_eq!(side, Unoriented { shell: 0, face: 0, other: 2, from: 2, to: 0 });
     // A side twice.
@@ -597,7 +597,7 @@ fn wrong_faces() {
     use PolyhedronError::*;
     let of = |polygon: &[Vec<[f64; 2]>]| Arrays::solid(&[prism(polygon, [0.0, 2.0], upright)]).refused();
     let outer = rectangle([0.0, 0.0], [8.0, 8.0]);
-    // The bottom runs backwards: its edges end where those of the polygon begin.
+    // The bottom runs backwards. Its edges end where those of the polygon begin.
     let crossed = of(&[vec![[0.0, 0.0], [8.0, 0.0], [0.0, 8.0], [7.0, 9.0]]]);
     assert!(matches!(crossed, Crossing { face: 0, .. }), "{crossed:?}");
     let touching = of(&[vec![[0.0, 0.0], [8.0, 0.0], [8.0, 8.0], [4.0, 0.0], [0.0, 8.0]]]);
@@ -639,7 +639,7 @@ fn wrong_shells() {
     let ring = prism(&shape, [0.0, 9.0], upright);
     let arrays = Arrays::solid(&[ring.clone(), void(block([3.0; 3], [2.0; 3]))]);
     assert_eq!(arrays.refused(), VoidOutside { shell: 1 });
-    // Nowhere but on the surface: whether such a void lies within is not decided, and it is let through.
+    // The void lies only on the surface. Whether it is inside is not decided, and it is accepted.
     Arrays::solid(&[block([0.0; 3], [8.0; 3]), void(block([0.0; 3], [8.0; 3]))]).made();
 }
 

@@ -71,11 +71,11 @@ fn known_meshes() {
     // The two triangles that meet in a corner only: two loops, not one in the shape of an eight.
     let corner = [&a[1..6], &a[7..]].concat();
     assert_eq!(counts(&mesh(&[corner])), [6, 2, 0, 0, 0, 0, 0, 1, 1, 0]);
-    // One facet turned over.
+    // One facet inverted.
     let mut one = a.clone();
     one[0].swap(0, 1);
     assert_eq!(counts(&mesh(&[one])), [0, 0, 3, 0, 0, 0, 0, 1, 1, 0]);
-    // One facet twice, thrice, and once more from the other side.
+    // One facet twice, three times, and once more with reversed orientation.
     let again = |facets: &[[[f64; 3]; 3]]| counts(&mesh(&[a.clone(), facets.to_vec()]));
     assert_eq!(again(&a[..1]), [3, 1, 0, 3, 1, 0, 0, 1, 1, 0]);
     assert_eq!(again(&[a[0], a[0]]), [0, 0, 3, 3, 2, 0, 0, 1, 1, 0]);
@@ -148,7 +148,7 @@ fn bodies_that_overlap() {
     // A peg that fits into a cavity exactly: to tell needs more than signs.
     let peg = block([-1.0, -1.0, -0.5], [1.0, 1.0, 0.5]);
     assert_eq!(overlapping(&[two.clone(), turned(&one), peg]), [0, 2]);
-    // Of an open body nothing is said.
+    // Open bodies are not examined for overlaps.
     assert_eq!(overlapping(&[two[1..].to_vec(), one.clone()]), [0, 0]);
     // Far away, where coordinates are rounded.
     let far = |facets: &[[[f64; 3]; 3]]| -> Vec<[[f64; 3]; 3]> {
@@ -284,7 +284,7 @@ fn faces_that_are_not_flat() {
         let mesh = read_obj(text.as_bytes()).unwrap();
         let report = mesh.report().unwrap();
         assert_eq!(mesh.clone().sewn().unwrap().report().unwrap().polygons, report.polygons);
-        // What is moved is another surface, of triangles.
+        // A moved mesh is another surface, of triangles.
         assert_eq!(mesh.transformed(|p| p).unwrap().report().unwrap().polygons, 0);
         (report.polygons, report.bent_polygons, report.polygon_deviation)
     };
@@ -307,7 +307,7 @@ fn the_order_of_questions_does_not_matter() {
     assert!(second.check_closed(leafless::FillRule::NonZero).is_err());
     assert_eq!(second.report().unwrap(), report);
     assert_eq!(second.clone().report().unwrap(), report);
-    // What is made of a mesh is looked at anew.
+    // A mesh made from another mesh is examined anew.
     let closed = second.transformed(|[x, y, z]| [x, y, 3.0 * f64::from(z >= 3.0)]).unwrap();
     assert_ne!(closed.report().unwrap(), report);
 }
@@ -316,7 +316,7 @@ fn the_order_of_questions_does_not_matter() {
 fn known_places() {
     let a = cube([0.0; 3]);
     let mut far = cube([10.0, 20.0, 30.0]);
-    // A hole of one triangle, one of two, and a facet turned over elsewhere.
+    // A hole of one triangle, one of two, and an inverted facet elsewhere.
     far.remove(0);
     let holed = [&a[..4], &a[6..]].concat();
     let mut odd = cube([50.0; 3]);
@@ -488,7 +488,7 @@ fn random_soups_agree_with_the_definitions() {
         let mesh = TriangleMesh::from_facets(&facets).unwrap();
         let (mut expected, mut others) = slow(&mesh);
         let defects = mesh.defects(usize::MAX).unwrap();
-        // Holes: each is a closed walk, and together they have all open edges.
+        // Each hole is a closed walk, and together the holes contain all open edges.
         let loops: Vec<_> = defects.iter().filter(|d| d.kind == DefectKind::Hole).collect();
         assert!(loops.iter().all(|hole| hole.count >= 3));
         assert_eq!(loops.iter().map(|hole| hole.count).sum::<u64>(), expected[0]);
@@ -536,7 +536,7 @@ fn a_real_file_with_holes() {
     let holes = mesh.defects(5).unwrap();
     assert!(holes.iter().all(|hole| hole.kind == DefectKind::Hole));
     assert_eq!(holes.iter().map(|hole| hole.count).sum::<u64>(), 223);
-    // The four large ones lie in the base.
+    // The four large holes lie in the base.
     let high: Vec<bool> = holes.iter().map(|hole| hole.bounds.1[1] > 0.04).collect();
     assert_eq!(high, [false, false, false, false, true]);
 }
@@ -552,7 +552,7 @@ fn real_files() {
         ("fandisk.obj", [0, 0, 0, 0, 0, 0, 0, 1, 0, 0]),
         ("rocker-arm.obj", [0, 0, 0, 0, 0, 0, 0, 1, 0, 0]),
         ("spot.obj", [0, 0, 0, 0, 0, 0, 0, 1, 0, 0]),
-        // Bodies that touch each other in edges, and none that is open.
+        // Bodies that touch each other in edges, all closed.
         ("cycloidal.ply", [0, 0, 0, 242, 0, 0, 0, 112, 0, 0]),
     ];
     for (name, expected) in known {

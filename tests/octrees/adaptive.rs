@@ -128,7 +128,7 @@ fn expressions_of_meshes_and_half_spaces_end_where_both_are_known() {
     let frame = Frame::new([-0.77; 3], 2.7, 14).unwrap();
     let adaptive = Adaptive::new(part, 1e-3).unwrap();
     let tree = build(&adaptive, &frame, Rule::Certified, &alone()).unwrap();
-    // Nothing that is faster than splitting gets past the tolerance.
+    // Shortcuts for faster builds respect the tolerance, too.
     assert_eq!(build(&SplitCounter::new(adaptive), &frame, Rule::Certified, &alone()).unwrap(), tree);
     // The curves where the mesh meets the ball take some ten thousand cells by verdicts.
     let finest = |tree: &Octree| tree.statistics().levels()[14].partial;

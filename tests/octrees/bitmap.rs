@@ -42,7 +42,7 @@ fn check(tree: &Octree, dense: &Dense, level: u8, min: [u32; 3], max: [u32; 3], 
             }
         }
     }
-    // Nothing stands beyond the rows.
+    // Bits beyond the rows are zero.
     let count = |plane: &[u64]| plane.iter().map(|word| word.count_ones()).sum::<u32>();
     assert_eq!([count(&inner), count(&outer)], bits);
 }

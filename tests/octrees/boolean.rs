@@ -317,7 +317,7 @@ fn threads_agree(rule: Rule) {
             same(&one, &op(a.view(), b.view(), &Control::threads(threads)).unwrap());
         }
         same(&one, &op(a.view(), coded.view(), &Control::threads(2)).unwrap());
-        // Too many cells for a dense array; points of both, of one and of none.
+        // Too many cells for a dense array. The points lie in both operands, in one, and in none.
         let mut random = Random(7);
         for _ in 0..200_000 {
             let at = [0; 3].map(|_| random.below(2048) as u32);

@@ -42,7 +42,7 @@ fn assert_exact(definition: Definition, frame: &Frame) {
         Tag::Partial if definition.sampled(frame, at) => Tag::Full,
         Tag::Partial => Tag::Empty,
         tag => {
-            // The shift never leads out of a cell that lies inside, nor into one that does not.
+            // The shift never leads out of an inside cell, nor into an outside cell.
             assert_eq!(definition.sampled(frame, at), tag == Tag::Full);
             tag
         }
@@ -118,7 +118,7 @@ fn replay(worker: &mut impl Worker, cell: Cell) -> Tag {
             let again = worker.split(above(level), &part).unwrap();
             assert!(a.iter().zip(&again).all(|(a, b)| a.tag() == b.tag()), "asked without the way");
         }
-        // Either answer's part must do, whatever was asked in between.
+        // The parts of both answers must be valid, whatever was split in between.
         a.swap(octant as usize, 0);
         b.swap(octant as usize, 0);
         let [a, ..] = a;
@@ -147,7 +147,7 @@ fn laws<S: Solid>(solid: &S, frame: &Frame, truth: &Dense) {
             used.release(0);
         }
     }
-    // Parts mean the same in the memory of another thread's worker, and there among others.
+    // Parts keep their meaning in the memory of another thread's worker, and among other parts there.
     let mut here = fresh();
     if let Verdict::Partial(part) = here.root().unwrap() {
         let children = here.split(Cell::ROOT, &part).unwrap();
@@ -267,7 +267,8 @@ fn planes_through_the_lattice() {
             let [o, _, _] = frame.origin();
             let level = Frame::new([o; 3], frame.edge(), depth).unwrap();
             let cell = level.cell_size();
-            // Through the diagonals: every cell beside the diagonal is decided, those on it are cut.
+            // Planes through the diagonals. Every cell beside the diagonal is decided, and cells on it are
+            // cut.
             for normal in [[1.0, -1.0, 0.0], [-1.0, 1.0, 0.0], [0.0, 0.3, -0.3], [-2.5, 0.0, 2.5]] {
                 assert_exact(Definition::HalfSpace { normal, offset: 0.0 }, &level);
             }
@@ -369,7 +370,7 @@ fn numbers_of_extreme_size() {
 
 #[test]
 fn origins_smaller_than_anything_else_are_refused() {
-    // Products of what lies below 2^-256 would underflow, and with them a sign.
+    // Products of numbers below 2^-256 would underflow, and lose their sign.
     for small in [1e-300, -1e-300, f64::MIN_POSITIVE, 5e-324, 2f64.powi(-256).next_down()] {
         for axis in 0..3 {
             let mut origin = [0.0; 3];
@@ -406,7 +407,8 @@ fn rules_are_nested() {
 
 #[test]
 fn deeper_trees_only_refine() {
-    // Cells of these shapes are decided as soon as they can be: cut at a level, a deeper tree says the same.
+    // Cells of these shapes are decided as early as possible. A deeper tree cut at a level is the tree of
+    // that level.
     let frame = Frame::new([0.1, 0.2, -0.3], 0.77, 8).unwrap();
     let shapes = [
         shape(Definition::Ball { centre: [0.45, 0.55, 0.1], radius: 0.31 }),
@@ -803,7 +805,7 @@ proptest! {
 
     #[test]
     fn callbacks_give_what_they_say(shape in shapes(1..=4), origin in -3..3i32) {
-        // A callback that knows only boxes in model units, over a random solid.
+        // A callback that provides only verdicts on boxes in model units, for a random solid.
         let dense = shape.dense();
         let n = dense.depth;
         let frame = Frame::new([origin as f64 * 0.5; 3], 2.0, n).unwrap();
@@ -842,7 +844,7 @@ fn callbacks_see_boxes_that_contain_their_cells() {
         build(&callback, &frame, Rule::Certified, &alone()).unwrap();
         let boxes = boxes.into_inner().unwrap();
         assert_eq!(boxes.len(), 1 + 8 + 64 + 512 + 4096);
-        // The boxes of the finest cells are those that contain the cells' exact planes and nothing more.
+        // The boxes of the finest cells contain the cells' exact planes, and nothing more.
         let (min, max) = boxes[0];
         for axis in 0..3 {
             let below = |x: f64, k: u32| Exact::from(x).minus(&Exact::plane(&frame, axis, k)).sign();
@@ -998,7 +1000,7 @@ fn progress_rises_to_one() {
         let frame = Frame::new([0.1, 0.2, -0.3], 0.77, depth).unwrap();
         let solids = [
             shape(Definition::Ball { centre: [0.45, 0.55, 0.1], radius: 0.31 }),
-            // All of the universe, none of it, one corner.
+            // All of the universe, nothing, and one corner.
             shape(Definition::Ball { centre: [0.45, 0.55, 0.1], radius: 31.0 }),
             shape(Definition::Ball { centre: [9.0, 0.55, 0.1], radius: 1.0 }),
             shape(Definition::HalfSpace { normal: [-1.0, -1.0, -1.0], offset: 0.1 }),

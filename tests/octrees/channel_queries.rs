@@ -111,7 +111,7 @@ proptest! {
         for threads in [1, 3] {
             let shallow = solid.frame().with_depth(2).unwrap();
             let built = build(&within, &shallow, Rule::Certified, &Control::threads(threads)).unwrap();
-            // What changes below is PARTIAL, also if all of it belongs.
+            // Cells that change below are PARTIAL, even if all of their parts belong to the region.
             for (found, expected) in Dense::of(built.view()).tags.iter().zip(expected.cut(2).tags) {
                 prop_assert!(*found == expected || *found == Tag::Partial);
             }

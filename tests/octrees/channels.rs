@@ -31,7 +31,7 @@ proptest! {
         let channel = values.channel(5, kind, None, 1);
         prop_assert_eq!(Values::of(&channel), values.clone());
         prop_assert_eq!(&channel, &values.channel(5, kind, None, 3));
-        // One value a run of equal ones: never more than cells that have one.
+        // One value for each run of equal values: never more values than cells that have one.
         let valued = values.cells.iter().flatten().count() as u64;
         prop_assert!(channel.value_count() <= valued);
         prop_assert_eq!(channel.value_count() == 0, valued == 0);
@@ -51,7 +51,7 @@ proptest! {
                 prop_assert_eq!(found, values.at(at));
             }
         }
-        // Where nobody looks, nothing is stored that need not be.
+        // Cells that no query needs store no unnecessary values.
         prop_assert!(channel.value_count() <= values.channel(depth, kind, None, 1).value_count());
     }
 
@@ -125,8 +125,7 @@ proptest! {
     ) {
         let n = f64::from(1u32 << values.depth);
         let channel = values.channel(values.depth, kind, None, 1);
-        // From the moved cube back: axis i of the image is axis axes[i] of the point, turned about if
-        // flipped.
+        // From the moved cube back: axis i of the image is axis axes[i] of the point, reversed if flipped.
         let mut rows = [[0.0; 4]; 3];
         for i in 0..3 {
             let flipped = flips >> i & 1 != 0;
@@ -253,7 +252,7 @@ fn what_is_no_value_is_refused() {
     assert_eq!(integer(u32::MAX.into(), ScalarType::U32).unwrap(), f64::from(u32::MAX));
     assert!(integer(-0.0, ScalarType::F32).unwrap().is_sign_positive());
     assert!(ValueType::new(ScalarType::U8, 0).is_err() && ValueType::new(ScalarType::U8, 5).is_err());
-    // What a value has beyond its components does not count.
+    // Numbers beyond a value's components do not count.
     assert_eq!(fill([1.0, f64::NAN, 7.0, 9.0], scalar(ScalarType::F32)).unwrap(), [1.0, 0.0, 0.0, 0.0]);
     let components = ConstantAttribute::new(&[1.0, 2.0]).unwrap();
     let options = FillOptions { value_type: scalar(ScalarType::U8), frame, solid: None, detail: None };
@@ -395,8 +394,8 @@ proptest! {
         let in_place = leafless::file::from_static(&bytemuck_bytes(statics)[..bytes.len()]).unwrap();
         assert_same(&octree, &in_place);
 
-        // One changed byte: refused, or what is read in place is safe, ends, and says the same of each point
-        // however it is asked.
+        // One changed byte: the file is refused, or reading in place is safe, ends, and gives the same answer
+        // for each point in every way.
         let mut bad = bytes.clone();
         let at = seed as usize % bad.len();
         bad[at] ^= 1 << (seed >> 24 & 7);
@@ -526,7 +525,7 @@ fn thousands_of_records_of_channels_are_refused() {
     assert!(leafless::file::from_bytes(crowd).is_err());
     let octree = with_channels(2, &[]);
     let bytes = leafless::file::to_bytes(&octree).unwrap();
-    // Records of nothing but a type behind the file, where its objects are now.
+    // Records with nothing but a type, at the end of the file, where its objects are now.
     let (count, old) = (4096usize, section(&bytes, 0, 1));
     let mut many = bytes.clone();
     many.resize(bytes.len().next_multiple_of(64), 0);

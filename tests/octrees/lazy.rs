@@ -151,7 +151,7 @@ impl Worker for Cells<'_> {
     }
 }
 
-// ---- what should come out -------------------------------------------------------------------------------
+// ---- expected results -----------------------------------------------------------------------------------
 
 /// A model of a lazy octree that remembers only which cells were split.
 struct Model<'a> {
@@ -409,7 +409,7 @@ proptest! {
                         let tag = tags[octant as usize];
                         assert!(tag == expected || tag == Tag::Branch && expected == Tag::Partial);
                     }
-                    // Again, it costs nothing.
+                    // A second split costs nothing.
                     let again = lazy.split(cell).unwrap();
                     assert_eq!(again, tags);
                     assert_eq!(lazy.splits() - before, opens as u64);
@@ -453,7 +453,7 @@ proptest! {
         model.refine_all(&Zone::Whole, depth);
         compare(&lazy, &model);
         assert_eq!(lazy.freeze(&alone()).unwrap(), dense.octree());
-        // What is left are cells that differ, at most eight to a block, and the universe's own block.
+        // The remaining nodes are cells that differ, at most eight to a block, and the universe's own block.
         let nodes = lazy.statistics().nodes();
         assert!(lazy.bytes() <= 64 * (nodes + 1));
     }
@@ -532,7 +532,7 @@ fn a_full_refinement_is_the_build_bit_for_bit() {
             assert_eq!(bytes(&frozen), bytes(&built), "solid {i}, depth {depth}");
             assert_eq!(frozen.view().exterior(), built.view().exterior());
             assert_eq!(bytes(&lazy.freeze(&Control::threads(2)).unwrap()), bytes(&built));
-            // In one go nothing is asked twice.
+            // In a single pass nothing is queried twice.
             assert_eq!(lazy.replays(), 0);
 
             // By and by, in an order that has to go back.
@@ -695,7 +695,7 @@ fn only_cells_that_matter_are_asked_about() {
     let taken = || std::mem::take(&mut *asked.lock().unwrap());
     assert_eq!(taken().len(), 1);
 
-    // A point: one cell a level, whose children are asked about.
+    // A point: one cell at each level is split, and its children are queried.
     let point = [0.5, 0.8, 0.76];
     lazy.refine(&Zone::Point(point), 10, &alone()).unwrap();
     let boxes = taken();
@@ -705,7 +705,7 @@ fn only_cells_that_matter_are_asked_about() {
         let (low, high) = (siblings[0].0, siblings[7].1);
         assert!((0..3).all(|axis| low[axis] <= point[axis] && point[axis] <= high[axis]));
     }
-    // Again: nothing.
+    // A repeated call costs nothing.
     let splits = lazy.splits();
     lazy.refine(&Zone::Point(point), 10, &alone()).unwrap();
     assert!(taken().is_empty() && lazy.splits() == splits);
@@ -720,7 +720,7 @@ fn only_cells_that_matter_are_asked_about() {
         let (low, high) = (siblings[0].0, siblings[7].1);
         assert!((0..3).all(|axis| low[axis] < max[axis] && min[axis] < high[axis]));
     }
-    // Only the splits on the way are asked for anew.
+    // Only the splits on the way are computed anew.
     assert!(replays <= 3, "{replays}");
 
     // Cell by cell along a line: neighbours share their ancestors.
@@ -762,7 +762,7 @@ fn a_cell_that_nobody_can_split_is_asked_about_once() {
 
 #[test]
 fn merged_cells_give_their_memory_back() {
-    // Nothing is there, but only the finest cells know it.
+    // The solid is empty, but only the finest cells show it.
     let nothing = || {
         Callback::new(|min: [f64; 3], max: [f64; 3]| {
             Ok(if max[0] - min[0] < 1.5 / 64.0 { Verdict::Empty } else { Verdict::Partial(()) })
@@ -778,11 +778,10 @@ fn merged_cells_give_their_memory_back() {
     }
     assert_eq!((lazy.tag(Cell::ROOT), lazy.splits()), (Tag::Empty, (1 << 18) / 7));
     assert_eq!(lazy.statistics().nodes(), 0);
-    // The universe's block; the blocks on the way to what is not merged yet: up to 64 of level 3 and 8 of
-    // level 2.
+    // The universe's block, and the blocks on the way to unmerged cells: up to 64 of level 3 and 8 of level 2.
     assert_eq!(lazy.bytes(), 64);
     assert!(most <= 64 * (4 + 8 + 1), "{most}");
-    // In one go only those on the way are there.
+    // In a single pass only the blocks on the way exist.
     let mut lazy = LazyOctree::new(nothing(), &unit_frame(6)).unwrap();
     let control = Control { max_bytes: Some(64 * 8), ..alone() };
     for _ in 0..3 {
@@ -838,7 +837,7 @@ fn what_depends_on_the_cell_alone_is_never_replayed() {
     // A solid that has to replay splits comes to the same.
     assert!(replayed.replays() > 0);
     assert_eq!(bytes(&lazy.freeze(&alone()).unwrap()), bytes(&replayed.freeze(&alone()).unwrap()));
-    // So it is cell by cell, in any order.
+    // The same result cell by cell, in any order.
     let mut lazy = LazyOctree::new(Plain::ball([0.5; 3], 0.4).unwrap(), &unit_frame(5)).unwrap();
     let mut open = vec![Cell::ROOT];
     while !open.is_empty() {
@@ -868,11 +867,11 @@ fn evaluations_are_counted_by_the_expression() {
         assert!(lazy.replays() > 0);
         let asked = lazy.splits() + lazy.replays();
         assert_eq!(counted.splits().iter().sum::<u64>() - splits, asked);
-        // They are known once the octree and its worker are gone.
+        // The counts are known once the octree and its worker are dropped.
         drop(lazy);
-        // A cell that is split has a half-space that is open there, and eight children.
+        // A split cell has an open half-space and eight children.
         assert!(solid.evaluations() - last >= asked, "{} {last} {asked}", solid.evaluations());
-        // Each time it is the same work, and the clone counts with it.
+        // The work is the same each time, and the clone shares the counter.
         let more = solid.evaluations() - last;
         assert_eq!(*each.get_or_insert(more), more);
         last += more;
@@ -919,7 +918,7 @@ fn limits_stop_the_work_and_lose_nothing() {
             assert_eq!(lazy.splits(), direct.splits());
             assert_eq!(lazy.freeze(&alone()).unwrap(), expected);
         }
-        // No more is held than allowed.
+        // The octree holds no more than the limit.
         for limit in [0, 1, 10, 50] {
             let mut lazy = LazyOctree::new(solid.clone(), &frame).unwrap();
             let control = Control { max_nodes: Some(limit), ..alone() };

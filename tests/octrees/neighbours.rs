@@ -161,7 +161,7 @@ fn assert_cells(tree: &OctreeRef<'_>, dense: &Dense, wanted: &Wanted) {
         }
     }
     assert_eq!(found, expected);
-    // From any cell, also such as are parts of leaves.
+    // Start from any cell, including parts of leaves.
     let finest = positions(depth).step_by(11).map(|at| Cell { level: depth, at });
     let starts = all.iter().map(|found| found.cell).step_by(1 + all.len() / 60).chain(finest.take(60));
     for start in starts {

@@ -39,7 +39,8 @@ impl Random {
     }
 
     fn rule(&mut self) -> Rule {
-        // Mostly the one that loses nothing: of many operations little else would be left.
+        // Mostly the rule that loses nothing. After many operations with other rules little would remain
+        // proven.
         RULES[self.below(10).saturating_sub(6) as usize]
     }
 
@@ -445,7 +446,7 @@ fn a_lie_is_seen() {
                 let lying = tree.with_proof(lie);
                 let honest = tree.proof().and(lie) == lie;
                 assert_eq!(lies(&lying, lying.proof(), source, 1) == 0, honest, "{rule:?} as {lie:?}");
-                // Whatever takes the lie over lies, too, and what takes none does not.
+                // Operations that carry a lie over lie, too; operations that carry none do not.
                 let inverse = complement(lying.view(), &CONTROL).unwrap();
                 let inverted = source.clone().negated();
                 assert_eq!(lies(&inverse, inverse.proof(), &inverted, 1) == 0, honest);
@@ -529,7 +530,7 @@ fn cracked(by: f64) -> TriangleMesh {
 
 #[test]
 fn displacements() {
-    // Of a mesh whose cracks were sewn.
+    // The displacement of a mesh with sewn cracks.
     let mesh = cracked(1e-9).sewn().unwrap();
     let moved = mesh.displacement();
     assert!(moved > 0.0 && moved < 1e-8, "{moved}");
@@ -565,7 +566,7 @@ fn displacements() {
         assert_eq!(build(&csg, &frame(4), Rule::Certified, &CONTROL).unwrap().proof().displacement(), moved);
     }
 
-    // Placements scale it, and never make it less than it is.
+    // Placements scale it, and never make it smaller than it is.
     for scale in [0.125, 1.0, 3.0] {
         for placed in [
             build(

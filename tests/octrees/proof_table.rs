@@ -306,7 +306,7 @@ const WAYS: &[Way] = &[
         proven: SAME,
     },
     Way {
-        // Of the values of the channel, whatever they were filled in by.
+        // The cells of the channel's values, whatever filled them.
         name: "the cells of a channel's values",
         through: &["attribute/value_region.rs region"],
         make: |a| {
@@ -696,7 +696,7 @@ const WAYS: &[Way] = &[
         proven: SAME,
     },
     Way {
-        // The fingerprint is that of the cells, which do not say what they prove.
+        // The fingerprint is that of the cells, which do not contain the proof.
         name: "resumed from what says that it is certified",
         through: &["op/lazy/mod.rs resume"],
         make: |a| {
@@ -709,9 +709,9 @@ const WAYS: &[Way] = &[
         },
         proven: SAME,
     },
-    // ---- what is a solid of its own
+    // ---- solids of their own
     Way {
-        // A function answers for itself, whatever it looks at.
+        // A function defines its own solid, whatever it reads.
         name: "function of a host",
         through: &["Callback", "solid/callback/mod.rs new", "solid/callback/mod.rs with_bounds"],
         make: |_| {
@@ -1017,7 +1017,7 @@ fn lies(made: &Made) -> [usize; 2] {
 #[test]
 fn what_comes_out_is_what_the_table_says_and_true() {
     let given = RULES.map(Given::new);
-    // Bits that would be lies if they were claimed.
+    // Number of unproven bits whose claim would be a lie.
     let mut seen = 0;
     for way in WAYS {
         for (given, expected) in given.iter().zip(way.proven) {
@@ -1050,7 +1050,7 @@ fn what_comes_out_is_what_the_table_says_and_true() {
             }
         }
     }
-    // Most of what is not claimed would be a lie: of what is claimed, lies would be seen, too.
+    // Most unproven bits would be lies. Hence a false claim would be noticed, too.
     assert!(seen > WAYS.len(), "{seen} of {} ways", WAYS.len());
 }
 
@@ -1171,7 +1171,7 @@ fn matching(text: &str) -> usize {
 fn the_table_is_complete() {
     let mut found = vec![];
     sources(&Path::new(env!("CARGO_MANIFEST_DIR")).join("src"), &mut found);
-    // The interface in C calls what is in the table.
+    // The C interface calls the functions in the table.
     let types = solid_types(&found);
     assert!(types.len() >= 16 && types.contains("VoxelSolid") && types.contains("&S"), "{types:?}");
     let through: BTreeSet<&str> = WAYS.iter().flat_map(|way| way.through.iter().copied()).collect();
@@ -1190,7 +1190,7 @@ fn the_table_is_complete() {
             "{maker} returns a solid: which bits does it prove? Add a row"
         );
     }
-    // Nothing is named that is not there.
+    // Every name in the table exists.
     for name in through.iter().filter(|name| name.contains(' ') && !name.contains('\'')) {
         assert!(makers.contains(*name), "{name} is in the table, and in no source");
     }

@@ -314,7 +314,7 @@ proptest! {
         let cells = trees[0].view().open_cells(level).unwrap();
         trees.extend(cells.iter().map(|&cell| cut(Shard::Below(cell))));
         prop_assert!(bytes(&joined(&trees)) == bytes(&whole));
-        // Without one of them nothing is known of its cell, and no more.
+        // Without one of the shards, its cell is unknown, and nothing else changes.
         if let Some(&cell) = cells.get(random.below(cells.len().max(1) as u64) as usize) {
             let place = cells.iter().position(|&other| other == cell).unwrap();
             trees.remove(1 + place);
@@ -355,7 +355,7 @@ fn what_is_refused() {
     let views = [*tree.view(), *other.view()];
     assert!(matches!(join(&views, &alone()), Err(Error::Argument { name: "trees", .. })));
     assert!(matches!(join(&[], &alone()), Err(Error::Argument { name: "trees", .. })));
-    // One decides a cell at once, of which the other decides parts otherwise.
+    // One tree decides a cell as a whole, and the other decides parts of the cell differently.
     let octant = build(&Csg::cuboid([0.0; 3], [0.5; 3]).unwrap(), &frame, Rule::Certified, &alone()).unwrap();
     let parts = build(&Csg::ball([0.25; 3], 0.2).unwrap(), &frame, Rule::Certified, &alone()).unwrap();
     let beside = build(&Csg::ball([0.75; 3], 0.2).unwrap(), &frame, Rule::Certified, &alone()).unwrap();
@@ -365,8 +365,7 @@ fn what_is_refused() {
     }
     let coarse = build(&part(), &unit(3), Rule::Certified, &alone()).unwrap();
     assert!(matches!(join(&[*tree.view(), *coarse.view()], &alone()), Err(Error::FrameMismatch { .. })));
-    // Of one solid by two rules something is known together that neither knows alone, or they contradict each
-    // other.
+    // Two rules of one solid: together they know more than each of them alone, or they contradict each other.
     let [inner, outer] =
         [Rule::Inner, Rule::Outer].map(|rule| build(&part(), &frame, rule, &alone()).unwrap());
     assert!(join(&[*inner.view(), *outer.view()], &alone()).is_err());
@@ -428,7 +427,7 @@ fn what_is_refused() {
     for at in 0..good.len() {
         let mut bad = good;
         bad[at] ^= 0x80;
-        // Whatever it is taken for can be told.
+        // Any accepted sum can be evaluated.
         if let Ok(sum) = MassSum::from_bytes(&bad) {
             let _ = sum.properties();
         }

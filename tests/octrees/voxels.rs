@@ -540,7 +540,7 @@ proptest! {
         let placed = AnySolid::new(tree.clone()).placed(&Affine::new(rows).unwrap()).unwrap();
         let built = build(&placed, tree.frame(), Rule::Certified, &alone()).unwrap();
         prop_assert_eq!(Dense::of(built.view()), expected);
-        // Kinds and values are those of the record that a cell comes from.
+        // Kinds and values are those of the record from which a cell comes.
         for record in moved.view().iter().filter(|record| record.kind != VoxelKind::Refined) {
             let at = record.cell.at.map(|a| (a << (fine - record.cell.level)) as i32);
             let old = from(at, scale).unwrap();
@@ -551,7 +551,7 @@ proptest! {
         if offset == [0; 3] {
             prop_assert_eq!(bits(&moved), bits(&view.turned(symmetry, &alone()).unwrap()));
         }
-        // What is known of the space outside.
+        // The exterior.
         let around = dense.octree_with(Tag::Full, &alone()).unwrap();
         let records = VoxelRecords::of(around.view(), &VoxelOptions::new(), None, &alone()).unwrap();
         let moved = records.view().moved(symmetry, [1, 0, 0], &alone()).unwrap();
@@ -602,7 +602,7 @@ proptest! {
             let told = |record: Option<VoxelRecord>| record.map(|record| (record.kind, record.value));
             prop_assert_eq!(told(found), told(expected));
         }
-        // What could merge has merged.
+        // All cells that can merge have merged.
         let all: Vec<VoxelRecord> = placed.view().iter().collect();
         for eight in all.windows(8) {
             let parent = eight[0].cell.parent();
@@ -737,7 +737,7 @@ fn depth_orders_hold_for_a_thousand_views() {
         assert_eq!(sorted.len() as u64, leaves);
         assert!(sorted.iter().all(|&index| view.get(index as usize).unwrap().kind != VoxelKind::Refined));
         for (place, &back) in order.iter().enumerate() {
-            // Nothing behind in the order hides what comes before it.
+            // No later record hides an earlier one.
             for &front in &order[place + 1..] {
                 let [back, front] = [back, front].map(|index| cubes[index as usize]);
                 assert!(!hides(front, back, &from), "{from:?}: {front:?} hides {back:?}");
@@ -851,7 +851,7 @@ mod triangles {
 
     #[test]
     fn planes_that_are_no_doubles_are_met_exactly() {
-        // Lattice planes at multiples of 0.1/16: a vertex next to such a plane lies on its own side.
+        // Lattice planes at multiples of 0.1/16. A vertex next to such a plane lies on its own side.
         let frame = Frame::new([0.1; 3], 0.1, 4).unwrap();
         let codes: Vec<u64> = (0..4096).collect();
         let records =
@@ -909,7 +909,7 @@ fn adaptive_voxels_are_fewer_and_no_value_is_off() {
             records.levels().iter().map(|&level| 1u64 << (3 * (fine.frame().depth() - level))).sum()
         };
         assert_eq!((space(&adaptive), space(&fine)), (voxels, voxels));
-        // The coarse picture is poor: there values are off.
+        // The coarse picture is poor: its values are wrong in places.
         let coarse = lists.coarse.view();
         let off = fine.iter().any(|record| {
             let around = coarse.get(coarse.containing(record.cell).unwrap()).unwrap();
@@ -958,8 +958,9 @@ fn solid_parts_add_up() {
 
 #[test]
 fn equal_records_beside_each_other_cost_nothing_where_they_meet() {
-    // Four octants inside and four outside, on a lattice of 2^20 cells to an axis, moved by no lattice step.
-    // Where equal octants meet nothing is split; where the others do, the result is larger than the limit.
+    // Four octants inside and four outside, on a lattice of 2^20 cells along an axis, moved by a fraction of
+    // a cell. Where equal octants meet, nothing is split; where different octants meet, the result exceeds
+    // the limit.
     let frame = Frame::new([0.0; 3], 1.0, 20).unwrap();
     let codes: Vec<u64> = (0..8).map(|octant| octant << 57).collect();
     let records = |kinds: Vec<u8>| {
@@ -977,8 +978,8 @@ fn equal_records_beside_each_other_cost_nothing_where_they_meet() {
 
 #[test]
 fn faces_that_run_along_the_lattice_cost_nothing() {
-    // Two of eight octants, of which nothing lies beside the others, on a lattice of 2^20 cells to an axis:
-    // 2^40 finest cells lie along each face.
+    // Two of eight octants without neighbours, on a lattice of 2^20 cells along an axis. 2^40 finest cells
+    // lie along each face.
     let frame = Frame::new([-1.0, 0.5, 3.0], 4.0, 20).unwrap();
     let (codes, kinds) = (vec![0, 3 << 57], vec![VoxelKind::Inside as u8, VoxelKind::Boundary as u8]);
     let records = VoxelRecords::from_arrays(&frame, codes, vec![1; 2], kinds, 0, vec![]).unwrap();

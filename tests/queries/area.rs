@@ -108,7 +108,7 @@ fn each_budget_holds_the_truth() {
             let control = Control { max_splits: Some(budget), ..Control::default() };
             let found = surface_area(&placed, &frame(), 0.0, &control).unwrap();
             assert!(found.splits <= budget, "{name} {found:?}");
-            // (As long as a cell knows only how large it is, eight smaller ones may know less; and roundings
+            // (A cell known only by its size may have tighter bounds than its eight children, and roundings
             // add up.)
             assert!(budget < 50 || found.area.width() <= last + 1e-9, "{name} {budget} {found:?}");
             assert_ne!(found.stop_reason, StopReason::Tolerance);
@@ -121,7 +121,8 @@ fn each_budget_holds_the_truth() {
 
 #[test]
 fn widths_fall_with_the_number_of_splits() {
-    // Curved surfaces, and where they meet: with N splits by 1 / N. Plane ones are known at once.
+    // Curved surfaces and their intersections converge with 1 / N for N splits. Plane surfaces are known at
+    // once.
     for (name, solid, truth) in primitives() {
         let width = |budget: u64| {
             let control = Control { max_splits: Some(budget), ..Control::default() };
@@ -154,7 +155,7 @@ fn what_parts_have_in_common_does_not_count() {
         assert_eq!(found.stop_reason, StopReason::Tolerance);
         holds(&found, truth, name);
     }
-    // A plate with holes, of which all faces lie in planes of the lattice.
+    // A plate with holes. All of its faces lie in planes of the lattice.
     let mut plate = Csg::cuboid([-2.0, -2.0, -0.5], [2.0, 2.0, 0.5]).unwrap();
     for (x, y) in [(-1.0, -1.0), (1.0, -1.0), (0.0, 1.0)] {
         let hole = Csg::cylinder(0.5, -1.0, 1.0).unwrap();
@@ -165,7 +166,7 @@ fn what_parts_have_in_common_does_not_count() {
     let found = surface_area(&plate, &frame(), 1e-3, &Control::default()).unwrap();
     holds(&found, truth, "plate");
     assert_eq!(found.stop_reason, StopReason::Tolerance);
-    // A pocket that is as deep as the block is high: nothing is left of it.
+    // A pocket as deep as the block is high. The block is gone.
     let block = Csg::cuboid([-1.0; 3], [1.0; 3]).unwrap();
     let rest = block.difference(&Csg::cuboid([-1.0, -1.0, -1.0], [0.0, 1.0, 1.0]).unwrap()).unwrap();
     holds(
@@ -180,19 +181,19 @@ fn what_parts_have_in_common_does_not_count() {
 fn what_is_not_known_is_not_told() {
     let whole = Interval::new(0.0, f64::INFINITY).unwrap();
     let control = Control::default();
-    // A stored octree: what its surface is like is not stored.
+    // A stored octree. It does not store the shape of its surface.
     let small = Frame::new([-4.0; 3], 8.0, 5).unwrap();
     let tree = build(&Csg::ball([0.0; 3], 1.5).unwrap(), &small, Rule::Certified, &control).unwrap();
     let found = surface_area(&tree, &small, 0.01, &control).unwrap();
     assert_eq!((found.area, found.stop_reason, found.splits), (whole, StopReason::Exhausted, 0));
-    // All cells of a tree may be decided: its surface is that of the cells.
+    // All cells of a tree may be decided. Then its surface is that of the cells.
     let ell = Csg::prism(&[[0.0, 0.0], [2.0, 0.0], [2.0, 1.0], [1.0, 1.0], [1.0, 2.0], [0.0, 2.0]], 0.0, 0.5);
     let tree = build(&ell.unwrap(), &small, Rule::Certified, &control).unwrap();
     assert!(tree.view().is_binary());
     let found = surface_area(&tree, &small, 0.0, &control).unwrap();
     holds(&found, 2.0 * 3.0 + 8.0 * 0.5, "cells");
     assert!(found.area.width() < 1e-12 && found.stop_reason != StopReason::Budget, "{found:?}");
-    // A tree that is sampled proves nothing.
+    // A sampled tree proves nothing.
     let tree = build(&Csg::ball([0.0; 3], 1.5).unwrap(), &small, Rule::Sampled, &control).unwrap();
     assert_eq!(surface_area(&tree, &small, 0.01, &control).unwrap().area, whole);
     // A face of a clipped block in a plane of the lattice, and beside one.
@@ -202,7 +203,7 @@ fn what_is_not_known_is_not_told() {
         assert!(found.clipped && found.area.width() < 1e-9, "{found:?}");
         holds(&found, 64.0, "clipped");
     }
-    // Nothing, and a ball outside.
+    // The empty set, and a ball outside.
     let a = Csg::ball([0.1; 3], 1.0).unwrap();
     let far = surface_area(&Csg::ball([50.0; 3], 1.0).unwrap(), &frame(), 0.01, &control).unwrap();
     assert_eq!((far.area, far.clipped), (Interval::exactly(0.0), true));
@@ -272,7 +273,7 @@ fn faces_in_planes_of_the_lattice_are_counted_once() {
         let count = 1 + maker.below(4);
         let model = maker.joined(count);
         let Ok(csg) = model.csg(&frame) else { continue };
-        // What ends inside of the universe has its area on another lattice.
+        // A solid that ends inside the universe has its area on another lattice, too.
         let block = Csg::cuboid([-3.0, -2.5, -3.0], [3.0, 2.0, 2.75]).unwrap();
         let csg = Csg::intersection_of([csg, block]).unwrap();
         let control = Control { max_splits: Some(20_000), ..alone() };
@@ -306,12 +307,12 @@ fn faces_in_planes_of_the_lattice_are_counted_once() {
 #[test]
 fn a_surface_that_holds_faces_is_counted() {
     let frame = Frame::new([-4.0; 3], 8.0, 12).unwrap();
-    // x y > 0 in a block: two quarters, whose faces are in planes of the lattice.
+    // x y > 0 in a block: two quarters with faces in planes of the lattice.
     let pair = Csg::from(HalfSpace::quadric([0.0, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0]).unwrap());
     for (low, high, truth) in [
         // Two cuboids of 2 × 2 × 2 that have an edge in common.
         ([-2.0, -2.0, -1.0], [2.0, 2.0, 1.0], 2.0 * 24.0),
-        // Nothing of one quarter: 1 × 2 × 2, and 2 × 0.5 × 2 beyond.
+        // One quarter is gone: 1 × 2 × 2, and 2 × 0.5 × 2 beyond.
         ([-1.0, -0.5, -1.0], [1.0, 2.0, 1.0], 2.0 * (2.0 + 4.0 + 2.0) + 2.0 * (0.5 + 1.0 + 2.0)),
     ] {
         let part = Csg::intersection_of([Csg::cuboid(low, high).unwrap(), pair.clone()]).unwrap();
@@ -319,7 +320,7 @@ fn a_surface_that_holds_faces_is_counted() {
         let control = Control { max_splits: Some(20_000), ..Control::default() };
         let found = surface_area(&tree, &frame, 1e-2, &control).unwrap();
         holds(&found, truth, "quarters");
-        // (It is not known whether x y is zero inside of a cell beside such a plane.)
+        // (Whether x y is zero inside a cell beside such a plane is unknown.)
         assert!(0.5 * truth < found.area.lower && found.area.upper < 2.0 * truth, "{found:?}");
     }
 }
@@ -342,7 +343,7 @@ fn intersecting_cubes() -> MeshSolid {
 
 #[test]
 fn an_area_without_an_upper_bound_meets_no_tolerance() {
-    // It tells which cells are decided, and no area.
+    // The solid decides cells, and provides no area.
     let solid = Plain::ball([0.1, 0.2, 0.3], 1.5).unwrap();
     let mut unbounded = 0;
     for splits in (0..64).chain([100_000]) {

@@ -194,8 +194,7 @@ impl Body {
 /// Bounds the distance of two convex bodies. Support functions prove the lower bound, and a point of each
 /// body gives the upper bound.
 fn convex_distance(a: &Body, b: &Body) -> (f64, f64) {
-    // The nearest points to each other by turns, with what momentum adds; the support functions prove the
-    // distance.
+    // Alternate between the nearest points, with momentum. The support functions prove the distance.
     let mut p = a.nearest(b.placement.apply([0.0; 3]));
     let (mut lower, mut upper) = (0.0f64, f64::INFINITY);
     let mut before = p;
@@ -331,7 +330,7 @@ fn gaps_are_decided() {
         let refused = gap_at_least(&ball, &ball, &frame, wrong, &alone());
         assert!(matches!(refused, Err(Error::Argument { name: "least", .. })));
     }
-    // What goes on outside of the universe may come nearer.
+    // Parts outside the universe may come nearer.
     let half = Csg::cuboid([2.0, -20.0, -20.0], [20.0; 3]).unwrap();
     let found = gap_at_least(&ball, &half, &frame, 0.5, &alone()).unwrap();
     assert!(found.verdict == GapVerdict::Undecided && found.evidence.clipped, "{found:?}");

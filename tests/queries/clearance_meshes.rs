@@ -207,7 +207,7 @@ fn random_meshes_beside_all_pairs() {
         let middle = [far, -0.5 * far, 0.25 * far];
         let mut lump = || random.between(-0.3, 0.3);
         let a = ball(middle, 1.0, 3 + case as u32 % 4, &mut lump);
-        // The second mesh lies far away before it is moved, or does not.
+        // Before the placement, the second mesh is near or far away.
         let home = if case % 2 == 0 { [0.0; 3] } else { [far, far, 0.0] };
         let b = ball(home, 0.8, 3 + case as u32 % 3, &mut lump);
         let mut linear = turn(&mut random);
@@ -315,7 +315,7 @@ fn meshes_that_intersect_themselves() {
         assert!(found.distance.width() <= 1e-9 && found.splits == [0; 2], "{found:?}");
         let inner = ball([-0.95, 0.1, 0.2], 0.1, 5, smooth);
         let found = clearance(&two, &solid(&inner), &frame, 1e-9, &alone()).unwrap();
-        // Within two balls, which are none by the rule of odd numbers.
+        // A point in two balls is outside by the even-odd rule.
         if fill == FillRule::NonZero {
             assert_eq!(found.distance.upper, 0.0, "{found:?}");
         } else {
@@ -328,7 +328,7 @@ fn meshes_that_intersect_themselves() {
         let found = clearance(&mesh, &solid(&other), &frame, 0.25, &alone()).unwrap();
         assert!(found.distance.lower <= truth && truth <= found.distance.upper, "{found:?} {truth}");
     };
-    // A fin towards the other solid, which holds nothing.
+    // A fin towards the other solid, which encloses nothing.
     let unit = cuboid([-1.0; 3], [0.0; 3]);
     let (mut vertices, mut triangles) = (unit.vertices().to_vec(), unit.triangles().to_vec());
     vertices.extend([[-0.5, -0.5, -0.5], [1.75, -0.5, -0.5], [-0.5, -0.2, -0.5]]);
@@ -336,7 +336,7 @@ fn meshes_that_intersect_themselves() {
     let fin = TriangleMesh::new(vertices, triangles).unwrap();
     is_right(&fin, FillRule::NonZero, 2.0);
     is_right(&fin, FillRule::EvenOdd, 2.0);
-    // A body that is inside out is none by the rule of positive numbers.
+    // An inside-out body is empty by the positive rule.
     let turned = together(&[(&cuboid([-1.0; 3], [0.0; 3]), false), (&cuboid([-0.5; 3], [1.0; 3]), true)]);
     is_right(&turned, FillRule::Positive, 2.0);
     is_right(&turned, FillRule::NonZero, 1.0);

@@ -124,7 +124,7 @@ proptest! {
             for columns in rectangles(&dense, axis, seed) {
                 every_way_to_ask(tree.view(), &dense, &columns);
                 every_way_to_ask(&file::view(bytes.bytes()).unwrap(), &dense, &columns);
-                // By splitting cells: of the array, and of the tree.
+                // By splits of cells: of the array, and of the tree.
                 let solid = DenseSolid { dense: &dense, exterior: Tag::Empty };
                 let wanted = tree.columns(&columns).unwrap();
                 prop_assert_eq!(&leafless::query::columns(&solid, &frame, &columns, &alone()).unwrap(), &wanted);
@@ -288,7 +288,7 @@ fn what_is_refused() {
         heights(&ball, &frame, &all, Side::Above, &control),
         Err(Error::Limit { what: "bytes", .. })
     ));
-    // Of 2^40 columns nothing fits.
+    // The result for 2^40 columns fits into no memory.
     let fine = frame.with_depth(20).unwrap();
     let all = Columns::all(&fine, 2).unwrap();
     let control = Control { max_bytes: Some(1 << 30), ..alone() };

@@ -200,7 +200,7 @@ fn cylinders_that_touch() {
     check_beside("on a plane", &upright, &wall, 40_000);
     let other = Csg::cylinder(1.5, -3.5, 2.5).unwrap();
     check_beside("parallel", &upright, &moved(&other, [2.5, 0.0, 0.0]), 40_000);
-    // Across, at right angles and askew: what turns about x keeps what is in its way.
+    // Across, at right angles and askew. Rotations about x keep the contact.
     let (s, c) = 0.3f64.sin_cos();
     let askew = Affine::new([[1.0, 0.0, 0.0, 0.0], [0.0, c, -s, 0.0], [0.0, s, c, 0.0]]).unwrap();
     let across = placed(&other, &rolled());
@@ -209,7 +209,7 @@ fn cylinders_that_touch() {
     // In a bore that is larger.
     let bore = Csg::cuboid([-4.0, -4.0, -2.0], [4.0, 4.0, 2.0]).unwrap();
     let bore = bore.difference(&moved(&other, [-0.5, 0.0, 0.0])).unwrap();
-    // (What overlaps least would take a million cells along the line of contact.)
+    // (Proving the least overlap would take a million cells along the line of contact.)
     check_some_beside("in a bore", &upright, &bore, &BESIDE[..4], 40_000);
 }
 
@@ -238,8 +238,8 @@ fn cones_on_planes() {
     let around = Csg::cuboid([-6.0; 3], [6.0; 3]).unwrap();
     let slope = Csg::half_space([4.0, 0.0, -3.0], 0.0).unwrap();
     let slope = Csg::intersection_of([slope, around]).unwrap();
-    // (Beside contact, the plane cuts the other nappe: nothing but cells tells, and of the cone's apex these
-    // do not.)
+    // (Beside the contact, the plane cuts the other nappe. Only cells could decide this, and at the cone's
+    // apex they cannot.)
     let cone = Csg::frustum(0.0, 3.0, 0.0, 4.0).unwrap();
     check_some_beside("a cone on a slope", &cone, &slope, &[BESIDE[0], BESIDE[3], BESIDE[4]], 20_000);
     let frustum = Csg::frustum(0.75, 3.0, 1.0, 4.0).unwrap();
@@ -279,7 +279,7 @@ fn overlaps_of_convex_polyhedra() {
         let (a, b) = (planes(0.0), planes(0.8));
         let solid = |planes: &[([f64; 3], f64)]| {
             let half = |&(n, end): &([f64; 3], f64)| Csg::half_space(n.map(|c| -c), end).unwrap();
-            // (Of planes alone nobody knows that they end somewhere.)
+            // (From planes alone, nobody can conclude that the solid is bounded.)
             let around = Csg::cuboid([-3.9; 3], [3.9; 3]).unwrap();
             Csg::intersection_of(planes.iter().map(half).chain([around])).unwrap()
         };
@@ -341,7 +341,7 @@ fn a_lens() {
     let d = 25.0 * 3f64.sqrt();
     let lens = std::f64::consts::PI * (60.0 - d) * (60.0 - d) * (d * d + 120.0 * d) / (12.0 * d);
     assert!(found.volume.contains(lens) && found.volume.width() <= 0.01, "{found:?} {lens}");
-    // A ball less itself is nothing, without a split.
+    // A ball minus itself is empty, without a split.
     let nothing = measure(&a.difference(&a).unwrap(), &frame, 1e-3, &alone()).unwrap();
     assert_eq!((nothing.volume.lower, nothing.volume.upper, nothing.splits), (0.0, 0.0, 0));
 }

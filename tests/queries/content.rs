@@ -71,13 +71,13 @@ proptest! {
             prop_assert_eq!(tree.volume_in(&region, &control).unwrap(), plain(wanted));
             prop_assert_eq!(volume_in(&dense(&a), &coded_region(&region), &frame, &control).unwrap(), plain(wanted));
         }
-        // The complement's cells are counted from those of the tree.
+        // The complement's counts follow from the tree's cells.
         let rest = complement(tree.view(), &alone()).unwrap();
         let flipped = Csg::solid(AnySolid::new(tree.clone())).complement();
         let of_rest = rest.cells_in(&region, &alone()).unwrap();
         prop_assert_eq!(of_rest, counts(&a.complement(), &b));
         prop_assert_eq!(cells_in(&flipped, &region, &frame, &alone()).unwrap(), of_rest);
-        // What is not split is not decided.
+        // Unsplit cells are undecided.
         let control = Control { max_splits: Some(max_splits), ..alone() };
         for found in [tree.cells_in(&region, &control).unwrap(), cells_in(&a_solid(&a), &region, &frame, &control).unwrap()] {
             prop_assert!(holds(found, wanted), "{:?} {:?}", found, wanted);
@@ -333,7 +333,7 @@ fn regions_that_are_none() {
     // Far smaller than a cell.
     let found = tree.cells_in(&Csg::ball([4.1, 4.1, 4.1], 1e-6).unwrap(), &alone()).unwrap();
     assert_eq!(found, CellsIn { full_least: 0, full_most: 1, upper_least: 0, upper_most: 1 });
-    // The cells count, whatever they prove; of a region and of a solid only what is proven does.
+    // The tree's cells count, whatever they prove. For a region and for a solid, only proven cells count.
     let ball = Csg::ball([4.0, 4.0, 6.0], 2.0).unwrap();
     let found = tree.cells_in(&ball, &alone()).unwrap();
     assert!(found.full_least > 0);

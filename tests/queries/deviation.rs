@@ -30,7 +30,7 @@ fn ask<A: Solid, B: Solid>(a: &A, b: &B, frame: &Frame, tolerance: f64) -> Devia
             assert!(way.distance.width() <= tolerance || way.distance.lower == f64::INFINITY, "{found:?}");
         }
         if let Some(at) = way.at {
-            // The witness is what the lower bound says.
+            // The witness supports the lower bound.
             assert!(at.apart < f64::INFINITY && at.point.iter().chain(&at.nearest).all(|c| c.is_finite()));
             assert!(
                 length(minus(at.point, at.nearest)) + at.apart >= way.distance.lower * (1.0 - 1e-12),
@@ -76,7 +76,7 @@ fn balls_that_have_one_centre() {
         let truth = f64::abs(r - s);
         holds(&ask(&a, &b, &frame, 0.01), [truth; 2], 0.01);
     }
-    // Moved aside: the farthest points are those on the line of centres.
+    // Moved aside, the farthest points are on the line of centres.
     let (a, b) = (Csg::ball([0.1, 0.2, 0.3], 1.0).unwrap(), Csg::ball([0.3, 0.2, 0.3], 0.75).unwrap());
     holds(&ask(&a, &b, &frame, 0.02), [0.45, 0.45], 0.02);
 }
@@ -96,7 +96,7 @@ fn boxes_moved_and_turned() {
     for angle in [0.1f64, 0.5, 0.785] {
         let (s, c) = angle.sin_cos();
         let turn = Affine::new([[c, -s, 0.0, 0.0], [s, c, 0.0, 0.0], [0.0, 0.0, 1.0, 0.0]]).unwrap();
-        // The edge at the angle of 45 degrees is turned beyond a face.
+        // The edge at 45 degrees is rotated beyond a face.
         let truth = 2f64.sqrt() * (PI / 4.0 - angle).cos() - 1.0;
         let found = ask(&a, &a.placed(&turn).unwrap(), &frame, 1e-5);
         // Inside, the middle part of the faces is nowhere as far.
@@ -290,7 +290,7 @@ fn bodies_that_overlap_count_by_their_union() {
     let both = solid(TriangleMesh::new(vertices, triangles).unwrap());
     let one = Csg::cuboid([-1.0, -0.5, -0.5], [1.0, 0.5, 0.5]).unwrap();
     let found = ask(&both, &one, &around(1.5, 7), 0.01);
-    // Nobody knows of the walls inside that they are none of the boundary: they widen the interval.
+    // The solids cannot tell that inner walls do not belong to the boundary. These walls widen the interval.
     assert!(found.a_to_b.distance.contains(0.0) && found.b_to_a.distance.contains(0.0), "{found:?}");
     assert!(found.a_to_b.distance.upper < 0.6 && found.b_to_a.distance.upper < 0.05, "{found:?}");
     // Walls that cross at lines: all of the union is known but next to these.
@@ -367,7 +367,7 @@ fn every_way_in() {
         let found = ask(solid, &ball, &frame, 0.05);
         assert!(found.distance().lower <= rest && found.distance().upper <= width + rest, "{name} {found:?}");
     }
-    // What is not proven is not known to be anywhere.
+    // Unproven points may lie anywhere.
     let found = ask(&surface, &ball, &frame, 0.05);
     assert!(found.distance().lower == 0.0 && found.distance().upper == f64::INFINITY, "{found:?}");
 }
@@ -437,7 +437,7 @@ fn random_solids_beside_rays() {
         let ways: Vec<(Point, Point)> = (0..400).map(|_| (random.point(1.9), random.point(1.0))).collect();
         let fine = around(2.0, 20);
         for (way, from, other) in [(found.a_to_b, &a, &b), (found.b_to_a, &b, &a)] {
-            // The boundary lies between the ends of what is proven inside and of what is not proven outside.
+            // The boundary lies between the ends of the proven inside and of the proven outside.
             let mut points = vec![];
             for &(origin, way) in &ways {
                 let spans = ray_spans(from, &fine, &Ray::new(origin, way).unwrap(), &alone()).unwrap();
@@ -490,7 +490,7 @@ fn nothing_everything_and_the_same() {
     assert_eq!((found.distance(), found.within(0.0), found.splits), (zero, Within::Yes, [0; 2]));
     let mesh = solid(prism(20, 1.0, -1.0, 1.0, 0.0));
     assert_eq!(ask(&mesh, &mesh.clone(), &frame, 0.0).distance(), zero);
-    // The boundary of a complement is the same, but for what the cells tell.
+    // The complement has the same boundary, up to the cells.
     let found = ask(&ball, &ball.complement(), &frame, 0.02);
     assert!(found.distance().lower == 0.0 && found.distance().upper <= 0.02, "{found:?}");
     // Everything has no boundary in the universe, and perhaps one right outside of it.
@@ -501,7 +501,7 @@ fn nothing_everything_and_the_same() {
 
 #[test]
 fn what_goes_on_outside_of_the_universe() {
-    // Two slabs, of which one ends in the universe.
+    // Two slabs. One ends inside the universe.
     let frame = around(1.0, 10);
     let a = Csg::cuboid([-5.0, -5.0, -5.0], [5.0, 5.0, 0.25]).unwrap();
     let b = Csg::cuboid([-5.0, -5.0, -5.0], [5.0, 5.0, 0.75]).unwrap();
@@ -538,7 +538,7 @@ fn budgets_refusals_and_threads() {
     let cancel = AtomicBool::new(true);
     let control = Control { cancel: Some(&cancel), ..Control::default() };
     assert!(matches!(deviation(&a, &b, &frame, 0.1, &control), Err(Error::Cancelled)));
-    // A solid that cannot be had in this frame.
+    // A solid that does not exist on this frame.
     let tree = build(&a, &around(2.0, 5), Rule::Certified, &alone()).unwrap();
     assert!(matches!(deviation(&tree, &b, &around(3.0, 5), 0.1, &alone()), Err(Error::FrameMismatch { .. })));
     // The same for any number of threads.

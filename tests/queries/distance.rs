@@ -429,7 +429,7 @@ fn nearest_points_of_balls_and_octrees() {
             let truth = (length(*point) - 1.0).abs();
             assert!((apart - truth).abs() < 2e-9 && (length(near) - 1.0).abs() < 2e-9, "{point:?} {found:?}");
         }
-        // A point inside is no distance from the solid, and nothing is said of the boundary.
+        // A point inside has distance 0 from the solid, and the query does not examine the boundary.
         let inside = distances(&solid, &frame, &[[0.1; 3]], DistanceTo::Solid, 1e-9, &alone()).unwrap();
         assert!(inside[0].distance.lower == 0.0 && inside[0].distance.upper <= 1e-9, "{inside:?}");
         assert_eq!(inside[0].nearest, None);

@@ -117,7 +117,7 @@ const CONSUMERS: [Consumer; 17] = [
         },
     },
     Consumer {
-        // Each search ends once the interval is as narrow as was asked for.
+        // Each search ends once the interval is within the tolerance.
         name: "distances",
         factor: 1.5,
         ask: |solid, frame| {
@@ -148,7 +148,7 @@ const CONSUMERS: [Consumer; 17] = [
         },
     },
     Consumer {
-        // Which cells are as large as the tolerance allows depends on how sharp the slabs of larger ones are.
+        // The sharpness of the larger cells' slabs determines which cells reach the tolerance.
         name: "Adaptive",
         factor: 2.0,
         ask: |solid, frame| {

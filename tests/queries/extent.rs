@@ -172,7 +172,7 @@ fn intervals_hold_the_formulas_at_every_budget() {
                         assert!(side.lower - slack <= truth && truth <= side.upper + slack, "{at}");
                     }
                     if (max_splits, depth) == (10_000, 20) {
-                        // Where more than three planes meet, and where there is no gradient, a point is known
+                        // Where more than three planes meet, or where no gradient exists, a point is known up
                         // to some finest cells.
                         let is_tip = matches!(name, "cone" | "octahedron");
                         let width = tolerance.max(if is_tip { 64.0 * frame.cell_size() } else { 0.0 });
@@ -187,7 +187,7 @@ fn intervals_hold_the_formulas_at_every_budget() {
         most.push((name, splits));
     }
     println!("splits to 1e-9, at most: {most:?}");
-    // Without slabs a turned cuboid took 10^18.
+    // Without slabs, a rotated cuboid took 10^18.
     let is_plane = |name| matches!(name, "cuboid" | "wedge" | "prism" | "octahedron" | "plate with holes");
     for (name, splits) in most.into_iter().filter(|(name, _)| is_plane(*name)) {
         assert!(splits <= 500, "{name}: {splits}");
@@ -224,7 +224,7 @@ fn polytopes_against_their_corners() {
             planes.push((random.vector(), 0.3 * random.next()));
         }
         if round % 3 == 0 {
-            // A sliver, of which two faces are nearly parallel.
+            // A sliver with two nearly parallel faces.
             let (normal, offset) = planes[6];
             planes.push((-normal + 1e-3 * random.vector(), 1e-2 * random.next().abs() - offset));
         }
@@ -372,7 +372,7 @@ fn flat_thin_and_empty_solids_end() {
             );
         }
     }
-    // Nothing is left of it.
+    // The result is empty.
     let nothing =
         block.difference(&Csg::cuboid([-1.5; 3], [1.5; 3]).unwrap()).unwrap().placed(&turn).unwrap();
     let found = bounding_box(&nothing, &frame, 1e-9, &control).unwrap();
@@ -387,12 +387,12 @@ fn a_box_that_ends_before_it_begins_is_none() {
     let frame = Frame::new([-1.0; 3], 2.0, 20).unwrap();
     let (mut none, mut open) = (0, 0);
     for gap in [0.02, 0.01, 0.005] {
-        // A ball within what lies outside of a slightly larger one, and the same of rings.
+        // A ball inside the complement of a slightly larger ball, and the same with rings.
         let ball = |radius: f64| Csg::ball([0.1, 0.0, -0.05], radius).unwrap();
         let ring = |minor: f64| Csg::torus(0.5, minor).unwrap();
         for solid in [ball(0.7).difference(&ball(0.7 + gap)), ring(0.2).difference(&ring(0.2 + gap))] {
             let solid = solid.unwrap();
-            // From nothing to more than it takes.
+            // Budgets from zero to more than needed.
             let budgets = (0..40).map(|k| (20.0 * 1.2f64.powi(k)) as u64);
             for splits in budgets {
                 let control = Control { max_splits: Some(splits), ..alone() };

@@ -76,7 +76,7 @@ fn a_shaft_in_a_ring() {
     let frame = published(8);
     let found = interference(&rod(20.0), &ring, &frame, PROOF, &alone()).unwrap();
     println!("shaft in ring: {:?}", found.splits);
-    // Both go on outside of the universe, where they might overlap.
+    // Both continue outside the universe, where they might overlap.
     assert_eq!((found.verdict, found.clipped), (Overlap::Undecided, true));
     assert_eq!((found.volume.lower, found.volume.upper), (0.0, f64::INFINITY));
     // One that is cut off at the universe does not.
@@ -91,7 +91,7 @@ fn a_shaft_in_a_ring() {
     let distance = clearance(&cut, &whole, &frame, 2.0, &up_to(100_000)).unwrap();
     println!("shaft in ring: {distance:?}");
     assert!(distance.distance.contains(4.0) && distance.distance.lower > 0.0, "{distance:?}");
-    // Of its own length the shaft ends inside, so that nothing outside matters to the overlap.
+    // With its own length the shaft ends inside, so that nothing outside matters for the overlap.
     let shaft = Csg::cylinder(20.0, 10.0, 120.0)
         .unwrap()
         .placed(&Affine::translation([64.0, 64.0, 0.0]).unwrap())
@@ -124,7 +124,7 @@ fn a_block_in_a_pocket() {
         assert!(splits(&found) <= 80);
         let found = interference(&pushed, &stock, &frame, 0.0, &alone()).unwrap();
         assert!(found.volume.contains(4.0 * 48.0 * 48.0) && found.volume.width() < 1e-6, "{found:?}");
-        // The same by a transform of a solid that knows nothing of placements.
+        // The same by a transform of a solid without placements of its own.
         let step = Affine::translation([6.0, 0.0, 0.0]).unwrap();
         let plain = Plain::cuboid([40.0; 3], [88.0; 3]).unwrap();
         let moved = Transform::new(&plain, &frame, &step);
@@ -425,7 +425,7 @@ fn random_trees_in_random_places() {
             .fold(f64::INFINITY, f64::min);
         assert!(near.distance.lower <= nearest, "{text}: {near:?} {nearest}");
         if let (Some(cells), Some(points)) = (near.nearest, near.points) {
-            // What is called nearest lies in the solids and in the cells, and no further apart.
+            // The nearest points lie in the solids and in the cells, and are no further apart.
             for (i, (cell, p)) in cells.into_iter().zip(points).enumerate() {
                 let (a, b) = sides(p);
                 assert!([a, b][i] >= 0, "{text}");
@@ -522,7 +522,7 @@ fn budgets_and_refusals() {
     let control = Control { cancel: Some(&cancel), ..Control::default() };
     assert!(matches!(interference(&a, &b, &frame, PROOF, &control), Err(Error::Cancelled)));
     assert!(matches!(clearance(&a, &b, &frame, 0.0, &control), Err(Error::Cancelled)));
-    // A solid that cannot be had in this frame.
+    // A solid that does not exist on this frame.
     let tree = build(&a, &published(5), Rule::Certified, &alone()).unwrap();
     let other = Frame::new([1.0; 3], 128.0, 5).unwrap();
     assert!(matches!(interference(&tree, &b, &other, PROOF, &alone()), Err(Error::FrameMismatch { .. })));
@@ -542,12 +542,12 @@ fn nothing_everything_and_the_same() {
     assert_eq!(found.volume.lower, 64.0);
     let found = interference(&all, &ball, &frame, 0.0, &alone()).unwrap();
     assert!(found.volume.contains(4.0 / 3.0 * PI) && found.splits[0] == 0 && !found.clipped);
-    // A ball and all but the ball touch everywhere, and have nothing in common.
+    // A ball and its complement touch everywhere, and have no common points.
     let found = interference(&ball, &ball.complement(), &frame, PROOF, &alone()).unwrap();
     assert_eq!((found.verdict, found.splits), (Overlap::Disjoint, [0, 0]));
     let found = clearance(&ball, &ball.complement(), &frame, 0.5, &alone()).unwrap();
     assert!(found.distance.lower == 0.0 && found.distance.upper < 0.6 && found.clipped);
-    // What has no full cell is not known to be anywhere, unless slabs tell.
+    // Without slabs, a solid without full cells may be anywhere.
     let leaf = Csg::cuboid([1.0, 1.0, 1.0], [2.0, 2.0, 1.001]).unwrap();
     let found = clearance(&ball, &leaf, &frame, 0.0, &alone()).unwrap();
     assert_eq!((found.distance.lower, found.distance.upper), (0.0, 0.0));
@@ -733,7 +733,7 @@ fn full_cells_anywhere_bound_a_distance() {
             assert!(found.distance.upper <= 12.0 && found.nearest.is_some(), "{found:?}");
         }
     }
-    // Of a foil alone nothing is FULL: that is found out, and said, if there are no slabs.
+    // No cell of a foil alone is FULL. Without slabs, the search finds and reports this.
     let foil = |low: f64| Plain::cuboid([2.0, 2.0, low], [14.0, 14.0, low + 0.02]).unwrap();
     let frame = Frame::new([0.0; 3], 16.0, 6).unwrap();
     let found = clearance(&foil(7.99), &foil(8.01), &frame, 0.0, &alone()).unwrap();
@@ -771,7 +771,7 @@ fn searches_end_before_they_take_too_much_memory() {
     let limited =
         |max_bytes: u64| Control { max_bytes: Some(max_bytes), max_splits: Some(30_000), ..alone() };
     let (little, more) = (limited(1 << 22), limited(1 << 26));
-    // The volume of the ball, of which all is in each cube.
+    // The volume of the ball, which lies entirely in each cube.
     let truth = 4.0 / 3.0 * PI * 0.4f64.powi(3);
     let overlap = |control| interference(&a, &b, &frame, 1e-3, control).unwrap();
     assert!(overlap(&little).volume.contains(truth) && overlap(&more).volume.contains(truth));

@@ -265,7 +265,7 @@ fn what_is_placed_is_apart() {
     let mut solids = vec![pillar];
     for placed in layout.placed() {
         let solid = layout.items()[placed.item].solid();
-        // (A stored octree is asked by way of its placement.)
+        // (A stored octree is queried through its placement.)
         solids.push(solid.placed(&placed.placement).unwrap());
     }
     let within = inside(&container);
@@ -324,7 +324,7 @@ fn what_was_best_survives_a_cancel() {
     assert!(found.end == SearchEnd::Cancelled && found.rounds < 50, "{found:?}");
     assert!(found.placed >= 60 && layout.placed().len() as u64 == found.placed, "{found:?}");
     assert_proven(&layout);
-    // One that is cancelled at once leaves what was placed before.
+    // A search cancelled at once keeps the earlier placements.
     let before = layout.placed().to_vec();
     let found = layout.search(&options, &Control { cancel: Some(&cancel), ..alone() }).unwrap();
     assert_eq!((found.end, found.placed), (SearchEnd::Cancelled, 0));
@@ -342,7 +342,7 @@ fn budgets_end_a_search() {
     assert_proven(&layout);
     let found = layout.search(&SearchOptions { max_tests: None, ..options }, &alone()).unwrap();
     assert_eq!((found.end, layout.placed().len()), (SearchEnd::Complete, 30));
-    // Everything is placed: there is nothing to do.
+    // All items are placed, so that nothing remains to do.
     let found = layout.search(&options, &alone()).unwrap();
     assert_eq!((found.end, found.placed, found.tests), (SearchEnd::Complete, 0, 0));
 }
@@ -446,7 +446,7 @@ fn what_a_layout_weighs() {
         let mut sum = 0.0;
         for (placement, centre) in placements.iter().zip(centres) {
             let rows = placement.rows();
-            // ∫ x xᵀ of a block about its centre, turned.
+            // ∫ x xᵀ of a block about its centre, rotated.
             let second = |i: usize, j: usize| {
                 (0..3).map(|k| rows[i][k] * rows[j][k] * 60.0 * size[k] * size[k] / 12.0).sum::<f64>()
             };
@@ -483,13 +483,13 @@ fn containers_of_all_kinds() {
         let is_stored = container.home().is_some();
         let items = vec![item(cuboid([2.0; 3])).with_count(30)];
         let mut layout = layout(&bay_in(container, items, [0.05, 0.1]));
-        // In the middle it is free; beside the wall it is not; outside even less.
+        // In the middle the place is free; beside the wall it is not; outside even less.
         for (x, expected) in
             [(-1.0, GapVerdict::Yes), (3.9, GapVerdict::No), (5.0, GapVerdict::No), (40.0, GapVerdict::No)]
         {
             let number = layout.place(0, &to([x, -1.0, -1.0])).unwrap();
             let found = layout.check(number, &alone()).unwrap();
-            // (An octree knows its boundary to its cells.)
+            // (An octree knows its boundary only to its cells.)
             let is_close = found.verdict == GapVerdict::Undecided && x == 3.9 && is_stored;
             assert!(found.verdict == expected || is_close, "{x}: {found:?}");
             layout.remove(number).unwrap();
@@ -519,7 +519,7 @@ fn what_touches_is_apart() {
     assert_proven(&layout);
     let standing: Standing = layout.check(13, &alone()).unwrap();
     assert!(standing.nearest.unwrap().gap.contains(0.0));
-    // With a clearance, and one to the wall, that leave nothing.
+    // With a clearance between items and one to the wall that leave no room.
     let cubes = || vec![item(cuboid([10.0; 3])).with_count(8)];
     for (side, clearance, wall_clearance) in [(21.0, 1.0, 0.0), (23.0, 1.0, 1.0), (20.5, 0.0, 0.25)] {
         let mut layout = self::layout(&bay_in(cuboid([side; 3]), cubes(), [clearance, wall_clearance]));
@@ -561,7 +561,7 @@ fn sizes_of_any_kind() {
         let found = layout.search(&SearchOptions::default(), &alone()).unwrap();
         assert_eq!((found.placed, found.left), (1, 2), "{clearance}");
     }
-    // What is far too long is left; the rest is placed.
+    // Items that are far too long are left; the others are placed.
     let wedge = |length: f64| {
         let block = Csg::cuboid([0.0; 3], [length; 3]).unwrap();
         let half = Csg::half_space([1.0, 1.0, -1.0], 0.0).unwrap();
@@ -639,7 +639,7 @@ fn what_is_refused() {
     ] {
         assert!(layout.search(&wrong, &alone()).is_err(), "{wrong:?}");
     }
-    // What is too large, and nothing at all, is no error.
+    // Items that are too large, and an empty layout, are no errors.
     let none = layout_of(vec![]);
     assert_eq!(none, (0, 0, SearchEnd::Complete));
     assert_eq!(layout_of(vec![item(cuboid([5.0; 3]))]), (0, 1, SearchEnd::Rounds));

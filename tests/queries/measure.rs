@@ -194,7 +194,7 @@ fn check_dense(dense: &Dense, frame: &Frame, random: &mut Random) {
     for _ in 0..3 {
         let seed = random.next() as u8;
         choices.push(choose(&|at| common::noise(seed, at) & 1 == 0));
-        // What is extreme lies on one side of a plane, or of two planes.
+        // Extreme choices lie on one side of a plane, or of two planes.
         let normal = [0, 1, 2].map(|_| random.below(7) as i64 - 3);
         let level = (random.below(4) as i64) << dense.depth >> 1;
         let side = |at: [u32; 3]| (0..3).map(|axis| normal[axis] * at[axis] as i64).sum::<i64>() > level;
@@ -352,7 +352,7 @@ fn balls_and_boxes_contain_the_formulas_at_every_depth() {
 #[test]
 fn the_centroid_is_as_tight_as_it_is_said_to_be() {
     let frame = Frame::new([-1.0; 3], 2.0, 4).unwrap();
-    // One that knows no slabs.
+    // A ball without slabs.
     let ball = Plain::ball([0.0; 3], 0.9).unwrap();
     let tree = build(&ball, &frame, Rule::Certified, &alone()).unwrap();
     let measures = measure(&ball, &frame, 0.0, &alone()).unwrap();
@@ -394,7 +394,7 @@ fn a_walk_finds_what_a_tree_holds() {
         assert!(tolerance > 0.0 || measures.level == depth);
         assert!(measures.splits >= tree.statistics().nodes());
         assert!(measures.splits <= tree.statistics().nodes() * 16 / 9);
-        // The stored tree gives the same, as a solid of its own, and knows no more.
+        // The stored tree gives the same as a solid of its own, and has no better bounds.
         let stored = measure(&tree, tree.frame(), 0.0, &alone()).unwrap();
         assert_eq!((stored.volume, stored.stop_reason), (measures.volume, StopReason::Exhausted));
         if measures.level == depth {
@@ -573,7 +573,7 @@ fn splits_are_counted_as_they_happen() {
             let solid = Counting::new(ball);
             let counted = measure(&solid, &frame, 0.0, &control).unwrap();
             assert_eq!((counted.volume, counted.splits), (plain.volume, plain.splits));
-            // A pass that the budget ends has been for nothing, and is not counted.
+            // A pass that the budget interrupts is wasted, and is not counted.
             let calls = solid.calls.load(Relaxed);
             let spare = max_splits.filter(|&most| most > 1000).map_or(0, |most| most + 10_000);
             assert!(counted.splits <= calls && calls <= counted.splits + spare, "{calls} {counted:?}");
@@ -603,7 +603,7 @@ fn what_the_universe_clips_is_said() {
 #[test]
 fn a_host_s_shape_that_knows_little() {
     let frame = Frame::new([0.0; 3], 1.0, 6).unwrap();
-    // Never decided: every cell would be split, and none gains anything.
+    // Never decided: every cell would be split without any gain.
     let doubtful = Callback::new(|_, _| Ok(Verdict::Partial(()))).with_exterior(Tag::Empty);
     let measures = measure(&doubtful, &frame, 0.1, &Control::default()).unwrap();
     assert_eq!((measures.volume, measures.centroid), (Interval::new(0.0, 1.0).unwrap(), None));
@@ -752,7 +752,7 @@ proptest! {
                 prop_assert_eq!((extent.corners.is_some(), extent.occupied), (outer.is_some(), inner.is_some()));
             }
             let (Some(corners), Some(outer)) = (extent.corners, outer) else { continue };
-            // What may be, for every choice of the undecided.
+            // The possible range over every choice of the undecided cells.
             let latest = inner.unwrap_or([outer[1], outer[0]]);
             for axis in 0..3 {
                 let plane = |i: u32| frame.plane(axis, i);
@@ -783,7 +783,7 @@ fn boxes_of_balls_and_blocks() {
             let [min, max] = [-1.0, 1.0].map(|sign| centre.map(|c| c + sign * radius));
             let ball = AnySolid::new(Csg::ball(centre, radius).unwrap());
             let block = AnySolid::new(Csg::cuboid(min, max).unwrap());
-            // Planes are known to rounding, whatever the depth.
+            // Planes are known up to rounding, at any depth.
             for (solid, ended) in [(ball, StopReason::Exhausted), (block, StopReason::Tolerance)] {
                 let ended = if tolerance > 0.0 { StopReason::Tolerance } else { ended };
                 let extent = bounding_box(&solid, &frame, tolerance, &Control::default()).unwrap();
@@ -807,7 +807,7 @@ fn boxes_of_balls_and_blocks() {
             }
         }
     }
-    // On the lattice nothing is left open.
+    // On the lattice, no cell is open.
     let frame = Frame::new([-4.0; 3], 8.0, 20).unwrap();
     let solid = Csg::cuboid([-2.0, -1.0, 0.0], [2.0, 3.0, 1.0]).unwrap();
     let extent = bounding_box(&solid, &frame, 0.0, &Control::default()).unwrap();

@@ -21,7 +21,7 @@ fn mixed(depth: u8) -> Vec<(&'static str, Csg, f64)> {
     let cube = unit_cube();
     let ball = Csg::ball([1.0; 3], 0.75).unwrap();
     let eighth = PI / 6.0 * 0.75f64.powi(3);
-    // About the middle of the cube, by an eighth of a turn: what both have in common has eight sides.
+    // Rotated about the middle of the cube by 45 degrees, so that the intersection has eight sides.
     let c = 0.5f64.sqrt();
     let turn = Affine::new([[c, -c, 0.0, 0.5], [c, c, 0.0, 0.5 - c], [0.0, 0.0, 1.0, 0.0]]).unwrap();
     let turned = cube.placed(&turn).unwrap();
@@ -58,7 +58,7 @@ fn expressions_of_other_solids_converge() {
             assert!(found.volume.width() <= 1.01 * tolerance * truth, "{name}: {found:?}");
             splits.push(found.splits);
         }
-        // By verdicts a tenth of the width takes a hundred times as many.
+        // By verdicts, a tenth of the width takes a hundred times as many splits.
         assert!(splits[1] < 30 * splits[0], "{name}: {splits:?}");
     }
 }

@@ -233,7 +233,7 @@ fn intervals_hold_the_formulas() {
                 placed.check(&found, &format!("{name}, depth {depth}"));
                 widths.push(found.volume.width());
             }
-            // Each level halves what is not known, more or less.
+            // Each level halves the unknown volume, approximately.
             let rounding = 1e-10 * placed.volume;
             assert!(widths[5] < (0.4 * widths[3]).max(rounding), "{name}: {widths:?}");
             // Pass by pass, until hardly more is in doubt than comes of rounding.

@@ -75,7 +75,7 @@ const MARGIN: f64 = 1e-9;
 /// Checks an answer against all pairs of cells.
 fn check(a: &Octree, b: &Octree, placement: &Affine, found: &Interference, text: &str) {
     let (first, second) = (blocks(a, &Affine::IDENTITY), blocks(b, placement));
-    // The deepest overlap of FULL cells, and of those that are not EMPTY.
+    // The deepest overlap of FULL cells, and of cells that are not EMPTY.
     let (mut full, mut some) = (f64::INFINITY, f64::INFINITY);
     for (p, p_is_full) in &first {
         for (q, q_is_full) in &second {
@@ -89,7 +89,7 @@ fn check(a: &Octree, b: &Octree, placement: &Affine, found: &Interference, text:
     match found.verdict {
         Overlap::Disjoint => assert!(some > -MARGIN, "{text}: {some} {found:?}"),
         Overlap::Overlapping => assert!(full < 0.0, "{text}: {full} {found:?}"),
-        // Whatever is clear is found.
+        // Every clear case must be decided.
         Overlap::Undecided => assert!(full > -1e-5 && some < MARGIN, "{text}: {full} {some} {found:?}"),
     }
     check_proof(a, b, placement, found, text);
@@ -207,12 +207,12 @@ proptest! {
         let (a, b) = (a.octree(), b.octree());
         let edge = a.frame().edge();
         for is_rigid in [true, false] {
-            // (Turned around a corner of the universe.)
+            // (Rotated around a corner of the universe.)
             let placement = placement(&mut random, is_rigid, 1.2 * edge);
             let found = at(&a, &b, &[placement]);
             let whole = [&a, &b].map(|tree| tree.proof().is_certified() && tree.view().exterior() == Tag::Empty);
-            // What is proven of cells by another search, which blurs, may be less.
-            // A tree whose universe, or each eighth of it, is decided has no elements to descend.
+            // Another search, which blurs cells, may prove less.
+            // A tree whose universe, or each octant of it, is decided has no elements to descend.
             let is_cut = |tree: &&Octree| tree.view().cells(CellFilter::leaves()).any(|cell| cell.cell.level > 1);
             if whole == [true; 2] && [&a, &b].iter().all(is_cut) {
                 check(&a, &b, &placement, &found[0], "any cells");
@@ -243,7 +243,7 @@ fn answers_never_contradict_the_search_by_cells() {
                     !verdicts.contains(&Overlap::Disjoint) || !verdicts.contains(&Overlap::Overlapping),
                     "case {case}: {found:?} {other:?}"
                 );
-                // Cells at twice the fineness blur away some answers; nothing is lost by boxes.
+                // Cells at twice the resolution blur some answers. The search by boxes loses none.
                 assert!(found.verdict != Overlap::Undecided || other.verdict != Overlap::Disjoint);
                 check_proof(&a, &b, placement, &found, &format!("case {case}"));
                 counts[found.verdict as usize] += 1;
@@ -281,7 +281,7 @@ fn boxes_that_touch() {
         let found = at(&tree, &tree, &[moved(rows, offset)]);
         assert_eq!(found[0].verdict, Overlap::Disjoint, "{offset:?}");
     }
-    // The face of z = 3 on that of z = −1, turned; and an edge on a face.
+    // The face z = 3 on the rotated face z = −1, and an edge on a face.
     for (rows, offset) in [
         (tilted, [0.0, 0.0, 4.0]),
         (tilted, [0.3, 0.1, -4.0]),

@@ -241,7 +241,7 @@ fn what_is_refused() {
 #[test]
 fn points_beside_planes_that_are_no_doubles() {
     use crate::common::exact::Exact;
-    // Cells of a frame whose planes cannot be written as doubles, and the doubles on either side of them.
+    // Cells of a frame whose planes are no doubles, and the doubles on both sides of the planes.
     for (origin, edge, depth) in
         [([0.1, -7.3, 1e5 / 3.0], 10.0 / 3.0, 5), ([1e8 + 0.3, -1e-9, 3e-5], 1e-3, 4), ([-0.7; 3], 1.4, 3)]
     {
@@ -346,7 +346,7 @@ fn boxes_agree<S: Solid>(solid: &S, tree: &Octree, seed: u64) {
         let wanted = tree.classify_box(min, max).unwrap();
         let found = ask(&Control::default());
         assert_eq!(found, wanted, "{min:?} {max:?}");
-        // A budget takes proofs away, makes none, and a larger one takes away less.
+        // A budget removes proofs and adds none. A larger budget removes fewer.
         let mut known = false;
         for most in [0, 1, 2, 5, 20, 100] {
             let found = ask(&Control { max_splits: Some(most), ..alone() });
@@ -399,7 +399,7 @@ proptest! {
         octree_agrees(&tree, &frame, seed, 300);
         let coded = compact(tree.view()).unwrap();
         octree_agrees(&AnySolid::new(coded), &frame, seed, 300);
-        // Cut at a level, and finer than it is.
+        // Cut at a level, and finer than the tree.
         for depth in [dense.depth.saturating_sub(1).max(1), dense.depth + 2] {
             octree_agrees(tree.view(), &frame.with_depth(depth).unwrap(), seed, 200);
         }
@@ -467,7 +467,7 @@ fn what_a_solid_knows_of_points_comes_first() {
                 assert_eq!(answer, wanted, "{point:?}");
                 known += (answer != Membership::Undecided) as u64;
             }
-            // Points that are none of the universe's are not asked about.
+            // Points outside the universe are not queried.
             assert_eq!(asked.load(Ordering::Relaxed), known);
         }
     }
@@ -481,7 +481,7 @@ fn points_cost_no_more_splits_than_their_way() {
     assert_eq!(located(&ball, &frame, &[[0.3, 0.4, 0.8]; 200], 1), [Membership::Inside; 200]);
     let one = splits();
     assert!((1..=20).contains(&one), "{one}");
-    // Neighbours share the way, in whatever order they come.
+    // Neighbours share the way, in any order.
     let points: Vec<[f64; 3]> = (0..1000u32)
         .map(|i| [1.0, f64::from(i * 577 % 1000) * 1e-6, f64::from(i * 311 % 1000) * 1e-6])
         .collect();
@@ -495,7 +495,7 @@ fn points_cost_no_more_splits_than_their_way() {
     for most in [0, 1, 7, 1000] {
         let before = splits();
         let control = Control { max_splits: Some(most), ..alone() };
-        // A box whose face lies on the surface.
+        // A box with a face on the surface.
         classify_box(&ball, &frame, [1.0, -0.5, -0.5], [1.5, 0.5, 0.5], &control).unwrap();
         assert!(splits() - before <= most);
     }
@@ -514,7 +514,7 @@ fn a_budget_of_nothing_proves_nothing_of_a_cut_universe() {
         assert_eq!(classify_box(&ball, &frame, min, max, &alone()).unwrap(), wanted);
         assert_eq!(classify_box(&ball, &frame, min, max, &none).unwrap(), Region::Undecided);
     }
-    // What is decided without a split needs no budget.
+    // Decisions without splits need no budget.
     let far = Csg::ball([99.0; 3], 12.0).unwrap();
     assert_eq!(classify_box(&far, &frame, [0.0; 3], [32.0; 3], &none).unwrap(), Region::Outside);
     assert_eq!(classify_box(&far.complement(), &frame, [0.0; 3], [32.0; 3], &none).unwrap(), Region::Inside);
@@ -541,7 +541,7 @@ fn what_is_refused_of_any_solid() {
         assert!(answers.iter().all(|&answer| answer == Membership::Inside), "nothing is half-done");
     }
     let mut answers = [Membership::Inside; 17];
-    // What the solid refuses.
+    // Queries that the solid refuses.
     let tree = Dense::uniform(3, Tag::Full).octree();
     let refused = contains(&tree, &frame, &points, &mut answers, &alone());
     assert!(matches!(refused, Err(Error::FrameMismatch { .. })));
@@ -599,7 +599,7 @@ fn every_tree_of_depth_one() {
 
 #[test]
 fn shapes_vary() {
-    // The oracles are only as good as what they are shown: the tapes must make all kinds of solids.
+    // The oracles test only the solids that they receive. The tapes must make all kinds of solids.
     let mut random = Random(5);
     let (mut binary, mut deep, mut branches, mut uniform) = (0, 0, 0, 0);
     for _ in 0..400 {

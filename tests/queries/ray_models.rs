@@ -89,7 +89,7 @@ fn mesh_from(name: &str, count: usize, depth: u8) {
     let mut hits = vec![None; count];
     tree.cast_rays(&rays_of(&plain), Obstacle::Upper, &mut hits).unwrap();
     assert_hits(name, &plain, &hits, truth, 30.0 * frame.cell_size());
-    // The mesh itself knows slabs.
+    // The mesh itself provides slabs.
     let few = &plain[..count / 40];
     let hits = cast_rays(&solid, &frame, &rays_of(few), Obstacle::Upper, &Control::default()).unwrap();
     assert_hits(name, few, &hits, truth, 3.0 * frame.cell_size());
@@ -192,7 +192,7 @@ fn primitives(count: usize) {
     }
     let sure: Vec<Plain> = plain.into_iter().filter(|ray| in_part(ray).is_some()).collect();
     assert!(sure.len() > count * 99 / 100);
-    // An oracle in doubles is right to this part of the numbers that it is made of, unless a ray grazes.
+    // An oracle in doubles is right up to this fraction of its numbers, unless a ray grazes.
     let truth = |ray: &Plain| {
         let t = in_part(ray).unwrap();
         Interval::new(t - DOUBT, t + DOUBT).unwrap()

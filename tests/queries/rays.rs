@@ -150,7 +150,7 @@ fn assert_hit(dense: &Dense, plain: &Plain, on: Obstacle, hit: Option<RayHit>) {
         Some(inner) => assert!(is_just_above(hit.t.upper, inner), "{told}"),
         None => assert_eq!(hit.t.upper, f64::INFINITY, "{told}"),
     }
-    // The cell is one of these that the ray enters then, by the face that is told.
+    // The cell is one of those that the ray enters at that time, through the reported face.
     assert!(dense.tag_of(hit.cell).is_some_and(|tag| tags.contains(&tag)), "{told}");
     let edge = 1 << (dense.depth - hit.cell.level);
     let (lower, upper) = (hit.cell.at.map(|a| a * edge), hit.cell.at.map(|a| (a + 1) * edge));
@@ -199,7 +199,7 @@ fn assert_spans(dense: &Dense, plain: &Plain, spans: &RaySpans) {
         }
     };
     same(&spans.outer, &outer, false);
-    // Of a point that is no double nothing is left after rounding inward.
+    // An interval of one point that is no double vanishes when rounded inward.
     let kept: Vec<_> = inner.iter().copied().filter(|&(from, to)| from.order(to).is_lt()).collect();
     let points: Vec<Interval> = spans.inner.iter().copied().filter(|span| span.width() > 0.0).collect();
     same(&points, &kept, true);
@@ -439,7 +439,7 @@ fn the_march_finds_what_exact_descent_does() {
         .collect();
     for rule in [Rule::Certified, Rule::Sampled] {
         let tree = build(&ball, &frame, rule, &alone()).unwrap();
-        // What is sampled proves nothing; here the cells are the solid.
+        // Samples prove nothing. Here the cells are the solid.
         let tree = tree.view().with_proof(Proof::CERTIFIED);
         for on in [Obstacle::Full, Obstacle::Upper] {
             let mut hits = vec![None; rays.len()];
@@ -447,7 +447,7 @@ fn the_march_finds_what_exact_descent_does() {
             assert!(hits.iter().flatten().count() > 2000);
             assert_eq!(cast_rays(&tree, &frame, &rays, on, &alone()).unwrap(), hits);
         }
-        // A picture, whose rays a beam leads to the ball, or past it.
+        // A picture. A beam of its rays leads to the ball or past it.
         let pixel = |i: i32| f64::from(i) / 40.0;
         let picture: Vec<Ray> = (-40..40)
             .flat_map(|y| (-64..64).map(move |x| [-3.0, pixel(x), pixel(y)]))

@@ -114,7 +114,7 @@ fn boxes_and_balls() {
         let by_box = classify_box(&solid, &frame, min, max, &alone()).unwrap();
         let region = Csg::cuboid(min, max).unwrap();
         let found = classify_in(&solid, &region, &frame, &alone()).unwrap();
-        // A box of cells is known to be what it is; that of a solid has PARTIAL cells at its faces.
+        // A box of cells has an exact answer. A box solid has PARTIAL cells at its faces.
         assert!(
             found == by_box || found == Region::Undecided || by_box == Region::Undecided,
             "{found:?} {by_box:?}"

@@ -179,7 +179,7 @@ fn widths_fall_with_the_square_of_the_splits() {
         for (name, solid) in [("ball", ball), ("torus", tilted)] {
             let width = |budget: u64| ask(&solid, &frame, &plane, 0.0, &limited(budget)).area.width();
             let (coarse, fine) = (width(300), width(30_000));
-            // As far as rounding lets it.
+            // As far as rounding allows.
             let slope = (fine.max(1e-12) / coarse).ln() / 100f64.ln();
             println!("{name}: {coarse:e} {fine:e} {slope}");
             assert!(slope < -1.75, "round {round}, {name}: {coarse} {fine} {slope}");
@@ -599,7 +599,7 @@ fn budgets_tolerances_and_depths() {
     assert!(of(0.0, 1e-3).area.width() <= 1e-3 && of(1e-3, 0.0).area.width() <= 1e-3 * 2.0);
     assert_eq!(of(0.0, 1e-3).stop_reason, StopReason::Tolerance);
     assert_eq!((of(f64::INFINITY, 0.0).splits, of(0.0, f64::INFINITY).splits), (0, 0));
-    // At depth 1 nothing but the eight cells can be told.
+    // At depth 1, only the eight cells are known.
     let shallow = deep.with_depth(1).unwrap();
     let found = ask(&ball, &shallow, &plane, 0.0, &alone());
     assert_eq!((found.splits, found.stop_reason), (1, StopReason::Exhausted));
@@ -626,7 +626,7 @@ fn a_face_in_an_oblique_plane_stays_in_doubt() {
         "{found:?}"
     );
     assert!(found.clipped && found.stop_reason == StopReason::Budget);
-    // In a plane across an axis that is none of the lattice's, too.
+    // Also in a plane across an axis that is no plane of the lattice.
     let half = Csg::half_space([0.0, 1.0, 0.0], -0.3).unwrap();
     let found = ask(&half, &frame, &Plane::across(1, 0.3), 0.0, &limited(2000));
     assert!(found.area.lower == 0.0 && found.area.upper == 4.0, "{found:?}");

@@ -158,7 +158,7 @@ fn expressions_with_meshes_look_as_those_with_blocks() {
     };
     let meshes = expressions(csg(box_mesh([LOW, HIGH], false)), csg(box_mesh(other, false)));
     let blocks = expressions(Csg::cuboid(LOW, HIGH).unwrap(), Csg::cuboid(other[0], other[1]).unwrap());
-    // As they are, and cut open.
+    // Whole and cut open.
     for clip in [Clip::new(), Clip::new().plane([0.3, 2.0, 0.1, 0.2]).unwrap()] {
         for (i, (mesh, block)) in meshes.iter().zip(&blocks).enumerate() {
             for placement in [Affine::IDENTITY, turned()] {

@@ -273,7 +273,7 @@ fn edges_through_samples_are_counted_once() {
                 for (i, &colour) in picture.colours().iter().enumerate() {
                     let (x, y) = (i as i32 % 33 - 16, i as i32 / 33 - 16);
                     let far = x.abs().max(y.abs());
-                    // Samples on the outline belong to both sides or to none.
+                    // Samples on the outline belong to both sides or to neither.
                     let expected: &[u32] = match far.cmp(&inside) {
                         std::cmp::Ordering::Less => &[2],
                         std::cmp::Ordering::Equal => &[0, 2],
@@ -529,7 +529,7 @@ fn edges_of_small_triangles_fade() {
     for pixels in [0.5, 1.0, 2.0] {
         assert_eq!(picture(pixels, MeshEdges::All), picture(pixels, MeshEdges::None), "{pixels}");
     }
-    // Edges a pixel wide along two sides and the third, where they are whole.
+    // Edges one pixel wide along two sides and the third, where they are whole.
     let whole = |pixels: f64| 1.0 - (1.0 - 1.0 / pixels).powi(2) * (1.0 - 2f64.sqrt() / pixels);
     for pixels in [8.0, 12.0, 20.0, 40.0] {
         let (found, whole) = (darker(pixels), whole(pixels));
@@ -541,7 +541,7 @@ fn edges_of_small_triangles_fade() {
         let (found, expected) = (darker(pixels), opacity * whole(pixels));
         assert!((found - expected).abs() < 0.06, "{pixels}: {found} {expected}");
     }
-    // Where a large triangle ends at small ones, its edge is seen.
+    // Where a large triangle ends at small triangles, its edge is visible.
     let mut mesh = vec![[0.0, 0.0, -0.9], [0.0, 0.0, 0.9], [-0.9, 0.0, 0.0]];
     let mut triangles = vec![[0, 1, 2]];
     for i in 0..90u32 {
@@ -595,7 +595,7 @@ fn lines_cover_what_they_should() {
                     Lens::Parallel(_) => near + (far - near) * part,
                     Lens::Perspective(_) => 1.0 / ((1.0 - part) / near + part / far),
                 };
-                // Nearer than it is, by its width and a pixel.
+                // Nearer than in reality, by the line's width and a pixel.
                 let pixel = 2.0 / size[1] * if round % 2 == 0 { 1.0 } else { expected * 0.268 };
                 let nearer = expected - f64::from(depth);
                 assert!(nearer > 0.0 && nearer < 1.01 * (1.0 + width) * pixel, "{expected} {depth}");
@@ -634,7 +634,7 @@ fn lines_are_hidden_and_cut() {
     }
     let left = Clip::new().plane([-1.0, 0.0, 0.0, -0.5]).unwrap();
     assert!(dark(&[across(-1.0, 0.0)], left.clone(), 32, 4) && !dark(&[across(-1.0, 0.0)], left, 32, 24));
-    // Through the eye's plane: what lies behind is not mirrored.
+    // Through the eye's plane: parts behind the eye are not mirrored.
     let camera = Camera::new([0.0; 3], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0], Lens::Perspective(60.0)).unwrap();
     let lines = [[[1.0, 4.0, 1.0], [0.9, -3.0, 1.0]]];
     let picture = take(&shot(camera, [64, 64]), &[&LinesLayer::new(&lines)]);
@@ -754,7 +754,7 @@ fn planes() -> Vec<(SlicePlane, V, f64, Option<usize>)> {
     let slanting = ([0.3, -0.8, 0.5], 0.05);
     let mut planes = vec![(SlicePlane::new(slanting.0, -slanting.1).unwrap(), slanting.0, slanting.1, None)];
     for axis in 0..3 {
-        // In the middle of the universe and elsewhere in planes of the lattice, and in none.
+        // In the middle of the universe, in other planes of the lattice, and in no plane of the lattice.
         for at in [0.0, -0.1875, 0.123] {
             let normal = [0, 1, 2].map(|k| f64::from(u8::from(k == axis)));
             planes.push((SlicePlane::across(axis, at).unwrap(), normal, at, Some(axis)));
@@ -967,7 +967,7 @@ fn slices_are_the_same_for_any_number_of_threads() {
         render(&Shot::new(camera, [150, 100]), &[&layer], &Control::threads(threads)).unwrap()
     });
     assert!(pictures[0] == pictures[1] && pictures[0] == pictures[2]);
-    // A universe of one tag, planes that meet nothing, and planes that are none.
+    // A universe of one tag, planes that meet nothing, and invalid planes.
     let empty =
         build(&Csg::ball([9.0; 3], 0.1).unwrap(), &frame, Rule::Certified, &Control::default()).unwrap();
     let layer = |plane| SliceLayer::new(empty.view(), plane).colours(TAGS).outlines(None);

@@ -86,7 +86,7 @@ fn balls_are_where_they_are() {
     let cell = fine.cell_size();
     let octree = OctreeLayer::new(tree.view(), Finish::default());
     let faces = OctreeLayer::new(tree.view(), Finish { faces: true, ..Finish::default() });
-    // Cells of a sixteenth: what is seen in them comes from slabs.
+    // Cells of a sixteenth. The visible surface in them comes from slabs.
     let by_slabs = SolidLayer::new(&solid, &fine, Finish::default()).at_most(5);
     for shot in shots() {
         for (layer, early, late) in
@@ -127,7 +127,7 @@ fn what_is_cut_open_is_flat() {
     let tree = build(&solid, &frame(7), Rule::Certified, &alone()).unwrap();
     let finish = Finish { cut: [255, 0, 0, 255], ..Finish::default() };
     let cell = frame(7).cell_size();
-    // Kept is what lies on the side away from the eye.
+    // The kept part lies on the side away from the eye.
     let camera = Camera::new([0.0, -4.0, 0.5], [0.0; 3], [0.0, 0.0, 1.0], Lens::Perspective(35.0)).unwrap();
     let clip = Clip::new().plane([0.0, 2.0, 0.0, 0.4]).unwrap();
     let shot = Shot { samples: 1, clip, ..Shot::new(camera, SIZE) };
@@ -169,7 +169,7 @@ fn grazed_walls_are_passed_by() {
     for (at, _, depth) in pixels(&picture) {
         let (from, along) = line(&camera, at);
         let begins = (0.2 - from[1]) / along[1];
-        // Where the line leaves the bore, of which the axis is that of z.
+        // The place where the line leaves the bore, whose axis is z.
         let (a, b) = (along[0].powi(2) + along[1].powi(2), from[0] * along[0] + from[1] * along[1]);
         let ends = (-b + (b * b - a * (from[0].powi(2) + from[1].powi(2) - 0.09)).sqrt()) / a;
         let height = (from[0] + begins * along[0]).hypot(0.2) - 0.3;
@@ -314,7 +314,7 @@ fn thin_plates_are_lit_as_their_faces() {
                 "{thickness} {at:?} {colour:?} {middle:?}"
             );
         }
-        // From above it is bright.
+        // Seen from above, it is bright.
         assert!(middle[0] > 120, "{thickness} {middle:?}");
     }
 }
@@ -431,7 +431,7 @@ fn round_surfaces_have_silhouettes_only() {
     let tree = build(&solid, &frame(8), Rule::Certified, &alone()).unwrap();
     let edges = Some(Outline { width: 2.0, colour: [255, 0, 0, 255], crease: 30.0 });
     let finish = Finish { edges, ..Finish::default() };
-    // What is surely drawn, in pixels from the rim: cells, a third of a pixel long, reach beyond it.
+    // The region surely drawn, in pixels from the rim. Cells of a third of a pixel reach beyond it.
     let layers: [(&dyn Layer, f64); 2] =
         [(&SolidLayer::new(&solid, &frame(7), finish), 0.6), (&OctreeLayer::new(tree.view(), finish), 0.1)];
     for shot in shots() {
@@ -457,7 +457,7 @@ fn round_surfaces_have_silhouettes_only() {
             assert!(rim > 5, "{rim}");
         }
     }
-    // What is no outline is refused.
+    // Invalid outlines are refused.
     for (width, crease) in [(0.0, 30.0), (9.0, 30.0), (f64::NAN, 30.0), (1.0, -1.0), (1.0, f64::NAN)] {
         let edges = Some(Outline { width, crease, ..Outline::default() });
         let layer = OctreeLayer::new(tree.view(), Finish { edges, ..Finish::default() });
@@ -549,7 +549,7 @@ fn an_extended_tree_is_shown_as_its_source() {
         let covered = own.colours().iter().filter(|&&colour| colour != shot.background).count();
         assert!((5_000..20_000).contains(&covered), "{covered}");
     }
-    // Its own cells are those of the tree without cuts.
+    // The tree's own cells are those of the tree without cuts.
     let faces = Finish { faces: true, ..Finish::default() };
     let blunt = tree.without_cuts();
     assert_eq!(

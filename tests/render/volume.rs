@@ -288,7 +288,7 @@ fn repetitions_are_so_many_layers() {
     let alone = Control::threads(1);
     let (mut opacity, mut through) = (0.0, 1.0);
     for k in 1..=1024u32 {
-        // A layer behind those that there are.
+        // A layer behind the existing ones.
         opacity += 0.01 * through;
         through *= 0.99;
         assert!((transfer.opacity(&[0.4], 0.5 * f64::from(k)) - opacity).abs() < 1e-12);
@@ -342,7 +342,7 @@ fn a_cube_looks_as_one_however_it_is_divided() {
             let up = if axis / 2 == 2 { [0.0, 1.0, 0.0] } else { [0.0, 0.0, 1.0] };
             let eye = forward.map(|x| -2.0 * x);
             let camera = Camera::new(eye, [0.0; 3], up, Lens::Parallel(2.5)).unwrap();
-            // Pixels of 1/8, of which the middles lie on planes.
+            // Pixels of 1/8 whose middles lie on planes.
             let shot = Shot { size: [21, 20], samples: 1, ..shot(camera) };
             let [a, b] = [whole, parts].map(|layer| render(&shot, &[&layer], &control).unwrap());
             assert!(difference(&a, &b) <= 1, "{}", difference(&a, &b));

@@ -70,7 +70,7 @@ struct Found {
 
 /// Walks to a finest cell, and checks every cell on the way.
 fn walk(model: &Model, frame: &Frame, csg: &Csg, points: u64, random: &mut Random, found: &mut Found) {
-    // (Placements may lead beyond what doubles can tell.)
+    // (Placements may exceed the range of doubles.)
     let Ok(classifier) = csg.on(frame, &alone()) else { return };
     let opposite = csg.complement().on(frame, &alone()).unwrap();
     let ways = (Way::new(classifier.worker().unwrap()), Way::new(opposite.worker().unwrap()));
@@ -142,14 +142,13 @@ fn hold_as(
         let aligned = random.below(3) == 0;
         let mut maker = Maker { random: &mut random, frame, aligned, others: false };
         let model = make(&mut maker);
-        // What the ranges of arguments do not admit.
+        // The library refuses arguments out of range.
         let Ok(csg) = solid(&model, &frame) else { continue };
         walk(&model, &frame, &csg, 8, &mut random, &mut found);
     }
     println!("{name}: {found:?}");
     assert!(!name.starts_with("joined") || found.several > found.cells / 10, "{name}: {found:?}");
-    // Neither side is kept silent about. (Turned balls lie partly outside of the universe: 18 % of a
-    // million.)
+    // Both sides are reported. (Rotated balls lie partly outside the universe: 18 % of a million.)
     assert!(found.inside > wanted / 6 && found.outside > wanted / 6, "{name}: {found:?}");
 }
 
@@ -277,7 +276,7 @@ fn by_gradient(model: &Model, _: &Frame) -> Result<Csg, Error> {
 
 /// A ball or a torus as a host's nearest-point function.
 fn by_tangent(model: &Model, _: &Frame) -> Result<Csg, Error> {
-    // The centre, the radius of the circle around it that is the middle of the torus, and that of its tube.
+    // The centre, the radius of the torus's middle circle, and the radius of its tube.
     let (centre, major, minor) = match model {
         &Model::Ellipsoid(centre, [radius, ..]) => (centre, 0.0, radius),
         Model::Placed(torus, to) => match **torus {
@@ -417,7 +416,7 @@ fn derivatives(model: &Model, p: [f64; 3], half: f64) -> ([f64; 3], f64) {
         Model::Torus(major, _) => {
             let rho = p[0].hypot(p[1]);
             let share = -2.0 * (rho - major) / rho;
-            // Of a curve around the axis it is 2 major / ρ − 2.
+            // For a curve around the axis it is 2 major / ρ − 2.
             let near = rho - 2f64.sqrt() * half;
             let around = if near > 2f64.sqrt() * half { 4.0 * major / near } else { f64::INFINITY };
             ([share * p[0], share * p[1], -2.0 * p[2]], 6.0 + around)

@@ -195,7 +195,7 @@ fn extended_builds_ask_level_by_level() {
     let plain =
         build(&host(&Arc::default(), Duration::ZERO, false), &unit(7), Rule::Certified, &Control::threads(1))
             .unwrap();
-    // What a host knows keeps no surface; of an expression the rest does.
+    // Solids of a host keep no surfaces; the other operands of an expression do.
     let block = Csg::cuboid([0.2, 0.21, 0.22], [0.95, 0.96, 0.97]).unwrap();
     let mut sizes = Vec::new();
     for threads in [1, 3] {
@@ -219,7 +219,7 @@ fn extended_builds_ask_level_by_level() {
         sizes.push(tree);
     }
     assert_eq!(sizes[0], sizes[1]);
-    // Deeper than what is asked at once.
+    // Deeper than a single query reaches.
     let calls = Arc::new(Calls::default());
     let solid = host(&calls, Duration::ZERO, true);
     let tree = build_extended(&solid, &unit(9), &SurfaceOptions::default(), &Control::threads(2)).unwrap();
@@ -358,7 +358,7 @@ fn distances_decide_cells() {
 /// Wraps a host's solid in several solids of the same size, or of the same size plus a box in a corner.
 fn wrapped(solid: AnySolid) -> Vec<(&'static str, AnySolid)> {
     let corner = || Csg::cuboid([0.0625; 3], [0.125; 3]).unwrap();
-    // Turns about the ball's centre, by the angle whose cosine is 0.8, and by a quarter.
+    // Rotations about the ball's centre, by the angle with cosine 0.8 and by a quarter turn.
     let about = |[x, y]: [[f64; 2]; 2]| {
         let [a, b, _] = CENTRE;
         let moved = [x, y].map(|row| row[0] * a + row[1] * b);
@@ -404,9 +404,9 @@ fn wrappers_hand_on_many_questions_at_once() {
             let most =
                 if name.contains("turned") && !name.contains("quarter") { TURNED * alone } else { alone + 8 };
             assert!(alone / 2 < boxes && boxes <= most, "{name}: {boxes} boxes, {alone} alone");
-            // Two rounds a level for what is found by the way, and as many threads.
+            // Two rounds for each level of cells found on the way, and as many for the threads.
             assert!(!many || batches <= 2 * (1 + 5 * 3), "{name}: {boxes} boxes in {batches} calls");
-            // What comes out does not depend on how it was asked.
+            // The result does not depend on the way of the queries.
             let serial =
                 build(&solid(&Arc::default()), &frame, Rule::Certified, &Control::threads(1)).unwrap();
             assert_eq!(tree, serial, "{name}");
@@ -416,7 +416,7 @@ fn wrappers_hand_on_many_questions_at_once() {
             let truth =
                 if name.contains("united") || name.contains("expression") { ball + corner } else { ball };
             assert!(volume.contains(truth), "{name}: {volume:?}");
-            // Points are answered without cells, where nothing is rounded.
+            // Points are answered without cells if nothing is rounded.
             let calls = Arc::new(Calls::default());
             let mut answers = [Membership::Undecided; 3];
             let points = [CENTRE, [0.1; 3], [0.46875, 0.5, 0.953125]];
@@ -450,7 +450,7 @@ fn wrapped_hosts_are_asked_by_several_threads() {
             let (_, solid) = wrapped(host(&calls, Duration::from_millis(1), many)).swap_remove(k);
             let mut lazy = LazyOctree::new(solid, &frame).unwrap();
             lazy.refine(&Zone::Whole, 3, &Control::threads(4)).unwrap();
-            // (What is found on the way to a cell is found by one thread.)
+            // (One thread finds the cells on the way to a cell.)
             assert!(name.contains("transform") || calls.threads() >= 2, "{name}: {}", calls.threads());
         }
     }
@@ -489,7 +489,7 @@ fn what_is_proven_of_a_moved_host_is_true() {
                     _ => continue,
                 };
                 decided += 1;
-                // Points of the inner part of the child, whatever its corners are rounded to.
+                // Points of the inner part of the child, however its corners are rounded.
                 let half = |axis: usize| 0.5 * (max[axis] - min[axis]);
                 for _ in 0..3 {
                     let point = [0, 1, 2].map(|axis| {

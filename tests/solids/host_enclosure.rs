@@ -234,7 +234,7 @@ fn nonsense_says_nothing() {
     assert!(asked(&AnySolid::new(open().with_gradient(move |_, _, _| Ok(Some(good))))).unwrap() > 0);
     let (infinity, nan) = (f64::INFINITY, f64::NAN);
     let everything = Interval::ALL;
-    // Bounds the wrong way round, and those that are not numbers, cannot even be said.
+    // Reversed bounds and NaN cannot even be expressed.
     assert_eq!([Interval::new(1.0, -1.0), Interval::new(nan, 1.0), Interval::new(1.0, nan)], [None; 3]);
     let nonsense = Interval::new(1.0, -1.0).unwrap_or(everything);
     for range in [nonsense, Interval::exactly(nan), Interval::exactly(infinity), everything] {
@@ -316,7 +316,7 @@ fn one_function_makes_up_for_the_other() {
     for x in 0..16 {
         for y in 0..16 {
             let cell = leafless::Cell { level: 4, at: [x, y, 9] };
-            // (Cells that are decided are not asked about.)
+            // (Decided cells are not queried.)
             let (min, max) = leafless::lattice::Cube { frame: &universe(4), cell }.bounds();
             if !matches!(decide(&ball(min, max, middle(min, max)), min, max), Verdict::Partial(())) {
                 continue;

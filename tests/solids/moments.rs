@@ -63,7 +63,7 @@ fn below<W: Worker>(worker: &mut W, cell: Cell, part: &W::Part, levels: u32, fin
         let child = match verdict {
             Verdict::Empty => continue,
             Verdict::Full => Sum::of(&CubeMoments::FULL, 0.0),
-            // Of an extended tree, a cell that was given up.
+            // A cell of an extended tree that was given up.
             Verdict::Undecided => any(),
             Verdict::Partial(part) => below(worker, cell.child(octant), &part, levels - 1, fine),
         };
@@ -160,7 +160,7 @@ fn hold_as(name: &str, wanted: u64, extended: bool, make: impl Fn(&mut Maker<'_>
         let aligned = random.below(3) == 0;
         let mut maker = Maker { random: &mut random, frame, aligned, others: false };
         let model = make(&mut maker);
-        // What the ranges of arguments do not admit.
+        // The library refuses arguments out of range.
         let Ok(csg) = model.csg(&frame) else { continue };
         if extended {
             let tree = |csg: &Csg| {

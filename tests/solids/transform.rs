@@ -331,11 +331,11 @@ fn an_offset_of_whole_cells_keeps_the_centres_of_any_solid() {
     let stored = build(&Transform::new(&tree, &own, &placement), &own, Rule::Certified, &alone()).unwrap();
     assert_eq!(Dense::of(moved.view()), Dense::of(stored.view()));
     assert_eq!(moved.statistics().volume(), tree.statistics().volume());
-    // A turned ball cannot tell.
+    // A rotated ball is undecided.
     let turn = Affine::new([[0.6, -0.8, 0.0, 0.0], [0.8, 0.6, 0.0, 0.0], [0.0, 0.0, 1.0, 0.0]]).unwrap();
     let solid = Transform::new(ball, &own, &turn);
     assert!(matches!(build(&solid, &own, Rule::Sampled, &alone()), Err(Error::NotSampled)));
-    // A turned octree without undecided cells can.
+    // A rotated octree without undecided cells decides.
     let solid = Transform::new(&tree, &own, &turn);
     let turned = build(&solid, &own, Rule::Sampled, &alone()).unwrap();
     let (before, after) = (tree.statistics().volume(), turned.statistics().volume());
@@ -366,7 +366,7 @@ fn threads_and_erasure_change_nothing() {
 fn what_lies_outside_of_the_own_universe_is_known_as_the_solid_tells() {
     let own = Frame::new([0.0; 3], 1.0, 4).unwrap();
     let frame = Frame::new([-2.0; 3], 4.0, 4).unwrap();
-    // A half-space goes on outside, which nobody knows there.
+    // A half-space continues outside, where nothing is known.
     let half = Csg::half_space([1.0, 0.0, 0.0], -0.5).unwrap();
     let tree =
         build(&Transform::new(half, &own, &Affine::IDENTITY), &frame, Rule::Certified, &alone()).unwrap();
@@ -380,7 +380,7 @@ fn what_lies_outside_of_the_own_universe_is_known_as_the_solid_tells() {
         build(&Transform::new(&cube, &own, &Affine::IDENTITY), &frame, Rule::Certified, &alone()).unwrap();
     assert_eq!(tree.statistics().volume(), leafless::Interval::exactly(0.125));
     assert_eq!(tree.view().exterior(), Tag::Empty);
-    // What sticks out of the frame is clipped by it.
+    // The frame clips the parts that stick out.
     let away = Affine::translation([1.5, 0.0, 0.0]).unwrap();
     let tree = build(&Transform::new(&cube, &own, &away), &frame, Rule::Certified, &alone()).unwrap();
     assert_eq!(tree.view().exterior(), Tag::Partial);
@@ -543,7 +543,7 @@ fn handed_on<S: Solid + Clone>(solid: &S) -> Told {
             let known = inner.area(source(cell), &b).unwrap();
             told[2] += known.is_some() as u32;
             assert_eq!(outer.area(cell, &a).unwrap(), known, "{cell:?}");
-            // Along the diagonals of the cell, whose ends are doubles.
+            // Along the diagonals of the cell. The ends are doubles.
             let (min, max) = Cube { frame: &frame, cell }.bounds();
             for k in 0..4 {
                 let end =

@@ -358,7 +358,7 @@ fn attack(seed: u64, runs: u64) {
         assert!(left.is_none(), "{left:?} after {done:?}");
     }
     println!("{codes:?} ended with the codes 0, 1 and 2");
-    // The lines are not so wild that none does anything.
+    // The lines are moderate enough that some succeed.
     assert!(codes.iter().all(|&count| count > runs / 50), "{codes:?}");
 }
 

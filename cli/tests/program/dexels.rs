@@ -146,7 +146,7 @@ fn octrees_are_dexelised_exactly() {
     place
         .run("dexelize sampled.lfl -o no.lfl --resolution 128")
         .bad(2, &["--resolution contradicts sampled.lfl", "64 cells"]);
-    // On a coarser lattice the cells from 9 to 25 are those from 5 to 12, with what is cut those from 4 to 12.
+    // On a coarser lattice, the cells 9 to 25 become the cells 5 to 12; with the cut cells, 4 to 12.
     let noted = place
         .run("dexelize sampled.lfl -o cells.lfl --resolution 32 --json")
         .noted(&["undecided", "--rule inner"]);
@@ -163,7 +163,7 @@ fn octrees_are_dexelised_exactly() {
         "--rule inner",
     ]);
     assert_eq!(noted.json()["metadata"]["rule"], "outer");
-    // Cells that the faces at 1.1 and 3.3 cut are those of 8 and 26.
+    // The faces at 1.1 and 3.3 cut the cells 8 and 26.
     for (rule, side) in [("inner", 17.0), ("outer", 19.0f64)] {
         let report = json(&place, &format!("dexelize bounds.lfl -o cells.lfl --rule {rule}"));
         assert_eq!(report["volume"], (side / 8.0).powi(3), "{rule}");
@@ -175,7 +175,7 @@ fn octrees_are_dexelised_exactly() {
 #[test]
 fn rays_through_a_hole_are_odd() {
     let place = Place::new();
-    // Without one of the two triangles of a side that looks along x, and of it nothing else.
+    // A side that faces along x lacks one of its two triangles; all else is complete.
     let whole = block([1.0; 3], [7.0; 3]);
     let open = TriangleMesh::new(whole.vertices().to_vec(), whole.triangles()[1..].to_vec()).unwrap();
     place.write("open.stl", stl(&open));
@@ -183,7 +183,7 @@ fn rays_through_a_hole_are_odd() {
     assert_eq!(run.code, Some(0));
     assert!(run.errors.contains("does not bound a solid"), "{run:?}");
     let report = run.json();
-    // Half of a square of 6 × 6 rays; those on its diagonal lie on one side.
+    // Half of a square of 6 × 6 rays. The rays on its diagonal lie on one side.
     let odd = report["directions"][0]["odd_rays"].as_u64().unwrap();
     assert!(odd == 15 || odd == 21, "{odd}");
     assert_eq!(report["odd_rays"], odd);
@@ -289,7 +289,7 @@ fn what_does_not_go_together_is_refused() {
             .bad(1, &["flat.lfl", "cube.lfl", "rays along z", "xyz", "--directions"]);
         place.run(&format!("{operation} cube.lfl bar.lfl {to} --carry t=max")).bad(2, &["--carry"]);
     }
-    // Commands for octrees say what makes one.
+    // The errors of octree commands say how to make an octree.
     for line in [
         "contains cube.lfl",
         "measure cube.lfl",
@@ -382,8 +382,8 @@ fn dual_contouring_of_meshes_and_scenes() {
     let report = json(&place, "mesh ball.csg -o out.ply --method dual --depth 6 --bounds -4,-4,-4,8");
     assert_eq!((&report["closed"], &report["euler"]), (&true.into(), &2.into()));
     for [x, y, z] in mesh(&place, "out.ply").vertices() {
-        // The ball falls below its tangent planes by r²/4 within r of where they touch it; a cube of edge 1/8
-        // is not wider.
+        // The ball falls below its tangent planes by r²/4 within r of the point of contact. A cube of edge
+        // 1/8 is no wider.
         assert!(((x * x + y * y + z * z).sqrt() - 2.0).abs() < 3.0 / 64.0 / 4.0);
     }
     place.run(&format!("voxelize cube.stl -o octree.lfl --depth 5 {BOUNDS}")).good();
@@ -413,7 +413,7 @@ fn each_kind_becomes_each_other() {
     assert!(mesh(&place, "out.stl").report().unwrap().is_closed());
     place.run("mesh cube.lfl -o direct.stl").good();
     assert_eq!(place.bytes("out.stl"), place.bytes("direct.stl"));
-    // From an octree: its cells, exactly, there and back.
+    // From an octree: exactly its cells, there and back.
     let dexels = json(&place, "convert octree.lfl -o dexels.lfl --to dexels");
     assert_eq!((&dexels["volume"], &dexels["resolution"]), (&cells.into(), &64.into()));
     place.run("convert dexels.lfl -o again.lfl --to octree").good();
@@ -616,7 +616,7 @@ fn a_model_with_normals_becomes_an_octree_with_surfaces() {
     assert!(report["surfaces"].as_f64().unwrap() > 0.0, "{report}");
     let cut = place.run("voxelize cube.lfl -o moved.lfl --surfaces=1e-2 --translate 1,0,0").good();
     assert!(cut.text().contains("moved.lfl"));
-    // What is missing is told.
+    // Missing data are reported.
     place.run(&format!("dexelize cube.stl -o plain.lfl --resolution 16 {BOUNDS}")).good();
     place.run("voxelize plain.lfl -o never.lfl --surfaces=1e-2").bad(1, &["no normals", "--normals 32"]);
     place.run("voxelize cube.lfl -o never.lfl --surfaces").bad(2, &["--surfaces=1e-4"]);

@@ -75,7 +75,7 @@ fn meshes_and_scenes() {
     assert!(met > 1000 && (10..400).contains(&open), "{met} {open}");
     assert_eq!(rows(&place.run("heights cube.stl --axis z --depth 4").good()).len(), 16);
     assert_eq!(rows(&place.run("heights cube.lfl --axis z --depth 3").good())[2][2], 3.0);
-    // What is sampled proves nothing, but its cells may be taken for the solid.
+    // Samples prove nothing, but their cells may be taken for the solid.
     place.run("voxelize cube.stl -o sampled.lfl --depth 5 --bounds 0,0,0,8 --rule sampled").good();
     let open = rows(&place.run("heights sampled.lfl --axis z --on full").good());
     assert!(open.concat().iter().all(|x| x.is_nan()));

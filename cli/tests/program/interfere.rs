@@ -53,14 +53,15 @@ fn solids_and_meshes() {
             assert!(found["splits"].as_u64().unwrap() <= 80, "{found}");
             assert!(found["witness"]["min"][0].as_f64().unwrap() >= 0.0);
             assert!(found["witness"]["max"][0].as_f64().unwrap() <= 4.0);
-            // Beside it, and turned by a quarter so that y goes to −x.
+            // Beside it, and rotated by a quarter turn that takes y to −x.
             let found = json(path, &[a, b, "--place-b", "1 0 0 6.5 0 1 0 0 0 0 1 0"]);
             assert_eq!((&found["verdict"], &found["witness"]), (&"disjoint".into(), &Value::Null), "{a} {b}");
             assert!(contains(&found["clearance"], 2.5) && contains(&found["overlap"], 0.0), "{found}");
             assert_eq!(found["clipped"], false);
             let found = json(path, &[a, b, "--place-b", "0,-1,0,0, 1,0,0,1, 0,0,1,0, 0,0,0,1"]);
             assert!(contains(&found["clearance"], 0.0) && contains(&found["overlap"], 0.0), "{found}");
-            // Turned by the angle whose cosine is 0.8 about the z axis: analytic by clipping the polygon.
+            // Rotated about the z axis by the angle with cosine 0.8. The truth comes from clipping the
+            // polygon.
             let found =
                 json(path, &[a, b, "--place-b", "[[0.8,-0.6,0,1],[0.6,0.8,0,0],[0,0,1,1]]", "--depth", "6"]);
             assert_eq!(found["verdict"], "overlapping");
@@ -77,7 +78,7 @@ fn solids_and_meshes() {
     for (line, name) in text.lines().zip(["verdict", "overlap", "clearance", "witness", "splits"]) {
         assert!(line.starts_with(name), "{text}");
     }
-    // A budget of none.
+    // A budget of zero.
     let found = json(path, &["a.stl", "a.stl", "--splits", "0"]);
     assert_eq!((&found["verdict"], &found["clearance"]["upper"]), (&"undecided".into(), &Value::Null));
 }
@@ -152,7 +153,7 @@ fn many_places() {
     assert!(text.contains("at least 1.5") && text.lines().count() == 4, "{text}");
     std::fs::write(path.join("places.txt"), "1 0 0 7 0 1 0 0 0 0 1 0\n").unwrap();
     assert!(run(path, &gap).status.success());
-    // A clearance of one place is told anyway.
+    // The clearance of a single place is reported anyway.
     assert_eq!(run(path, &["interfere", "a.csg", "b.csg", "--clearance"]).status.code(), Some(2));
 }
 

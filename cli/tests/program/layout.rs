@@ -62,7 +62,7 @@ fn boxes_fill_a_box() {
     let told = place.run("layout --check full.json --json").good().json();
     assert_eq!((&told["copies"], &told["proven"], &told["conflicts"]), (&json!(8), &json!(8), &json!([])));
 
-    // What is heavy, and how heavy.
+    // Densities and masses.
     let told = place.run("layout box:10,10,20 cube.csg*2 -o d.json --density 2.5 --json").good().json();
     holds(&told["mass"], 5000.0, 1.0);
     let heavy = "layout box:20,20,12 slab.csg cube.csg*2 -o d.json --density 2.5,1e-3 --json";
@@ -78,7 +78,7 @@ fn boxes_fill_a_box() {
     let run = place.run(steel).good();
     assert!(run.text().lines().any(|line| line.starts_with("mass") && line.ends_with(" g")), "{run:?}");
 
-    // With a distance between them there is less room; what goes in is written.
+    // With a distance between the cubes there is less room. The placed cubes are written.
     let run = place.run("layout box:20,20,20 cube.csg*8 -o some.json --clearance 0.5 --rounds 1");
     left(&run, &["7 copies are left", "7 of cube.csg"]);
     assert!(run.text().contains("placed          1 of 8\n"), "{run:?}");
@@ -167,7 +167,7 @@ fn outputs_are_read_back() {
     place.run("render out/a.csg -o out/a.png --size 32x32").good();
     let mesh = place.run("info out/a.3mf --json").good().json();
     let own = mesh["volume"].as_f64().unwrap();
-    // (Surface nets take the corners of the solid that is no more than its cells.)
+    // (Surface nets cut off the corners of the solid that consists only of cells.)
     assert!((own - volume).abs() < 1e-2 * volume, "{own} {volume}");
     assert_eq!(mesh["closed"], true, "{mesh}");
     // The copies of the mesh stand where the JSON says, to the last digit.
@@ -223,7 +223,7 @@ fn options() {
         let [lower, upper] = ends(&layout(&place, "a.json")["measures"]["centroid"][axis]);
         assert!(lower > aim - 1.5 && upper < aim + 1.5, "{axis} {lower} {upper}");
     }
-    // Budgets end a search, and what is known by then is written.
+    // Budgets end a search, and the placements so far are written.
     let run = place.run("layout tub.stl cube.stl*4 -o a.json --tests 1 --json");
     left(&run, &["--tests or --splits"]);
     assert_eq!((&run.json()["end"], &run.json()["tests"]), (&json!("budget"), &json!(1)));
@@ -295,7 +295,7 @@ fn what_is_changed_is_seen() {
     });
     assert!(told["conflicts"].as_array().unwrap().iter().any(|c| c["other"] == "wall"), "{told}");
     assert!(text.contains("the wall"), "{text}");
-    // More distance is asked for than there is.
+    // The requested distance is greater than the real one.
     let (told, _) = changed(&|value| value["clearance"] = json!(50));
     assert!(told["conflicts"].as_array().unwrap().len() >= 2, "{told}");
     // And another part.
@@ -399,7 +399,7 @@ fn hostile_layouts_are_refused() {
         place.run("layout --check b.json").bad(1, &["/dev/zero", "is no regular file"]);
     }
     place.run("layout --check none.json").bad(1, &["none.json", "No such file"]);
-    // Nothing that is placed is proven.
+    // No placement is proven.
     let mut empty = value.clone();
     (empty["placed"], empty["items"]) = (json!([]), json!([]));
     place.write("b.json", empty.to_string());
@@ -477,7 +477,7 @@ fn what_is_refused() {
         place.run(&format!("layout {line}")).bad(code, words);
     }
     assert_eq!(place.files(), before);
-    // A volume has no place in a scene, which is told before anything is sought.
+    // A volume cannot stand in a scene. This is reported before the search.
     place.write(
         "grid.nrrd",
         b"NRRD0004\ntype: uint8\ndimension: 3\nsizes: 2 2 2\nencoding: raw\n\n\xFF\xFF\xFF\xFF\xFF\xFF\xFF\xFF",

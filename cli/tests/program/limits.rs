@@ -182,7 +182,7 @@ fn what_is_too_large_is_said_with_its_size_and_the_option() {
         run(&place, ALLOWED, &line, b"").bad(1, &[what, "--max-memory"]);
     }
     assert!(!place.files().iter().any(|name| name.starts_with("out")));
-    // A limit that is generous enough changes nothing.
+    // A sufficient limit changes nothing.
     let small = trees.iter().find(|path| path.ends_with("cell-full-20.lfl")).unwrap().display();
     let model = run(&place, ALLOWED, &format!("dexelize {small} -o out.lfl"), b"").good();
     assert!(model.text().contains("3 intervals"), "{model:?}");
@@ -197,13 +197,13 @@ fn endless_inputs_are_refused() {
         let (name, rest) = command.split_once(' ').unwrap_or((command, ""));
         run(&place, ALLOWED, &format!("{name} /dev/zero {rest}"), b"").bad(1, &["/dev/zero", "--max-memory"]);
     }
-    // Nor are those that a scene names.
+    // Endless files that a scene names are refused, too.
     std::os::unix::fs::symlink("/dev/zero", place.path("zero.stl")).unwrap();
     std::fs::write(place.path("zero.csg"), "import(file = \"zero.stl\");").unwrap();
     run(&place, ALLOWED, "csg zero.csg -o out.lfl --depth 3", b"")
         .bad(1, &["line 1", "zero.stl: is no regular file"]);
     std::fs::write(place.path("long.csg"), "import(file = \"long.stl\");").unwrap();
-    // A regular file says how long it is, and nothing of it is read.
+    // A regular file states its length, and none of it is read.
     std::fs::File::create(place.path("long.stl")).unwrap().set_len(1 << 40).unwrap();
     run(&place, ALLOWED, "info long.stl", b"").bad(1, &["long.stl: has 1 TB", "--max-memory"]);
     run(&place, ALLOWED, "csg long.csg -o out.lfl --depth 3", b"")

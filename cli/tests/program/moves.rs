@@ -46,7 +46,7 @@ fn moves_act_in_the_order_of_the_command_line() {
         assert!(report["closed"] == true && report["volume"].as_f64().unwrap() > 0.0, "{moves}: {report}");
         assert_eq!(corners(&place, "out.obj"), [min.to_vec(), max.to_vec()], "{moves}");
     }
-    // Turned by thirty degrees and back.
+    // Rotated by thirty degrees and back.
     place.run("convert slab.stl -o out.obj --rotate 1,1,0,30 --rotate 1,1,0,-30").good();
     let [min, max] = corners(&place, "out.obj");
     let off = min.iter().zip([2.0, 2.0, 0.0]).chain(max.iter().zip([6.0, 6.0, 2.0]));
@@ -68,7 +68,7 @@ fn quarter_turns_are_exact() {
             assert!(place.bytes("out.lfl") == direct, "{line} {moves}");
         }
     }
-    // The cells of what is turned are those of what is made turned.
+    // Rotated octree cells equal the cells of the rotated mesh.
     place.run("voxelize slab.stl -o slab.lfl --depth 5 --bounds -8,-8,-8,16").good();
     place.run("convert slab.lfl -o moved.lfl --rotate z,90 --translate 1,0,0").good();
     place.run("convert slab.stl -o turned.stl --rotate z,90 --translate 1,0,0").good();
@@ -91,7 +91,7 @@ fn volumes_hold_the_truth_where_things_are_moved() {
         ("measure cube.stl --rotate 1,2,3,40 --translate 0.1,0.2,0.3", 8.0, 1e-9),
         ("measure cube.stl --scale 1,2,0.5", 8.0, 1e-9),
         ("measure ball.csg --scale 1,2,3 --rotate z,30", 6.0 * ball, 0.3),
-        // Of a solid from a file no more is known than its cells say, which is enough here.
+        // A solid from a file is known only by its cells, which is enough here.
         ("measure cube.lfl --rotate z,30", 8.0, 0.1),
         ("measure cube.lfl --rotate z,90 --translate 3,0,0", 8.0, 0.0),
         ("measure cube.lfl --scale 2,2,2", 64.0, 0.0),
@@ -104,7 +104,7 @@ fn volumes_hold_the_truth_where_things_are_moved() {
     ] {
         holds(&place.run(&format!("{line} --json")).good().json(), truth, width);
     }
-    // A mesh of the moved surface, whose volume is that of the solid.
+    // A mesh of the moved surface. Its volume is the solid's.
     for line in
         ["mesh cube.lfl -o out.ply --rotate z,30", "mesh ball.csg -o out.ply --depth 5 --translate 9,0,0"]
     {
@@ -137,14 +137,14 @@ fn set_operations_move_the_file_before_the_option() {
         made("intersection cube.lfl cube.lfl --translate -2,-2,0 --rotate z,45 --translate 2,2,0");
     let octagon = 8.0 * (2f64.sqrt() - 1.0) * 2.0;
     assert!(lower < octagon && octagon < upper, "{lower} to {upper}");
-    // Onto the frame of the first, whatever its own is.
+    // Onto the frame of the first file, whatever its own frame is.
     place.run("voxelize cube.stl -o other.lfl --depth 4 --bounds -4,-4,-4,16").good();
     place.run("union cube.lfl other.lfl -o out.lfl").bad(1, &["other.lfl", "another frame"]);
     assert_eq!(made("union cube.lfl other.lfl --translate 2,0,0"), (16.0, 16.0));
     place
         .run("union --translate 1,0,0 cube.lfl slab.lfl -o no.lfl")
         .bad(2, &["--translate", "before the files"]);
-    // What is moved out of the frame is missing, which is told.
+    // Parts moved out of the frame are missing, and the program reports it.
     let run = place.run("union cube.lfl slab.lfl --translate 4,0,0 -o out.lfl");
     assert!(run.code == Some(0) && run.errors.contains("slab.lfl: warning"), "{run:?}");
 }

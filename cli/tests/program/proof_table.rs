@@ -111,7 +111,7 @@ const WAYS: &[(&[&str], Truth, [&str; 4])] = &[
         NOTHING,
     ),
     (&["convert ball.csg -o out.lfl --to octree --bounds 0,0,0,16 --resolution 16"], ball, ITSELF),
-    // Solids of their own: what was proven of what they were made from is not told.
+    // Solids of their own. They do not repeat the proofs of their sources.
     (
         &["mesh ball.csg -o out.stl --method mc --depth 4", "voxelize out.stl -o out.lfl FRAME --rule RULE"],
         itself,
@@ -121,7 +121,8 @@ const WAYS: &[(&[&str], Truth, [&str; 4])] = &[
     (&["bitmap in.lfl -o out.nrrd --resolve outer", "voxelize out.nrrd -o out.lfl FRAME"], itself, ITSELF),
     // Records, and back.
     (&["voxels in.lfl -o r.npz", "voxels r.npz --import -o out.lfl"], ball, SAME),
-    // Without more words, the boundary voxels of a binary octree are inside cells that touch outside ones.
+    // Without further information, the boundary voxels of a binary octree are inside cells that touch outside
+    // cells.
     (
         &["voxels in.lfl -o r.npz", "voxels r.npz --import -o out.lfl --boundary-as full"],
         ball,
@@ -160,7 +161,7 @@ const WAYS: &[(&[&str], Truth, [&str; 4])] = &[
         SAME,
     ),
     (&["voxels ball.csg -o r.npz FRAME", "voxels r.npz --import -o out.lfl"], ball, ITSELF),
-    // What cells are taken for is not what they prove.
+    // Taking cells for the solid is no proof.
     (&["voxels in.lfl --cells -o r.npz", "voxels r.npz --import -o out.lfl"], ball, SAME),
     (&["voxels in.lfl --cells --depth 3 -o r.npz", "voxels r.npz --import -o out.lfl"], ball, SAME),
     (
@@ -339,7 +340,7 @@ fn changed_records_prove_nothing() {
         Some(array)
     };
     assert_eq!(imported(changed(&bytes, edge)), "00");
-    // No seal, no word of what is proven, or of what boundary voxels are.
+    // A file without a seal, without the proof, or without the meaning of boundary voxels.
     for missing in ["seal.npy", "proof.npy", "boundary.npy", "exterior.npy"] {
         let without = |name: &str, array: Vec<u8>| (name != missing).then_some(array);
         let expected = if missing == "boundary.npy" { "11" } else { "00" };

@@ -95,7 +95,7 @@ fn meshes_and_scenes() {
         assert!(first[0] <= wanted && wanted <= first[1] && first[1] - first[0] < 1e-4, "{run:?}");
         assert!(first[2] < -0.9 && found[1].is_none(), "{run:?}");
     }
-    // Nothing of a ball is proven without a split.
+    // Without a split, nothing about a ball is proven.
     let few = place.run_with("ray ball.csg --splits 0", b"-5 0.3 0.4 1 0 0\n").good();
     assert!(few.text().contains(" inf "), "{few:?}");
     let few = place.run_with("ray ball.csg --splits 0 --json", b"-5 0.3 0.4 1 0 0\n").good();

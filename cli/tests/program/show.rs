@@ -226,13 +226,13 @@ fn half_blocks_have_the_colours_of_the_picture() {
     let place = part();
     for looks in ["", "--background none", "--background none --view volume", "--view slice"] {
         let line = format!("render ball.csg -o out.png --depth 5 --show=blocks {looks}");
-        // As it is, with an odd number of rows: the last line has one row of them only.
+        // At its own size, with an odd number of rows: the last line shows only one row.
         let text = shown(&place, &format!("{line} --size 70x41"), &[TRUE]);
         let mut found = blocks(&text);
         assert_eq!(found.size(), [70, 42]);
         assert!(found.pixels.drain(70 * 41..).all(|pixel| pixel.is_none()));
         assert!(found == image(&place.bytes("out.png")), "{looks}");
-        // Smaller, because a terminal has 63 columns, of which 60 make the picture as high as 25 rows.
+        // Smaller, because the terminal has 63 columns; 60 of them make the picture as high as 25 rows.
         let environment = [TRUE, ("COLUMNS", "63"), ("LINES", "28")];
         let found = blocks(&shown(&place, &format!("{line} --size 160x136"), &environment));
         assert_eq!(found.size(), [59, 50]);
@@ -295,7 +295,7 @@ fn kitty_and_iterm_get_the_file() {
         let found = file(name, "-o out.png");
         assert!(found.len() > 8192, "one piece only");
         assert!(found == place.bytes("out.png"));
-        // Without a file it is the same: a pipe has no size.
+        // Without a file the output is the same: a pipe has no size.
         assert!(file(name, "") == found);
         assert_eq!(image(&file(name, "--size 30x20")).size(), [30, 20]);
     }
@@ -379,8 +379,7 @@ mod terminal {
         assert!(before.local_modes.contains(LocalModes::ECHO | LocalModes::ICANON));
         let mut command = command(place, line, environment);
         if !answer.is_empty() {
-            // The program waits longer for terminals far away: this one may be slow where there is much else
-            // to do.
+            // The program waits longer for distant terminals. This terminal may be slow on a busy machine.
             command.env("SSH_TTY", "/dev/pts/0");
         }
         // (A progress bar would come in between.)
@@ -393,7 +392,7 @@ mod terminal {
             let code = child.wait().unwrap().code();
             let after = tcgetattr(&slave).unwrap();
             assert_eq!(modes(&before), modes(&after), "the terminal's mode was changed");
-            // What no line ends is there to read only in this mode.
+            // Input without a line's end is readable only in this mode.
             let mut raw = after.clone();
             raw.local_modes.remove(LocalModes::ICANON);
             tcsetattr(&slave, OptionalActions::Now, &raw).unwrap();
@@ -463,7 +462,7 @@ mod terminal {
         let (found, colours) = sixels(picture(&run));
         let (greatest, mean) = found.difference(&image(&place.bytes("out.png"))).unwrap();
         assert!(colours == 16 && greatest < 40 && mean < 3.0, "{greatest} {mean}");
-        // What is named needs no question.
+        // A named protocol needs no query.
         let run = session(&place, "render ball.csg --show=blocks", &[TRUE], "\x1b[?62;4;22c");
         assert!(!run.text.contains("\x1b[c"));
         assert_eq!(blocks(picture(&run)).size(), [100, 54]);
@@ -474,7 +473,7 @@ mod terminal {
         let place = part();
         let run = session(&place, "render ball.csg --show", &[], "\x1b_Gi=31;OK\x1b\\\x1b[?62;4c");
         assert_eq!(image(&kitty(picture(&run))).size(), [800, 432]);
-        // Larger ones are made smaller.
+        // Larger pictures are made smaller.
         let run = session(
             &place,
             "render ball.csg --show --size 1600x160 -o out.png",
@@ -482,7 +481,7 @@ mod terminal {
             "\x1b_Gi=31;OK\x1b\\\x1b[?62c",
         );
         assert_eq!(image(&kitty(picture(&run))).size(), [800, 80]);
-        // Where the terminal does not answer, its name is believed; inside of tmux, it is not.
+        // If the terminal does not answer, its name decides; inside tmux, the name does not count.
         for (environment, is_kitty) in [
             (&[("TERM", "xterm-kitty")][..], true),
             (&[("TERM_PROGRAM", "WezTerm")], true),

@@ -48,7 +48,7 @@ impl Drop for Running {
 /// Starts the program with the default handling of signals, except for one ignored signal. (A shell may
 /// ignore some signals for background processes, such as the tests.)
 fn start(mut command: Command, ignored: Option<Signal>) -> Running {
-    // SAFETY: between fork and exec only `sigaction` is called, which may be called there.
+    // SAFETY: between fork and exec only `sigaction` is called, which is allowed there.
     unsafe {
         command.pre_exec(move || {
             for signal in SIGNALS {

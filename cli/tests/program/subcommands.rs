@@ -172,7 +172,7 @@ fn voxelize_reports_and_records() {
     assert_eq!((json["edge"].as_f64(), json["origin"][0].as_f64()), (Some(2.0), Some(1.0)));
     assert_eq!(volume(&json), (8.0, 8.0));
 
-    // All that `info` tells is in it.
+    // The report contains everything that `info` prints.
     let info = place.run("info cube.lfl --json").good().json();
     for (key, value) in info.as_object().unwrap() {
         assert_eq!(json[key], *value, "{key}");
@@ -245,7 +245,7 @@ fn a_mesh_that_sticks_out_is_reported() {
     assert!(lower <= 8.0 && 8.0 <= upper);
     assert_eq!(place.run("info out.lfl --json").good().json()["clipped"], true);
     assert!(place.run("info out.lfl").good().text().contains("may go on outside"));
-    // Nothing of it left is no error either.
+    // An empty result is no error, either.
     let run = place.run("voxelize slab.stl -o out.lfl --depth 4 --bounds=-9,-9,-9,1 --json");
     assert_eq!((run.code, volume(&run.json())), (Some(0), (0.0, 0.0)));
     assert!(run.errors.contains("warning"), "{run:?}");
@@ -336,7 +336,7 @@ fn a_scene_becomes_a_solid() {
         assert!(told.text().contains(word), "{told:?}");
     }
     let report = place.run("csg part.csg -o part.lfl --depth 5 --bounds 0,0,0,8 --json").good().json();
-    // What a mesh and an octree do in bulk is not counted.
+    // Bulk work of a mesh and an octree is not counted.
     assert!(report["splits"].is_null() && report["evaluations"].as_u64().unwrap() > 0);
     assert!(report["levels"].as_array().unwrap().iter().all(|level| level.get("splits").is_none()));
     let (lower, upper) = volume(&report);
@@ -350,7 +350,7 @@ fn a_scene_becomes_a_solid() {
         place.run("csg sphere.csg -o inner.lfl --depth 4 --bounds 0,0,0,128 --rule inner --json").good();
     assert_eq!(volume(&inner.json()), (802_816.0, 802_816.0));
 
-    // What is wrong with scenes.
+    // Errors in scenes.
     let before = place.files();
     place.write("bad.csg", "group() {\n  cube(size = [1, 2]);\n}\n");
     place.run("csg bad.csg -o out.lfl --depth 4").bad(1, &["bad.csg: line 2, column 15: expected 3 items"]);
@@ -363,7 +363,7 @@ fn a_scene_becomes_a_solid() {
     place.run("csg none.csg -o out.lfl --depth 4").bad(1, &["none.csg"]);
     std::fs::remove_file(place.path("bad.csg")).unwrap();
     assert_eq!(place.files(), before);
-    // A scene that sticks out is told of.
+    // The program reports a scene that sticks out.
     let out = place.run("csg sphere.csg -o out.lfl --depth 4 --bounds 0,0,0,100");
     assert!(out.code == Some(0) && out.errors.contains("outside of the bounds"), "{out:?}");
 }
@@ -394,7 +394,7 @@ fn adaptive_octrees_of_scenes_are_coarse() {
     let bytes = place.bytes("coarse.lfl");
     place.run("csg part.csg -o coarse.lfl --depth 8 --adaptive 0.05 --threads 3").good();
     assert_eq!(place.bytes("coarse.lfl"), bytes);
-    // Beside an octree, which knows no layers.
+    // Beside an octree, which has no layers.
     place.run_with("csg - -o small.lfl --depth 4 --bounds 0,0,0,64", b"cube([2, 1, 1]);").good();
     place.write("both.csg", format!("union() {{ {turn} {{ {part} }} octree(\"small.lfl\"); }}"));
     let line = "csg both.csg -o both.lfl --depth 4 --bounds 0,0,0,64 --adaptive 1 --json";
@@ -414,7 +414,7 @@ fn octrees_that_keep_surfaces_are_taken_as_solids() {
     let (truth, area) = (6000.0 - pi * 160.0, 2.0 * (600.0 + 300.0 + 200.0) + 80.0 * pi - 32.0 * pi);
     let close = |found: f64, truth: f64, share: f64| (found - truth).abs() < share * truth;
     let number = |report: &Value, name: &str| report[name].as_f64().unwrap();
-    // Surfaces: that of marching cubes and of dual contouring are closed, and near; of cells they have steps.
+    // The surfaces by marching cubes and by dual contouring are closed, and near. Those of cells have steps.
     for (line, share) in [
         ("", 0.002),
         ("--method mc", 0.01),
@@ -434,7 +434,7 @@ fn octrees_that_keep_surfaces_are_taken_as_solids() {
     let (least, most) = (&measured["area"]["lower"], &measured["area"]["upper"]);
     let (least, most) = (least.as_f64().unwrap(), most.as_f64().unwrap());
     assert!(least < area && area < most && most - least < 1e-2 * area, "{measured}");
-    // Pictures cover as much as those of the scene.
+    // Pictures cover as much as the scene's pictures.
     for view in ["", "--view slice", "--view volume", "--view hybrid", "--faces"] {
         let [own, source] = ["lfl", "csg"].map(|kind| {
             let line = format!("render part.{kind} -o part.png --size 160x120 --samples 1 {view} --json");
@@ -444,7 +444,7 @@ fn octrees_that_keep_surfaces_are_taken_as_solids() {
     }
     let dexels = place.run("dexelize part.lfl -o dexels.lfl --json").good().json();
     assert!(close(number(&dexels, "volume"), truth, 1e-3) && dexels["resolution"] == 256, "{dexels}");
-    // Cells, of the level that is asked for.
+    // Cells of the requested level.
     let plain = place.run("convert part.lfl -o plain.lfl --to octree --resolution 64 --json").good().json();
     assert_eq!((&plain["depth"], &plain["cuts"]), (&Value::from(6), &Value::Null));
     place.run("convert plain.lfl -o other.lfl --to octree").bad(1, &["is an octree already"]);
@@ -496,7 +496,7 @@ fn octrees_of_scenes_keep_their_surfaces() {
     assert_eq!(place.bytes("part.lfl"), bytes);
     let coarse = place.run("csg part.csg -o coarse.lfl --surfaces --depth 6 --json").good().json();
     assert_eq!(coarse["depth"], 6);
-    // A mesh, of which planes of a coordinate are kept exactly: six beside those of the scene's own block.
+    // A mesh. Axis-aligned planes are kept exactly: six, besides those of the scene's own block.
     place.write("cube.stl", stl(&block([-3.1; 3], [-1.2; 3])));
     place.write("both.csg", format!("union() {{ {part} import(file = \"cube.stl\"); }}"));
     let both = place.run("csg both.csg -o both.lfl --surfaces=1e-3 --json").good().json();
@@ -528,7 +528,7 @@ fn open_meshes_are_taken_with_a_warning() {
             assert_eq!(run.code, Some(0), "{run:?}");
             let start = format!("leafless: {name}: warning: ");
             assert!(run.errors.lines().all(|line| line.starts_with(&start)), "{run:?}");
-            // What is inside before the hole may reach beyond the bounds.
+            // The part inside before the hole may reach beyond the bounds.
             let clipped = run.json()["clipped"].as_bool().unwrap();
             assert_eq!(run.errors.contains("go on outside of the bounds"), clipped, "{run:?}");
             assert_eq!(run.errors.lines().count(), 1 + usize::from(clipped), "{run:?}");
@@ -548,7 +548,7 @@ fn open_meshes_are_taken_with_a_warning() {
         assert_eq!((&info["closed"], &info["volume"]), (&false.into(), &Value::Null));
         let text = place.run(&format!("info {name}")).good();
         assert!(text.text().contains(words[1]) && text.text().contains("defect"), "{text:?}");
-        // The triangle that is missing or turned, on the upper side.
+        // The missing or inverted triangle, on the upper side.
         let defects = info["mesh"]["defects"].as_array().unwrap();
         let kind = if boundary > 0 { "hole" } else { "misoriented" };
         assert_eq!(defects.len(), 1);
@@ -563,7 +563,7 @@ fn open_meshes_are_taken_with_a_warning() {
 /// `part.3mf`: in inches, a tetrahedron of edge 1 and its mirror image, and a support.
 fn package() -> Vec<u8> {
     let resources = zip::tetrahedron(1, "") + &zip::tetrahedron(2, "type=\"support\"");
-    // Properties that are not there would be warned of.
+    // Missing properties would cause a warning.
     let resources = resources.replace(" pid=\"1\" p1=\"0\"", "");
     let items = "<item objectid=\"1\"/><item objectid=\"2\"/>
         <item objectid=\"1\" transform=\"-1 0 0 0 1 0 0 0 1 -1 0 0\"/>";
@@ -751,7 +751,7 @@ fn info_of_bodies_that_overlap() {
     }
     let text = place.run("info cube.obj").good().text().to_owned();
     assert!(!text.contains("by the rule") && !text.contains("not flat"), "{text}");
-    // A face that is not flat: of two triangulations one was taken.
+    // A face that is not flat. One of two triangulations is chosen.
     place.write("bent.obj", cube.replacen("v 1 1 1", "v 1 1 1.25", 1));
     let info = place.run("info bent.obj --json").good().json();
     assert_eq!((&info["mesh"]["polygons"], &info["mesh"]["bent_polygons"]), (&6.into(), &1.into()));
@@ -990,12 +990,12 @@ fn what_cells_do_not_prove_is_not_said() {
     for name in ["sampled.lfl", "copy.lfl"] {
         let info = place.run(&format!("info {name} --json")).good().json();
         assert_eq!(info["proof"], serde_json::json!({ "full": false, "empty": false, "displacement": 0.0 }));
-        // What was sampled is known to lie in the universe, and no more.
+        // A sampled solid lies in the universe; nothing more is known.
         let told = place.run(&format!("measure {name} --json")).good().json();
         let edge = told["edge"].as_f64().unwrap();
         assert_eq!(volume(&told), (0.0, edge * edge * edge));
         assert!(place.run(&format!("measure {name}")).good().text().contains("nothing: cells are called"));
-        // The cells themselves are what they are.
+        // The cells themselves are known exactly.
         let told = place.run(&format!("measure {name} --cells --json")).good().json();
         assert!(volume(&told).0 > 0.0 && told["proof"]["full"] == true);
         let found = place.run(&format!("interfere {name} {name} --json")).good().json();
@@ -1083,8 +1083,7 @@ fn measure_tells_what_is_proven() {
     let clipped = place.run("measure cube.stl --bounds 2,2,2,2 --json").good().json();
     assert_eq!((&clipped["exact"], &clipped["clipped"]), (&false.into(), &true.into()));
 
-    // One whose triangles intersect, here because each is there twice, is measured as well as is asked for,
-    // and no better.
+    // A mesh whose triangles intersect (here each occurs twice) is measured to the tolerance, and no better.
     let cube = place.bytes("cube.stl");
     let (head, facets) = cube.split_at(84);
     let count = 2 * u32::from_le_bytes(head[80..].try_into().unwrap());
@@ -1117,7 +1116,7 @@ fn measure_tells_what_is_proven() {
         place.run("measure double.stl --bounds 0.9,0.9,0.9,2.2 --tolerance 0.1 --threads 2 --json").good();
     assert_eq!(one.text(), two.text());
 
-    // A scene is measured as well as is asked for.
+    // A scene is measured to the tolerance.
     place.write("ball.csg", "sphere(2);");
     let truth = 32.0 / 3.0 * std::f64::consts::PI;
     let mut last = f64::INFINITY;
@@ -1140,7 +1139,7 @@ fn measure_tells_what_is_proven() {
     let two = place.run("measure ball.csg --tolerance 1e-3 --threads 2 --json").good();
     assert_eq!(one.text(), two.text());
 
-    // A file knows no more than it was made with, and says so.
+    // A file is only as good as its construction, and reports this.
     place.run("voxelize cube.stl -o rough.lfl --depth 4 --bounds 0.9,0.9,0.9,2.2").good();
     let text = place.run("measure rough.lfl --tolerance 0.001").good();
     assert!(text.text().contains("and the file knows no more"), "{text:?}");
@@ -1164,7 +1163,7 @@ fn verify_tells_good_from_bad() {
     assert!(good.text().starts_with("cube.lfl: good"), "{good:?}");
     assert_eq!(good.text().lines().count(), 1);
     let bytes = place.bytes("cube.lfl");
-    // One bit of every 7th byte, and of the last ones.
+    // One bit of every 7th byte, and of the last bytes.
     for at in (0..bytes.len()).step_by(7).chain(bytes.len() - 3..bytes.len()) {
         let mut damaged = bytes.clone();
         damaged[at] ^= 1 << (at % 8);
@@ -1261,7 +1260,7 @@ fn set_operations_keep_surfaces() {
     let measured = place.run("measure part.lfl --tolerance 1e-6 --json").good().json();
     let (lower, upper) = volume(&measured);
     assert!(lower <= truth && truth <= upper && upper - lower < 1.01e-6 * truth, "{lower} {upper}");
-    // One after the other is the same solid, and what is filled again is the plate.
+    // One operation after the other gives the same solid, and the refilled bore gives the plate.
     place.run("difference plate.lfl bore.lfl -o one.lfl").good();
     place.run("difference one.lfl slot.lfl -o one.lfl").good();
     let told = place.run("xor one.lfl part.lfl -o none.lfl").good();
@@ -1274,7 +1273,7 @@ fn set_operations_keep_surfaces() {
     place.run("complement other.lfl -o other.lfl").good();
     let [own, other] = ["part.lfl", "other.lfl"].map(|name| file::open(place.path(name)).unwrap());
     assert!(own == other && own.view().cuts().unwrap().given_up == 0);
-    // The pin touches the bore all around, and shares nothing with the part; of the scenes that is proven
+    // The pin touches the bore all around, and shares no volume with the part. For the scenes this is proven
     // likewise.
     let told = place.run("intersection part.lfl pin.lfl -o common.lfl").good();
     assert!(told.text().contains("volume 0, 0 nodes"), "{told:?}");
@@ -1312,7 +1311,7 @@ fn set_operations_keep_surfaces() {
         place.run(&line).good().json()["covered"].as_f64().unwrap()
     });
     assert!(own > 1000.0 && source > own, "{own} {source}");
-    // Without surfaces: the cells that there are, or those of a level.
+    // Without surfaces: the existing cells, or those of a level.
     place.run("difference plate.lfl bore.lfl slot.lfl -o cells.lfl --plain").good();
     let cells = file::open(place.path("cells.lfl")).unwrap();
     assert!(cells.view().cuts().is_none() && cells.frame().depth() == 20);
@@ -1534,7 +1533,7 @@ fn demo_does_what_it_says() {
         .collect();
     names.sort();
     assert_eq!(names, ["cutter.stl", "drilled.lfl", "flange.stl"]);
-    // What the folder holds can be made again, and a file cannot be a folder.
+    // The folder's content can be made again. A file cannot be a folder.
     place.run("demo new/folder").good();
     place.run("demo new/folder/flange.stl").bad(1, &["flange.stl"]);
     // Without a folder: in that for temporary files.

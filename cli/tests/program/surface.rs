@@ -18,7 +18,7 @@ fn mesh(place: &Place, name: &str) -> TriangleMesh {
 
 fn json(place: &Place, line: &str) -> Value {
     let run = place.run(line);
-    // (Surfaces whose vertices are samples say that they are too large.)
+    // (The program warns that surfaces with samples as vertices are too large.)
     if run.errors.contains("has a volume") { run.noted(&["--method"]) } else { run.good() }.json()
 }
 
@@ -263,7 +263,7 @@ fn losses_are_said() {
             assert_eq!((&report["rounding"], &report["broken"]), (&Value::from(0.0), &Value::Bool(false)));
         }
     }
-    // A ball whose triangles are hardly larger than what is rounded is mended.
+    // A ball with triangles hardly larger than the rounding is repaired.
     for text in ["", "--text"] {
         let report = json(
             &place,
@@ -282,7 +282,7 @@ fn losses_are_said() {
     assert!(lines[3].contains("1,696 triangles collapsed, 46 triangles turned"), "{text:?}");
     let text = place.run("mesh cube.csg -o cube.stl --method mc --depth 5 --lossy");
     assert!(text.text().contains("empty: rounding leaves no triangle"), "{text:?}");
-    // Nothing is written on standard output, and nothing takes the place of an older file.
+    // Nothing is written on standard output, and no older file is replaced.
     place.write("old.stl", "old");
     for line in ["mesh cube.csg -o - --write stl --depth 5", "mesh cube.csg -o old.stl --method mc"] {
         place.run(line).bad(1, &["32-bit"]);
@@ -500,18 +500,18 @@ fn faces_of_a_plate_with_a_bore() {
         assert_eq!(report["intersecting"], 0);
         assert!(report["deviation"].as_f64().unwrap() <= tolerance.parse().unwrap(), "{report}");
     }
-    // The file says so, and a person is told.
+    // The file states the deviation, and the text output does, too.
     let said = place.run("mesh plate.csg -o told.3mf --method faces").good();
     assert!(said.text().contains("of the solid: proven"), "{}", said.text());
     let told = json(&place, "info told.3mf --json");
     assert!((told["told_deviation"].as_f64().unwrap() - proven).abs() < 1e-5, "{told}");
-    // The volume of the true plate lies within what is measured of the file that is believed.
+    // Measured from the file with the stated deviation, the interval contains the true plate's volume.
     let line = format!("measure plate.stl --deviation {proven} --tolerance 1e-3 --json");
     let volume = &json(&place, &line)["volume"];
     let truth = 48000.0 - 250.0 * std::f64::consts::PI;
     let [least, most] = ["lower", "upper"].map(|end| volume[end].as_f64().unwrap());
     assert!(least <= truth && truth <= most, "{volume}");
-    // Whatever has a shape, in cells of several sizes.
+    // All inputs that have a shape, in cells of several sizes.
     let adaptive = json(&place, "mesh plate.stl -o adaptive.ply --method adaptive --json");
     assert!(adaptive["closed"] == true && adaptive["manifold"] == true, "{adaptive}");
     let proven = adaptive["deviation"].as_f64().unwrap();
@@ -521,7 +521,7 @@ fn faces_of_a_plate_with_a_bore() {
     place.run("csg plate.csg -o plate.lfl --surfaces").good();
     let stored = json(&place, "mesh plate.lfl -o stored.ply --method faces --json");
     assert!(stored["triangles"].as_u64().unwrap() <= 400 && stored["euler"] == 0, "{stored}");
-    // What knows no surfaces, and options that do not fit.
+    // Inputs without surfaces, and options that do not fit.
     place.run("csg plate.csg -o cells.lfl --depth 5 --rule sampled").good();
     place.run("mesh cells.lfl -o out.ply --method faces").bad(1, &["cells.lfl", "--method faces"]);
     // A mesh has its own triangles, merged.
@@ -564,7 +564,7 @@ fn what_is_known_of_the_shape_decides() {
         assert_eq!(report["closed"], true, "{file}");
         assert_eq!(report.get("deviation").is_some(), is_proven, "{file}: {report}");
     }
-    // Layers of a mesh are none of a few surfaces.
+    // The layers of a mesh are not a few surfaces.
     place.run("voxelize cube.stl -o layers.lfl --surfaces=1e-2 --rotate 1,1,0,30").good();
     let layers = json(&place, "mesh layers.lfl -o out.ply --json");
     assert!(layers["method"] == "mc" && layers["closed"] == true, "{layers}");
@@ -585,7 +585,7 @@ fn what_is_known_of_the_shape_decides() {
         assert_eq!(run.json()["method"], method, "{line}");
     }
     place.run("mesh cells.lfl -o out.ply --tolerance 0.1").bad(2, &["--tolerance", "--method nets"]);
-    // What goes on outside of the cube is cut off.
+    // Parts outside the cube are cut off.
     let cut = place.run("mesh plate.csg -o out.ply --bounds -1,-1,-1,6 --depth 4 --json");
     assert!(cut.code == Some(0) && cut.errors.contains("cut off"), "{cut:?}");
     assert_eq!(cut.json()["method"], "mc");
@@ -603,7 +603,7 @@ fn triangles_are_taken_out() {
     let few = json(&place, &format!("{cubes} -o few.ply --simplify 0.05"));
     let count = |report: &Value| report["triangles"].as_u64().unwrap();
     assert!(4 * count(&few) < count(&full) && few["manifold"] == true, "{few} {full}");
-    // Nobody knows how far marching cubes was from the ball.
+    // The distance of marching cubes from the ball is unknown.
     assert!(few.get("deviation").is_none(), "{few}");
 
     // A mesh that is copied is the solid.
@@ -614,7 +614,7 @@ fn triangles_are_taken_out() {
     let within = format!("deviation full.ply simple.ply --within {proven} --json");
     assert_ne!(place.run(&within).json()["verdict"], "beyond");
 
-    // What was proven before is added.
+    // The earlier proven deviation is added.
     let faces = "mesh ball.csg --method faces --tolerance 0.02 --json";
     let near = json(&place, &format!("{faces} -o near.ply"))["deviation"].as_f64().unwrap();
     let both = json(&place, &format!("{faces} -o both.ply --simplify 0.05"));

@@ -52,7 +52,7 @@ fn content_decides_what_a_file_is() {
         let found = place.run_with(line, input.as_bytes()).good().json();
         assert_eq!(found["volume"], expected["volume"], "{line}");
     }
-    // What a solid and a mesh are is told by content, too.
+    // Solids and meshes are recognised by content, too.
     let cube = place.bytes("cube.stl");
     let found = place.run_with("measure - --json", &cube).good().json();
     assert!(near(&found["volume"], 8.0), "{found}");
@@ -124,11 +124,11 @@ fn what_lies_outside_of_the_bounds_is_not_disjoint() {
             assert_eq!((&json[number]["lower"], &json[number]["upper"]), (&Value::Null, &Value::Null));
         }
     }
-    // An overlap that is seen is one, and as large as what is seen at least.
+    // A visible overlap is an overlap, at least as large as its visible part.
     let json = place.run("interfere cube.stl cube.stl --bounds 0,0,0,2 --json").good().json();
     assert_eq!((&json["verdict"], &json["overlap"]["lower"]), (&"overlapping".into(), &1.0.into()), "{json}");
     assert_eq!(json["overlap"]["upper"], Value::Null);
-    // If one of them lies inside of the bounds, all that they have in common does.
+    // If one of the two lies inside the bounds, all of the intersection does.
     place.write("far.stl", stl(&block([4.0; 3], [20.0; 3])));
     let json = place.run("interfere cube.stl far.stl --bounds 0,0,0,8 --json").good().json();
     assert_eq!((&json["verdict"], &json["reason"]), (&"disjoint".into(), &Value::Null), "{json}");
@@ -137,7 +137,7 @@ fn what_lies_outside_of_the_bounds_is_not_disjoint() {
 #[test]
 fn undecided_has_a_reason() {
     let place = meshes();
-    // Meshes that touch in a face: of scenes that is decided.
+    // Meshes that touch in a face. For scenes the contact is decided.
     place.write("left.stl", stl(&block([0.0; 3], [2.1, 2.0, 2.0])));
     place.write("right.stl", stl(&block([2.1, 0.5, 0.25], [4.3, 2.5, 2.25])));
     let reason = |line: &str| place.run(line).good().json()["reason"].clone();
@@ -232,7 +232,7 @@ fn frames_of_round_parts_are_aligned() {
     assert_eq!((&made["edge"], &made["volume"]["lower"]), (&128.0.into(), &180_000.0.into()));
     // Both lie on one frame, unasked.
     place.run("difference box.lfl part.lfl -o rest.lfl").good();
-    // Nothing of a scan is round.
+    // A scan has no round dimensions.
     place.write("scan.stl", stl(&block([0.0617; 3], [0.7, 0.31, 0.5])));
     let made = place.run("voxelize scan.stl -o scan.lfl --depth 5 --json").good().json();
     let edge = made["edge"].as_f64().unwrap();
@@ -300,7 +300,7 @@ fn an_empty_scene_has_no_volume() {
         let json = place.run("interfere empty.csg cube.csg --json").good().json();
         assert_eq!(json["verdict"], "disjoint", "{text}");
     }
-    // What has no bounds is another thing.
+    // An unbounded scene is another case.
     place.write("half.csg", "halfspace([1, 0, 0, 0]);");
     place.run("measure half.csg").bad(1, &["half.csg", "--bounds"]);
 }
@@ -344,7 +344,7 @@ fn a_reader_that_has_seen_enough_is_no_failure() {
         let mut child = command.stdout(Stdio::piped()).stderr(Stdio::piped()).spawn().unwrap();
         drop(child.stdout.take());
         let run = Run::new(line, child.wait_with_output().unwrap());
-        // Half a solid is none. (A small one may be through before the reader is gone.)
+        // Half a solid is not a solid. (A small one may be complete before the reader is gone.)
         let is_solid = line.contains(" -o -");
         let quiet =
             run.errors.is_empty() || is_solid && run.code == Some(0) && run.errors.contains(": union of");
@@ -391,7 +391,7 @@ fn a_stated_deviation_is_believed() {
     let truth = PI * 400.0 * 30.0;
     assert!(!holds("chords.stl", truth) && !holds("chords.stl --deviation 0", truth));
     assert!(holds("chords.stl --deviation 0.5", truth));
-    // It is told after units, and moves and grows with the mesh.
+    // The deviation follows the units, and moves and grows with the mesh.
     assert!(holds("chords.stl --unit mm --to-unit cm --deviation 0.05", truth / 1000.0));
     assert!(holds("chords.stl --deviation 0.5 --scale 2 ", 8.0 * truth));
     assert!(holds(

@@ -60,7 +60,7 @@ fn voxels_become_cells() {
         assert_eq!((report["depth"].as_u64(), volume(&report)), (Some(4), wanted), "{report}");
         assert_eq!(volume(&json(&place, "info ball.lfl --json")), wanted);
     }
-    // All samples are at least 10, and none is 201.
+    // All samples are at least 10, and no sample is 201.
     let all = json(&place, "voxelize ball.nrrd -o all.lfl --threshold 10 --json");
     assert_eq!(volume(&all), (16.0 * 14.0 * 12.0, 16.0 * 14.0 * 12.0));
     let none = json(&place, "voxelize ball.nrrd -o none.lfl --threshold 201 --json");
@@ -87,7 +87,7 @@ fn booleans_take_volumes() {
         assert_eq!(volume(&rest), (count, count), "{operand}");
     }
     place.run("complement ball.nrrd -o outside.lfl").good();
-    // Voxels that are no cubes are sampled on the cells of the solid, whose cube they leave.
+    // Voxels that are no cubes are sampled on the cells of the solid. They reach out of the solid's cube.
     place
         .run("union ball.lfl flat.nrrd -o both.lfl")
         .noted(&["flat.nrrd", "reach beyond the frame of ball.lfl"]);

@@ -24,7 +24,7 @@ fn records_as_lines() {
         .run("voxels slab.lfl -o slab.csv --coarse 1 --boundary-depth 3 --outside --refined --json")
         .good();
     let told: serde_json::Value = serde_json::from_str(json.text()).unwrap();
-    // Of 4 × 4 × 2 cells of edge 1 all touch the outside: those above, beside, and below, where the universe
+    // All of the 4 × 4 × 2 cells of edge 1 touch the outside: above, beside, and below, where the universe
     // ends.
     assert_eq!((told["boundary"].as_u64(), told["inside"].as_u64()), (Some(32), Some(0)));
     assert!(told["refined"].as_u64() > Some(4) && told["outside"].as_u64() > Some(4), "{told}");

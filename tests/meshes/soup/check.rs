@@ -70,7 +70,7 @@ impl Findings {
     pub fn judge(&self) {
         let first = &self.faults[..self.faults.len().min(10)];
         assert!(first.is_empty(), "{} faults, such as\n{}", self.faults.len(), first.join("\n"));
-        // An oracle that cannot tell shows nothing.
+        // An oracle that decides too little proves nothing.
         assert!(self.skipped * 50 <= self.asked, "{} of {} skipped", self.skipped, self.asked);
         // The plain bound is taken with a margin of SLACK, so a solid that uses the same law decides all of
         // them.
@@ -96,7 +96,8 @@ pub fn around_centre(truth: &mut Soupy, frame: &Frame, at: [u32; 3], aligned: bo
     let p = centre(frame, at);
     let mut winding = truth.at(p);
     if winding.error > 1e-3 && aligned {
-        // On an edge or a vertex of the soup: what a small step along (ε, ε², ε³) finds, to first order.
+        // On an edge or a vertex of the soup, take the winding number a small step along (ε, ε², ε³), to
+        // first order.
         let shift = [2f64.powi(-12), 2f64.powi(-24), 2f64.powi(-36)];
         winding = truth.at([0, 1, 2].map(|axis| p[axis] + frame.cell_size() * shift[axis]));
         winding.error = winding.error.max(0.02);

@@ -203,7 +203,7 @@ pub fn damaged(soup: &Soup, damage: Damage, random: &mut Random, grain: f64, ali
             for step in
                 [RemoveFew, FlipOne, DuplicateFifth, TJunctions, Degenerate, JitterSlightly, Overlap, Debris]
             {
-                // What is aligned stays so, but for the one step that would spoil it.
+                // An aligned soup stays aligned, except for the one step that breaks it.
                 if !(aligned && step == JitterSlightly) {
                     soup = damaged(&soup, step, random, grain, aligned);
                 }

@@ -79,7 +79,7 @@ pub fn sheet(centre: [f64; 3], size: f64, wave: f64, detail: usize) -> Soup {
 /// A Möbius strip. No orientation is consistent across its seam.
 pub fn moebius(centre: [f64; 3], radius: f64, width: f64, detail: usize) -> Soup {
     grid(24 << detail, 4, |u, v| {
-        // The last row of vertices is the first one turned over, to the bit.
+        // The last row of vertices is the first row reversed, to the bit.
         let (u, v) = if u == 1.0 { (0.0, 1.0 - v) } else { (u, v) };
         let (turn, side) = (TAU * u, (v - 0.5) * width);
         let r = radius + side * (turn / 2.0).cos();

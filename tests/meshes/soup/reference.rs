@@ -108,7 +108,7 @@ impl Cubes for Reference {
         if self.lie == Lie::Corner {
             p = p.map(|x| x - 0.49 * cube.frame.cell_size());
         }
-        // Nothing is promised on edges here: step to where there is a winding number.
+        // Edges have no defined result here. Step to a place with a winding number.
         if self.truth.lock().unwrap().at(p).error > 1e-3 {
             let shift = [2f64.powi(-12), 2f64.powi(-24), 2f64.powi(-36)];
             p = [0, 1, 2].map(|axis| p[axis] + cube.frame.cell_size() * shift[axis]);

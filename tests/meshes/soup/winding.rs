@@ -102,12 +102,12 @@ impl Soupy {
                 }
                 continue;
             }
-            // Rounding of the differences and of the products, as a part of the number whose argument is
+            // Rounding of the differences and of the products, relative to the number whose argument is
             // taken.
             let noise = f64::EPSILON * (16.0 * size + 8.0 * reach * (la * lb + lb * lc + lc * la));
             let modulus = x.hypot(y);
             if modulus <= noise {
-                // (Of a triangle whose corners coincide everything is zero, and so is its share.)
+                // (For a triangle with coincident corners, all terms and its solid angle are zero.)
                 if !self.is_point(t) {
                     error = f64::INFINITY;
                 }
@@ -119,7 +119,7 @@ impl Soupy {
                 let side = oracle::over(corners, p);
                 on_surface |= side == 0;
                 let side = if side != 0 { side } else { oracle::facing(corners) };
-                // Behind the triangle, where its normal does not point, it winds around once more.
+                // Behind the triangle, opposite to its normal, the winding number is greater by one.
                 sum.add(-side as f64 * y.abs().atan2(x));
             } else {
                 sum.add(y.atan2(x));

@@ -134,7 +134,7 @@ fn no_lies(rounds: u64, height: usize, count: usize) {
     println!(
         "{decided} points decided, {undecided} not; {cells} cells, {given_up} given up, {empty} of {rounds} trees empty or full"
     );
-    // (Operands that keep nothing give up all along their boundary, where most points are.)
+    // (Operands without surfaces give up all cells along their boundary, where most points are.)
     assert!(decided > undecided && cells > rounds && 3 * empty < 2 * rounds);
 }
 
@@ -224,7 +224,7 @@ fn laws_of_sets() {
         ] {
             same_bytes("nothing and everything", &own, other);
         }
-        // As sets, where nothing was given up.
+        // As sets, where no cell was given up.
         if gave_up(&pool[0].tree) {
             continue;
         }
@@ -243,8 +243,8 @@ fn laws_of_sets() {
         let mut same = |law: &str, a: Octree, b: Octree| {
             if !gave_up(&a) && !gave_up(&b) {
                 let odd = xor(a.view(), b.view(), &alone()).unwrap();
-                // Cells may be left in which the functions differ for combinations of signs that do not occur
-                // there, which shows in smaller ones.
+                // Some cells may have functions that differ for combinations of signs that do not occur
+                // there. Smaller cells show this.
                 let control = Control { max_splits: Some(4000), ..alone() };
                 let volume = measure(&odd, &frame, 0.0, &control).map(|m| m.volume);
                 let size = frame.edge().powi(3);
@@ -315,7 +315,7 @@ fn memory_does_not_grow_with_history() {
         let bore = extended(&bore, &frame);
         let before = part.clone();
         part = difference(part.view(), bore.view(), &alone()).unwrap();
-        // What the bore took of the part comes back.
+        // The part removed by the bore comes back.
         let chip = intersection(before.view(), bore.view(), &alone()).unwrap();
         part = union(part.view(), chip.view(), &alone()).unwrap();
         assert_same(&part, &fresh, &format!("round {round}"));
@@ -401,8 +401,8 @@ fn limits_and_cancels_are_errors() {
         assert!(ended > 3, "{ended}");
         assert_eq!(difference_of(&views, &Control::threads(threads)).unwrap(), whole);
     }
-    // Surfaces that nearly coincide, of which bounds tell no more, and that cross more than three at a time
-    // all along a curve, are no way around the limit.
+    // Surfaces that nearly coincide, so that bounds do not separate them, and that cross more than three at a
+    // time along a whole curve, do not circumvent the limit.
     let frame = Frame::new([-1.0; 3], 2.0, 20).unwrap();
     let lens = |off: f64| {
         let [one, other] = [-0.3, 0.3].map(|x| {
@@ -432,7 +432,8 @@ fn nothing_drops_surfaces_in_silence() {
     let views: Vec<_> = trees.iter().map(|tree| *tree.view()).collect();
     let (part, control) = (difference_of(&views, &alone()).unwrap(), alone());
     let [nothing, everything] = [Tag::Empty, Tag::Full].map(|tag| Octree::uniform(frame, tag, tag).unwrap());
-    // A large plain tree and a small one that keeps surfaces: of the one runs are copied, of the other cells.
+    // A large plain tree and a small tree that keeps surfaces: runs of the large one and cells of the small
+    // one are copied.
     let far = Csg::ball([0.0, 0.0, -0.2], 0.7).unwrap();
     let plain = build(&far, &frame, Rule::Certified, &control).unwrap();
     let folder = std::env::temp_dir().join(format!("leafless-combined-{}", std::process::id()));
@@ -491,7 +492,7 @@ fn nothing_drops_surfaces_in_silence() {
         tree.view().check().unwrap();
         let cuts = tree.view().cuts().unwrap_or_default();
         assert_eq!(cuts.surfaces, part.view().cuts().unwrap().surfaces, "{name}");
-        // (Of an equal tree the same is told.)
+        // (An equal tree gives the same answers.)
         if tree == &part && repeated(true, false) {
             continue;
         }
@@ -531,9 +532,9 @@ fn meshes_that_differ_within_a_slab() {
     let rest = |a: &Octree, b: &Octree| difference(a.view(), b.view(), &alone()).unwrap();
     let none = rest(&a, &same);
     let given_up = |tree: &Octree| tree.view().cuts().map_or(0, |cuts| cuts.given_up);
-    // Of the same origin all but the cells that were given up is gone.
+    // With the same origin, all cells vanish except those that were given up.
     assert!(none.view().cuts().is_none_or(|cuts| cuts.cells == 0) && given_up(&none) <= given_up(&a));
-    // Between the two tips nothing is known.
+    // Between the two tips, the set is unknown.
     let tip = [0.0, 0.0, 0.7 + 1e-14];
     for (a, b, truth) in [(&a, &b, Membership::Outside), (&b, &a, Membership::Inside)] {
         let rest = rest(a, b);
@@ -544,7 +545,7 @@ fn meshes_that_differ_within_a_slab() {
         assert!(answers[0] == truth || answers[0] == Membership::Undecided, "{answers:?}");
         assert_eq!(answers[1], Membership::Undecided);
     }
-    // Trees of one table share its slabs, even of solids that cannot be told from others.
+    // Trees of one table share its slabs, even for solids without a fingerprint.
     let itself = union(a.view(), a.view(), &alone()).unwrap();
     assert_same(&itself, &a, "A ∪ A is A");
 }

@@ -128,7 +128,7 @@ fn published_cone() {
 
 #[test]
 fn published_hyperboloid() {
-    // Of the printed lower bounds and counts of levels 3 to 5 those are exact arithmetic's; see
+    // Of the printed lower bounds and counts of levels 3 to 5, those that exact arithmetic gives; see
     // `printed_hyperboloid`.
     let lower = [229376.0, 385024.0, 479232.0, 529984.0];
     let rows = |nodes: [u64; 4], upper: [f64; 4]| [0, 1, 2, 3].map(|i| (nodes[i], lower[i], upper[i]));
@@ -158,7 +158,7 @@ fn what_is_known_around_the_universe() {
     assert_eq!(outside(&Csg::ball([64.0; 3], 64.1).unwrap()), Tag::Partial);
     assert_eq!(outside(&Csg::half_space([1.0, 0.0, 0.0], -1.0).unwrap()), Tag::Partial);
     assert_eq!((outside(&Csg::empty()), outside(&Csg::everything())), (Tag::Empty, Tag::Full));
-    // Another solid knows more than its bounds.
+    // Another solid knows more than its bounding box.
     let other = Csg::solid(AnySolid::new(Plain::cuboid([1.0; 3], [2.0; 3]).unwrap()));
     assert_eq!((outside(&other), outside(&other.complement())), (Tag::Empty, Tag::Full));
     let unknown = Csg::half_space([0.1, 0.2, 0.3], 0.0).unwrap();

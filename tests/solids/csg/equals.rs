@@ -20,7 +20,7 @@ fn what_is_left_is_the_same_solid() {
     let built = |csg: Csg| build(&csg, &frame(), Rule::Certified, &Control::default()).unwrap();
     assert_eq!(built(Csg::union_of(parts()).unwrap()), built(Csg::union_of(once()).unwrap()));
     assert_eq!(built(Csg::intersection_of(parts()).unwrap()), built(Csg::intersection_of(once()).unwrap()));
-    // Of two nothing is left, and of three one.
+    // Two equal operands cancel, and three leave one.
     let odd = Csg::xor_of([ball(0.5), ball(-0.5)]).unwrap();
     assert_eq!(built(Csg::xor_of(parts()).unwrap()), built(odd));
 }
@@ -87,7 +87,7 @@ fn contact_is_no_overlap() {
             assert!((lower, upper) == (0.0, 0.0) && splits < 500, "{lower} to {upper}, {splits} splits");
         }
     }
-    // What overlaps by a little does.
+    // A slight overlap is an overlap.
     let into = Csg::cuboid([high[0] - 1e-9, -0.375, -0.5], [1.0, 0.25, 0.5]).unwrap();
     let (lower, upper, _) = volume(&Csg::intersection_of([block(), into]).unwrap());
     assert!(lower > 0.0 && upper < 1e-9, "{lower} to {upper}");

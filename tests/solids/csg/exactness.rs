@@ -143,7 +143,7 @@ fn quadrics(frame: &Frame, target: [u32; 3], random: &mut Random) -> Option<(Csg
 /// Quadrics with any ten numbers of magnitudes between 2^-256 and 2^256.
 fn anything(frame: &Frame, _: [u32; 3], random: &mut Random) -> Option<(Csg, Truth)> {
     let mut c = [0.0; 10];
-    // Not so wild that no surface meets the universe: the terms are of like magnitudes there, more or less.
+    // Moderate numbers, so that some surfaces meet the universe: there, all terms have similar magnitudes.
     let size = frame.origin().iter().fold(frame.edge(), |size, c| size.max(c.abs()));
     for i in [0, 1, 2, 6, 7, 8, 9] {
         let degree = [2, 2, 2, 0, 0, 0, 1, 1, 1, 0][i];

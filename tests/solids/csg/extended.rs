@@ -111,7 +111,7 @@ fn no_lies(models: u64, count: usize, make: impl Fn(&mut Maker<'_>) -> Model) {
         let tree = through_a_file(&tree);
         let cuts = tree.view().cuts().unwrap_or_default();
         (kept, given_up) = (kept + cuts.cells, given_up + cuts.given_up);
-        // The planes, and those of a tree that is made of it.
+        // The source's planes, and those of a tree made from the tree.
         let plain = build(&tree, &frame, Rule::Certified, &alone()).unwrap();
         let direct = build(&csg, &frame, Rule::Certified, &alone()).unwrap();
         for tree in [&tree, &plain] {
@@ -209,7 +209,7 @@ fn a_plate_with_twenty_bores_is_small_and_sharp() {
         let tree = extended(&csg, &frame);
         let (cuts, planes) = (tree.view().cuts().unwrap(), tree.statistics());
         assert!(planes.nodes() <= nodes, "{}", planes.nodes());
-        // Six planes and twenty cylinders: the ends of those lie outside.
+        // Six planes and twenty cylinders. The cylinders' ends lie outside.
         assert_eq!((cuts.surfaces, cuts.given_up), (26, 0));
         assert!(cuts.bytes < bytes, "{cuts:?}");
         assert!(planes.volume().contains(truth));
@@ -328,7 +328,7 @@ fn equal_surfaces_are_one() {
         // A universe that one surface crosses is one cell.
         assert_eq!((tree.statistics().nodes(), tree.view().root_tag() == Tag::Partial), (0, count > 0));
     }
-    // A plane that was given with other numbers, and on the other side.
+    // The same plane with other numbers, and from the other side.
     let plane = |scale: f64| Csg::half_space([0.3 * scale, -0.7 * scale, 0.2 * scale], 0.25 * scale).unwrap();
     let tree = extended(&Csg::intersection_of([plane(1.0), plane(-4.0)]).unwrap(), &frame);
     assert!(tree.statistics().nodes() == 0 && tree.view().root_tag() == Tag::Empty);
@@ -408,7 +408,7 @@ fn meshes_are_kept_to_a_tolerance() {
             }
             known += 1;
         }
-        // What is given up at edges is thinner than a finest cell.
+        // Regions given up at edges are thinner than a finest cell.
         assert!(known > 10_000 && far == 0, "{known} {far}");
         let volume = measure(&tree, &frame, 1e-2, &alone()).unwrap().volume;
         let source = measure(&part, &frame, 1e-2, &alone()).unwrap().volume;

@@ -90,7 +90,7 @@ fn what_is_thinner_than_the_tolerance_does_not_vanish() {
             assert!(known > 5_000, "{name} {tolerance}: {known}");
         }
     }
-    // A tip, whose sides come closer than any tolerance.
+    // A tip whose sides come closer than any tolerance.
     let (half, height) = (0.2, 1.0);
     let tip = of_mesh(pyramid_mesh(half, height));
     for tolerance in [0.1, 0.02] {
@@ -246,7 +246,7 @@ fn every_kind_of_solid_answers_its_questions() {
     let tree = |csg: &Csg| build_extended(csg, &frame, &SurfaceOptions::default(), &alone()).unwrap();
     let mesh = || MeshSolid::new(cuboid_mesh([-0.51; 3], [0.52; 3]), FillRule::NonZero).unwrap();
     let exact = Told { list: true, surfaces: true, enclosure: true, moments: true, area: true };
-    // Half-spaces, and whatever hands on what they say.
+    // Half-spaces, and solids that pass their answers on.
     let union = Csg::union_of([ball.clone(), block.clone()]).unwrap();
     let of_trees = Csg::solid(AnySolid::new(tree(&ball))).difference(&block).unwrap();
     let solids: [(&str, AnySolid); 10] = [
@@ -263,7 +263,7 @@ fn every_kind_of_solid_answers_its_questions() {
     ];
     for (name, solid) in solids {
         let mut found = told(&solid, &frame);
-        // (Nothing but slabs is known of planes.)
+        // (Planes provide only slabs.)
         if name == "block" {
             found.moments = true;
         }
@@ -277,13 +277,13 @@ fn every_kind_of_solid_answers_its_questions() {
     let mixed = Csg::solid(AnySolid::new(mesh())).difference(&ball).unwrap();
     let found = told(&mixed, &frame);
     assert!(found.list && found.surfaces && found.enclosure, "{found:?}");
-    // Slabs in a tree: surfaces, and enclosures, but no area, because they have no normals.
+    // Slabs in a tree: surfaces and enclosures, but no area, because they have no normals.
     let options = SurfaceOptions { tolerance: Some(0.05) };
     let turned = mesh().placed(&turn).unwrap();
     let slabs = build_extended(&turned, &frame, &options, &alone()).unwrap();
     let found = told(&slabs, &frame);
     assert_eq!(found, Told { moments: false, area: false, ..exact }, "{found:?}");
-    // Nothing at all.
+    // No answers at all.
     let plain: Octree = build(&ball, &frame, Rule::Certified, &alone()).unwrap();
     assert_eq!(told(&plain, &frame), Told::default());
     let callback = Callback::new(|min: [f64; 3], max: [f64; 3]| {
@@ -294,7 +294,7 @@ fn every_kind_of_solid_answers_its_questions() {
         })
     });
     assert_eq!(told(&callback, &frame), Told::default());
-    // A tree of such a solid keeps nothing, and is the plain tree.
+    // A tree of such a solid keeps no surfaces, and is the plain tree.
     let kept = build_extended(&callback, &frame, &SurfaceOptions::default(), &alone()).unwrap();
     assert_eq!(kept.view().cuts().unwrap_or_default().surfaces, 0);
     assert_eq!(kept.without_cuts(), build(&callback, &frame, Rule::Certified, &alone()).unwrap());

@@ -50,7 +50,7 @@ fn operand(random: &mut Random, frame: &Frame, special: u64, plain: bool) -> Csg
             any(random).placed(&Affine::new(rows).unwrap()).unwrap()
         }
         8 | 9 => {
-            // Turned about its place, more or less.
+            // Rotated about its place, approximately.
             let part = Csg::cuboid([-0.5; 3], [0.5, 0.4, 0.3]).unwrap();
             let (s, c) = random.between(0.0, 6.0).sin_cos();
             let k = size(random);
@@ -70,7 +70,7 @@ fn operand(random: &mut Random, frame: &Frame, special: u64, plain: bool) -> Csg
             1 => Csg::union_of((0..20).map(|_| any(random))).unwrap(),
             _ => Csg::xor_of([any(random), any(random)]).unwrap(),
         },
-        // What covers the universe, or all but a part of it.
+        // Operands that cover the universe, or all but a part of it.
         _ if special == 0 => Csg::ball(frame.origin().map(|c| c + 0.5 * edge), 2.0 * edge).unwrap(),
         _ if special == 1 => any(random).complement(),
         _ if special == 2 => Csg::half_space([0.3, 0.5, 1.0], -length(random, 0.0, 1.0)).unwrap(),
@@ -128,7 +128,7 @@ fn many_operands_are_joined_as_trees_are() {
                         cells[1] += expected.count(Tag::Partial);
                     }
                 }
-                // What is resolved: the certified trees of the operands decide it.
+                // The resolved result: the operands' certified trees decide it.
                 if rule == Rule::Certified {
                     for (rule, tag) in [(Rule::Inner, Tag::Empty), (Rule::Outer, Tag::Full)] {
                         let resolved = dense(&build(&csg, &frame, rule, &alone()).unwrap());
@@ -181,7 +181,7 @@ fn many_operands_at_once_and_one_by_one() {
                 (Csg::xor_of(operands.iter().cloned()), xor_of(&views, &alone())),
             ];
             for (i, (csg, expected)) in pairs.into_iter().enumerate() {
-                // Of a parity, what is inside of all choices is not what the inner trees have.
+                // For parity, the inside of all choices is not what the inner trees contain.
                 if i == 2 && matches!(rule, Rule::Inner | Rule::Outer) {
                     continue;
                 }

@@ -131,7 +131,7 @@ fn deep_placements_end_in_a_limit() {
             assert!(matches!(exterior(&csg, &frame), Err(Error::Limit { .. })), "{placement:?}");
         });
     }
-    // Nothing gets longer, but larger and larger, or smaller.
+    // Numbers do not get longer, but larger and larger, or smaller.
     let frame = Frame::new([1.0; 3], 16.0, 4).unwrap();
     for scale in [2.0, 0.5, 2f64.powi(64), 2f64.powi(-64)] {
         let placement =

@@ -73,7 +73,7 @@ fn points_in_place_do_not_lie() {
             match answer {
                 Membership::Inside => assert!(sign >= 0, "{p:?}\n{model:#?}"),
                 Membership::Outside => assert!(sign <= 0, "{p:?}\n{model:#?}"),
-                // What the tree decides as a solid, rounding may leave open here.
+                // Points that the tree decides as a solid may be undecided here by rounding.
                 Membership::Undecided => {
                     undecided += 1;
                     open += (exactly[i] != Membership::Undecided) as u64;
@@ -110,8 +110,7 @@ fn rays_in_place_do_not_lie() {
             tree.cast_rays(&[ray], Obstacle::Upper, &mut all).unwrap();
             assert_eq!(all, [hit]);
             let spans = tree.ray_spans(&ray).unwrap();
-            // Before the first place that may be solid nothing is, and in spans that are proven everything
-            // is.
+            // Before the first possible hit nothing is solid, and proven spans are entirely solid.
             let is_in_universe = |t: f64| {
                 (0..3).all(|axis| {
                     let c = from[axis] + t * direction[axis] - frame.origin()[axis];
@@ -136,7 +135,7 @@ fn rays_in_place_do_not_lie() {
                 assert!(!is_inner || sign >= 0, "{t} of {ray:?}: {spans:?}\n{frame:?}\n{model:#?}");
                 judged += 1;
             }
-            // The expression is asked on a finer frame, within limits: a ray in a surface passes very many
+            // The expression is queried on a finer frame, within limits: a ray in a surface passes very many
             // cells.
             let finer = frame.with_depth(16).unwrap();
             let control = Control { max_splits: Some(3000), ..Control::threads(1) };

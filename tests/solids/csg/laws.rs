@@ -184,8 +184,8 @@ fn a_used_worker_is_as_good_as_a_new_one() {
             assert!(now >= evaluations, "the count of evaluations falls\n{model:#?}");
             evaluations = now;
         }
-        // What the used one evaluated is told once it is gone: as much as what the four new ones did, at
-        // least.
+        // The evaluations of the used worker are counted once it is dropped: at least as many as those of the
+        // four new ones.
         let before = csg.evaluations();
         drop(used);
         let parts: u64 = csg.evaluations() - before;
@@ -251,7 +251,7 @@ fn booleans_are_those_of_the_trees() {
                 };
                 let [a, b, both] = [a, b, both].map(|tree| Dense::of(tree.view()));
                 let joined = a.combine(&b, op);
-                // What the trees decide the expression decides, too; a rotated one may know more.
+                // The expression decides what the trees decide; a rotated one may decide more.
                 let agree = joined.tags.iter().zip(&both.tags).all(|(&t, &e)| t == Tag::Partial || t == e);
                 assert!(agree, "{rule:?}\n{model:#?}\n{other:#?}");
             }
@@ -276,11 +276,11 @@ fn evaluations_are_counted_where_they_happen() {
         let again = SplitCounter::new(&nested);
         build(&again, &frame, Rule::Certified, &alone()).unwrap();
         assert_eq!(again.splits(), counted.splits());
-        // Half-spaces behind the common face count there, as often as without it, and not for what is around
-        // it.
+        // Half-spaces behind the common solid interface count there, as often as without it, and do not count
+        // for the expression around them.
         assert_eq!((ball.evaluations(), nested.evaluations()), (times * once, 0));
     }
-    // Asked again by another worker, the count goes on.
+    // With another worker, the count continues.
     let classifier = SplitCounter::new(&nested).on(&frame, &alone()).unwrap();
     let mut last = ball.evaluations();
     let start = last;

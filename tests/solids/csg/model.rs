@@ -190,8 +190,8 @@ fn inside(polygon: &[[f64; 2]], p: &Point) -> i32 {
 
 /// A ball by its values and ranges.
 fn host(centre: [f64; 3], radius: f64) -> HalfSpace {
-    // Distances to the nearest and to the farthest point on an axis, squared and relative to the squares
-    // around; some last places for what is rounded.
+    // Squared distances to the nearest and the farthest point along each axis, relative to the squares. A few
+    // last places allow for rounding.
     let value = move |near: [f64; 3]| radius * radius - near.iter().map(|d| d * d).sum::<f64>();
     let slack = |size: f64| 64.0 * f64::EPSILON * size;
     HalfSpace::host(
@@ -327,14 +327,15 @@ impl Model {
                 0 => return None,
                 sign => sign > 0,
             },
-            // Of its zeros those on the axis are too special.
+            // The zeros on the axis are too special.
             Model::Torus(..) if self.sign(&probe.at) == 0 && probe.at[..2].iter().all(|c| c.sign() == 0) => {
                 return None;
             }
             primitive => {
                 let at = primitive.values(&probe.at);
                 let lowest = at.iter().map(Exact::sign).min().unwrap_or(1);
-                // (The numbers beside zeros are long: they are looked at only where it hangs on them.)
+                // (The numbers beside zeros are long. They are examined only where the decision depends on
+                // them.)
                 lowest > 0
                     || lowest == 0
                         && at.iter().zip(&primitive.values(&probe.beside)).all(|(at, beside)| {

@@ -102,7 +102,7 @@ fn a_plate_that_is_turned_again_and_again() {
         assert!(own.contains(truth) && own.width() <= 1.5 * other.width(), "{own:?} {other:?}");
         let (a, b) = (file::to_bytes(&tree).unwrap().len(), file::to_bytes(&direct).unwrap().len());
         assert!(a <= 2 * b, "{a} {b}");
-        // The image itself, whose cells are known as far as they are asked for.
+        // The image itself, whose cells are computed as far as needed.
         let image = measure(&placed(&tree, &map), &room, 1e-4, &alone()).unwrap().volume;
         assert!(image.contains(truth), "{image:?}");
     }
@@ -207,7 +207,7 @@ fn no_point_of_what_is_moved_is_told_wrong() {
         known[0] += compared("image", &image, &frame, &truth, &points);
         let moved = extended(&image, &frame);
         known[1] += compared("moved", &moved, &frame, &truth, &points);
-        // Once more, from the tree; what leaves the universe in between is lost, and undecided.
+        // Once more, from the tree. Parts that leave the universe in between are lost, and undecided.
         let back = map.inverse().unwrap();
         let returned = extended(&placed(&moved, &back), &frame);
         let truth = truth.placed(&back).unwrap();
@@ -272,7 +272,7 @@ fn moved_trees_are_measured_as_the_expression() {
         let map = any_map(&mut random, &frame);
         let (image, truth) = (placed(&tree, &map), part.placed(&map).unwrap());
         let ask = |solid: &AnySolid| {
-            // (However narrow the intervals become, they must have something in common.)
+            // (However narrow the intervals become, they must overlap.)
             let some = Control { max_splits: Some(5_000), ..alone() };
             let found = measure(solid, &frame, 1e-3, &some).unwrap();
             let inertia = found.inertia_about_centroid;

@@ -30,7 +30,7 @@ fn no_lies(models: u64, points: u64, others: bool, make: impl Fn(&mut Maker<'_>)
         let aligned = random.below(2) == 0;
         let mut maker = Maker { random: &mut random, frame, aligned, others };
         let model = make(&mut maker);
-        // What the ranges of arguments do not admit.
+        // The library refuses arguments out of range.
         let Ok(csg) = model.csg(&frame) else { continue };
         let tree = build(&csg, &frame, Rule::Certified, &alone()).unwrap();
         let mut judge = Judge { model: &model, tree: &tree, bounds: csg.bounds(), found };
@@ -126,7 +126,7 @@ fn any_bytes(count: u64) {
         // Mostly moderate numbers.
         let mut byte = || if random.below(20) == 0 { random.below(256) } else { 40 + random.below(100) };
         let data: Vec<u8> = (0..length).map(|_| byte() as u8).collect();
-        // A thread that fails says what it was given.
+        // A failing test prints its input.
         let result = std::panic::catch_unwind(|| any_bytes::csg(&data));
         assert!(result.is_ok(), "input {seed}: {data:?}");
     }

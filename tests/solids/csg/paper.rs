@@ -42,7 +42,7 @@ fn compare(primitive: &Primitive, frame: &Frame) -> Dense {
     while let Some((cell, verdict)) = stack.pop() {
         match verdict {
             Verdict::Partial(part) if cell.level < frame.depth() => {
-                // A worker for this split alone: what it evaluates is told when it is gone.
+                // A worker for this split alone. Its evaluations are counted when it is dropped.
                 let mut single = classifier.worker().unwrap();
                 let own = single.hand_over(&worker, &part).unwrap();
                 let before = csg.evaluations();
@@ -144,7 +144,7 @@ fn primitives_are_classified_as_published() {
         assert!(Dense::of(build(&paper, &frame, Rule::Certified, &alone()).unwrap().view()) == dense);
         let other = build(&paper.complement().with_touch(Touch::Paper), &frame, Rule::Certified, &alone());
         assert!(Dense::of(other.unwrap().view()) == dense.complement());
-        // What only touches is PARTIAL as published, and EMPTY otherwise; nothing else differs.
+        // Cells with mere contact are PARTIAL as published, and EMPTY otherwise. Nothing else differs.
         let exact = Dense::of(build(&primitive.csg, &frame, Rule::Certified, &alone()).unwrap().view());
         let sharper = exact.tags.iter().zip(&dense.tags).all(|(&e, &p)| p == Tag::Partial || p == e);
         assert!(sharper, "{:?}", primitive.half_spaces);

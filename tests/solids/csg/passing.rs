@@ -98,7 +98,7 @@ fn check(name: &str, make: impl Fn(&Frame) -> AnySolid, rules: &[Rule]) {
                 let what = format!("{name} {rule:?} {frame:?}");
                 let plain = built(&solid, &frame, rule);
                 assert!(built(&alone_in_it, &frame, rule) == plain, "{what}: alone");
-                // What is left out of the complement is what was left open.
+                // The part missing in the complement is the part that was left open.
                 let opposite = match rule {
                     Rule::Inner => Rule::Outer,
                     Rule::Outer => Rule::Inner,
@@ -106,7 +106,7 @@ fn check(name: &str, make: impl Fn(&Frame) -> AnySolid, rules: &[Rule]) {
                 };
                 let not = complement(built(&solid, &frame, opposite).view(), &alone()).unwrap();
                 assert!(built(&alone_in_it.complement(), &frame, rule) == not, "{what}: the complement");
-                // Trees of the parts: of what is taken away the opposite rule's.
+                // Trees of the parts. The subtracted part has the opposite rule.
                 let cutter = build(&small, &frame, opposite, &alone()).unwrap();
                 let within = build(&most, &frame, rule, &alone()).unwrap();
                 let added = build(&small, &frame, rule, &alone()).unwrap();
@@ -166,7 +166,7 @@ fn a_stored_octree() {
         |frame| stored(Rule::Certified, frame),
         &[Rule::Certified, Rule::Inner, Rule::Outer],
     );
-    // Coarser than what is asked.
+    // A tree coarser than the query.
     let coarse = |frame: &Frame| frame.with_depth(frame.depth().div_ceil(2)).unwrap();
     check("coarse octree", |frame| stored(Rule::Sampled, &coarse(frame)), &RULES);
 }

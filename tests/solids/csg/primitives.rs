@@ -223,8 +223,8 @@ fn shapes() -> Vec<Shape> {
             Csg::frustum_between(from, to, radii).unwrap(),
             Some(PI * length / 3.0 * (r * r + r * s + s * s)),
             (low, high),
-            // The distance from the axis is |(p − a) × d| / |d|, and the radius there r + (s − r) (p − a) · d
-            // / |d|².
+            // The distance from the axis is |(p − a) × d| / |d|, and the radius there is r + (s − r) (p − a)
+            // · d / |d|².
             Box::new(move |p| {
                 let d = [0, 1, 2].map(|i| Exact::from(b[i]).minus(&a[i].into()));
                 let q = [0, 1, 2].map(|i| p.beyond(i, a[i]));
@@ -414,7 +414,7 @@ fn check_points(
     random: &mut Random,
 ) -> [u64; 3] {
     let tree = built(&shape.solid.placed(placement).unwrap(), frame);
-    // On a frame of short numbers all of them are doubles, or they stay away from the cells' faces.
+    // On a frame of short numbers all points are doubles; otherwise they stay away from the cells' faces.
     let neat = frame.edge().log2().fract() == 0.0;
     let mut seen = [0; 3];
     for _ in 0..points {
@@ -517,7 +517,7 @@ fn two_points_along_an_axis_are_as_good_as_heights() {
             "{from:?} {to:?} {radii:?}"
         );
     }
-    // Numbers as far apart as there may be.
+    // Numbers as far apart as possible.
     let (small, large) = (2f64.powi(-256), 2f64.powi(256));
     for (from, to) in [([0.0; 3], [small, 0.0, small]), ([-large; 3], [large, large, small])] {
         for radii in [[small, large], [large, large], [0.0, small]] {
@@ -584,8 +584,8 @@ fn contact_decides() {
             assert_eq!(volume_on_lattice(Csg::from(ball).placed(&moved).unwrap(), 3).upper, 4.0, "{n}");
         }
     }
-    // A torus of radii 3/2 and 1/2 touches the planes z = ±1/2 and the cube's faces; one turned by a right
-    // angle too.
+    // A torus of radii 3/2 and 1/2 touches the planes z = ±1/2 and the cube's faces. A torus rotated by a
+    // right angle does, too.
     let torus = Csg::torus(1.5, 0.5).unwrap();
     let turned = Affine::new([[0.0, 0.0, 1.0, 0.0], [0.0, 1.0, 0.0, 0.0], [-1.0, 0.0, 0.0, 0.0]]).unwrap();
     let cells = [torus.clone(), torus.placed(&turned).unwrap()].map(|torus| volume_on_lattice(torus, 3));
@@ -664,7 +664,7 @@ fn a_quadratic_power_is_a_quadric() {
 #[test]
 fn far_away_and_out_of_range() {
     let huge = 2f64.powi(250);
-    // |x − c| ≤ 1 seen from a universe of edge 2^250, or 2^-250, or at a distance: nothing is decided wrongly.
+    // |x − c| ≤ 1 in a universe of edge 2^250 or 2^-250, or at a distance. Nothing is decided wrongly.
     for (origin, edge) in [
         ([-huge / 2.0; 3], huge),
         ([0.0; 3], 1.0 / huge),
@@ -716,7 +716,7 @@ fn bounds_of_convex_polyhedra() {
                 }
             }
         }
-        // It is bounded if nothing of its cone of directions is left.
+        // It is bounded if its cone of directions is empty.
         let bounds = Csg::convex(&planes).unwrap().bounds();
         let far = (0..2000).any(|_| {
             let direction = [0, 1, 2].map(|_| random.between(-1.0, 1.0));
@@ -731,7 +731,7 @@ fn bounds_of_convex_polyhedra() {
             assert!(near(min[axis], low) && near(max[axis], high), "{min:?} {max:?} {low} {high} {planes:?}");
         }
     }
-    // Exactly the box, whatever the length of the normals; and beyond it no cell.
+    // Exactly the box, for any length of the normals; and no cell beyond it.
     let unit = |axis: usize, c: f64| [0, 1, 2].map(|k| if k == axis { c } else { 0.0 });
     let planes: Vec<_> = (0..3).flat_map(|k| [(unit(k, 3.0), 0.75), (unit(k, -1e-9), 1e-9)]).collect();
     let cube = Csg::convex(&planes).unwrap();
@@ -798,7 +798,7 @@ fn host_ball(asked: &Arc<[AtomicUsize; 2]>) -> HalfSpace {
                 far += a.max(b).powi(2);
                 near += if min[axis] <= 0.0 && max[axis] >= 0.0 { 0.0 } else { a.min(b).powi(2) };
             }
-            // Dyadic boxes lose nothing; of others some last places are lost.
+            // Dyadic boxes lose nothing; other boxes lose some last places.
             let error = if min.iter().chain(&max).all(|c| (c * 1024.0).fract() == 0.0) { 0.0 } else { 1e-12 };
             Ok(Interval::new(1.0 - far - error, 1.0 - near + error).unwrap())
         },
@@ -895,7 +895,7 @@ fn a_host_that_fails_or_talks_nonsense() {
             4
         );
     }
-    // Not a number, the wrong way round, zero everywhere: nothing is decided.
+    // NaN, reversed bounds, and zero everywhere: nothing is decided.
     let nan = f64::NAN;
     for (value, lower, upper) in [
         (nan, -1.0, 1.0),
@@ -905,7 +905,7 @@ fn a_host_that_fails_or_talks_nonsense() {
         (nan, 0.0, 0.0),
         (1.0, nan, 1.0),
     ] {
-        // An interval that is none cannot be said: all that is left is that nothing is known.
+        // An invalid interval cannot be expressed. Then nothing is known.
         let range = Interval::new(lower, upper).unwrap_or(Interval::ALL);
         let solid = HalfSpace::host(move |_| Ok(value), move |_, _| Ok(range), None);
         let volume = build(&Csg::from(solid.clone()), &frame, Rule::Certified, &control)

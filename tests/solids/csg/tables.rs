@@ -73,7 +73,7 @@ fn a_solid_and_itself() {
         for (what, csg, tag) in cases {
             assert_decided(&format!("{name}: {what}"), &csg.unwrap(), tag);
         }
-        // What comes to A again has the trees of A.
+        // An expression that equals A has the trees of A.
         let same = [
             Csg::union_of([a.clone(), a.clone()]).unwrap(),
             a.difference(&a.complement()).unwrap(),
@@ -265,7 +265,7 @@ fn random_expressions_of_few_half_spaces() {
             continue;
         };
         let tree = Tree::random(&mut random, count, 3);
-        // Longer ones have no table until less of them is left.
+        // Longer expressions have no table until they are reduced.
         if tree.leaves() > 24 {
             continue;
         }
@@ -287,7 +287,7 @@ fn random_expressions_of_few_half_spaces() {
             tighter += (tag != kleene.tags[i]) as u64;
             assert!(tag == kleene.tags[i] || kleene.tags[i] == Tag::Partial);
         }
-        // The root knows at once what no half-space matters for.
+        // The root decides expressions that no half-space affects.
         if tree.tag(&vec![Tag::Partial; count]) != Tag::Partial {
             let mut worker = csg.on(&frame, &crate::common::alone()).unwrap().worker().unwrap();
             assert_ne!(worker.root().unwrap().tag(), Tag::Partial, "{tree:#?}");

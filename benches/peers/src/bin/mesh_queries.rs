@@ -76,7 +76,7 @@ macro_rules! parry {
                 let start = spent().0;
                 let corner = |v: &[f64; 3]| Vector::new(v[0] as $real, v[1] as $real, v[2] as $real);
                 let corners = mesh.vertices().iter().map(corner).collect();
-                // With normals of edges and corners, by which it tells inside from outside.
+                // With the normals of edges and corners that distinguish inside from outside.
                 let mesh = TriMesh::with_flags(corners, mesh.triangles().to_vec(), TriMeshFlags::ORIENTED)?;
                 println!("{:38} {:10.2} ms", format!("{name}, tree"), spent().0 - start);
                 let ray = |list: &str, rays: &[Line]| {
