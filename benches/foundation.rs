@@ -95,7 +95,7 @@ fn large(c: &mut Criterion) {
     for rule in [Rule::Sampled, Rule::Certified] {
         for &threads in threads {
             group.bench_function(format!("{rule:?}, {threads}"), |b| {
-                // Of a mesh that was never looked at.
+                // A mesh without anything computed in advance.
                 let fresh =
                     || TriangleMesh::new(mesh.vertices().into(), mesh.triangles().into()).expect("a mesh");
                 b.iter_batched(
@@ -288,7 +288,7 @@ fn files(c: &mut Criterion) {
         let nodes = tree.statistics().nodes();
         println!("{rule:?}: {bytes} bytes, {nodes} nodes, {:.3} bytes a node", bytes as f64 / nodes as f64);
         let centre = frame.origin().map(|o| o + frame.edge() / 2.0);
-        // SAFETY: nobody else knows the file.
+        // SAFETY: no other process uses the file.
         group.bench_function(format!("map and first query {rule:?}"), |b| {
             b.iter(|| unsafe { file::map(&path) }.map(|tree| tree.contains(centre)))
         });

@@ -497,7 +497,7 @@ fn write_function(
     let space = if result.ends_with('*') { "" } else { " " };
     let qualifier = if class.is_some() && made.has_self && made.is_const { " const" } else { "" };
     let is_static = if class.is_some() && !made.has_self { "static " } else { "" };
-    // A call may be made only for the changes to its object.
+    // A function that changes its object may be called for this effect alone.
     let changes = made.has_self && !made.is_const;
     let discards = if changes || returned(made) == "void" && is_fallible { "" } else { "[[nodiscard]] " };
     let indent = if class.is_some() { "    " } else { "" };

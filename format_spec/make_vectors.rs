@@ -1863,7 +1863,7 @@ fn table(list: &mut List) {
     let mut same = |of: &str, about, change: &dyn Fn(&mut Vec<u8>)| {
         let bytes = changed(&shared, change);
         let value = number(&bytes, last + SAME, 4);
-        // Checksums are repaired by the program that changes bytes, even where they are the error.
+        // Every change repairs the checksums.
         list.add("table-same", of, about, field("shared section", value), bytes);
     };
     same("itself", "a section that shares its own bytes", &|bytes| put(bytes, last + SAME, 9, 4));
@@ -1910,7 +1910,7 @@ fn table(list: &mut List) {
         let at = entry(base, kind);
         let of = name.replace(' ', "-");
         let other = changed(base, |bytes| {
-            // Elements of the same size with another type. Bytes have only their own type.
+            // Elements of the same size with another type. No other type has the size of a byte.
             let (element, count) = (number(bytes, at + TYPE, 1), number(bytes, at + COUNT, 8));
             match element {
                 RECORD => put(bytes, at + TYPE, U64, 1),
@@ -2523,7 +2523,7 @@ fn channel_records(list: &mut List) {
     crowd.head[10] = 2;
     for channel in 1..=257u64 {
         let record = crowd.object(CHANNEL, 0, 0);
-        // Of depth 1, without a value, in the solid's universe: the fields from the depth on.
+        // A channel of depth 1, without a value, in the solid's universe: the fields from the depth on.
         (record[0], record[4], record[7], record[8]) = (1, 2, 1, 1);
         put(record, 56 - 12, 2f64.to_bits(), 8);
         let name = format!("{channel:03}");
@@ -2589,7 +2589,7 @@ fn channel_contents(list: &mut List) {
     one("channel-rank", "overflow", about, rank(0), &|bytes| put(bytes, base, u64::MAX, 8));
     let about = "a value starts that no array has";
     let starts = |bytes: &mut Vec<u8>| {
-        // Of the second channel, the last cell that continues a value starts one.
+        // In the second channel, the last cell that continues a value starts one.
         let block = at(2, BRICKS);
         let [lower, upper] = [number(bytes, block, 8), number(bytes, block + 8, 8)];
         let last = (upper & !lower).checked_ilog2().expect("a cell that continues a value");

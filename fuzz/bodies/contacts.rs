@@ -189,7 +189,7 @@ impl Solid {
                 (0..3).any(|k| at[k] < low[k] - 1e-6 || at[k] > high[k] + 1e-6)
                     && at.iter().all(|c| c.abs() < AROUND - 1e-6)
             }
-            // (Of others no point is known to be outside.)
+            // (For other figures, no point is known to be outside.)
             _ => false,
         }
     }

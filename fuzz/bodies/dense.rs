@@ -171,7 +171,7 @@ impl Dense {
 
     /// Returns the squared distance of two solids; infinite if one is empty.
     pub fn distance_to(&self, other: &Dense) -> f64 {
-        // Of each cell, axis by axis: the squared distance from the other solid. A gap is one less than the
+        // For each cell, axis by axis: the squared distance from the other solid. A gap is one less than the
         // steps.
         let mut squares: Vec<i32> = other.bits.iter().map(|&bit| if bit { 0 } else { FAR }).collect();
         for axis in 0..3 {

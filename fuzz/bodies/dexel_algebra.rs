@@ -96,7 +96,7 @@ fn models(bytes: &mut Bytes<'_>, frame: &Frame, format: DexelFormat, form: u8) {
     let directions = [0, 1, 2].map(|axis| mask >> axis & 1 != 0);
     let Some(a) = model(bytes, frame, format, directions) else { return };
     let Some(b) = model(bytes, frame, format, directions) else { return };
-    // Of plain models the laws hold bit for bit.
+    // For plain models the laws hold bit for bit.
     let plain = DexelFormat { ends: format.ends, ..DexelFormat::default() };
     let [p, q] = [&a, &b].map(|model| model.view().to_format(plain, &control).expect("a format"));
     let not = |x: &TriDexel| x.view().complement(&control).expect("a complement");

@@ -54,7 +54,7 @@ pub fn dexels_in_all_ways(data: &[u8], as_a_file: bool) -> bool {
         let path = scratch_file();
         std::fs::write(&path, data).expect("a place for a file");
         assert_eq!(outcome(&dexels::open(&path)), verified);
-        // SAFETY: nobody else knows the file, and it is removed only when the models are gone.
+        // SAFETY: no other process uses the file, and it is removed only when the models are gone.
         #[allow(unsafe_code)]
         let (mapped, scanned) = unsafe { (dexels::map(&path), dexels::map_verified(&path)) };
         assert_eq!((outcome(&mapped), outcome(&scanned)), (outcome(&still), verified.clone()));

@@ -351,7 +351,7 @@ fn mended_slab(slab: &[u8], depth: usize) -> Vec<u8> {
     let index = (home >> 61 & 3).min(2);
     let octants = home & ((1 << 61) - 1);
     let is_level = |level: &usize| octants >> (3 * level) == 1;
-    // A cell of the first level always exists.
+    // A cell of the first level is valid at any depth.
     let cell = (0..=depth).find(is_level).map_or(8 | octants & 7, |_| octants);
     let part = |shift: u32, bits: u32| planes >> shift & ((1 << bits) - 1);
     let component = |own: u64| if own == 0x8000 { 0 } else { own };

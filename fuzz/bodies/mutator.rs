@@ -245,7 +245,7 @@ fn change_objects(file: &mut File, random: &mut Random) {
             file.sections.push(section);
         }
         2 => {
-            // Of a section that comes before it, mostly.
+            // In most cases, the bytes of an earlier section.
             let at = random.below(file.sections.len());
             let of =
                 if random.one_in(4) { random.below(file.sections.len() + 2) } else { random.below(at + 1) };
@@ -315,7 +315,7 @@ fn change_cuts(file: &mut File, random: &mut Random) {
         file.header[67] = if random.one_in(8) { file.header[67] } else { 2 };
         let surfaces = [[0, 0o1111, 0, 0], [1, 0o1_001_000_111, 4, 0], [4, 0o11111, 9, 0]];
         let doubles = [1.0, -2.0, 0.5, 7.0, -1.0, -1.0, -1.0, 20.0, 100.0, 1.0, 1.0, -1.0, 3.0, 9.0];
-        // Of octants of the universe: about through the middle, and as thick as an eighth of the cell.
+        // Slabs of octants of the universe: about through the middle, an eighth of the cell thick.
         let planes = |bits: u64| bits & 3 << 61 | bits & 1 << 63 | 7 << 55 | 8 << 51 | bits & 0x3FFF_3FFF;
         let slabs: Vec<u64> = (0..3).flat_map(|k| [(8 + k) | k << 61, planes(random.next())]).collect();
         let heads = (0..40 + random.below(40)).map(|_| match random.below(4) {

@@ -49,7 +49,7 @@ fn sharp(result: Result<Octree, Error>, sure: bool) -> Option<Octree> {
             Some(tree)
         }
         Err(Error::Damaged(_)) if !sure => None,
-        // Of the budget, and of exact numbers.
+        // The limit of the budget, or of exact numbers.
         Err(Error::Limit { .. }) => None,
         Err(refused) => panic!("{refused}"),
     }
@@ -243,7 +243,7 @@ fn alone(a: &OctreeRef<'_>, sure: bool) {
     let frame = a.frame();
     for depth in [frame.depth().saturating_sub(1).max(1), (frame.depth() + 1).min(20)] {
         let other = frame.with_depth(depth).expect("a legal depth");
-        // Of the other parity, an element is spread over up to nine.
+        // With the other parity of depth, an element is spread over up to nine.
         sound(build(&a, &other, Rule::Certified, &CONTROL), 9 * n + 9, sure);
     }
     if !sure {

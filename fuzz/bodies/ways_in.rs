@@ -131,11 +131,11 @@ fn through_a_file(
     let path = scratch_file();
     std::fs::write(&path, data).expect("a place for a file");
     let found = outcome(&file::probe(&path));
-    // Of a path the length is known, too.
+    // For a path, the length is known, too.
     assert!(&found == probed || (probed.is_ok() && viewed.is_err()), "{found:?}, {probed:?}");
     assert_eq!(&outcome(&file::open(&path)), verified);
     {
-        // SAFETY: nobody else knows the file, and it is removed only when the trees are gone.
+        // SAFETY: no other process uses the file, and it is removed only when the trees are gone.
         #[allow(unsafe_code)]
         let (mapped, scanned) = unsafe { (file::map(&path), file::map_verified(&path)) };
         assert_eq!(&outcome(&scanned), verified);

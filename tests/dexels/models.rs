@@ -336,7 +336,7 @@ fn ends_lie_where_the_surface_is() {
             assert!(found > 1000);
         }
     }
-    // Of solids without rays of their own, to a cell of depth 20.
+    // Solids without rays of their own, up to a cell of depth 20.
     let moved = Csg::from(host_ball(c, 0.75));
     let (model, expected) = (
         dexelize(&moved, &frame, &doubles(), &control).unwrap(),
@@ -555,7 +555,8 @@ fn a_subtraction_shows_the_other_side() {
     assert!(z(dexels[0].start) < -0.99 && z(dexels[0].end) > 0.99);
     assert!(z(dexels[1].start) < -0.99 && z(dexels[1].end) > 0.99);
     assert_eq!((dexels[0].end.surface, dexels[1].start.surface), (Some(0), Some(0)));
-    // Touching intervals of one material are merged. Of two materials, they stay two with a face between.
+    // Touching intervals of one material are merged. Intervals of two materials stay two, with a face
+    // between.
     let half = |min: f64, max: f64, material| {
         let half = Csg::cuboid([-0.7, -0.7, min], [0.7, 0.7, max]).unwrap();
         dexelize(&half, &frame, &marks, &control).unwrap().view().with_material(material, &control).unwrap()

@@ -322,7 +322,7 @@ fn files_that_end_early_or_late_are_refused() {
         std::fs::write(&path, &bytes[..length]).unwrap();
         assert!(matches!(dexels::open(&path), Err(Error::File { .. })));
         #[cfg(feature = "mmap")]
-        // SAFETY: nobody else knows the file.
+        // SAFETY: no other process uses the file.
         assert!(unsafe { dexels::map(&path) }.is_err());
     }
 }

@@ -90,7 +90,7 @@ fn colours_come_back() {
     let mut colours =
         |count: usize| -> Vec<f64> { (0..4 * count).map(|_| random.below(256) as f64).collect() };
     for count in [1, 3, 30] {
-        // Of triangles.
+        // Colours of triangles.
         for name in ["colour", "face_colour"] {
             let mut mesh = strip(count);
             mesh.add_attribute(MeshAttribute::per_triangle(name, 4, &colours(count)).unwrap()).unwrap();
@@ -103,7 +103,7 @@ fn colours_come_back() {
                 assert_eq!(found.attribute("colour").unwrap().domain(), AttributeDomain::Triangle);
             }
         }
-        // Of vertices, and of triangles besides.
+        // Colours of vertices, and of triangles in addition.
         let mut mesh = strip(count);
         let of_vertices = colours(count + 2);
         let rows = mesh.triangles().to_vec();
@@ -115,7 +115,7 @@ fn colours_come_back() {
                 assert_eq!(values(&found, name), values(&mesh, name));
             }
         }
-        // Of corners.
+        // Colours of corners.
         let mut mesh = strip(count);
         mesh.add_attribute(MeshAttribute::per_corner("colour", 4, &colours(3 * count)).unwrap()).unwrap();
         if cfg!(feature = "threemf") {

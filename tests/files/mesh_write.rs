@@ -108,7 +108,7 @@ proptest! {
                 prop_assert_eq!(told.merged, used.len() as u64 - report.vertices);
                 let coordinates = || used.iter().flat_map(|&v| mesh.vertices()[v as usize]);
                 let moved = coordinates().map(|x| (x - f64::from(x as f32)).abs()).fold(0.0, f64::max);
-                // Decimal digits of a 32-bit number tell it, and not more.
+                // Decimal digits identify a 32-bit number, and no more.
                 let half = coordinates().map(|x| x.abs() as f32).map(|x| x.next_up() - x).fold(0.0, f32::max) / 2.0;
                 let slack = if text { f64::from(half) } else { 0.0 };
                 prop_assert!((told.rounding - moved).abs() <= slack, "{} {moved}", told.rounding);

@@ -310,7 +310,7 @@ fn every_way_in_gives_the_tree_back() {
         same(&file::open(&path).unwrap());
         #[cfg(feature = "mmap")]
         {
-            // SAFETY: nobody else knows the file.
+            // SAFETY: no other process uses the file.
             same(&unsafe { file::map(&path) }.unwrap());
             same(&unsafe { file::map_verified(&path) }.unwrap());
         }
@@ -478,7 +478,7 @@ fn a_shorter_or_longer_file_is_refused() {
         is_length(format_error(file::probe(&path)));
         #[cfg(feature = "mmap")]
         {
-            // SAFETY: nobody else knows the file.
+            // SAFETY: no other process uses the file.
             is_length(format_error(unsafe { file::map(&path) }));
             is_length(format_error(unsafe { file::map_verified(&path) }));
         }
@@ -501,7 +501,7 @@ fn every_flipped_byte_is_found() {
                 assert!(file::from_bytes(damaged.bytes()).is_err(), "byte {at}");
                 write(&path, damaged.bytes());
                 assert!(file::open(&path).is_err(), "byte {at}");
-                // SAFETY: nobody else knows the file.
+                // SAFETY: no other process uses the file.
                 #[cfg(feature = "mmap")]
                 assert!(unsafe { file::map_verified(&path) }.is_err(), "byte {at}");
                 if let Ok(tree) = file::view(damaged.bytes()) {
@@ -558,7 +558,7 @@ fn changes_with_right_checksums_never_panic() {
                 exercise(&tree);
             }
             write(&path, hostile.bytes());
-            // SAFETY: nobody else knows the file.
+            // SAFETY: no other process uses the file.
             #[cfg(feature = "mmap")]
             if let Ok(tree) = unsafe { file::map(&path) } {
                 tree.statistics();
@@ -867,7 +867,7 @@ fn metadata_that_cannot_be_read_are_refused_by_all_who_read_them() {
     {
         let file = tempfile::NamedTempFile::new().unwrap();
         write(file.path(), &damaged);
-        // SAFETY: nobody else knows the file.
+        // SAFETY: no other process uses the file.
         assert_eq!(format_error(unsafe { file::map(file.path()) }), FormatError::Metadata);
     }
 }

@@ -61,7 +61,7 @@ fn refusal(text: &str) -> (u64, u64, String) {
     }
 }
 
-// ---- what the calls mean
+// ---- the meaning of the calls
 // ------------------------------------------------------------------------------------
 
 #[test]

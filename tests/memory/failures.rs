@@ -693,7 +693,7 @@ fn operations(directory: &Path) -> Vec<(&'static str, Operation)> {
     operation!("from bytes", [bytes], file::from_bytes(&bytes));
     operation!("probe", [path], file::probe(&path));
     operation!("open", [path], file::open(&path));
-    // SAFETY: nobody else knows the file, and saving replaces it.
+    // SAFETY: no other process uses the file, and saving replaces it.
     operation!("map", [path], unsafe { file::map(&path) });
     // SAFETY: as before.
     operation!("map verified", [path], unsafe { file::map_verified(&path) });

@@ -400,7 +400,8 @@ fn coordinates_that_overflow() {
 
 #[test]
 fn tiny_coordinates() {
-    // A needle around the origin, which is a centre, thinner than any product of doubles can tell.
+    // A needle around the origin, which is a centre. The needle is thinner than any product of doubles
+    // resolves.
     for depth in [3u8, 6] {
         let n = (1u32 << depth) as f64;
         let frame = Frame::new([-2.5; 3], n, depth).unwrap();

@@ -194,7 +194,7 @@ fn functions_of_planes_are_the_solid() {
             let trial = Trial::new(shapes::mesh(&soup), fill, tolerance, most);
             let points = trial.points(&mut random, 2_000);
             let known = trial.check(name, &points);
-            // (Of a needle most points lie closer to the surface than a thousandth of the tolerance.)
+            // (For a needle, most points are closer to the surface than a thousandth of the tolerance.)
             assert!(known > 250, "{name}, {tolerance}: {known}");
         }
     }

@@ -133,7 +133,7 @@ fn the_oracle_agrees_with_integers_and_with_itself() {
             let p = if i % 2 == 0 {
                 [0; 3].map(|_: i32| random.between(-3.0, 3.0))
             } else {
-                // Very near to the surface, where only exact signs tell the sides apart.
+                // Very near the surface, where only exact signs distinguish the sides.
                 let [a, b, c] = whole.corners(random.below(whole.len() as u64) as usize);
                 let far = 10f64.powi(-(random.below(16) as i32));
                 [0, 1, 2]
@@ -581,8 +581,8 @@ fn what_is_undecided_halves_with_every_level() {
             assert!((0.4..0.6).contains(&ratio), "{name}: {ratio}, {open:?}");
         }
         println!("{name}: {:?}", open[4..].windows(2).map(|pair| pair[1] / pair[0]).collect::<Vec<_>>());
-        // The undecided volume is at most one layer of cells on the surface and on membranes no larger than
-        // the surface.
+        // The undecided volume is a layer of a few cells on the surface and on membranes no larger than the
+        // surface.
         let area: f64 = soup.iter().map(area).sum();
         let layer = open[7] / (area * frame.cell_size());
         assert!((1.0..4.5).contains(&layer), "{name}: a layer of {layer} cells");

@@ -458,7 +458,7 @@ fn many_voids() {
         upright,
     );
     shells[0] = dented;
-    // Of the shells in the dent, the first: x < 11, y = 11, z = 0.
+    // The first of the shells in the dent: x < 11, y = 11, z = 0.
     assert_eq!(Arrays::solid(&shells).refused(), PolyhedronError::VoidOutside { shell: 1 + 11 * 12 });
 }
 
@@ -480,7 +480,7 @@ fn tolerance() {
     // Half of it is within the tolerance, a fraction of the extent.
     vertices[1][2] = 1.0 + 1.9e-8;
     Arrays::solid(&[(vertices, faces)]).made();
-    // Coordinates that allow exact planes have no deviation at all.
+    // No tolerance at all, for coordinates that allow it.
     let exact = Arrays::solid(&[block([0.0; 3], [10.0, 10.0, 1.0])]);
     Polyhedron::with_tolerance(&exact.view(), 0.0).unwrap();
     for bad in [-1e-300, f64::NAN, f64::NEG_INFINITY] {

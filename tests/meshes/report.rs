@@ -145,7 +145,7 @@ fn bodies_that_overlap() {
     let corner = vec![[o, y, x], [o, x, z], [x, y, z], [y, o, z]];
     assert_eq!(overlapping(&[cube([0.0; 3]), corner.clone()]), [2, 0]);
     assert_eq!(overlapping(&[cube([0.0; 3]), turned(&corner)]), [0, 0]);
-    // A peg that fits into a cavity exactly: to tell needs more than signs.
+    // A peg that fits into a cavity exactly. Signs alone do not decide this case.
     let peg = block([-1.0, -1.0, -0.5], [1.0, 1.0, 0.5]);
     assert_eq!(overlapping(&[two.clone(), turned(&one), peg]), [0, 2]);
     // Open bodies are not examined for overlaps.

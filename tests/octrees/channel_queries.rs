@@ -102,7 +102,7 @@ proptest! {
         prop_assert_eq!(Dense::of(region.view()), expected);
         prop_assert!(region.view().is_binary());
 
-        // Of a solid, and on a deeper or shallower frame.
+        // The region of a solid, also on a deeper or shallower frame.
         let solid = dense.octree();
         let within = ValueRegion::new(solid.view(), view, low, high).unwrap();
         let built = build(&within, solid.frame(), Rule::Certified, &alone()).unwrap();

@@ -51,7 +51,7 @@ proptest! {
                 prop_assert_eq!(found, values.at(at));
             }
         }
-        // Cells that no query needs store no unnecessary values.
+        // Cells outside the solid add no unnecessary values.
         prop_assert!(channel.value_count() <= values.channel(depth, kind, None, 1).value_count());
     }
 

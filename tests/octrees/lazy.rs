@@ -1205,7 +1205,7 @@ fn damaged_files<S: Solid>(ball: &S) {
             bytes[at] ^= 1 << random.below(8);
         }
         std::fs::write(&path, &bytes).unwrap();
-        // SAFETY: nobody else knows the file.
+        // SAFETY: no other process uses the file.
         let Ok(octree) = (unsafe { file::map(&path) }) else { continue };
         let Ok(mut lazy) = LazyOctree::resume(&octree, ball, &frame, &alone()) else { continue };
         taken += 1;

@@ -501,7 +501,7 @@ fn files_keep_it() {
                 );
                 #[cfg(feature = "mmap")]
                 {
-                    // SAFETY: nobody else knows the file.
+                    // SAFETY: no other process uses the file.
                     #[allow(unsafe_code)]
                     let mapped = unsafe { [file::map(&path), file::map_verified(&path)] };
                     mapped.into_iter().for_each(|mapped| assert_eq!(mapped.unwrap().proof(), proof));
@@ -586,7 +586,7 @@ fn displacements() {
             assert!((0.25 * scale..=0.25 * scale * (1.0 + 1e-12)).contains(&found), "{found}");
         }
     }
-    // Of a shear more than lengths of columns say.
+    // For a shear, the bound exceeds the lengths of the columns.
     let shear = Affine::new([[1.0, 1.0, 1.0, 0.0], [0.0, 1.0, 1.0, 0.0], [0.0, 0.0, 1.0, 0.0]]).unwrap();
     let placed = build(&Transform::of(far, &shear), &frame(4), Rule::Certified, &CONTROL).unwrap();
     // The greatest singular value of the map is about 2.247.

@@ -970,7 +970,7 @@ const WAYS: &[Way] = &[
             file::save(&a.tree, &path)?;
             #[cfg(feature = "mmap")]
             {
-                // SAFETY: nobody else knows the file.
+                // SAFETY: no other process uses the file.
                 #[allow(unsafe_code)]
                 let mapped = unsafe { [file::map(&path)?, file::map_verified(&path)?] };
                 mapped.iter().for_each(|mapped| assert_eq!(mapped.proof(), a.tree.proof()));

@@ -279,7 +279,7 @@ fn places(meshes: &[TriangleMesh]) -> Vec<[[u64; 3]; 3]> {
 #[test]
 fn surfaces_cell_by_cell() {
     for depth in [2, 3, 5, 6] {
-        // Of the second one the surface lies in walls of the universe, too.
+        // The surface of the second solid lies partly in walls of the universe.
         for solid in [part(), Csg::cuboid([-1.0, 0.2, 0.0], [0.7, 2.0, 0.6]).unwrap()] {
             let tree = build(&solid, &unit(depth), Rule::Certified, &alone()).unwrap();
             for resolve in [Resolve::Inner, Resolve::Outer] {

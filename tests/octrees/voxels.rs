@@ -307,7 +307,7 @@ fn limits_and_refusals() {
         of(&VoxelOptions::new(), &small),
         Err(Error::TooLarge { limit: 1000, needed: 1001.., .. })
     ));
-    // Of voxels that touch outside cells not all are known beforehand.
+    // Not all voxels that touch outside cells are known in advance.
     let touching = VoxelOptions::new().boundary(VoxelBoundary::Touching);
     let shape = Csg::ball([0.1, 0.0, 0.0], 0.8).unwrap();
     let tree = build(&shape, &Frame::new([-1.0; 3], 2.0, 6).unwrap(), Rule::Sampled, &alone()).unwrap();
@@ -993,7 +993,7 @@ fn faces_that_run_along_the_lattice_cost_nothing() {
         let most = if placement == Affine::IDENTITY { 2 } else { 200 };
         assert!((1..=most).contains(&there.view().len()), "{}", there.view().len());
     }
-    // Of determinant -2^-60, which is zero in doubles.
+    // The determinant is -2^-60, which is zero in doubles.
     let small = 2f64.powi(-30);
     let flat = [[1.0 + small, 1.0, 0.0, 0.0], [1.0, 1.0 - small, 0.0, 0.0], [0.0, 0.0, 1.0, 0.0]];
     let found = records.view().placed_by_centres(&Affine::new(flat).unwrap(), &frame, &limited);

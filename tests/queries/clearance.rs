@@ -438,7 +438,7 @@ fn solids_of_all_kinds_agree() {
                 .unwrap(),
         );
         println!("case {case}: {least} {widths:?}");
-        // (Of a solid that is moved by its cells, up to four cells.)
+        // (For a solid moved by its cells, up to four cells.)
         assert!(widths[0] <= 0.0625 && widths[1] <= 0.25 && widths[2] <= 1e-2, "{widths:?}");
     }
 }

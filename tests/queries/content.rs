@@ -246,7 +246,7 @@ fn regions_of_every_kind() {
         assert!(by_box.lower - found.lower < margin && found.upper - by_box.upper < margin, "{found:?}");
     };
     is_near(of_box, 1e-6);
-    // Of a mesh not much is known in the 180 cells where faces meet.
+    // For a mesh, little is known in the 180 cells where faces meet.
     is_near(of_mesh, 270.0);
     assert_eq!(tree.cells_in(&mesh, &alone()).unwrap(), tree.cells_in(&cuboid, &alone()).unwrap());
     // Any region is as the octree of its verdicts.
@@ -375,7 +375,7 @@ fn mapped() {
     let folder = tempfile::tempdir().unwrap();
     let path = folder.path().join("ball.lfl");
     leafless::file::save(&tree, &path).unwrap();
-    // SAFETY: nobody else knows of the file.
+    // SAFETY: no other process uses the file.
     #[allow(unsafe_code)]
     let mapped = unsafe { leafless::file::map(&path) }.unwrap();
     let mut random = Random(3);

@@ -363,7 +363,7 @@ fn every_way_in() {
             assert!(lower <= 0.25 + rest && upper >= 0.25 - 1e-12, "{name} {found:?}");
             assert!(upper - lower <= *width, "{name}: {} {found:?}", upper - lower);
         }
-        // Of the same solid in two ways.
+        // Two forms of the same solid.
         let found = ask(solid, &ball, &frame, 0.05);
         assert!(found.distance().lower <= rest && found.distance().upper <= width + rest, "{name} {found:?}");
     }

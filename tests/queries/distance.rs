@@ -382,7 +382,7 @@ fn mapped_files() {
     let folder = tempfile::tempdir().unwrap();
     let path = folder.path().join("ball.lfl");
     leafless::file::save(&tree, &path).unwrap();
-    // SAFETY: nobody else knows of the file.
+    // SAFETY: no other process uses the file.
     #[allow(unsafe_code)]
     let mapped = unsafe { leafless::file::map(&path) }.unwrap();
     let mut random = Random(6);

@@ -457,7 +457,7 @@ fn to_the_end_it_is_the_intersection_of_octrees() {
             build(&moved, &frame, Rule::Certified, &alone()).unwrap(),
         ];
         let common = intersection(x.view(), y.view(), &alone()).unwrap().statistics().volume();
-        // (Surfaces tell more than cells.)
+        // (Surfaces give tighter bounds than cells.)
         assert!(
             common.lower <= found.volume.lower && found.volume.upper <= common.upper,
             "{found:?} {common:?}"
@@ -475,7 +475,7 @@ fn many_placements_are_one_after_the_other() {
     let frame = Frame::new([-4.0; 3], 8.0, 7).unwrap();
     // (Two stored octrees under placements are searched in another way: see `oriented`.)
     let a = build(&Tree::random(&mut random, 2).csg(), &frame, Rule::Certified, &alone()).unwrap();
-    // Of solids that cannot be moved exactly the cells are moved.
+    // Solids that cannot be moved exactly are moved by their cells.
     let b = Plain::cuboid([-1.0, -1.5, -0.5], [1.25, 0.75, 1.0]).unwrap();
     let placements: Vec<Affine> = (0..40).map(|_| rigid(&mut random, 3.0)).collect();
     for tolerance in [PROOF, 0.5] {

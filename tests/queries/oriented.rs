@@ -400,7 +400,7 @@ fn wrapped_octrees_are_octrees() {
                 "{found:?} {direct:?}"
             );
         }
-        // Of two octrees in one expression each child of the root may be another one.
+        // With two octrees in one expression, each child of the root may belong to either.
         let parts = [
             Csg::cuboid([-1.5, -1.5, -1.5], [-0.5, 1.0, 1.0]),
             Csg::cuboid([0.5, -1.0, -1.0], [1.5, 1.0, 1.0]),

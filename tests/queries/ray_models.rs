@@ -184,7 +184,7 @@ fn primitives(count: usize) {
     let ball = Csg::ball([0.2, 0.1, 0.7], 0.62).unwrap();
     let part = Csg::union_of([block, cylinder]).unwrap().difference(&ball).unwrap();
     let frame = Frame::new([-1.5; 3], 3.0, 9).unwrap();
-    // Of each ray that doubles can follow; some start in the part.
+    // Every ray that doubles can follow. Some rays start in the part.
     let mut random = Random(13);
     let mut plain = rays_towards([-1.1; 3], [1.2; 3], &mut random, count);
     for (from, _) in plain.iter_mut().step_by(5) {
@@ -228,7 +228,7 @@ fn rays_on_a_mapped_file() {
         let tree = build(&ball, &frame, rule, &alone()).unwrap();
         let path = folder.path().join("ball.lfl");
         file::save(&tree, &path).unwrap();
-        // SAFETY: nobody else knows of the file.
+        // SAFETY: no other process uses the file.
         let maps: [Octree; 2] = unsafe { [file::map(&path).unwrap(), file::map_verified(&path).unwrap()] };
         let rays = rays_of(&rays_towards([-1.5; 3], [1.5; 3], &mut Random(14), 5000));
         for mapped in maps {

@@ -219,7 +219,7 @@ fn extended_builds_ask_level_by_level() {
         sizes.push(tree);
     }
     assert_eq!(sizes[0], sizes[1]);
-    // Deeper than a single query reaches.
+    // A tree deeper than a single batch of queries.
     let calls = Arc::new(Calls::default());
     let solid = host(&calls, Duration::ZERO, true);
     let tree = build_extended(&solid, &unit(9), &SurfaceOptions::default(), &Control::threads(2)).unwrap();
@@ -404,7 +404,7 @@ fn wrappers_hand_on_many_questions_at_once() {
             let most =
                 if name.contains("turned") && !name.contains("quarter") { TURNED * alone } else { alone + 8 };
             assert!(alone / 2 < boxes && boxes <= most, "{name}: {boxes} boxes, {alone} alone");
-            // Two rounds for each level of cells found on the way, and as many for the threads.
+            // Two rounds a level (some cells are found on the way), times the number of threads.
             assert!(!many || batches <= 2 * (1 + 5 * 3), "{name}: {boxes} boxes in {batches} calls");
             // The result does not depend on the way of the queries.
             let serial =

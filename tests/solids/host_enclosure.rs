@@ -72,7 +72,7 @@ fn gyroid(min: [f64; 3], max: [f64; 3], [x, y, z]: [f64; 3]) -> GradientRange {
         z.cos() * x.cos() - y.sin() * z.sin(),
     ];
     let half = (0..3).map(|axis| 0.5 * (max[axis] - min[axis])).fold(0.0, f64::max);
-    // Of x: |sin x cos y| + |sin z cos x|, |cos x sin y|, |cos z sin x|, and so on.
+    // For x: |sin x cos y| + |sin z cos x|, |cos x sin y|, |cos z sin x|, and so on.
     let spread = 4.0 * half * (1.0 + 1e-9) + MARGIN;
     let gradient = slopes.map(|slope| Interval::new(slope - spread, slope + spread).unwrap());
     GradientRange { value: about(value), gradient }

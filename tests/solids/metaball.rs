@@ -79,7 +79,7 @@ fn what_it_says_of_cells_is_true() {
             if way.cell.level == 20 {
                 let inside = way.worker.sample(way.cell, &way.part).unwrap();
                 let truth = sign(&solid.balls, point(way.cell, [0.0; 3]));
-                // Within rounding of the boundary, doubles cannot tell.
+                // Within rounding of the boundary, doubles do not decide.
                 let near = (plain_sum(&solid.balls, point(way.cell, [0.0; 3])) - 1.0).abs() < 1e-9;
                 assert!(near || inside == Some(truth > 0), "{solid:?} {:?}", way.cell);
                 break;

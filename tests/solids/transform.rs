@@ -628,7 +628,7 @@ fn nearest_cells_decide_every_centre() {
             assert!(moved.view().is_binary() && !moved.proof().full && !moved.proof().empty);
             let found = moved.statistics().volume().lower;
             assert!((found / volume - 1.0).abs() < 0.03, "{placement:?} {depth}: {found} {volume}");
-            // Where the plain transform tells, both tell the same.
+            // Where the plain transform decides, both give the same.
             match build(&plain, &onto, Rule::Sampled, &control) {
                 Ok(same) => assert_eq!(same, moved),
                 Err(error) => assert!(matches!(error, Error::NotSampled), "{error}"),
@@ -638,7 +638,7 @@ fn nearest_cells_decide_every_centre() {
             assert_eq!(certified(&nearest), certified(&plain));
         }
     }
-    // What failed: a lattice twice as coarse under a map that rounds.
+    // A failed case: a lattice twice as coarse under a map that rounds.
     let coarse = frame.with_depth(5).unwrap();
     let refused = build(&Transform::of(tree.clone(), &turned), &coarse, Rule::Sampled, &control);
     assert!(matches!(refused, Err(Error::NotSampled)));
@@ -664,7 +664,7 @@ fn nearest_cells_are_those_that_hold_the_inverse_image() {
         let cell = [i & 15, i >> 4 & 15, i >> 8];
         let centre = [0, 1, 2].map(|axis| onto.origin()[axis] + f64::from(cell[axis]) + 0.5);
         let image = back.apply(centre);
-        // Of what lies in a plane of the lattice rounding decides.
+        // Rounding decides images in planes of the lattice.
         if image.iter().any(|x| (2.0 * x - (2.0 * x).round()).abs() < 1e-9) {
             continue;
         }

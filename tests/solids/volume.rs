@@ -191,7 +191,7 @@ fn own_frames_have_the_bitmap() {
         let extents = extents(&mut random, 70);
         let sampled = Sampled::random(&mut random, extents, round % KINDS);
         let band = sampled.band(&mut random);
-        // Corners that are multiples of nothing.
+        // Corners that are not multiples of the spacing.
         let grid = VoxelGrid::with_first_sample(extents, [0.1, 0.7, -3.3], [0.3; 3]).unwrap();
         let volume = Volume::new(sampled.samples(), &grid, band, &Control::default()).unwrap();
         let frame = grid.frame().unwrap();
@@ -358,7 +358,7 @@ fn interpolation_and_crossings() {
                 assert_eq!(t, 0.5);
                 continue;
             }
-            // The field has the end of the band there.
+            // The field reaches the end of the band there.
             let between = a + t * (b - a);
             let end = if (between - band.low()).abs() < (between - band.high()).abs() {
                 band.low()
@@ -419,7 +419,7 @@ fn fingerprints() {
     for (i, a) in all.iter().enumerate() {
         assert!(all.iter().skip(i + 1).all(|b| a != b), "{i}");
     }
-    // Bands that the kind of samples cannot tell apart.
+    // Bands that this kind of samples cannot distinguish.
     let [a, b] = [0.5, 1.0].map(|low| of(vec![1u8; 280].into(), &grid, Band::at_least(low).unwrap()));
     assert_eq!(a, b);
 }
@@ -512,7 +512,7 @@ fn a_scanned_part() {
         (found.lower - exact).abs() < 1e-9 * exact && (found.upper - exact).abs() < 1e-9 * exact,
         "{found:?}"
     );
-    // Turned about an axis that is none of the lattice's, its bounds are still certain.
+    // Rotated about an axis that is no axis of the lattice, the solid still has certain bounds.
     let turned =
         leafless::Affine::new([[0.8, -0.6, 0.0, 3.0], [0.6, 0.8, 0.0, 2.0], [0.0, 0.0, 1.0, 2.0]]).unwrap();
     let moved = AnySolid::new(volume).placed(&turned).unwrap();

@@ -67,7 +67,7 @@ fn point_of_plate(random: &mut Random) -> [f64; 3] {
             let (x, y) = (point[0] - 40.0, point[1] - 30.0);
             let radius = x.hypot(y);
             if axis == 2 && radius < 5.0 {
-                // What falls into the hole comes to lie around it.
+                // Points in the hole are moved out around it.
                 (point[0], point[1]) = (40.0 + x * 10.0 / radius - x, 30.0 + y * 10.0 / radius - y);
             }
         }
@@ -94,7 +94,7 @@ fn check_plate(shares: &[f64], samples: usize) {
             inward = inward.max(away_from_mesh(point_of_plate(&mut random), mesh));
         }
         let most = outward.max(inward);
-        // (Next to what is the case: samples come near the worst point.)
+        // (The proven deviation is close to the real one: samples come near the worst point.)
         assert!(most <= proven && proven <= 1.5 * most, "{share}: {outward} {inward} {proven}");
     }
 }
@@ -378,7 +378,7 @@ fn check_scenes(scenes: std::ops::Range<usize>) {
         let slack = tolerance * mesh.area() + 1e-9;
         let within = volume.lower - slack <= mesh.volume() && mesh.volume() <= volume.upper + slack;
         assert!(within, "scene {scene}: {} {volume:?}", mesh.volume());
-        // On both sides of each triangle is what should be there.
+        // Points on both sides of each triangle have the right membership.
         for triangle in mesh.triangles().iter().step_by(7) {
             let [a, b, c] = triangle.map(|v| mesh.vertices()[v as usize]);
             let (p, q) = ([0, 1, 2].map(|k| b[k] - a[k]), [0, 1, 2].map(|k| c[k] - a[k]));
@@ -458,7 +458,7 @@ fn refusals() {
     let cancelled = std::sync::atomic::AtomicBool::new(true);
     let control = Control { cancel: Some(&cancelled), ..alone() };
     assert!(matches!(boundary(&ball, &frame, 1e-3, &control), Err(Error::Cancelled)));
-    // A mesh with a bore: most of the boundary is none of a surface.
+    // A mesh with a bore. Most of its boundary belongs to no surface.
     let block = of(&Csg::cuboid([-0.4; 3], [0.4; 3]).unwrap(), 8, 0.01).into_mesh();
     let mesh = AnySolid::new(MeshSolid::new(block, FillRule::NonZero).unwrap());
     let mixed = Csg::solid(mesh).difference(&Csg::cylinder(0.1, -1.0, 1.0).unwrap()).unwrap();
@@ -469,7 +469,7 @@ fn refusals() {
         "{:?}",
         refused.map(|found| *found.report())
     );
-    // Solids of which no surfaces are known.
+    // Solids without known surfaces.
     let tree: Octree = build(&ball, &frame, Rule::Certified, &alone()).unwrap();
     assert!(matches!(boundary(&tree, &frame, 0.1, &alone()), Err(Error::Argument { name: "solid", .. })));
 }
@@ -563,7 +563,7 @@ fn sharp_edges_of_a_turned_part() {
             away.sort_by(f64::total_cmp);
             assert!(away[1] <= 1e-9 * length, "{vertex:?}: {away:?}");
         }
-        // Each circle is there.
+        // Each circle exists.
         for (radius, z) in [
             (8.0, 34.0),
             (12.0, 34.0),

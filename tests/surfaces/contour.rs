@@ -46,8 +46,8 @@ fn sharp_edges_of_meshes_stay() {
         let least = found.mesh().vertices().iter().map(away).fold(f64::INFINITY, f64::min);
         assert!(least < 2.0 * tolerance, "{corner:?} {least:e}");
     }
-    // What is proven is what the search by itself finds, to a sixteenth of the tolerance, and no more than
-    // was asked for.
+    // The proven deviation is the result of a separate search, up to a sixteenth of the tolerance, and within
+    // the tolerance.
     let proven = found.report().deviation;
     let other = MeshSolid::new(found.into_mesh(), FillRule::NonZero).unwrap();
     let found = deviation(&solid, &other, &frame, 1e-3 * tolerance, &alone()).unwrap().distance();
@@ -75,8 +75,8 @@ fn what_is_proven_is_not_contradicted() {
     });
     let host = host.with_contains(move |point| Ok(away(point) < 0.0)).with_exterior(Tag::Empty);
     let tree = build(&ball, &frame.with_depth(4).unwrap(), Rule::Certified, &alone()).unwrap();
-    // What is known of each: slabs tell an expression well, cells of a size tell others about as well as they
-    // are large.
+    // Expected deviations: slabs describe an expression well; for other solids, cells are about as good as
+    // they are large.
     let solids: [(&str, AnySolid, f64); 4] = [
         ("expression", AnySolid::new(ball.clone()), 1.5 * tolerance),
         (

@@ -68,8 +68,8 @@ fn assert_faces(found: &Boundary, faces: &BoundaryFaces, text: &str) {
         }
     }
     assert!(sides.keys().all(|&(from, to)| sides.contains_key(&(to, from))), "{text}");
-    // (Two faces alone have a corner where a piece of a third, smaller than the tolerance, was taken out:
-    // their edge has a bend there.)
+    // (An edge of only two faces has a corner where a piece of a third face, smaller than the tolerance, was
+    // removed. The edge bends there.)
     for corners in (0..count).flat_map(|face| loops(&arrays, face)) {
         for (k, corner) in corners.iter().enumerate().filter(|(_, corner)| uses[corner] == 2) {
             let others = [corners.len() - 1, 1].map(|step| corners[(k + step) % corners.len()]);
@@ -185,7 +185,7 @@ fn a_plate_with_a_bore() {
         let back = leafless::exchange::read_mesh(&file, &Default::default()).unwrap().mesh;
         assert!((back.volume() - found.mesh().volume()).abs() < 1e-9);
     }
-    // Of an octree that keeps its surfaces, too.
+    // The same for an octree that keeps its surfaces.
     let frame = Frame::new([-10.0, -10.0, -20.0], 120.0, 9).unwrap();
     let stored = build_extended(&plate(), &frame, &SurfaceOptions::default(), &alone()).unwrap();
     let own = boundary(&stored, &frame, 0.008, &alone()).unwrap();
@@ -204,7 +204,7 @@ fn solids_in_the_shape_of_an_l_and_a_t() {
     sizes.sort_unstable();
     assert_eq!((faces.regions().len(), sizes), (8, vec![4, 4, 4, 4, 4, 4, 6, 6]));
     assert!((assert_polyhedron(&found, &faces).mesh().volume() - 6.0).abs() < 1e-13);
-    // A lower post, whose top ends within a face: the face behind goes on above it.
+    // A lower post whose top ends within a face. The face behind continues above it.
     let post = cuboid([1.0, 0.5, 0.0], [2.0, 3.0, 0.5]);
     let (found, faces) = faces_of(&Csg::union_of([arm, post]).unwrap(), 0.1);
     let mut sizes: Vec<_> = (0..10).map(|face| loops(&faces.arrays(), face)[0].len()).collect();

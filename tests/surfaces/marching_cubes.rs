@@ -197,7 +197,7 @@ fn whole_universes() {
         let mesh = marching_cubes(full.view(), None, &alone()).unwrap();
         assert_eq!(euler_of_manifold(&mesh), 2);
         assert_eq!(mesh.bounds(), ([0.0; 3], [n; 3]));
-        // Without what is cut from the edges and corners.
+        // Without the volume cut off at the edges and corners.
         let expected = n.powi(3) - 12.0 * (n - 1.0) / 8.0 - 8.0 * (1.0 / 8.0 - 1.0 / 48.0);
         assert!((mesh.volume() - expected).abs() < 1e-6, "{} {expected}", mesh.volume());
         let partial = Octree::uniform(frame, Tag::Partial, Tag::Partial).unwrap();

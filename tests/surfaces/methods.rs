@@ -118,7 +118,7 @@ fn check(name: &str, octree: &Octree) {
         let few = coplanar_shrink(tree, snap, None, &alone()).unwrap();
         assert_balanced(&all);
         assert_balanced(&few);
-        // Nothing is left over of differences in any plane, so that area and volume are the same.
+        // In every plane the differences cancel, so that area and volume are the same.
         let close = |a: f64, b: f64| (a - b).abs() <= 1e-9 * a.abs().max(cell);
         assert!(close(few.volume(), all.volume()) && close(few.area(), all.area()), "{name}");
         assert!((all.volume() - voxels).abs() <= tolerance && all.volume() > 0.0, "{name}");

@@ -191,7 +191,8 @@ fn published_cells() {
     );
     assert_eq!(outlines(&all), outlines(&merged));
     assert_eq!((merged.vertices().len(), merged.triangles().len()), (6, 8));
-    // Half of the universe: the cells from sample 0 on lie in one plane each, but for those at its faces.
+    // Half of the universe. From sample 0 on, each cell lies in one plane, except the cells at the universe's
+    // faces.
     let half = Csg::cuboid([0.0; 3], [16.0, 16.0, 8.0]).unwrap();
     let tree = build(&half, &frame, Rule::Sampled, &alone()).unwrap();
     let merged = published_shrink(tree.view(), Snap::Fat, None, &alone()).unwrap();

@@ -150,7 +150,7 @@ fn the_published_tetrahedron() {
 fn corners_of_the_lattice() {
     let frame = Frame::new([0.0; 3], 8.0, 3).unwrap();
     let block = Csg::cuboid([2.0; 3], [5.0; 3]).unwrap();
-    // The corners at the lower faces lie inside, by the shift of all samples, those at the upper ones
+    // By the shift of all samples, the corners at the lower faces lie inside, and those at the upper faces
     // outside.
     let mesh = simple_marching_cubes_solid(&block, &frame, Snap::Thin, &alone()).unwrap();
     assert_eq!((mesh.bounds(), mesh.volume()), (([2.0; 3], [4.0; 3]), 8.0));

@@ -117,7 +117,7 @@ fn plane_faces_become_triangles_between_corners() {
     assert_eq!(cube.triangles().len(), 12 * 12 * 12);
     let simple = check(&cube, 1e-9, &mut random);
     assert_eq!((simple.triangles().len(), simple.volume()), (12, 8.0));
-    // Turned, its coordinates are rounded.
+    // After a rotation, its coordinates are rounded.
     let turned = lattice_cube(9, |[x, y, z]| [0.6 * x - 0.8 * y, 0.8 * x + 0.6 * y, z + 0.3 * x]);
     assert_eq!(check(&turned, 1e-9, &mut random).triangles().len(), 12);
 }
@@ -173,7 +173,7 @@ fn random_bodies() {
 
 #[test]
 fn edges_of_open_meshes_stay() {
-    // A lattice in a plane: its inner vertices go, those on its rim stay.
+    // A lattice in a plane. Its inner vertices are removed, and those on its rim stay.
     let side = 10u32;
     let at = |i: u32, j: u32| j * (side + 1) + i;
     let vertices = (0..(side + 1) * (side + 1))

@@ -47,7 +47,7 @@ fn boxes() {
     assert_eq!(mesh.bounds(), ([2.0, 3.0, 4.0], [9.0, 8.0, 12.0]));
     assert_eq!(euler_of_manifold(&mesh), 2);
     assert!((mesh.volume() - 7.0 * 5.0 * 8.0).abs() < 7.0 * 3.0 * 8.0, "{}", mesh.volume());
-    // Turned about z, and moved.
+    // Rotated about z, and moved.
     let (sin, cos) = 0.7f64.sin_cos();
     let turn = [[cos, -sin, 0.0, 5.0], [sin, cos, 0.0, -1.0], [0.0, 0.0, 1.0, 0.1]];
     let turned = block.placed(&Affine::new(turn).unwrap()).unwrap();

@@ -83,7 +83,7 @@ fn octrees_with_their_volumes() {
     // The same topology as half-way, and nearer to the ball.
     let half_way = marching_cubes(tree.view(), None, &alone()).unwrap();
     assert_eq!(half_way.triangles(), own.triangles());
-    // Cut by a block, whose faces lie half-way between samples.
+    // Cut by a block whose faces lie halfway between samples.
     let block = Csg::cuboid([-9.0, -9.0, -9.0], [0.0, 9.0, 9.0]).unwrap();
     let block = build(&block, &frame, Rule::Sampled, &alone()).unwrap();
     let cut = difference(tree.view(), block.view(), &alone()).unwrap();
@@ -98,7 +98,7 @@ fn octrees_with_their_volumes() {
     let flat = mesh.vertices().iter().filter(|v| v[0] == 0.0).count();
     let round = mesh.vertices().iter().filter(on_ball).count();
     assert!(flat > 400 && round > 800 && flat + round >= mesh.vertices().len(), "{flat} {round}");
-    // What PARTIAL cells count as is asked of the caller.
+    // The caller chooses how PARTIAL cells count.
     let certified: Octree =
         build(&Csg::ball(centre, radius).unwrap(), &frame, Rule::Certified, &alone()).unwrap();
     assert!(marching_cubes_with_volume(certified.view(), &volume, None, &alone()).is_err());

@@ -206,7 +206,7 @@ fn what_is_cut_off_is_told() {
         let run = place.run(&format!("dexelize {line} -o out.lfl --resolution 8 --json"));
         assert_eq!(run.code, Some(0), "{run:?}");
         assert!(run.errors.contains(words) && run.errors.lines().count() == 1, "{run:?}");
-        // Of the cube 4 × 4 rays in each direction, beside each other by 1/4, from 1.1 to the upper face at 2.
+        // The cube has 4 × 4 rays in each direction, 1/4 apart, from 1.1 to the upper face at 2.
         let exact = if line.starts_with("half") { 256.0 } else { 0.9 };
         let volume = run.json()["volume"].as_f64().unwrap();
         assert!((volume - exact).abs() < 1e-5, "{run:?}");
@@ -248,7 +248,7 @@ fn models_are_combined() {
         };
         assert_eq!(model(&place, "out.lfl"), expected.unwrap(), "{operation}");
     }
-    // Of three: an odd number of them, and the first without both others.
+    // With three operands: the points in an odd number of them, and the first without both others.
     place.run("xor cube.lfl bar.lfl bar.lfl -o out.lfl").good();
     assert_eq!(model(&place, "out.lfl"), model(&place, "cube.lfl"));
     place.run("difference cube.lfl bar.lfl cube.lfl -o out.lfl").good();
@@ -391,7 +391,7 @@ fn dual_contouring_of_meshes_and_scenes() {
         .run("mesh octree.lfl -o no.ply --method dual --resolve inner")
         .bad(1, &["octree.lfl", "octree", "normals", "leafless dexelize"]);
     place.run("mesh cube.stl -o no.ply --method dual --resolve inner").bad(2, &["--resolve", "dual"]);
-    // Other methods tell of no rays.
+    // Other methods report no rays.
     let plain = json(&place, &format!("mesh cube.stl -o out.ply --depth 5 {BOUNDS}"));
     assert!(plain.get("crossings").is_none());
 }

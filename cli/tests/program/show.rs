@@ -212,7 +212,7 @@ fn command(place: &Place, line: &str, environment: &[(&str, &str)]) -> Command {
     command
 }
 
-/// What a successful run writes to a pipe; what was done is told on standard error.
+/// Returns the output of a successful run to a pipe. Messages go to standard error.
 fn shown(place: &Place, line: &str, environment: &[(&str, &str)]) -> String {
     let run = Run::new(line, command(place, line, environment).output().unwrap());
     assert!(run.code == Some(0) && run.errors.contains("shown"), "{run:?}");

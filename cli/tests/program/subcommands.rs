@@ -240,7 +240,7 @@ fn a_mesh_that_sticks_out_is_reported() {
     assert!(!run.errors.contains("z from"), "{run:?}");
     let json = run.json();
     assert_eq!(json["clipped"], true);
-    // Of the slab [2, 4] × [2, 4] × [0, 2] is left.
+    // The remaining part of the slab is [2, 4] × [2, 4] × [0, 2].
     let (lower, upper) = volume(&json);
     assert!(lower <= 8.0 && 8.0 <= upper);
     assert_eq!(place.run("info out.lfl --json").good().json()["clipped"], true);
@@ -528,7 +528,7 @@ fn open_meshes_are_taken_with_a_warning() {
             assert_eq!(run.code, Some(0), "{run:?}");
             let start = format!("leafless: {name}: warning: ");
             assert!(run.errors.lines().all(|line| line.starts_with(&start)), "{run:?}");
-            // The part inside before the hole may reach beyond the bounds.
+            // The part enclosed in front of the hole may reach beyond the bounds.
             let clipped = run.json()["clipped"].as_bool().unwrap();
             assert_eq!(run.errors.contains("go on outside of the bounds"), clipped, "{run:?}");
             assert_eq!(run.errors.lines().count(), 1 + usize::from(clipped), "{run:?}");
@@ -1221,7 +1221,7 @@ fn booleans_are_those_of_the_library() {
     rule.insert("rule", "certified");
     let expected = leafless::difference(cube.view(), slab.view(), &control).unwrap().with_metadata(rule);
     assert_eq!(place.bytes("out.lfl"), file::to_bytes(&expected).unwrap());
-    // Of operands by different rules the result says so.
+    // If the operands have different rules, the result says so.
     place.run("voxelize slab.stl -o sampled.lfl --depth 5 --bounds 0,0,0,8 --rule sampled").good();
     place.run("union cube.lfl sampled.lfl -o sampled.lfl").good();
     let info = place.run("info sampled.lfl --json").good().json();
@@ -1344,7 +1344,7 @@ fn booleans_need_one_frame_and_sound_operands() {
             place.run(&format!("{operation} cube.lfl slab.lfl other.lfl -o out.lfl")).bad(1, &words);
         }
     }
-    // Damage that only the checksums can tell.
+    // Damage that only the checksums show.
     let mut bytes = place.bytes("slab.lfl");
     let probe = file::probe_bytes(&bytes).unwrap();
     let section = probe.sections.iter().find(|section| section.name == Some("planes")).unwrap();

@@ -373,7 +373,7 @@ fn faces_are_told() {
     json(&place, "mesh plate.csg -o plate.off --method faces --polygons --json");
     let [off, obj] = ["off", "obj"].map(|kind| mesh(&place, &format!("plate.{kind}")).volume());
     assert!((off - obj).abs() < 1e-9, "{off} {obj}");
-    // Triangles tell the same regions.
+    // Triangles give the same regions.
     let plain = json(&place, "mesh plate.csg -o plate.ply --method faces --json");
     assert_eq!(plain["regions"], report["regions"]);
     place.run("csg plate.csg -o plate.lfl --surfaces").good();

@@ -272,8 +272,8 @@ fn a_part_with_round_dimensions_is_cheap() {
     // The cube around the middle, its edge 33/32 of the longest extent.
     let centred = run("--bounds -1.5625,-21.5625,-36.5625,103.125");
     println!("splits to 2 % and nodes at depth 9: {aligned:?}, and {centred:?} around the middle");
-    // (Of cells that several surfaces cross the volume is known without a split, on any frame: before, the
-    // two took 419 and 2177. Planes and cylinders of several primitives are one.)
+    // (In cells that several surfaces cross, the volume is known without a split, on any frame. Without this,
+    // the two took 419 and 2177. Planes and cylinders shared by several primitives are one.)
     assert!(aligned.0 < centred.0 && centred.0 < 419, "{aligned:?} {centred:?}");
     assert!(6 * aligned.1 < centred.1, "{aligned:?} {centred:?}");
 }

@@ -128,7 +128,7 @@ fn published_cone() {
 
 #[test]
 fn published_hyperboloid() {
-    // Of the printed lower bounds and counts of levels 3 to 5, those that exact arithmetic gives; see
+    // The printed lower bounds and counts of levels 3 to 5 are replaced by those of exact arithmetic; see
     // `printed_hyperboloid`.
     let lower = [229376.0, 385024.0, 479232.0, 529984.0];
     let rows = |nodes: [u64; 4], upper: [f64; 4]| [0, 1, 2, 3].map(|i| (nodes[i], lower[i], upper[i]));

@@ -187,7 +187,7 @@ fn powers(frame: &Frame, target: [u32; 3], random: &mut Random) -> Option<(Csg, 
     let p = model(frame, target);
     let centre = model(frame, vertex(frame, random));
     let largest = [4, 10, 64][random.below(3) as usize];
-    // Of a magnitude of one in the universe.
+    // The powers have magnitude one in the universe.
     let size = 2f64.powi(frame.edge().log2().ceil() as i32);
     let terms = [0, 1, 2].map(|axis| {
         let exponent = 1 + random.below(largest) as u32;

@@ -188,8 +188,8 @@ fn limits_and_cancels_are_errors() {
     }
 }
 
-/// What a solid provides: a list of surfaces, and in open cells on random descents, surfaces, an enclosure,
-/// moments and an area.
+/// The data that a solid provides: a list of surfaces, and in open cells on random descents, surfaces, an
+/// enclosure, moments and an area.
 #[derive(Debug, Default, PartialEq)]
 struct Told {
     list: bool,

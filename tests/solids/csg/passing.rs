@@ -160,7 +160,7 @@ fn a_stored_octree() {
     let solid = MeshSolid::new(mesh, FillRule::NonZero).unwrap();
     let stored = |rule, frame: &Frame| AnySolid::new(build(&solid, frame, rule, &alone()).unwrap());
     check("sampled octree", |frame| stored(Rule::Sampled, frame), &RULES);
-    // Of cells that are not decided no centre is known.
+    // In undecided cells, no centre is known.
     check(
         "certified octree",
         |frame| stored(Rule::Certified, frame),

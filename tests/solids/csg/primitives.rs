@@ -590,11 +590,11 @@ fn contact_decides() {
     let turned = Affine::new([[0.0, 0.0, 1.0, 0.0], [0.0, 1.0, 0.0, 0.0], [-1.0, 0.0, 0.0, 0.0]]).unwrap();
     let cells = [torus.clone(), torus.placed(&turned).unwrap()].map(|torus| volume_on_lattice(torus, 3));
     assert_eq!(cells[0], cells[1]);
-    // Of 8 × 8 × 2 cells the 16 in the hole, which touches the circle of radius 1, stay outside only where
-    // that leaves a whole cell out.
+    // The hole touches the circle of radius 1. Its 16 cells, out of 8 × 8 × 2, stay outside only where the
+    // hole leaves out a whole cell.
     let truth = 2.0 * std::f64::consts::PI.powi(2) * 1.5 * 0.25;
     assert!(cells[0].upper <= 16.0 && cells[0].contains(truth), "{cells:?}");
-    // Moved by less than floating point can tell, it reaches into the cells above.
+    // Moved by less than doubles resolve, it reaches into the cells above.
     for (up, expected) in [(0.0, Membership::Outside), (2f64.powi(-60), Membership::Undecided)] {
         let moved = torus.placed(&Affine::translation([0.0, 0.0, up]).unwrap()).unwrap();
         let tree = built(&moved, &Frame::new([-2.0; 3], 4.0, 3).unwrap());
