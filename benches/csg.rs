@@ -85,7 +85,7 @@ fn scenes(c: &mut Criterion) {
             });
         }
     }
-    // Ten thousand balls at pseudo-random places: apart, overlapping, and most of space.
+    // Ten thousand balls at pseudo-random places: apart, overlapping, and filling most of space.
     for radius in [0.01, 0.02, 0.04] {
         let mut state = 1u64;
         let mut number = || {

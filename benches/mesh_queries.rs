@@ -144,7 +144,7 @@ fn ask(name: &str, solid: &Prepared, frame: &Frame, [min, max]: [[f64; 3]; 2], c
             let mut sums = Sums::default();
             for ray in &rays {
                 let spans = ray_spans(solid, frame, ray, &control).expect("an answer");
-                // A ray that begins inside crosses the surface once only.
+                // A ray that begins inside crosses the surface only once.
                 let ends = |span: &leafless::Interval| (span.lower > 0.0) as usize + 1;
                 sums.count += spans.outer.iter().map(ends).sum::<usize>();
                 sums.undecided += (spans.outer.len() != spans.inner.len()) as usize;

@@ -231,7 +231,7 @@ pub fn arranged(raw: &str, sections: &[Section], read: impl Fn(&str) -> String) 
         let title = format!("{}. {title}", k + 1);
         writeln!(contents, " *   {title}").expect("memory");
         write!(text, "\n/* ---- {title} {:-<1$} */\n", "", WIDTH - 13 - title.len()).expect("memory");
-        // Handles stand first, because every section may speak of them.
+        // Handles stand first, because every section may mention them.
         let of_section =
             placed.iter().filter(|(is_other, section, ..)| if *is_other { section + 1 == k } else { k == 0 });
         for (.., item) in of_section {

@@ -326,7 +326,7 @@ impl Translator<'_> {
                 }
                 i += 1;
             } else if p.is_output() && asked.is_some() && is_plural(name) && base != "void" {
-                // One answer for each question, where the caller wants it.
+                // One answer for each query, in the caller's buffer if there is one.
                 made.parameters.push((format!("span<{}> {name}", p.element()), None));
                 let asked = asked.expect("questions");
                 match VALUES.iter().find(|(of, _)| *of == function.name) {

@@ -171,7 +171,7 @@ fn every_comment_has_the_fixed_order() {
         let places: Option<Vec<usize>> = places.by_ref().collect();
         assert!(places.is_some_and(|places| places.is_sorted_by(|a, b| a < b)), "{name}: {heads:?}");
     }
-    // The sources export just these.
+    // The sources export exactly these.
     let files = || SECTIONS.iter().flat_map(|section| section.files);
     let exported = files().map(|file| source(file).matches("#[unsafe(no_mangle)]").count()).sum::<usize>();
     // `boundary` has a function for tests.

@@ -63,7 +63,7 @@ impl Header {
                 }
             }
         }
-        // Macros go on behind a backslash.
+        // A backslash continues a macro on the next line.
         let mut plain = String::new();
         let mut is_macro = false;
         for line in code.lines() {

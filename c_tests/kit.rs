@@ -314,7 +314,7 @@ impl Kit {
         let file =
             |path: &Path| std::fs::File::create(path).map_err(|error| format!("{}: {error}", path.display()));
         let mut command = self.check.command(program, &root().join("c_tests"));
-        // Where cargo keeps libraries for this very test, no program shall look.
+        // Programs must not look into the folders where cargo keeps libraries for this test.
         command.args(arguments).current_dir(folder).stdin(Stdio::null()).env_remove("LD_LIBRARY_PATH");
         command.stdout(file(&printed)?).stderr(file(&problems)?);
         let mut child = command.spawn().map_err(|error| format!("{}: {error}", line(&command)))?;

@@ -167,7 +167,7 @@ fn panic() {
 
 #[test]
 fn null() {
-    // Each pointer that goes in or out is tried: the programs name all of them.
+    // Each pointer that goes in or out is tried. The programs name all of them.
     let programs = ["null", "null_source", "null_tridexel", "null_picture", "null_layout"];
     let source: String = programs.iter().map(|name| text(format!("c_tests/{name}.c"))).collect();
     let flat = source.split_whitespace().collect::<Vec<_>>().join(" ");

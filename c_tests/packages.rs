@@ -102,7 +102,7 @@ fn third_party(file: &Path) {
     for name in ["proptest", "cbindgen", "syn", "criterion", "leafless"] {
         assert!(!lines.iter().any(|line| line.starts_with(&format!("{name} "))), "{name}");
     }
-    // (The exception of LLVM's licence speaks of the GPL.)
+    // (The exception of LLVM's licence mentions the GPL.)
     assert!(!list.contains("GPL") && texts.contains("Permission is hereby granted"));
 }
 
@@ -325,7 +325,7 @@ fn programs_by_pkg_config() {
         ("c_shared", both.join("lib/x86"), &["leafless"][..], Standard::C("c99")),
         ("cpp_shared", both.join("lib/x86"), &["leafless"], CPP17),
         ("c_static", both.join("lib/x86"), &["leafless-static"], Standard::C("c99")),
-        // The conventional way, which needs the static library to be the only one.
+        // The conventional way. It works only if the static library is the only one.
         ("cpp_static", alone.join("lib"), &["--static", "leafless"], CPP17),
     ] {
         let mut flags = Command::new("pkg-config");
@@ -408,7 +408,7 @@ fn documented_commands() {
     }
     // In the clone a C program with each library, and a C++ program; elsewhere a C++ program in three ways.
     assert!(compiled >= 6, "{compiled}");
-    // After the first command two are for CMake, two for each library by pkg-config, and one is for paths.
+    // After the first command, two are for CMake, two for each library by pkg-config, and one is for paths.
     let lines = kit::documented(installed);
     let count = |start: &str| lines.iter().filter(|line| line.starts_with(start)).count();
     assert_eq!([count("cargo run"), count("cmake"), count("export"), count("g++")], [1, 2, 1, 3]);
@@ -451,7 +451,8 @@ fn beside_another_library_of_rust() {
         return;
     }
     let folder = fresh(kit, "two_of_rust");
-    // It starts a thread and catches a panic, so that both libraries need the same of Rust's.
+    // The other library starts a thread and catches a panic, so that both libraries need the same parts of
+    // Rust's.
     let other = "#[unsafe(no_mangle)]
 pub extern \"C\" fn other_caught() -> bool { std::thread::spawn(|| panic!(\"caught\")).join().is_err() }";
     let program = "#include <leafless.h>
@@ -473,7 +474,7 @@ int main(void) { return other_caught() && leafless_test_panic() == LEAFLESS_E_PA
         output(&mut command).map(|_| kit.run(&folder.join("program"), &[])).map(|_| ())
     };
     assert_eq!(make(&[], "-l:libleafless.a"), Ok(()));
-    // Optimised as one with Rust's standard library it has a part of that which cannot be left out.
+    // Optimised as a whole with Rust's standard library, it contains a part of it that cannot be left out.
     let whole = ["-Clto=fat", "-Copt-level=1"];
     assert!(make(&whole, "-l:libleafless.a").is_err_and(|told| told.contains("rust_eh_personality")));
     assert_eq!(make(&whole, "-lleafless"), Ok(()));

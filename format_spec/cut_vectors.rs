@@ -1197,7 +1197,7 @@ fn pop(bytes: &mut Vec<u8>, count: usize) {
 
 fn tables_of_sections(list: &mut List) {
     let (model, cell_slabs, moments) = (all_kinds(), cell_slabs(), box_with_moments());
-    // One that has sections of a kind.
+    // A file with sections of a kind.
     let with = |kind: u64| match kind {
         MOMENTS => &moments,
         CELL_SLABS | GROUPS => &cell_slabs,
@@ -1404,7 +1404,7 @@ fn records(list: &mut List) {
     add("cut-uniform", "", about, record(uniform), &|parts| {
         parts.section(HEADS).bytes[known..known + 8].fill(0);
     });
-    // The first cut that has two surfaces, and where its ids begin.
+    // The first cut with two surfaces, and the beginning of its ids.
     let count = |head: u8| usize::from(SURFACES_OF[usize::from(head)]);
     let pair = heads.iter().position(|&head| count(head) >= 2).expect("a table of two");
     let at: usize = heads[..pair].iter().map(|&head| count(head)).sum();
@@ -1464,8 +1464,7 @@ fn slabs_of_cells(list: &mut List) {
     let mut add = |rule, of: &str, about, error: String, model: &Model, change: &dyn Fn(&mut Parts)| {
         list.add(rule, of, about, error, changed(model, change));
     };
-    // The origins of the slabs are 1 1 3 3 3 0 0 5. Their cuts follow the one of the universe, which is
-    // split.
+    // The origins of the slabs are 1 1 3 3 3 0 0 5. Their cuts follow the split cut of the universe.
     assert!(stored.groups.iter().map(|&(_, end)| end).eq([2, 5, 7, 8]) && stored.heads.len() == 9);
     let word = |parts: &mut Parts, kind: u64, at: usize, value: u64| {
         put(&mut parts.section(kind).bytes, 8 * at, value, 8)

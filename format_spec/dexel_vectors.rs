@@ -128,7 +128,7 @@ impl Dexels {
         let model = Dexels::new(depth, directions);
         let mut model =
             model.carrying(form & 1 != 0, (form >> 1 & 3) as usize, form & 8 != 0, form & 16 != 0);
-        // Fixed-point ends are halves of cells; of doubles some are not.
+        // Fixed-point ends are halves of cells; some double ends are not.
         let cells = 1u64 << depth;
         for axis in (0..3).filter(|&axis| directions[axis]) {
             for _ in 0..random(3 * cells) {
@@ -652,7 +652,8 @@ fn contents(list: &mut List) {
     let mut one = |rule, of: &str, about, (axis, ray): (usize, u64), change: &dyn Fn(&mut Vec<u8>)| {
         list.add(rule, of, about, damaged(axis, ray), changed(&raw, change));
     };
-    // Along x and y each ray of the bracket has one interval, along z the first two of each row have two.
+    // Along x and y each ray of the bracket has one interval; along z the first two rays of each row have
+    // two.
     let starts = at(0, 0);
     one("dexel-starts", "first", "the first ray begins at the second interval", (0, 0), &|bytes| {
         bytes[starts] = 1

@@ -321,7 +321,7 @@ impl Field {
             levels[level as usize][0] = cut.count() as u64;
         }
         let (mut before, mut values) = (None, 0);
-        // The levels on which cells of elements lie.
+        // The levels of the cells of elements.
         for level in (1..=self.depth).filter(|level| (self.depth - level).is_multiple_of(2)) {
             let above = level.min(2);
             for (m, at) in Field::morton(level).enumerate() {
@@ -1846,7 +1846,7 @@ fn table(list: &mut List) {
         parts.section(OBJECTS).owner = 1;
     });
 
-    // Bytes that several sections have.
+    // Bytes shared by several sections.
     let two_owners = |change: &dyn Fn(&mut Parts)| {
         let mut parts = Parts::of(&example());
         parts.object(2, 0, 0);
@@ -1883,7 +1883,7 @@ fn table(list: &mut List) {
         put(bytes, last + COUNT, 2, 8);
     });
     let later = changed(&shared, |bytes| {
-        // The last but one names the last, which has bytes of its own.
+        // The last section but one names the last, which has bytes of its own.
         put(bytes, last - ENTRY + SAME, 9, 4);
         put(bytes, last + SAME, 0, 4);
     });
@@ -2155,7 +2155,7 @@ fn verification(list: &mut List) {
     let one_plane = good(&without_bricks(BINARY));
     let partial = good(&Model::plain(4, |_| Tag::Partial));
     let planes = offset(&one_plane, PLANES);
-    // The first FULL cell of the root's without children.
+    // The first FULL child of the root that has no children.
     let full = number(&one_plane, planes, 8) & number(&one_plane, planes + 8, 8);
     let cell = full & full.wrapping_neg();
     let lower = number(&one_plane, planes, 8) & !cell;
@@ -2292,7 +2292,8 @@ fn dictionaries(list: &mut List) {
     let about = "the first brick's index is 65535";
     list.add("dictionary-index", "large", about, damaged(0), with(&coded, indices, 0xFFFF, 2));
 
-    // Bricks of other values would be other trees; here only their spelling matters, and that comes first.
+    // Bricks with other values would be other trees. Here only their encoding matters, and it is checked
+    // first.
     let unused = changed(&coded, |bytes| {
         for b in 0..bricks {
             if index(bytes, b) == count - 1 {
@@ -2327,7 +2328,7 @@ fn dictionaries(list: &mut List) {
     let same = with(&coded, entries + 8 * tie as usize, value(tie - 1), 8);
     let about = "an entry that is used as often as the one before it is the same";
     list.add("dictionary-order", "same", about, entry_order(tie), same);
-    // In the place of an entry of other frequency, where its value does not disturb the order.
+    // In the place of an entry of another frequency, where its value does not disturb the order.
     let fits = |&(i, j): &(u64, u64)| {
         uses(i) != uses(j)
             && (uses(j - 1) != uses(j) || value(j - 1) < value(i))

@@ -171,7 +171,7 @@ impl Solid {
         if !self.is_hole {
             return self.figure.holds(at);
         }
-        // No point that is as near as that to the figure.
+        // Returns false for points as near as this to the figure.
         let near = (0..8).any(|k| {
             self.figure.holds([0, 1, 2].map(|axis| at[axis] + if k >> axis & 1 == 0 { -1e-3 } else { 1e-3 }))
         });
@@ -267,7 +267,7 @@ pub fn contacts(data: &[u8]) {
     }
     assert!(do_meet(distance, gap.evidence.distance, 0.0), "{}: {known:?} {gap:?}", told());
 
-    // Points of both in a lattice that is not theirs.
+    // Points of both, in a lattice unrelated to theirs.
     let (mut of_a, mut of_b) = (None, None);
     for k in 0..512u32 {
         let at = [k % 8, k / 8 % 8, k / 64].map(|k| 1.3 * f64::from(k) - 4.7);
@@ -290,7 +290,7 @@ pub fn contacts(data: &[u8]) {
         (first.is_hole, second.is_hole, first.figure.apart(&second.figure, shift))
     {
         assert!(if apart { !is_overlapping } else { !is_disjoint }, "{}: {found:?}", told());
-        // (Turns along the axes keep distances to the last digit.)
+        // (Rotations along the axes keep distances to the last digit.)
         if let (Some(least), 0 | 1 | 4) = (least, map_code % 6) {
             let slack = 1e-12;
             let holds = distance.lower <= least + slack && least <= distance.upper + slack;

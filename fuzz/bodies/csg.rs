@@ -179,9 +179,9 @@ pub fn csg(data: &[u8]) {
     let control = Control::threads(1);
     let made = |rule| match build(&csg, &frame, rule, &control) {
         Ok(tree) => Some(tree),
-        // (Other solids that are moved may not know their points.)
+        // (Other moved solids may not decide points.)
         Err(Error::Limit { .. } | Error::NotSampled) => None,
-        // (Moved as far as doubles reach.)
+        // (Moved as far as doubles allow.)
         Err(Error::Argument { name: "placement", .. }) => None,
         Err(other) => panic!("{other}"),
     };

@@ -143,7 +143,7 @@ fn triangles(bytes: &mut Bytes<'_>, frame: &Frame, format: DexelFormat) {
         triangles.push([0; 3].map(|_| u32::from(bytes.next()) % count as u32));
     }
     let Ok(mesh) = TriangleMesh::new(vertices, triangles) else { return };
-    // (Around holes cells are split twenty levels down for each end.)
+    // (Around holes, cells are split twenty levels deep for each end.)
     let is_open = mesh.check_closed(FillRule::NonZero).is_err();
     let frame =
         &frame.with_depth(if is_open { frame.depth().min(2) } else { frame.depth() }).expect("a frame");

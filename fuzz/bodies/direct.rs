@@ -449,7 +449,7 @@ fn soup(bytes: &mut Bytes<'_>, corners: &Corners) -> Vec<Facet> {
             }
             // The same corner once more.
             6 => last,
-            // A triangle and its other side.
+            // A triangle and its reverse.
             _ => {
                 let [a, b, c] = [0; 3].map(|_| corners.corner(bytes));
                 vec![[a, b, c], [a, c, b]]
@@ -548,7 +548,7 @@ pub fn direct(data: &[u8]) {
         offset: scene.frame.origin().map(|c| c + 4.0 * scale),
     };
     let corners = if bytes.below(2) == 0 {
-        // As the mesh's.
+        // Like the mesh's.
         let around = scene.solid.mesh().vertices().first().copied().unwrap_or_default();
         Corners { scale: scene.size.min(scale), offset: around, ..corners }
     } else {
@@ -672,7 +672,7 @@ fn ask_ray(bytes: &mut Bytes<'_>, scene: &Scene, corners: &Corners) {
         let holds = |wide: &Interval| wide.lower <= span.lower && span.upper <= wide.upper;
         assert!(outer.iter().any(holds), "inner beyond outer: {spans:?} {told}");
     }
-    // Ends of spans, and where the ray passes the whole numbers of the lattice.
+    // Ends of spans, and places where the ray crosses integer coordinates.
     let mut times: Vec<f64> = inner.iter().chain(outer).flat_map(|span| [span.lower, span.upper]).collect();
     times.push(0.0);
     for plane in 0..3 * 9 {
@@ -717,7 +717,7 @@ fn ask_ray(bytes: &mut Bytes<'_>, scene: &Scene, corners: &Corners) {
     }
     let told = format!("{full:?} {upper:?} {spans:?} {told}");
     match (full, inner.first()) {
-        // (One point may be one of the universe alone.)
+        // (A point may be the universe's only point on the ray.)
         (None, Some(span)) => assert!(span.width() == 0.0, "no hit: {told}"),
         (Some(hit), Some(span)) => assert!(hit.t.lower <= span.lower, "{told}"),
         _ => {}
@@ -793,7 +793,7 @@ fn ask_point(bytes: &mut Bytes<'_>, scene: &Scene, corners: &Corners) {
         (Membership::Outside, Some(truth)) => assert!(!truth, "not outside: {told}"),
         (Membership::Undecided, _) => {
             let is_in = scene.is_in_universe(&place) == Some(true);
-            // (In whole numbers or, with holes, in doubles.)
+            // (In integers or, with holes, in doubles.)
             let is_told = !scene.is_open || scene.is_plain && scene.motion.is_none() && truth.is_some();
             assert!(!is_in || all <= margin || !is_told, "undecided: {told}");
         }
@@ -822,7 +822,7 @@ fn ask_point(bytes: &mut Bytes<'_>, scene: &Scene, corners: &Corners) {
             assert!(!inside || truth, "not inside: {told}");
             assert!(outside || inside || all <= margin, "no side told: {told}");
         }
-        // (From far away many points are as near, but for rounding.)
+        // (From far away, many points are equally near, up to rounding.)
         if to == DistanceTo::Boundary && size < 1e6 * scene.size {
             // (Almost on the surface, all nearby points are equally near, up to rounding.)
             if size > margin {

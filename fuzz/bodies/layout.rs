@@ -286,7 +286,7 @@ impl Kept {
             add(end, [number(group, 0, 8), number(group, 8, 8)]);
         }
         add(all, [7; 2]);
-        // The others begin where surfaces are; no two of them have one origin.
+        // The other groups begin at existing surfaces, and no two groups have the same origin.
         let mut n = 0;
         kept.groups.retain(|group| {
             n += 1;
@@ -640,7 +640,7 @@ impl File {
         let elements = self.words(PLANES);
         let elements = elements.chunks_exact(2).map(|pair| [pair[0], pair[1]]);
         let entries: Vec<[u64; 2]> = elements.chain(bricks.iter().map(|brick| upper(brick))).collect();
-        // Where the levels end, by the branches.
+        // The ends of the levels, by the branches.
         let (mut e, mut end, mut children) = (0, 1, 0);
         for (n, [lower, upper]) in entries.into_iter().enumerate() {
             if n == end {

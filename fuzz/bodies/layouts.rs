@@ -202,7 +202,7 @@ pub fn layouts(data: &[u8]) {
     let placed = layout.placed().to_vec();
     assert!(placed.starts_with(&before) && report.placed as usize == placed.len() - before.len());
     assert!(report.tests <= 60 && report.splits <= 20_000);
-    // (A pair may take more splits alone than were left in the search.)
+    // (A single pair may take more splits than the search had left.)
     for k in before.len()..placed.len() {
         let found = layout.check(k, &Control::threads(1)).expect("an answer");
         assert_eq!(found.verdict, GapVerdict::Yes, "{k}: {found:?}");

@@ -126,7 +126,7 @@ fn step(bytes: &mut Bytes<'_>, frame: &Frame, stack: &mut Vec<Scene>) {
             let (axis, at) = (bytes.below(3), bytes.below(17) as i32);
             let (mut normal, mut max) = ([0.0; 3], [LOW + N; 3]);
             (normal[axis], max[axis]) = (-1.0, at);
-            // A half-space has no end, but the world's outermost cells are as the space around it.
+            // A half-space is unbounded, but the world's outermost cells equal the space around it.
             let solid = Csg::half_space(normal, f64::from(at)).expect("a good plane");
             let wide = Csg::cuboid([f64::from(LOW + 1); 3], [f64::from(LOW + N - 1); 3]).expect("a good box");
             let solid = Csg::intersection_of([solid, wide]).expect("enough memory");

@@ -211,13 +211,13 @@ impl Asked<'_> {
         assert_eq!(found.witness.is_some(), found.verdict == Overlap::Overlapping);
         assert!(found.witness.is_none_or(|cell| common.in_cell(self.frame, cell).0), "{found:?}");
         if let Some(Ball { centre, radius }) = found.ball {
-            // A cube in the ball.
+            // A cube inside the ball.
             let reach = 0.57 * radius;
             let (min, max) = (centre.map(|c| c - reach), centre.map(|c| c + reach));
             assert!(reach > 0.0 && common.in_box(min, max).1, "{found:?}");
         }
         assert!(found.splits.iter().sum::<u64>() <= self.most(), "{found:?}");
-        // Nobody comes first.
+        // No ray arrives earlier.
         let other = interference(&b.solid, &a.solid, self.frame, self.tolerance, &control(self.budget));
         let other = other.expect("nothing is wrong with the question").verdict;
         let both = [found.verdict, other];
@@ -315,7 +315,7 @@ impl Asked<'_> {
         let direction = [0; 3].map(|_: i32| bytes.below(5) as f64 - 2.0);
         let ray = Ray::new(from, direction).ok()?;
         let [min, max] = self.universe();
-        // Where the ray is in the universe.
+        // The time range of the ray in the universe.
         let (mut first, mut last) = (0f64, f64::INFINITY);
         let mut places = Vec::new();
         for axis in 0..3 {
@@ -352,7 +352,7 @@ impl Asked<'_> {
             for (known, hit) in asked.iter().zip(found) {
                 let ray = known.ray;
                 let first = known.pieces.iter().find(|piece| piece.2).map(|piece| piece.0);
-                // A ray may touch the solid in a face, an edge or a corner before.
+                // Before, a ray may touch the solid in a face, an edge or a corner.
                 match (hit, first) {
                     (Some(hit), Some(first)) => {
                         let slack = 1e-12 * (1.0 + first);
@@ -399,7 +399,7 @@ impl Asked<'_> {
         let [from, to] = [(); 2].map(|()| [0; 3].map(|_: i32| bytes.below(80) as f64 / 4.0 - 2.0));
         let asked = line_of_sight(&self.a.solid, self.frame, from, to, &control(self.budget));
         let Ok(found) = asked else { return assert_eq!(from, to) };
-        // Samples of the segment: coordinates are quarters, so these are exact.
+        // Samples of the segment. Coordinates are quarters, so that these samples are exact.
         let points = (0..=64).map(|k| {
             let t = f64::from(k) / 64.0;
             [0, 1, 2].map(|axis| from[axis] + t * (to[axis] - from[axis]))
@@ -415,7 +415,7 @@ impl Asked<'_> {
                 );
             }
             Sight::Blocked => {
-                // Some point is in the closed solid, so the box of the segment meets it, or touches it.
+                // Some point is in the closed solid, so that the segment's box meets or touches it.
                 let low = [0, 1, 2].map(|axis| from[axis].min(to[axis]) - 0.125);
                 let high = [0, 1, 2].map(|axis| from[axis].max(to[axis]) + 0.125);
                 assert!(self.a.truth.in_box(low, high).0, "{from:?}, {to:?}");
@@ -464,7 +464,7 @@ impl Asked<'_> {
                         }
                     }
                 }
-                // Cells behind a FULL one are not looked at, so that both say the same.
+                // Cells behind a FULL cell are not examined, so that both give the same.
                 assert_eq!(
                     firsts,
                     [reach.full_plane(place), reach.upper_plane(place)],

@@ -35,7 +35,7 @@ pub fn meshes(data: &[u8]) {
         let (vertices, triangles) = (mesh.vertices(), mesh.triangles());
         assert!(vertices.len() <= data.len() && triangles.len() <= data.len(), "{name}");
         assert!(triangles.iter().flatten().all(|&v| (v as usize) < vertices.len()), "{name}");
-        // An OBJ must have something to be one.
+        // An OBJ needs some content to be recognised.
         for (write, read) in WRITERS.into_iter().filter(|_| !vertices.is_empty()) {
             let written = write(&mesh);
             let back = read(&written).unwrap_or_else(|e| panic!("{name}: {e}"));

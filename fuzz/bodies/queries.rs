@@ -81,7 +81,7 @@ fn ask_cuts(tree: &OctreeRef<'_>, points: &[[f64; 3]], verified: bool) {
     ask_cut_rays(tree, points, verified && is_solid.is_ok());
     match is_solid {
         Ok(()) => {}
-        // Placements within each other may be too long for exact numbers.
+        // Nested placements may be too long for exact numbers.
         Err(Error::Limit { .. }) => return,
         Err(error) => return assert!(!verified && matches!(error, Error::Damaged(_)), "{error}"),
     }
@@ -131,7 +131,7 @@ fn ask_cuts(tree: &OctreeRef<'_>, points: &[[f64; 3]], verified: bool) {
         }
     }
     let measured = measure(&solid, &frame, 0.0, &SOME).expect("it is a solid").volume;
-    // (Far from the origin of space the universe may have no width in doubles.)
+    // (Far from the origin, the universe may have no width in doubles.)
     let (least, most) = plain.cells_in_box([0; 3], [frame.cells(); 3]).expect("the universe");
     let cell = (frame.edge() / f64::from(frame.cells())).powi(3);
     let slack = 1e-9 * frame.edge().powi(3);
@@ -525,7 +525,7 @@ fn ask_boxes(tree: &OctreeRef<'_>, points: &[[f64; 3]]) {
             continue;
         };
         for &point in points {
-            // The cell of a point strictly inside of the box has more in common with it than a face.
+            // The cell of a point strictly inside the box shares more than a face with the box.
             if (0..3).all(|axis| min[axis] < point[axis] && point[axis] < max[axis]) {
                 match tree.contains(point) {
                     Membership::Inside => assert_ne!(region, Region::Outside),

@@ -147,7 +147,7 @@ fn is_good(arrays: &Arrays, depth: u8, components: usize) -> bool {
     if components > 4 || [levels.len(), kinds.len()] != [count; 2] || values.len() != count * components {
         return false;
     }
-    // As wide as it takes for the largest.
+    // As wide as the largest value requires.
     let size = |k: usize| 1u128 << (3 * u32::from(depth - levels[k]));
     let each = (0..count).all(|k| {
         levels[k] <= depth

@@ -152,7 +152,7 @@ fn what_is_certain_stays_so(a: &OctreeRef<'_>, b: &OctreeRef<'_>, sure: bool) {
         for at in cells(a) {
             let expected = logic(decided(a.tag_at(at)), decided(b.tag_at(at)));
             let found = decided(result.view().tag_at(at));
-            // (Cells that are decided may be parts of one that has a function.)
+            // (Decided cells may be parts of a cell that has a function.)
             let agrees = found.is_none() || expected.is_none() || found == expected;
             assert!(agrees, "{at:?}: {found:?}, {expected:?}");
         }

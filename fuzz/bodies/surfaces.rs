@@ -246,7 +246,7 @@ fn any_solid(bytes: &mut Bytes<'_>) -> (AnySolid, bool) {
             }
             (AnySolid::new(octree), rule == Rule::Certified)
         }
-        // A host's functions that contradict themselves.
+        // A host's functions that contradict each other.
         _ => {
             let seed = bytes.byte() as u64 | (bytes.byte() as u64) << 8;
             let hash = move |point: [f64; 3]| {

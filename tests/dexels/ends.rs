@@ -215,7 +215,7 @@ fn ends_from_a_host_keep_their_side_of_every_centre() {
                 wrong += u32::from(model.view().contains_cell(cell) != expected);
             }
             check(&model, "host");
-            // From file to file, and to the other form and back.
+            // Between files, to the other form, and back.
             let bytes = file::dexels::to_bytes(&model).unwrap();
             let read = file::dexels::from_bytes(&bytes).unwrap();
             assert_eq!(read, model);
@@ -339,7 +339,7 @@ fn solids_operations_and_edits_keep_sides() {
                 let model = dexelize(solid, &frame, &options, &control).unwrap();
                 check(&model, name);
                 for cell in (0..all.pow(3)).map(|i| [i % all, i / all % all, i / all / all]) {
-                    // (A centre on a face may be either side of it, by the shifted rays.)
+                    // (For a centre on a face, the shifted rays choose the side.)
                     let sides = [0, 1, 2].map(|axis| {
                         [
                             side(&frame, axis, low[axis], cell[axis]),

@@ -94,7 +94,7 @@ fn ends_at_the_faces_of_the_universe_are_where_walls_are() {
         let (axis, depth) = (round % 3, 1 + random.below(4) as u8);
         let count = 1 + random.below(3) as usize;
         let mut ends: Vec<f64> = (0..2 * count).map(|_| -0.1 + 2.2 * random.unit()).collect();
-        // Often near the faces: before the first centre and behind the last one.
+        // Often near the faces: before the first centre and after the last one.
         let half = 0.5 * EDGE / f64::from(1u32 << depth);
         if random.below(2) == 0 {
             ends[0] = half * random.unit();

@@ -93,7 +93,7 @@ fn random_rays_that_disagree_leave_cells_open() {
             let to = (at + random.between(0.1, 6.0)).min(16.0);
             let material = random.below(3) as u32;
             list.push(Dexel { start: DexelEnd::new(at), end: DexelEnd::new(to), material });
-            // Some touch the next one, which is of another material then.
+            // Some bodies touch the next one, which then has another material.
             at = if random.below(3) == 0 { to } else { to + random.between(0.2, 4.0) };
         }
         list.dedup_by(|b, a| {
@@ -137,7 +137,7 @@ fn materials_become_a_channel() {
         }
     }
     assert!(seen.iter().all(|&seen| seen > 40_000), "{seen:?}");
-    // All of one material is one cell.
+    // A region of one material is one cell.
     let one = octree_from_dexels(steel.view(), &CONTROL).unwrap();
     let channel = dexel_materials(steel.view(), one.view(), &CONTROL).unwrap().unwrap();
     assert!(channel.bytes() < 200, "{}", channel.bytes());

@@ -121,7 +121,7 @@ fn half_spaces_are_sampled_as_octrees_are() {
     let shapes: [(&str, Csg); 13] = [
         ("ball", Csg::ball([0.0; 3], 0.75).unwrap()),
         ("ball off centre", Csg::ball([0.11, -0.07, 0.031], 0.613).unwrap()),
-        // Tangent to rays and touching centres: radius 11 eighths of sixteenths.
+        // Tangent to rays and touching centres: the radius is 11 eighths of sixteenths.
         ("ball through centres", Csg::ball([1.0 / 32.0; 3], 0.5).unwrap()),
         ("box on centres", Csg::cuboid([-0.53125; 3], [0.46875; 3]).unwrap()),
         ("box on planes", Csg::cuboid([-0.5; 3], [0.75, 0.5, 0.25]).unwrap()),
@@ -403,7 +403,7 @@ fn random_part(seed: u64, frame: &Frame, options: &DexelOptions) -> TriDexel {
     for material in 1..5 {
         let shapes = (0..3).map(|_| {
             let c = [0; 3].map(|_| random.between(-0.9, 0.9));
-            // Places on the lattice make ends that lie at the same place.
+            // Places on the lattice make ends that coincide.
             let c = if random.below(2) == 0 { c } else { c.map(|x| (x * 8.0).round() / 8.0) };
             let r = random.between(0.05, 0.5);
             if random.below(2) == 0 {
@@ -511,7 +511,7 @@ fn laws_of_sets_hold_exactly() {
             let control = Control::threads(threads);
             assert_eq!(a.view().union(b.view(), &control).unwrap(), or(&a, &b));
         }
-        // A set operation of models is the model of the set operation, but for the last unit.
+        // A set operation on models equals the model of the set operation, up to the last unit.
         assert!(matches!(TriDexel::union_of(&[], &control), Err(Error::Argument { .. })));
     }
 }
@@ -675,7 +675,7 @@ fn what_the_fuzzer_found_interesting() {
     let mut random = common::Random(23);
     for _ in 0..300 {
         let mut data: Vec<u8> = (0..random.below(500)).map(|_| random.next() as u8).collect();
-        // As often triangles as rays.
+        // The numbers of triangles equal those of rays.
         if let Some(form) = data.get_mut(1) {
             *form = *form & 127 | (random.below(2) as u8) << 7;
         }

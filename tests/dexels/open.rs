@@ -111,7 +111,7 @@ fn check_ends(name: &str, mesh: &TriangleMesh, fill: FillRule, model: &TriDexel,
                     pierced += 1;
                     continue;
                 }
-                // Ends in the universe's faces and in planes of the lattice may be where triangles lie.
+                // Ends in the universe's faces and in planes of the lattice may coincide with triangles.
                 if cells[side] == cells[side].round() {
                     continue;
                 }

@@ -55,8 +55,7 @@ fn all_directions_have_the_samples_of_closed_meshes() {
         let solid = MeshSolid::new(mesh, FillRule::NonZero).unwrap();
         let tree = build(&solid, &frame, Rule::Sampled, &control).unwrap();
         for axis in 0..3 {
-            // An odd number of crossings would be a runaway interval, and samples along its ray that are
-            // wrong.
+            // An odd number of crossings would give a runaway interval, and wrong samples along its ray.
             let directions = [0, 1, 2].map(|a| a == axis);
             let model = dexelize(&solid, &frame, &DexelOptions { directions, ..marked() }, &control).unwrap();
             model.view().check().unwrap();
@@ -352,7 +351,7 @@ fn what_directions_lose_of_a_sphere() {
         }
         assert!(found[0] > found[1] && found[1] > found[2]);
         let ratios = [0, 1, 2].map(|i| before[i] / found[i]);
-        // With half the step a quarter is lost of caps, and a sixteenth behind the poles.
+        // With half the step, caps lose a quarter as much, and the parts behind the poles a sixteenth.
         assert!(depth == 3 || ratios[0] > 3.7 && ratios[1] > 3.7 && ratios[2] > 15.0, "{ratios:?}");
         before = found;
         let percent = found.map(|part| format!("{:.6} %", 100.0 * part));

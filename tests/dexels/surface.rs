@@ -314,7 +314,7 @@ fn smooth_shapes_have_their_volume() {
         (torus, 2.0 * PI * PI * 0.55 * 0.27 * 0.27, 4.0 * PI * PI * 0.55 * 0.27, 0.27),
     ];
     for (shape, volume, area, radius) in shapes {
-        // How high an arc stands above a chord of the length of a cell.
+        // The height of an arc above a chord as long as a cell.
         let height = cell * cell / (8.0 * radius);
         let model = implicit(&frame, ALL, &shape);
         for method in [cubes as Method, dual] {
@@ -524,8 +524,8 @@ fn of_several_crossings_the_nearest_to_the_inside_counts() {
     let frame = Frame::new([0.0; 3], 8.0, 3).unwrap();
     let rays = |_: usize, ray: [u32; 2], list: &mut Vec<Dexel>| {
         if ray == [4, 4] {
-            // From the centre at 2.5 to that at 3.5: in at 2.7, out at 2.9, in at 3.25. Out at 5.6, in at
-            // 5.7, out at 6.1.
+            // From the centre at 2.5 to the centre at 3.5, the ray enters at 2.7, leaves at 2.9 and enters at
+            // 3.25. It leaves at 5.6, enters at 5.7 and leaves at 6.1.
             for (start, end) in [(2.7, 2.9), (3.25, 5.6), (5.7, 6.1)] {
                 list.push(Dexel { start: plain_end(start), end: plain_end(end), material: 0 });
             }
@@ -584,7 +584,7 @@ fn surfaces_of_dexelised_solids() -> Result<(), Error> {
                 let (mesh, report) = surface(method, &model);
                 assert_eq!([report.disagreeing, report.without_rays], [0; 2]);
                 assert_eq!(report.means, 0);
-                // A cell's second-order error everywhere; edges are far less than all of it.
+                // A cell's second-order error everywhere. Edges are a small part of the surface.
                 assert!((mesh.volume() - truth.lower).abs() < 0.5 * area * cell * cell / 0.55);
                 mesh
             });
@@ -862,7 +862,7 @@ fn intervals_that_hold_no_centre_are_counted() {
         assert!(mesh.triangles().is_empty());
         assert_eq!((report.crossings, report.vanished, report.without_centres), (0, 0, 36));
     }
-    // Two materials in one gap and beyond it are one interval.
+    // Two materials in one gap and beyond are one interval.
     let format = DexelFormat { materials: true, ..FORMAT };
     let rays = |_: usize, ray: [u32; 2], list: &mut Vec<Dexel>| {
         let end = plain_end;

@@ -66,7 +66,7 @@ fn agrees(view: &TriDexelRef<'_>, model: &Dexels) {
             met += usize::from(!list.is_empty());
             for (found, one) in rays.dexels([u, v]).zip(list) {
                 for (k, end) in [found.start, found.end].into_iter().enumerate() {
-                    // The place exactly, and its coordinate rounded once (`dexel_ends` has it against exact
+                    // The exact place, and its coordinate rounded once (`dexel_ends` compares it with exact
                     // numbers).
                     assert_eq!(end.cells, Some(one.ends[k]));
                     let (rounded, along) = (origin[axis] + one.ends[k] * cell, one.ends[k] * cell);
@@ -181,7 +181,7 @@ fn invalid_vectors_are_refused_where_they_say_and_for_the_reason_that_they_say()
             Way::Probing => assert_eq!(refused(file::probe_bytes(bytes)), error),
             _ => drop(file::probe(&path).unwrap()),
         }
-        // One of the vectors is an octree's.
+        // One of the vectors is a file of an octree.
         if made.name == "section-unknown-windows" {
             assert_eq!(refused(file::from_bytes(bytes)), error);
             continue;

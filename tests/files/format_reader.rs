@@ -140,7 +140,7 @@ fn it_refuses_every_invalid_vector_for_the_stated_reason() {
         let weakest = LEVELS.iter().position(|(name, _)| fact("refused-by") == Some(name)).unwrap();
         for (level, (_, options)) in LEVELS.iter().enumerate() {
             let (code, printed) = run(options, &path, "");
-            // From the second level on the length of the file is looked at first.
+            // From the second level on, the length of the file is checked first.
             let rule = match fact("error-of-length") {
                 Some(_) if level > 0 => "file-length",
                 _ => fact("rule").unwrap(),

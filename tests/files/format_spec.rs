@@ -208,7 +208,7 @@ fn viewed(tree: &OctreeRef<'_>, facts: &Facts<'_>) {
         (facts.number("elements"), facts.number("bricks"))
     );
     assert_eq!(tree.is_binary(), facts.one("planes") == "1");
-    // The cuts answer in place: the points keep a distance from all surfaces.
+    // The cuts answer in place. These points keep a distance from all surfaces.
     answered(tree, facts.all("cut-point").map(answer).collect());
     // The other points are answered without the cuts.
     let points: Vec<_> = facts.all("point").map(answer).collect();
@@ -536,8 +536,8 @@ fn each_reason_of_the_library_has_a_vector() {
         let (body, _) = body.split_once("\n}").unwrap();
         for line in body.lines().filter_map(|line| line.strip_prefix("    ")) {
             let variant: String = line.chars().take_while(|c| c.is_alphanumeric()).collect();
-            // The memory's alignment, the machine's byte order and the kind of a file are no matter of the
-            // bytes. Which kind of file is wanted is no matter of the bytes either.
+            // The memory's alignment, the machine's byte order and the kind of a file are not errors of the
+            // bytes. Neither is the kind of file that the caller expects.
             let elsewhere = ["", "Alignment", "Endianness", "NotRegular", "OtherModel"];
             if !elsewhere.contains(&&*variant) {
                 let kind = if of == "Damage" { "Damaged" } else { "Format" };
@@ -583,7 +583,7 @@ fn accept(every: usize) -> usize {
             continue;
         }
         let name = vector.name;
-        // (Another share of the values for each byte.)
+        // (A different part of the values for each byte.)
         let values = |at: usize| (0..=255u8).skip((at + place) % every).step_by(every);
         let changes = (0..vector.bytes.len()).flat_map(|at| values(at).map(move |value| (at, value)));
         for ((at, value), mirrored) in changes.flat_map(|change| [(change, false), (change, true)]) {
@@ -823,7 +823,7 @@ fn dictionaries_of_several_segments() {
     // An index leads to an entry of the next segment. This entry exists, but it is not the brick's.
     assert!(second < 65_536);
     assert_eq!(verdict(sections[indices].offset as usize, second, 2), brick(0));
-    // Other shifts need another number of segments.
+    // Other segment shifts need another number of segments.
     assert_eq!(verdict(69, 16, 1), "Format(Section { name: \"dictionary segments\" })");
     assert_eq!(verdict(69, 63, 1), "Format(Section { name: \"dictionary segments\" })");
     assert_eq!(verdict(69, 18, 1), "Format(Field { name: \"segment shift\", value: 18 })");

@@ -200,7 +200,7 @@ fn files_cut_at_every_length() {
                 put(&mut shorter, 124, crc.into(), 4);
                 assert!(!read_in_all_ways(&shorter, false), "{length}");
             }
-            // And with its last section cut, too.
+            // Also with its last section cut.
             if let Some(file) = File::parse(cut).filter(|file| length > 128 + 48 * file.sections.len()) {
                 let bytes = file.assemble(&Repairs::FRAME);
                 read_in_all_ways(&bytes, length % 8 == 0);
@@ -267,7 +267,7 @@ fn mesh_files_cut_and_changed() {
             let (at, from) = (random.below(data.len()), random.below(data.len()));
             match random.below(4) {
                 _ if data.is_empty() => {}
-                // A word becomes another one, a line is lost or comes again.
+                // A word is replaced, or a line is lost or repeated.
                 0 | 1 if data[at].is_ascii_digit() => data[at] = b"0123456789-. \n/"[random.below(15)],
                 2 => {
                     let line = data.split_inclusive(|&b| b == b'\n').nth(from % 16).unwrap_or(&[]).to_vec();
@@ -363,7 +363,7 @@ fn parts_of_another_tree_lead_nowhere() {
     let mut workers: Vec<_> = on_frames.map(|classifier| classifier.worker().unwrap()).collect();
     let mut parts = vec![];
     for worker in &mut workers {
-        // Some on each level.
+        // Some parts on each level.
         let mut open = vec![(Cell::ROOT, worker.root().unwrap())];
         for _ in 0..40 {
             let Some((cell, verdict)) = open.pop() else { break };
@@ -381,7 +381,7 @@ fn parts_of_another_tree_lead_nowhere() {
             assert_eq!(planes.branch(), 0);
             nowhere += children.iter().all(|child| matches!(child, Verdict::Undecided)) as usize;
         }
-        // A tree without elements and cuts has no place where a part could lie.
+        // A tree without elements and cuts has no place for a part.
         let has_places = tree.view().element_count() + tree.view().brick_count() > 0;
         assert!(has_places || tree.view().cuts().is_some() || nowhere == parts.len());
     }

@@ -146,7 +146,7 @@ fn numbers_are_properties_of_faces() {
     }
     let labels = (0..20).map(|i| if i == 3 { u32::MAX } else { i % 3 }).collect();
     mesh.add_attribute(MeshAttribute::labels("part", labels).unwrap()).unwrap();
-    // These have no place.
+    // PLY cannot store these attributes.
     mesh.add_attribute(MeshAttribute::per_triangle("two words", 1, &[0.0; 20]).unwrap()).unwrap();
     mesh.add_attribute(MeshAttribute::per_triangle("red", 1, &[0.0; 20]).unwrap()).unwrap();
     mesh.add_attribute(MeshAttribute::per_corner("corner", 1, &[0.0; 60]).unwrap()).unwrap();

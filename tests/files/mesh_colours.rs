@@ -162,7 +162,7 @@ mod ply {
                 let file = super::read(&square(format, channels, rows));
                 assert_eq!((file.mesh.attributes().len(), file.warnings.len()), (0, 0));
             }
-            // One colour of four is beyond the range.
+            // One of four colours is out of range.
             for (kind, wrong) in
                 [("int", 256.0), ("int", -1.0), ("char", -1.0), ("float", 1.01), ("double", f64::NAN)]
             {
@@ -206,7 +206,7 @@ mod ply {
 
     #[test]
     fn colours_of_faces() {
-        // An L of six corners, cut into four triangles; a triangle; and a face that is degenerate.
+        // An L of six corners, cut into four triangles; a triangle; and a degenerate face.
         let text = |vertex_channels: &str, vertex_colour: &str, header: &str, strips: &str| {
             let places = ["2 0 0", "2 1 0", "1 1 0", "1 2 0", "0 2 0", "0 0 0"];
             let vertices: String = places.iter().map(|place| format!("{place} {vertex_colour}\n")).collect();
@@ -227,7 +227,7 @@ mod ply {
         assert_eq!(numbers(&both.mesh, "face_colour"), expected);
         let colour = both.mesh.attribute("colour").unwrap();
         assert_eq!(values(colour), [[Some([9.0, 8.0, 7.0, 255.0]); 3]; 5]);
-        // Strips, before the faces, have no colour.
+        // Strips before the faces have no colour.
         let header = "element tristrips 1\nproperty list int int vertex_indices\n";
         let strips = super::read(text("", "", header, "4 0 1 2 3\n").as_bytes());
         let expected = [[None; 2].to_vec(), expected.to_vec()].concat();
@@ -356,7 +356,7 @@ mod threemf {
         let file = read_model(&(COLOURS.to_owned() + &object(1, r#"pid="6" pindex="0""#, triangles)), ITEM);
         assert_eq!((file.warnings.len(), file.mesh.attributes().len()), (0, 1));
         assert_eq!(file.mesh.attribute("colour").unwrap().domain(), AttributeDomain::Corner);
-        // If one of the others is left out, the first counts for all corners.
+        // If one of the other references is missing, the first counts for all corners.
         assert_eq!(colours(&file.mesh), [[RED, GREEN, BLUE], [BLUE; 3], [GREEN; 3], [RED; 3]]);
     }
 
@@ -368,10 +368,10 @@ mod threemf {
         assert_eq!(file.warnings, []);
         assert_eq!(colours(&file.mesh), [None, GREEN, BRASS, None].map(|colour| [colour; 3]));
         assert_eq!(numbers(&file.mesh, "material"), [None, None, Some(1.0), None]);
-        // Groups that nobody refers to are no attributes.
+        // Groups without references are no attributes.
         let file = read_model(&[BASES, COLOURS, &object(1, "", [""; 4])].concat(), ITEM);
         assert_eq!((file.mesh.attributes().len(), file.warnings.len()), (0, 0));
-        // Groups may stand behind the objects that refer to them, as no mesh was refused for that before.
+        // Groups may follow the objects that refer to them: such meshes were never refused.
         let behind = [&object(1, r#"pid="5" pindex="1""#, [""; 4]), BASES].concat();
         assert_eq!(colours(&read_model(&behind, ITEM).mesh), [[BRASS; 3]; 4]);
     }
@@ -492,7 +492,7 @@ mod threemf {
         assert_eq!(file.warnings, [MeshWarning::Colours { colours: 2 }]);
         assert_eq!(numbers(&file.mesh, "material"), [Some(1.0); 4]);
         assert_eq!(file.mesh.attribute("material").unwrap().names(), ["a", ""]);
-        // A name that is too long to be looked at.
+        // A name that is too long to be examined.
         let bases = format!(
             r##"<basematerials id="6"><base name="{}" displaycolor="#102030"/></basematerials>"##,
             "x".repeat(5000)

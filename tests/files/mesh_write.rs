@@ -295,7 +295,7 @@ fn a_far_cube_is_told_to_be_flat() {
         let report = kept.mesh.report().unwrap();
         assert_eq!((report.triangles, report.vertices, kept.mesh.volume()), (4, 4, 0.0));
         assert_eq!(kept.mesh.area(), 18.0);
-        // All of it becomes one place, or less than a number.
+        // All of it collapses to one point, or is below any number.
         let huge = cube.transformed(|[_, y, z]| [1e30, 1e30 + y, 1e30 + z]).unwrap();
         assert!(huge.triangles().is_empty());
         let tiny = cube.transformed(|[x, y, z]| [x - 1e9, y, z].map(|c| c * 1e-60)).unwrap();

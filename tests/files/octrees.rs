@@ -353,7 +353,7 @@ fn bricks_are_coded_as_the_rule_says() {
     assert_eq!(names(&dictionary_coded()), [&elements[..], &coded].concat());
     let many = file::to_bytes(&many_bricks()).unwrap();
     let sections = file::probe_bytes(&many).unwrap().sections;
-    // Two halves of 50 000 distinct bricks each: the largest segments that do.
+    // Two halves of 50 000 distinct bricks each: the largest segments for which this works.
     assert_eq!((many[68], many[69], sections[7].count), (1, 17, 2));
     assert_eq!(names(&Octree::uniform(frame(3), Tag::Full, Tag::Full).unwrap()), ["objects", "level table"]);
 }
@@ -433,7 +433,7 @@ fn metadata_have_a_limit() {
     let largest = with(1 << 20);
     let back = file::from_bytes(&file::to_bytes(&largest).unwrap()).unwrap();
     assert_eq!(back.metadata(), largest.metadata());
-    // One byte more in a file, and all that follows further on.
+    // One more byte in a file shifts everything after it.
     let mut bytes = file::to_bytes(&largest).unwrap();
     let probe = file::probe_bytes(&bytes).unwrap();
     let (entry, at) = (128 + ENTRY, probe.sections[1].offset as usize);
@@ -531,7 +531,7 @@ fn changes_with_right_checksums_never_panic() {
             let mut hostile = Aligned::new(&bytes);
             let all = hostile.bytes_mut();
             for _ in 0..1 + round % 3 {
-                // Half of the time in header and table; small numbers are the most dangerous.
+                // Half of the changes are in header and table. Small numbers are the most dangerous.
                 let end = if round % 2 == 0 { 128 + ENTRY * 5 } else { all.len() };
                 let at = random(end as u64) as usize;
                 all[at] = match random(4) {
@@ -562,7 +562,7 @@ fn changes_with_right_checksums_never_panic() {
             #[cfg(feature = "mmap")]
             if let Ok(tree) = unsafe { file::map(&path) } {
                 tree.statistics();
-                // The one thing that readers in place never look at, and that writing sets right.
+                // The only part that readers in place never examine, and that writing corrects.
                 let padding =
                     matches!(verdict, Err(Error::Format(FormatError::Field { name: "padding", .. })));
                 match file::to_bytes(&tree) {
@@ -738,7 +738,7 @@ fn each_field_is_checked() {
         assert_eq!(name(&coded, at, value, 1), expected);
     }
     assert_eq!(name(&coded, 88, number(&coded, 80, 8) + 1, 8), "dictionary entries");
-    // Another count in the header than in the sections.
+    // A count in the header that differs from the sections.
     assert_eq!(field(&bytes, 72, 1 << 40, 8), FormatError::Section { name: "planes" });
     assert_eq!(field(&bytes, 80, 1, 8), FormatError::Section { name: "bricks" });
     assert_eq!(field(&bytes, 67, 1, 1), FormatError::Section { name: "bricks" });
@@ -765,7 +765,7 @@ fn each_field_is_checked() {
             assert!(matches!(view(bytes), Err(Error::Damaged(_))), "{nodes} nodes on level {level}");
         }
     }
-    // Also where the sums are right: depth 5, elements on the levels 0 and 1, bricks on level 3.
+    // Wrong levels with right sums: depth 5, elements on the levels 0 and 1, bricks on level 3.
     let sections = file::probe_bytes(&coded).unwrap().sections;
     let levels = sections.iter().find(|section| section.name == Some("level table")).unwrap().offset as usize;
     for (from, to, wrong) in [(1, 0, 0), (1, 3, 5), (3, 1, 5)] {
@@ -845,7 +845,7 @@ fn what_later_versions_may_add_is_skipped() {
     assert_eq!((section.kind, section.name, section.count), (17, None, 4));
     let refused = format_error(file::from_bytes(&with_flags(1)));
     assert_eq!(refused, FormatError::Required { name: "section", value: 17 });
-    // Its checksum counts although nobody reads it.
+    // Its checksum counts although no reader uses the section.
     let mut damaged = with_flags(0);
     damaged[offset] ^= 1;
     let refused = format_error(file::from_bytes(&damaged));
@@ -932,7 +932,7 @@ mod save {
         fs::create_dir(at("other")).unwrap();
         symlink("other/tree.lfl", at("link")).unwrap();
         symlink("link", at("second")).unwrap();
-        // First to a file that does not exist, then to one that does.
+        // First to a new file, then to an existing file.
         for tree in [small(), dictionary_coded()] {
             file::save(&tree, at("second")).unwrap();
             assert_eq!(file::open(at("other/tree.lfl")).unwrap(), tree);
@@ -1032,7 +1032,7 @@ mod save {
             }
         });
         assert_eq!(mapped, old);
-        // Also by itself.
+        // Also without the others.
         file::save(&mapped, &path).unwrap();
         assert_eq!((&mapped, file::open(&path).unwrap()), (&old, old.clone()));
         assert_eq!(names(directory.path()), ["tree.lfl"]);
@@ -1076,7 +1076,7 @@ mod save {
         );
     }
 
-    // The rest needs a process of its own: one with limits, another user, or another working directory.
+    // The other cases need a process of their own, with limits, another user, or another working directory.
 
     const TASK: &str = "LEAFLESS_TEST_SAVE";
 

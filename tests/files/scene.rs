@@ -255,7 +255,7 @@ fn tapered_prisms() {
         PI * 50.0,
     );
     same("linear_extrude(height = 4, scale = 0.5) circle(4);", "cylinder(h = 4, r1 = 4, r2 = 2);");
-    // Oblique, as the circle is not in the middle: Cavalieri.
+    // An oblique extrusion, because the circle is not in the middle: Cavalieri.
     let beside = "multmatrix([[1,0,0,1.5],[0,1,0,0],[0,0,1,0],[0,0,0,1]]) circle(2);";
     check(&format!("linear_extrude(height = 3, scale = 2) {beside}"), PI * (4.0 + 8.0 + 16.0), PI * 50.0);
     // ∫ (1 + (a − 1) t) (1 + (b − 1) t) dt · A · h, here for a = 2, b = 0: 2/3, for any figure of lines.
@@ -301,7 +301,7 @@ fn bodies_of_revolution() {
     check(&turned, 2.0 * PI * PI * (4.1 * 0.7 + 0.3) * 1.96, 4.0 * PI * PI * 4.0);
     let ring = format!("difference() {{ {} {} }}", at(2.0, -2.0, "square(4);"), at(4.0, 0.0, "circle(1.5);"));
     check(&format!("{whole} {ring}"), 2.0 * PI * 4.0 * (16.0 - PI * 2.25), 300.0);
-    // Parts of a turn.
+    // Partial revolutions.
     let block = at(2.0, -1.0, "square([3, 2]);");
     for (angle, start) in [(90, 0), (180, 30), (270, 45), (37, 11), (-37, 11), (-200, 5), (359, 1), (1, -720)]
     {
@@ -370,7 +370,7 @@ fn bounds_of_an_arm_of_turned_links_are_hardly_larger_than_the_arm() {
     assert!(!tree.view().is_clipped());
     let volume = tree.statistics().volume();
     assert!(250.0 <= volume.lower && volume.contains(346.3) && volume.upper <= 480.0, "{volume:?}");
-    // As long as exact numbers may be nested: 60 links reach 300 far at most.
+    // As long as exact numbers may be nested. 60 links reach at most 300.
     let (min, max) = read_scene(arm(60), None).unwrap().bounds().unwrap().unwrap();
     assert!((0..3).all(|axis| max[axis] - min[axis] < 700.0), "{min:?} {max:?}");
 }
@@ -569,7 +569,7 @@ impl Shape {
         match random.below(if depth == 0 { 4 } else { 8 }) {
             0 => Shape::Square([number(random, 1.0, 6.0), number(random, 1.0, 6.0)]),
             1 => Shape::Disc(number(random, 0.5, 4.0)),
-            // Around the origin, and so simple.
+            // Around the origin, in the simplest form.
             2 | 3 => {
                 let n = 3 + random.below(8);
                 let corner = |i: usize| {
@@ -651,7 +651,7 @@ fn points_never_contradict_cells() {
             }
         }
     }
-    // It tries something.
+    // The test covers enough cases.
     assert!(decided > asked * 3 / 4 && inside > asked / 50, "{decided} and {inside} of {asked}");
 }
 
@@ -865,7 +865,7 @@ fn errors_say_where() {
     }
 }
 
-// ---- texts that mean harm
+// ---- hostile texts
 // -----------------------------------------------------------------------------------
 
 #[test]
@@ -885,7 +885,7 @@ fn nesting() {
     let (_, _, problem) = refusal(&format!("cube({}1{});", "[".repeat(n), "]".repeat(n)));
     assert!(problem.contains("expected 3 items"), "{problem}");
     refusal(&format!("cube({}", "[".repeat(n)));
-    // Turns around turns end at a limit.
+    // Nested revolutions end at a limit.
     let turned = "multmatrix([[0.8,-0.6,0,0.1],[0.6,0.8,0,0],[0,0,1,0],[0,0,0,1]]) ";
     let scene = read_scene(&(turned.repeat(2000) + "cube(2);"), None).unwrap();
     let solid = scene.solid(&frame).unwrap();

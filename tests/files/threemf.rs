@@ -239,7 +239,7 @@ fn parts_of_the_production_extension() {
     assert_broken(&with(4, bad), "3D/Objects/c.model", "root");
     let bad = Entry::stored("3D/Objects/c.model", "no XML");
     assert_broken(&with(4, bad), "3D/Objects/c.model", "text outside");
-    // A path to the root itself is no way to a circle.
+    // A path to the root itself cannot make a circle.
     let own = "<object id=\"1\"><components><component objectid=\"1\" p:path=\"/3D/3dmodel.model\"/></components></object>";
     assert_refused(&model("", own, ITEM), 6, "not defined before");
 }
@@ -306,7 +306,7 @@ fn models_that_are_refused() {
         line(&model("", &two_shapes, ITEM), "<components/>"),
         "second shape",
     );
-    // An object of something that is unknown here.
+    // An object of an unknown kind.
     let text = model("", "<object id=\"1\"><b:booleanshape xmlns:b=\"urn:b\"/></object>", ITEM);
     assert_refused(&text, line(&text, "<item"), "neither a mesh");
     assert_eq!(read_model(text.replace("<object id", "<object type=\"support\" id")).skipped, 1);
@@ -383,7 +383,7 @@ fn attributes_that_stand_twice() {
         let error = refused(&zip(&package(&text)));
         assert!(error.problem().contains("second time") && error.line() > 0, "{attribute}: {error}");
     }
-    // Another prefix for the same namespace makes no other attribute; other namespaces do.
+    // Another prefix for the same namespace gives the same attribute; another namespace gives another one.
     let both = |uri: &str| good.replace("p:path", &format!("xmlns:q=\"{uri}\" q:path=\"/nowhere\" p:path"));
     let error =
         refused(&zip(&package(both("http://schemas.microsoft.com/3dmanufacturing/production/2015/06"))));

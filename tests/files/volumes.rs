@@ -233,7 +233,7 @@ fn places_of_nrrd() {
     let half = [-0.5; 3];
     assert_eq!(lies(&nrrd("")), (half, [1.0; 3], None));
     assert_eq!(lies(&nrrd("spacings: 1 2 0.5\n")), ([-0.5, -1.0, -0.25], [1.0, 2.0, 0.5], None));
-    // From the first to the last sample, or from end to end.
+    // From the first to the last sample, or over the full extent.
     assert_eq!(
         lies(&nrrd("axis mins: 0 1 2\naxis maxs: 1 2 3\n")),
         ([-0.5, 0.75, 1.5], [1.0, 0.5, 1.0], None)
@@ -249,7 +249,7 @@ fn places_of_nrrd() {
     let oblique = "space directions: (3,4,0) (-4,3,0) (0,1e-30,2)\n";
     let rows = [[0.6, -0.8, 0.0, 0.0], [0.8, 0.6, 0.0, 0.0], [0.0, 0.0, 1.0, 0.0]];
     assert_eq!(lies(&nrrd(oblique)), ([-2.5, -2.5, -1.0], [5.0, 5.0, 2.0], Some(rows)));
-    // The first sample lies where the file says.
+    // The first sample lies at the place stated in the file.
     let file = read(&nrrd(turned));
     assert_eq!(file.placement.unwrap().apply(file.grid.centre([0; 3])), [1.0, 2.0, 3.0]);
     assert_eq!(file.placement.unwrap().apply(file.grid.centre([1, 2, 1])), [-5.0, 4.0, 2.0]);

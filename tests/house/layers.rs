@@ -206,7 +206,7 @@ fn mentions(source: &str) -> Vec<Mention> {
                     }
                     i += 1;
                 }
-                // A single word, as in `pub(crate)`, leads nowhere.
+                // A single word, as in `pub(crate)`, is no path to a module.
                 if path.len() > 1 {
                     found.push(Mention { inside: names(), path, import: None });
                 }
@@ -267,7 +267,7 @@ fn use_tree(
                 if !prefix.is_empty() {
                     push(prefix, None, out);
                 }
-                // The comma or brace belongs to the group, the semicolon to nobody.
+                // The comma or brace belongs to the group; the semicolon ends the declaration.
                 return i + (tokens.get(i) == Some(&Token::Mark(';'))) as usize;
             }
         }

@@ -28,7 +28,7 @@ fn a_program_without_the_standard_library_builds_links_and_runs() {
         .arg(copy.join("Cargo.toml"))
         .arg("--target-dir")
         .arg(&target)
-        // Configuration is looked for where this crate's is.
+        // Cargo finds its configuration in the same places as for this crate.
         .current_dir(root)
         // Settings for the build of these tests must not apply to a separate program.
         .env_remove("CARGO_BUILD_TARGET")
@@ -44,7 +44,7 @@ fn a_program_without_the_standard_library_builds_links_and_runs() {
     #[cfg(target_os = "linux")]
     {
         let bytes = std::fs::read(&program).unwrap();
-        // As mangled names begin.
+        // The usual beginning of mangled names.
         let has = |module: &str| {
             let name = format!("8leafless{}{module}", module.len());
             bytes.windows(name.len()).any(|window| window == name.as_bytes())

@@ -69,11 +69,11 @@ unsafe impl GlobalAlloc for Failing {
     }
 
     unsafe fn realloc(&self, pointer: *mut u8, layout: Layout, size: usize) -> *mut u8 {
-        // No allocator fails to give memory back.
+        // Freeing memory never fails.
         if size > layout.size() && refuses(size) {
             return std::ptr::null_mut();
         }
-        // Both at once, as if it were copied.
+        // Both blocks at once, as in a copy.
         hold(size as i64);
         hold(-(layout.size() as i64));
         // SAFETY: as the caller promises.

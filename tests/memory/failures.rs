@@ -602,7 +602,7 @@ fn operations(directory: &Path) -> Vec<(&'static str, Operation)> {
         ray_spans(&solid, &frame(), &rays[0], &CONTROL)?;
         cast_rays(&solid, &frame(), &rays, Obstacle::Upper, &CONTROL)
     });
-    // Each time a mesh without a tree, so that all requests of one come again.
+    // Each run has a mesh without a tree, so that all requests for the tree recur.
     operation!("rays on a new mesh", [facets], {
         let solid = MeshSolid::new(TriangleMesh::from_facets(&facets)?, FillRule::NonZero)?;
         // The second runs along edges and touches the solid, the third passes through vertices.
@@ -785,7 +785,7 @@ fn try_all(name: &str, spared: u64, for_good: bool) -> (u64, u64) {
             let survived = number(text.lines().rfind(|line| line.starts_with("survived ")), "survived ");
             return (errors + survived.unwrap_or_else(|| panic!("{name}: {text}")), fatal);
         }
-        // The first complaint counts; where all requests are refused it may be followed by others.
+        // The first message counts. Where all requests are refused, others may follow.
         let request = text.lines().rfind(|line| line.starts_with("request "));
         let refused = text.lines().find(|line| line.starts_with("memory allocation of "));
         let (Some(n), Some(size)) = (number(request, "request "), number(refused, "memory allocation of "))
@@ -1096,7 +1096,7 @@ fn each_write_may_fail_or_be_short_or_interrupted() {
             }
         }
     }
-    // Every piece may be the last one that is taken, and flushing may fail, too.
+    // Every piece may be the last one accepted, and flushing may fail, too.
     let failing = |left| {
         let failure: fn() -> io::Result<usize> = || Err(io::ErrorKind::StorageFull.into());
         let mut out = Unreliable { left, most: usize::MAX, interrupted: false, taken: vec![], failure };

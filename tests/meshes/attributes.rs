@@ -67,7 +67,7 @@ fn attributes_follow_their_triangles() {
         check(&mesh.translated([1.0, -2.0, 0.5]).unwrap(), count as usize, 0.0, |[x, y, z]| {
             [x + 1.0, y - 2.0, z + 0.5]
         });
-        // A reflection turns triangles round: corners keep their values.
+        // A reflection reverses triangles. Corners keep their values.
         let mirror =
             Affine::new([[0.0, 2.0, 0.0, 0.5], [1.0, 0.0, 0.0, -3.0], [0.0, 0.0, 1.0, 0.0]]).unwrap();
         check(&mesh.placed(&mirror).unwrap(), count as usize, 0.0, |[x, y, z]| [2.0 * y + 0.5, x - 3.0, z]);
@@ -498,7 +498,7 @@ fn ranges_are_no_wider_than_needed() {
     assert_eq!(range(20.0, 0.0, 1.0), (1.0, 1.0));
     assert_eq!(range(70.0, 0.0, 1.0), (2.0, 2.0));
     assert_eq!(range(49.5, 0.0, 1.0), (1.0, 2.0));
-    // At the height z a box of size s sees about (2 z s)^½ aside.
+    // At height z, a box of size s is nearest to points up to (2 z s)^½ away.
     assert_eq!(range(40.0, 16.0, 1.0), (1.0, 1.0));
     assert_eq!(range(47.0, 16.0, 1.0), (1.0, 2.0));
     assert_eq!(range(0.0, -200.0, 400.0), (1.0, 2.0));
@@ -576,7 +576,7 @@ fn values_just_inside_of_a_surface() {
     let found = sample_triangles(&mesh, &sides, "material", depth, &alone()).unwrap();
     for (t, triangle) in mesh.triangles().iter().enumerate() {
         let x = triangle.iter().map(|&v| mesh.vertices()[v as usize][0]).sum::<f64>() / 3.0;
-        // The point behind the centroid lies aside by the depth at the most.
+        // The point behind the centroid is displaced by at most the depth.
         let expected = if x < 0.1 { 3.0 } else { 5.0 };
         let value = found.value(t, 0).unwrap_or_else(|| panic!("{t} at {x} has none"));
         assert!((x - 0.1).abs() <= depth || value == [expected, 0.0, 0.0, 0.0], "{value:?} at {x}");

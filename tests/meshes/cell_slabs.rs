@@ -121,7 +121,7 @@ fn points_outside_of_slabs_are_told_right() {
     let oracle = PointOracle::new(&mesh);
     let mut random = Random(0x51AB);
     let mut points = points(&mut random, 2_000);
-    // Next to the surface, too.
+    // Also points next to the surface.
     for triangle in mesh.triangles().iter().step_by(3) {
         let corners = triangle.map(|v| mesh.vertices()[v as usize]);
         let off = 10f64.powf(random.between(-6.0, -2.0));
@@ -220,7 +220,7 @@ fn a_set_less_itself_is_empty_outside_of_cells_that_were_given_up() {
     let [a, b] = two().map(|smooth| smooth.tree);
     let joint = union(a.view(), b.view(), &alone()).unwrap();
     for tree in [a, joint] {
-        // One that was read has other arrays, and the same slabs.
+        // A tree read from a file has other arrays, and the same slabs.
         let read = file::from_bytes(&file::to_bytes(&tree).unwrap()).unwrap();
         for none in [
             difference(tree.view(), tree.view(), &alone()).unwrap(),

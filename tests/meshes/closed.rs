@@ -56,7 +56,7 @@ fn verify_with(what: &str, mesh: &TriangleMesh, frame: &Frame, fills: &[FillRule
         && frame.depth() <= 14
         && displacement == 0.0
         && mesh.vertices().iter().all(|vertex| (0..3).all(|axis| is_aligned(axis, vertex[axis])));
-    // Far outside of the universe a double is coarser than the tolerance.
+    // Far outside the universe, a double is coarser than the tolerance.
     let tight = mesh.vertices().iter().all(|vertex| {
         (0..3).all(|axis| ((vertex[axis] - frame.origin()[axis]) / frame.cell_size()).abs() < 1e6)
     });
@@ -161,7 +161,7 @@ fn deep_and_aligned() {
         assert_eq!(certified.statistics().volume_cells(), (60, 60));
         assert_eq!(sampled.statistics().volume_cells(), (60, 60));
         assert_eq!(certified.statistics().cells(Tag::Partial), 0);
-        // Not aligned: the truth lies between, and every cell is where it should be.
+        // Not aligned: the truth lies between the trees, and every cell has the right tag.
         let soup = block([at + 0.25; 3], [at + 3.75, at + 4.75, at + 2.75]);
         let mesh = shapes::mesh(&soup);
         let [certified, sampled, ..] = trees("deep block", &mesh, &frame, FillRule::NonZero);
@@ -303,7 +303,7 @@ fn beyond_the_universe() {
                 let soup = block(low, high);
                 verify("sticking out", &soup, &frame);
                 assert_eq!(exterior(&soup, &frame), Tag::Partial);
-                // Exactly up to the end, and a hair beyond.
+                // Exactly up to the end, and slightly beyond.
                 (low[axis], high[axis]) = if side { (1.25, n) } else { (0.0, n - 1.75) };
                 assert_eq!(exterior(&block(low, high), &frame), Tag::Empty);
                 (low[axis], high[axis]) = if side { (1.25, n.next_up()) } else { (-1e-70, n - 1.75) };
@@ -543,7 +543,7 @@ fn parts_are_certified_and_converge() {
             assert_eq!(certified.view().exterior(), Tag::Empty);
         }
         assert_sampled(name, &mesh, 7);
-        // Every claim at once where that is affordable.
+        // All claims at once, where affordable.
         verify_with(name, &mesh, &around(&mesh, 5), &FILLS);
         verify_with(name, &mesh, &around(&mesh, 6), &[FillRule::NonZero]);
     }

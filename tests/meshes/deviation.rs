@@ -106,7 +106,7 @@ fn what_is_stated() {
         let scaled = stated.placed(&Affine::new(scale).unwrap()).unwrap().deviation();
         assert!(scaled >= 0.25 * factor && scaled < 0.2500001 * factor, "{scaled}");
     }
-    // Solids that differ in it are not taken for each other.
+    // Solids with different deviations are distinguished.
     let print = |mesh: TriangleMesh| solid(mesh).fingerprint().unwrap();
     assert_ne!(print(block()), print(block().with_deviation(0.25).unwrap()));
     assert_eq!(print(block()), print(block().with_deviation(0.0).unwrap()));
@@ -302,7 +302,7 @@ fn check_ball(random: &mut Random, size: [usize; 2]) {
     let depth_of = |p: Point| radius - length(minus(p, centre));
     let off = solid.mesh().deviation();
     let point = |random: &mut Random| [0; 3].map(|_| random.between(-3.5, 3.5));
-    // Many of them near to the boundary.
+    // Many of them near the boundary.
     let near = |random: &mut Random| {
         let way = [0; 3].map(|_| random.between(-1.0, 1.0));
         let far = radius + random.between(-3.0, 3.0) * off;

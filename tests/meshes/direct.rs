@@ -120,8 +120,8 @@ fn rays_of_blocks_are_those_of_integers() {
                 assert!(!inner || some, "not inside: {place}");
                 assert!(outer || !some, "not outside: {place}");
                 assert!(inner || !all, "known to be inside: {place}");
-                // (A facet that does not bound the solid, as one between two negative winding numbers, may be
-                // one that does.)
+                // (A facet that does not bound the solid, such as one between two negative winding numbers,
+                // may count as one that does.)
                 assert!(!outer || some || is_on_facet(&blocks, at, 8), "known to be outside: {place}");
                 (inside, outside, on) =
                     (inside + i32::from(all), outside + i32::from(!some), on + i32::from(some && !all));
@@ -361,7 +361,7 @@ fn distances_are_those_of_all_triangles_and_of_cells() {
                     }
                 }
                 if round % 4 != 1 {
-                    // All triangles bound the solid (or no answer came).
+                    // All triangles bound the solid (or there was no answer).
                     let all = (0..mesh.triangles().len()).map(|t| from_triangle(corners(&mesh, t), p).0);
                     assert!(all.fold(f64::INFINITY, f64::min) <= way + 1e-12, "{place}");
                 }

@@ -67,9 +67,9 @@ fn points_that_are_no_places() {
             let mut p = [0.5; 3];
             p[axis] = -far;
             let found = &distances(&solid, &frame(), &[p], DistanceTo::Boundary, 0.0, &alone()).unwrap()[0];
-            // (An interval next to the greatest double has no end.)
+            // (The upper bound next to the greatest double is infinite.)
             assert!(found.distance.lower <= far && found.distance.upper >= far, "{far} {found:?}");
-            // (Beyond 2^99 times the mesh nobody looks at single triangles.)
+            // (Beyond 2^99 times the mesh's size, single triangles are not examined.)
             assert!(far > 1e29 || found.distance.lower >= far * (1.0 - 1e-11), "{far} {found:?}");
             let answer = member(&solid, &wide, p);
             assert!(answer != Membership::Inside);
@@ -208,8 +208,8 @@ fn slanted_triangles_of_all_sizes() {
                 let away = [0, 1, 2].map(|k| corner[k] - middle[k]);
                 let RaySpans { inner, outer } =
                     ray_spans(&solid, &frame, &ray(middle, away), &alone()).unwrap();
-                // It passes the corner but for rounding; the other way it meets the middle of the facet on
-                // the other side.
+                // It passes the corner only by rounding. In the other direction it meets the middle of the
+                // opposite facet.
                 assert!(inner.len() == 1 && outer.len() == 1, "{size} {corners:?} {i}");
                 assert!((outer[0].upper - 1.0).abs() < 1e-9, "{size} {corners:?} {i} {outer:?}");
                 let back = ray_spans(&solid, &frame, &ray(middle, away.map(|c| -c)), &alone()).unwrap();

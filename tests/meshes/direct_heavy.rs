@@ -133,7 +133,7 @@ impl Oracle {
         let of_normal = length(u) * length(v);
         let lost = 1e-13 * of_normal;
         let (mut from, mut to) = (begin, end);
-        // Else it may be anywhere in the box.
+        // Otherwise it may be anywhere in the box.
         if slope.abs() > 1e3 * lost * length(way) {
             let t = height / slope;
             let away = lost * reach + self.displacement * of_normal;

@@ -241,7 +241,7 @@ fn moments_of_meshes_are_kept() {
     assert!(!by_cells.exact && by_cells.volume.contains(own.volume.lower));
     assert!(by_cells.volume.width() > found.volume.width());
 
-    // A file has them, a copy, and a tree that is built from the tree.
+    // Files, copies, and trees built from the tree have the moments.
     let bytes = to_bytes(&tree).unwrap();
     let opened = from_bytes(&bytes).unwrap();
     assert_eq!(opened.view().moments(), Some(own));

@@ -181,13 +181,14 @@ fn nested_shells() {
     let [one, two, three] = [cube(1.0), cube(2.0), cube(3.0)];
     let tilted: Vec<Facet> =
         tetrahedron([[0.5, 0.0, 0.1], [-0.2, 0.4, 0.0], [-0.3, -0.4, 0.2], [0.0, 0.1, -0.5]]);
-    // Bodies from the inside out, each with the sign of its volume, and how often it counts under each rule.
+    // Bodies from the inside out, each with the sign of its volume, and the number of times that it counts
+    // under each rule.
     let cases: [Case<'_>; 9] = [
         (from_ref(&one), [&[1], &[1], &[1]]),
         (&[turned(&one)], [&[-1], &[-1], &[0]]),
         // A cavity.
         (&[turned(&one), two.clone()], [&[1, 1], &[1, 1], &[1, 1]]),
-        // In the same sense.
+        // With the same orientation.
         (&[one.clone(), two.clone()], [&[0, 1], &[-1, 1], &[0, 1]]),
         (&[turned(&one), turned(&two)], [&[0, -1], &[1, -1], &[0, 0]]),
         // An inside-out block with a body in it.
@@ -293,7 +294,7 @@ fn placed_meshes_contain_the_exact_image() {
     let sign = if placed.volume() > 0.0 { 1 } else { -1 };
     let measures = measured(placed, FillRule::NonZero);
     assert_eq!(measures.splits, 0);
-    // The linear part is not a rotation exactly: the doubles 0.6 and 0.8 give the determinant.
+    // The linear part is not exactly a rotation: the doubles 0.6 and 0.8 give the determinant.
     let [p, q] = [0.6, 0.8].map(Exact::from);
     let determinant = p.times(&p).plus(&q.times(&q));
     let sums = Sums::of(facets.into_iter().map(|facet| (facet, sign)));

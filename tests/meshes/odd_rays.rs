@@ -123,7 +123,7 @@ fn a_wide_frame_is_counted_in_several_passes() {
     for depth in [6, 14] {
         let frame = Frame::new([0.0; 3], 1.0, depth).unwrap();
         let odd = solid.odd_rays(&frame, &Control::default()).unwrap();
-        // Along x and y a ray of the plate's height would run in it.
+        // Rays along x and y at the plate's height would lie in the plate.
         assert_eq!(odd, [0, 0, 1 << (2 * depth)], "depth {depth}");
     }
 }

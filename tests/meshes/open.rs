@@ -126,7 +126,7 @@ fn the_oracle_agrees_with_integers_and_with_itself() {
     for soup in &closed {
         let exact = PointOracle::new(&mesh(soup));
         let mut whole = Soupy::new(soup);
-        // Open pieces of it: their numbers add up to the whole one.
+        // Open pieces of it. Their winding numbers add up to that of the whole.
         let (one, other): (Vec<_>, Vec<_>) = soup.iter().partition(|facet| facet[0][0] + facet[1][1] > 0.3);
         let (mut one, mut other) = (Soupy::new(&one), Soupy::new(&other));
         for i in 0..4000 {
@@ -158,7 +158,7 @@ fn the_oracle_agrees_with_integers_and_with_itself() {
         assert!((winding.value - expected).abs() <= winding.error, "{winding:?} {expected}");
         assert!(winding.error < 1e-8);
     }
-    // On the surface, the shifted point decides: up is outside of the top and inside of the bottom.
+    // On the surface, the shifted point decides: up is outside at the top and inside at the bottom.
     let mut cube = Soupy::new(&block([0.0; 3], [2.0; 3]));
     for (p, inside) in [
         ([1.0, 0.5, 0.0], 1.0),
@@ -449,7 +449,7 @@ fn any_number_of_threads_and_blocks_or_not() {
             _ => (torus(centre, 9.0, 4.0, 20, 12), false),
         };
         let soup = damaged(&soup, damage, &mut random, 1.0, aligned);
-        // At depth 8 blocks are scanned below nodes that are handed from thread to thread.
+        // At depth 8, blocks are scanned below nodes that pass from thread to thread.
         let frame = if aligned { Frame::new([0.0; 3], 32.0, 8).unwrap() } else { odd_frame(&soup, 7) };
         let solid = solid(&soup, RULES[i % 2]);
         for rule in [Rule::Certified, Rule::Sampled] {
@@ -519,7 +519,7 @@ fn remove_single_facets(name: &str, soup: &Soup, depth: u8, times: usize, random
                 let distance = soup::winding::distance(gone, soup::check::centre(&frame, at));
                 assert!(tags.contains(&Tag::Partial), "{name} {at:?}: {tags:?} without {gone:?}");
                 assert!(distance <= reach, "{name} {at:?}: {tags:?} at {distance} of {gone:?}, {reach}");
-                // Where a facet is gone that lay between the numbers 0 and 1, it still bounds the solid.
+                // A missing facet between the winding numbers 0 and 1 still bounds the solid.
                 let is_within = distance < 0.5 * frame.cell_size() && tags[1] != Tag::Partial;
                 let between = |winding: f64| (0.05..0.95).contains(&winding.abs());
                 assert!(

@@ -70,7 +70,7 @@ fn edges_that_end_far_away() {
         // Twice the same, so that the winding number is ½ in a plane through the edge.
         let (wrong, partial) = faults(&vertices, &[[0, 1, 2], [0, 1, 2]]);
         assert_eq!(wrong, 0, "{length}");
-        // Beyond, doubts about where the edge is grow with its length.
+        // Beyond the edge, the uncertainty about its place grows with its length.
         assert!(length > 1e8 || partial < 25_000, "{length}: {partial}");
     }
 }

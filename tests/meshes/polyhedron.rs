@@ -226,7 +226,7 @@ fn voids_may_touch_their_shell() {
     let solid = |apex: [f64; 3]| {
         let (vertices, faces) = pyramid(apex);
         let volume = (apex[1] - 4.0) * 64.0 / 3.0;
-        // Its base turns counter-clockwise seen from above, where the apex may be.
+        // Seen from above, where the apex may be, its base is counter-clockwise.
         let faces = if volume > 0.0 { turned(&faces) } else { faces };
         (Arrays::solid(&[block([0.0; 3], [8.0; 3]), (vertices, turned(&faces))]), volume.abs())
     };
@@ -293,7 +293,7 @@ fn faces_that_are_not_convex() {
 #[test]
 fn regular_solids() {
     let phi = (1.0 + 5f64.sqrt()) / 2.0;
-    // All faces: sets of vertices that are the farthest in one direction, sorted around it.
+    // All faces: sets of vertices farthest in one direction, sorted around it.
     let hull = |vertices: &[[f64; 3]], normals: &[[f64; 3]]| -> Vec<Face> {
         let dot = |a: [f64; 3], b: [f64; 3]| a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
         let cross = |a: [f64; 3], b: [f64; 3]| {
@@ -451,7 +451,7 @@ fn many_voids() {
     let side = f64::from(4 * n);
     let expected = side * side * side - 8.0 * f64::from(n * n * n);
     assert_eq!(Arrays::solid(&shells).made().mesh().volume(), expected);
-    // The last one is not where it should be, though within the bounds: in a dent of the outer shell.
+    // The last void is misplaced, though within the bounds: in a dent of the outer shell.
     let dented = prism(
         &[vec![[0.0, 0.0], [48.0, 0.0], [48.0, 48.0], [44.0, 48.0], [44.0, 44.0], [0.0, 44.0]]],
         [0.0, 48.0],

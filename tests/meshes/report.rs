@@ -68,7 +68,7 @@ fn known_meshes() {
     // Two holes: a triangle's and a square's, in different sides.
     let holed = a[1..10].to_vec();
     assert_eq!(counts(&mesh(&[holed.clone(), b.clone()])), [7, 2, 0, 0, 0, 0, 0, 2, 1, 0]);
-    // The two triangles that meet in a corner only: two loops, not one in the shape of an eight.
+    // The two triangles that meet only in a corner: two loops, and not one in the shape of an eight.
     let corner = [&a[1..6], &a[7..]].concat();
     assert_eq!(counts(&mesh(&[corner])), [6, 2, 0, 0, 0, 0, 0, 1, 1, 0]);
     // One facet inverted.
@@ -129,7 +129,7 @@ fn bodies_that_overlap() {
     assert_eq!(overlapping(&[base.clone(), moved([5.0, 0.0, 0.0])]), [0, 0]);
     assert_eq!(overlapping(&[base.clone(), moved([1.0, 0.25, 0.25])]), [0, 0]);
     assert_eq!(overlapping(&[base.clone(), moved([1.0, 1.0, 1.0])]), [0, 0]);
-    // Inside, in one sense and in the other.
+    // Inside, with the same and with reversed orientation.
     assert_eq!(overlapping(&[one.clone(), two.clone()]), [2, 0]);
     assert_eq!(overlapping(&[turned(&one), turned(&two)]), [2, 0]);
     assert_eq!(overlapping(&[turned(&one), two.clone()]), [0, 0]);
@@ -289,7 +289,7 @@ fn faces_that_are_not_flat() {
         (report.polygons, report.bent_polygons, report.polygon_deviation)
     };
     assert_eq!(report(0.0, ""), (3, 0, 0.0));
-    // The plane of a square with the heights 0, 0, z, 0 has its corners z/4 above and below, but for the
+    // The plane of a square with the heights 0, 0, z, 0 lies z/4 from its corners, above and below, up to the
     // tilt.
     let (polygons, bent, deviation) = report(0.25, "");
     assert_eq!((polygons, bent), (3, 2));
@@ -328,7 +328,7 @@ fn known_places() {
     assert_eq!(
         shapes,
         [
-            // Both as large; the one of four edges first.
+            // Both are equally large. The one with four edges comes first.
             (Hole, 4, ([0.0, 0.0, 0.0], [1.0, 0.0, 1.0])),
             (Hole, 3, ([10.0, 20.0, 30.0], [11.0, 21.0, 30.0])),
             (Misoriented, 3, ([50.0, 51.0, 50.0], [51.0, 51.0, 51.0])),
@@ -403,7 +403,7 @@ fn slow(mesh: &TriangleMesh) -> ([u64; 10], Vec<MeshDefect>) {
         [u[1] * v[2] - u[2] * v[1], u[2] * v[0] - u[0] * v[2], u[0] * v[1] - u[1] * v[0]]
     };
     let flat: Vec<Vec<u32>> = triangles.iter().filter(|t| cross(t) == [0.0; 3]).map(|t| t.to_vec()).collect();
-    // Bodies hang together over edges.
+    // Bodies are connected over edges.
     let of_edges = |t: &[u32; 3]| -> Vec<u32> {
         let number = |a: u32, b: u32| edges.keys().position(|&k| k == (a.min(b), a.max(b))).unwrap() as u32;
         vec![number(t[0], t[1]), number(t[1], t[2]), number(t[2], t[0])]

@@ -248,7 +248,7 @@ fn balls_that_touch_the_lattice() {
                 let cell = frame.cell_size();
                 let centre = model(&frame, corner.map(|c| c as f64));
                 assert_exact(Definition::Ball { centre, radius: radius as f64 * cell }, &frame);
-                // A hair more or less must be noticed.
+                // Slightly larger or smaller radii must be noticed.
                 let radius = radius as f64 * cell;
                 assert_exact(Definition::Ball { centre, radius: radius.next_up() }, &frame);
                 assert_exact(Definition::Ball { centre, radius: radius.next_down() }, &frame);
@@ -294,7 +294,7 @@ fn planes_through_the_lattice() {
                     }
                 }
             }
-            // Through corners obliquely, and a hair beside them.
+            // Obliquely through corners, and slightly beside them.
             for normal in [[1.0, 1.0, 1.0], [1.0, -2.0, 3.0], [-0.5, -0.25, 1.0]] {
                 let corner = model(&level, [1.0, 2.0, 1.0]);
                 let at = -(normal[0] * corner[0] + normal[1] * corner[1] + normal[2] * corner[2]);
@@ -895,7 +895,7 @@ fn nothing_is_known_of_an_undecided_universe() {
         assert_is(&made(&callback, &frame, Rule::Inner), &Dense::uniform(depth, Tag::Empty));
         assert_is(&made(&callback, &frame, Rule::Outer), &Dense::uniform(depth, Tag::Full));
         assert!(matches!(build(&callback, &frame, Rule::Sampled, &alone()), Err(Error::NotSampled)));
-        // Cells that split for ever are undecided in the end, and merge.
+        // Cells that would split for ever end as undecided, and merge.
         let endless = Callback::new(|_, _| Ok(Verdict::Partial(())));
         assert_eq!(made(&endless, &frame, Rule::Certified), tree);
         let all = complement(tree.view(), &alone()).unwrap();
@@ -1059,7 +1059,7 @@ fn errors_of_a_solid_end_the_build() {
     struct Failing<'a>(&'a AtomicU64);
     impl Cubes for Failing<'_> {
         fn verdict(&self, _: &Cube<'_>) -> Result<Verdict<()>, Error> {
-            // The universe, and a thousand cells that were split.
+            // The universe, and a thousand split cells.
             match self.0.fetch_add(1, Ordering::Relaxed) {
                 8001 => Err(Error::OutOfMemory),
                 _ => Ok(Verdict::Partial(())),

@@ -238,7 +238,7 @@ fn what_cannot_be_summed_up_is_refused() {
     assert_eq!((all.volume, all.integral[0]), (Interval::exactly(512.0), Interval::exactly(1024.0)));
     let other = Octree::uniform(Frame::new([1.0; 3], 8.0, 3).unwrap(), Tag::Full, Tag::Empty).unwrap();
     assert!(matches!(view.summary(Some(other.view()), None, &alone()), Err(Error::FrameMismatch { .. })));
-    // Too many materials for anybody.
+    // More materials than anybody needs.
     let count =
         FunctionAttribute::new(1, |p| Some([p[0] + 16.0 * (p[1] + 16.0 * p[2]), 0.0, 0.0, 0.0])).unwrap();
     let frame = lattice_frame(5);

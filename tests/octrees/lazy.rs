@@ -433,7 +433,7 @@ proptest! {
                     } else if most.is_none() {
                         assert!(model.refine(&zone, None, level, &mut left) && done == Refinement::Done);
                     } else {
-                        // The order along a ray is another test's matter.
+                        // Another test checks the order along a ray.
                         assert!(lazy.splits() - before <= most.unwrap());
                         assert_eq!(lazy.refine(&zone, level, &alone()).unwrap(), Refinement::Done);
                         model.refine_all(&zone, level);
@@ -448,7 +448,7 @@ proptest! {
             }
         }
         compare(&lazy, &model);
-        // All that is left.
+        // Nothing more remains.
         assert_eq!(lazy.refine(&Zone::Whole, depth, &alone()).unwrap(), Refinement::Done);
         model.refine_all(&Zone::Whole, depth);
         compare(&lazy, &model);
@@ -473,7 +473,7 @@ fn solids(frame: &Frame) -> Vec<AnySolid> {
         let mesh = tetrahedron();
         TriangleMesh::new(mesh.vertices().to_vec(), mesh.triangles()[..3].to_vec()).unwrap()
     };
-    // Half-spaces, and solids that remember something else of a cell.
+    // Half-spaces, and solids whose parts contain other data.
     let mesh = AnySolid::new(MeshSolid::new(tetrahedron(), FillRule::NonZero).unwrap());
     let ball = Csg::ball([0.4; 3], 0.3).unwrap();
     let mixed = Csg::solid(mesh).difference(&ball).unwrap();
@@ -535,7 +535,7 @@ fn a_full_refinement_is_the_build_bit_for_bit() {
             // In a single pass nothing is queried twice.
             assert_eq!(lazy.replays(), 0);
 
-            // By and by, in an order that has to go back.
+            // Step by step, in an order that goes back.
             let mut lazy = LazyOctree::new(solid.clone(), &frame).unwrap();
             for level in 0..=depth {
                 for at in positions(level.min(2)).collect::<Vec<_>>().into_iter().rev() {
@@ -749,7 +749,7 @@ fn a_cell_that_nobody_can_split_is_asked_about_once() {
     assert!(!lazy.can_split(cell));
     assert_eq!(lazy.split(cell).unwrap(), [Tag::Partial; 8]);
     assert_eq!(lazy.splits(), ball.statistics().nodes());
-    // An octree that is taken up again forgot it, and has to ask.
+    // A resumed octree forgot it, and queries again.
     let octree = lazy.freeze(&alone()).unwrap();
     let frame = *lazy.frame();
     let mut lazy = LazyOctree::resume(&octree, *ball.view(), &frame, &alone()).unwrap();
@@ -943,7 +943,7 @@ fn a_ray_is_refined_from_its_beginning_on() {
         let origin = direction.map(|d: f64| 0.5 - 2.0 * d);
         let zone = Zone::Ray { origin, direction, from: 0.0, to: f64::INFINITY };
         let mut lazy = LazyOctree::new(&ball, &frame).unwrap();
-        // Enough for where it enters, not for where it leaves.
+        // Enough splits for the ray's entry, and not for its exit.
         let control = Control { max_splits: Some(24), ..alone() };
         assert_eq!(lazy.refine(&zone, 8, &control).unwrap(), Refinement::Spent);
         let at = |t: f64| [0, 1, 2].map(|axis| origin[axis] + t * direction[axis]);
@@ -984,7 +984,7 @@ fn cancelling_keeps_what_was_split() {
             let control = Control { cancel: Some(&cancelled), max_splits: limit, ..alone() };
             let mut lazy = LazyOctree::new(shape(), &frame).unwrap();
             assert!(matches!(lazy.refine(&Zone::Whole, 5, &control), Err(Error::Cancelled)));
-            // The call in which it happened was the last.
+            // The call that caused the cancel was the last one.
             assert!(calls.load(Ordering::Relaxed) <= after + 9);
             let splits = lazy.splits();
             let volume = lazy.freeze(&alone()).unwrap().statistics().volume();
@@ -1053,7 +1053,7 @@ fn progress_ends_at_one() {
     }
 }
 
-// ---- taken up by the wrong one --------------------------------------------------------------------------
+// ---- resumed by the wrong solid -------------------------------------------------------------------------
 
 #[test]
 fn another_source_is_refused() {
@@ -1072,7 +1072,7 @@ fn another_source_is_refused() {
     let mut crc = Metadata::new();
     crc.insert("source", "crc32:00000000 bytes:12");
     mismatch(resume(&octree.with_metadata(crc), &frame));
-    // Built, not frozen: it has no source until somebody says so.
+    // Built and not frozen: the tree has no source until a caller states one.
     let built = build(&ball, &frame, Rule::Certified, &alone()).unwrap();
     mismatch(resume(&built, &frame));
     resume(&built.with_metadata(octree.metadata().clone()), &frame).unwrap();

@@ -316,7 +316,7 @@ fn cells_that_are_none_are_refused() {
         assert!(matches!(faces.seek(cell), Err(Error::Argument { name: "cell", .. })));
     }
     assert_eq!(cursor.cell(), Cell { level: 3, at: [2, 7, 1] });
-    // The part of a leaf that is looked for leads to the leaf.
+    // A cell within a leaf leads to the leaf.
     assert!(!cursor.seek(Cell { level: 3, at: [7, 7, 7] }).unwrap());
     assert_eq!((cursor.cell(), cursor.tag()), (Cell { level: 1, at: [1, 1, 1] }, Tag::Empty));
 }

@@ -475,7 +475,7 @@ fn what_is_said_of_a_tree() {
     let zero = Proof::CERTIFIED.with_displacement(-0.0).unwrap();
     assert_eq!(zero.displacement().to_bits(), 0);
 
-    // The classifier says it, erased or not, counted or not.
+    // The classifier states the proof, in all wrappers.
     let on = |solid: &AnySolid| solid.on(&frame(4), &CONTROL).unwrap().proof();
     assert_eq!(on(&AnySolid::new(said.clone())), said.proof());
     assert_eq!(on(&AnySolid::new(ball)), Proof::CERTIFIED);
@@ -544,7 +544,7 @@ fn displacements() {
     assert_eq!(exact.proof(), Proof::CERTIFIED);
     let far = exact.with_proof(Proof::CERTIFIED.with_displacement(0.25).unwrap());
 
-    // The greatest of the operands.
+    // The greatest displacement of the operands.
     for (a, b, greatest) in
         [(&sewn, &exact, moved), (&sewn, &far, 0.25), (&far, &exact, 0.25), (&exact, &exact, 0.0)]
     {

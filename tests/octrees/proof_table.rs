@@ -737,7 +737,7 @@ const WAYS: &[Way] = &[
         proven: ITSELF,
     },
     Way {
-        // A mesh is a solid of its own, the region inside of its triangles.
+        // A mesh is a solid of its own, the region inside its triangles.
         name: "mesh of an octree",
         through: &["MeshSolid", "solid/mesh/mesh_solid.rs new"],
         make: |a| {
@@ -1054,7 +1054,7 @@ fn what_comes_out_is_what_the_table_says_and_true() {
     assert!(seen > WAYS.len(), "{seen} of {} ways", WAYS.len());
 }
 
-// ---- that the table is complete -------------------------------------------------------------------------
+// ---- the completeness of the table ----------------------------------------------------------------------
 
 /// Files whose functions make solids of numbers or of other programs' files, or whose solids the program's
 /// own table compares with the truth (`cli/tests/program/proof_table.rs`).

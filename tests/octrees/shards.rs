@@ -69,7 +69,7 @@ fn check<S: Solid>(solid: &S, frame: &Frame, way: Way, level: u8) {
     for cell in cut[0].view().open_cells(level).unwrap() {
         let one = shard(whole.view(), Shard::Below(cell), &alone()).unwrap();
         one.view().check().unwrap();
-        // The same as is built, where the cell is split at all.
+        // The same trees as the built ones, where the cell is split at all.
         if one.statistics().levels()[usize::from(cell.level)].nodes > 0 {
             let built = way.shard(solid, frame, Shard::Below(cell));
             assert!(bytes(&built) == bytes(&one), "{way:?}, {cell:?}");

@@ -433,7 +433,7 @@ proptest! {
         let records = VoxelRecords::of(tree.view(), &options, None, &alone()).unwrap();
         let tag = if binary { Tag::Full } else { Tag::Partial };
         let again = records.view().to_octree(tag, &alone()).unwrap();
-        // The same tree, as deep as records were looked for, on a lattice that is as deep as records go.
+        // The same tree, as deep as the tests search records, on a lattice as deep as records allow.
         let level = if binary { dense.depth } else { boundary.min(dense.depth).max(1) };
         let depth = records.view().frame().depth();
         let mut expected = dense.cut(level);
@@ -516,7 +516,7 @@ proptest! {
         let scale = 1i32 << (fine - depth);
         let moved = view.moved(symmetry, offset.map(|a| a * scale), &alone()).unwrap();
         check_arrays(&moved);
-        // Where a cell comes from, on a lattice of so many cells.
+        // The source of a cell, on a lattice of this many cells.
         let from = |at: [i32; 3], scale: i32| -> Option<[u32; 3]> {
             let mut old = [0; 3];
             for axis in 0..3 {
@@ -661,7 +661,7 @@ fn maps_that_take_cells_to_cells() {
 /// True if a cube may hide part of another cube, seen from an eye or along a direction.
 fn hides(front: [[f64; 3]; 2], back: [[f64; 3]; 2], from: &Viewpoint) -> bool {
     match *from {
-        // Moved on along the direction, for some t > 0, the front one meets the back one.
+        // The front cube, moved along the direction for some t > 0, meets the back one.
         Viewpoint::Parallel(direction) => {
             let (mut first, mut last) = (0.0f64, f64::INFINITY);
             for axis in 0..3 {
@@ -678,7 +678,7 @@ fn hides(front: [[f64; 3]; 2], back: [[f64; 3]; 2], from: &Viewpoint) -> bool {
             }
             first < last
         }
-        // Blown up about the eye, by some s > 1, the front one meets the back one.
+        // The front cube, scaled about the eye by some s > 1, meets the back one.
         Viewpoint::Perspective(eye) => {
             let (mut first, mut last) = (1.0f64, f64::INFINITY);
             for axis in 0..3 {
@@ -833,7 +833,7 @@ mod triangles {
         ) {
             let dense = shape.dense();
             let records = some_records(&dense, boundary, true, None);
-            // On the half-integers, where many only touch, or on a grid of 1/64 of cells.
+            // On half-integers, where many pairs only touch, or on a grid of 1/64 of cells.
             let step = if fine { 1.0 / 64.0 } else { 0.5 };
             let number = |k: i32| f64::from(k) * step * if fine { 29.0 } else { 1.0 };
             let vertices: Vec<[f64; 3]> =

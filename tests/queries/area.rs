@@ -45,7 +45,7 @@ fn primitives() -> Vec<(&'static str, Csg, f64)> {
     };
     let (r, s, h) = (0.8, 0.3, 1.7);
     let ell = [[0.0, 0.0], [2.0, 0.0], [2.0, 1.0], [1.0, 1.0], [1.0, 2.0], [0.0, 2.0]];
-    // The slope of a wedge goes from a width of 1.5 to one of 0.4.
+    // The slope of a wedge narrows from a width of 1.5 to a width of 0.4.
     let slope = f64::hypot(1.5 - 0.4, 1.2);
     vec![
         ("ball", of(Csg::ball([0.1, 0.2, 0.3], 1.5)), 4.0 * PI * 2.25),
@@ -362,7 +362,7 @@ fn an_area_without_an_upper_bound_meets_no_tolerance() {
 #[test]
 fn a_mesh_that_intersects_itself_has_the_area_of_what_it_encloses() {
     let found = surface_area(&intersecting_cubes(), &frame(), 1e-2, &Control::default()).unwrap();
-    // Less two pieces of the faces inside of the other cube, each 0.63².
+    // Minus two pieces of the faces inside the other cube, each 0.63².
     holds(&found, 12.0 - 6.0 * 0.63 * 0.63, "intersecting cubes");
 }
 

@@ -254,7 +254,7 @@ fn random_pairs(count: u64, seed: u64) {
         check(&found, distance.lower, 16.0, &text);
         wide += u64::from(distance.width() > 1e-3);
         spent += u64::from(distance.width() > 1e-5);
-        // Points lie in the solids, but for rounding.
+        // Points lie in the solids, up to rounding.
         if let Some([p, q]) = found.points {
             assert!(
                 length(minus(a.nearest(p), p)) < 1e-11 && length(minus(b.nearest(q), q)) < 1e-11,

@@ -282,7 +282,7 @@ fn nested_meshes() {
     assert_eq!(found.stop_reason, StopReason::Tolerance);
     let gap = gap_at_least(&solid(&shell), &solid(&small), &frame, 1.2, &alone()).unwrap();
     assert_eq!(gap.verdict, GapVerdict::Yes);
-    // Within the massive ball, though triangles are as far apart.
+    // Within the massive ball, though its triangles are far away.
     for (a, b) in [(&large, &small), (&small, &large)] {
         let found = clearance(&solid(a), &solid(b), &frame, 1e-3, &alone()).unwrap();
         assert!(found.distance.upper == 0.0 && found.depth > 0.5, "{found:?}");
@@ -402,12 +402,12 @@ fn parallel_faces_and_slivers() {
     let found = clearance(&solid(&a), &solid(&b), &frame, 0.0, &alone()).unwrap();
     check(&found, 0.5, 1e-12, "fans");
     assert!(found.distance.width() <= 1e-11, "{found:?}");
-    // A share of the budget proves a part.
+    // A part of the budget proves a part.
     let few = Control { max_splits: Some(1), ..alone() };
     let found = clearance(&solid(&a), &solid(&b), &frame, 0.0, &few).unwrap();
     assert!(found.distance.lower <= 0.5 && found.distance.upper >= 0.5, "{found:?}");
     assert_eq!(found.stop_reason, StopReason::Budget);
-    // A triangle without area, and a vertex that no triangle has.
+    // A triangle without area, and a vertex without triangles.
     let mut vertices = cuboid([0.0; 3], [1.0; 3]).vertices().to_vec();
     let mut triangles = cuboid([0.0; 3], [1.0; 3]).triangles().to_vec();
     vertices.push([0.5, 0.0, 0.0]);

@@ -249,7 +249,7 @@ fn regions_of_every_kind() {
     // For a mesh, little is known in the 180 cells where faces meet.
     is_near(of_mesh, 270.0);
     assert_eq!(tree.cells_in(&mesh, &alone()).unwrap(), tree.cells_in(&cuboid, &alone()).unwrap());
-    // Any region is as the octree of its verdicts.
+    // Any region equals the octree of its verdicts.
     macro_rules! same {
         ($region:expr) => {{
             let built = build($region, &frame, Rule::Certified, &alone()).unwrap();

@@ -87,7 +87,7 @@ fn boxes_moved_and_turned() {
     let a = Csg::cuboid([-1.0; 3], [1.0; 3]).unwrap();
     let moved = Csg::cuboid([-0.9, -0.8, -1.0], [1.1, 1.2, 1.0]).unwrap();
     let truth = f64::hypot(1.1 - 1.0, 1.2 - 1.0);
-    // A corner of the one is as far from the other as the edges are moved, beyond them; inside, as far as the
+    // A corner of one box is as far outside the other box as the edges are moved. Inside, it is as far as the
     // nearer face.
     holds(&ask(&a, &moved, &frame, 1e-6), [truth, truth], 1e-6);
     // Faces in planes of the lattice.
@@ -99,7 +99,7 @@ fn boxes_moved_and_turned() {
         // The edge at 45 degrees is rotated beyond a face.
         let truth = 2f64.sqrt() * (PI / 4.0 - angle).cos() - 1.0;
         let found = ask(&a, &a.placed(&turn).unwrap(), &frame, 1e-5);
-        // Inside, the middle part of the faces is nowhere as far.
+        // Inside, the middle part of the faces is nowhere equally far.
         holds(&found, [truth, truth], 1e-5);
     }
 }
@@ -240,7 +240,7 @@ fn beside_samples(a: TriangleMesh, b: TriangleMesh, tolerance: f64, count: usize
     for (way, from, to) in [(found.a_to_b, &a, &b), (found.b_to_a, &b, &a)] {
         let most = sampled(from, to, count);
         assert!(most <= way.distance.upper * (1.0 + 1e-12), "{most} {way:?}");
-        // So many points miss the farthest one by little.
+        // With so many points, the farthest one is missed only slightly.
         assert!(way.distance.lower - most <= 0.1 * way.distance.lower, "{most} {way:?}");
         // The witness is a point of the surface, and that far away.
         let at = way.at.unwrap();
@@ -268,7 +268,7 @@ fn two_meshes_beside_a_sampler_with_a_million_points() {
 
 #[test]
 fn bodies_that_overlap_count_by_their_union() {
-    // The walls of both inside of each other are no boundary.
+    // The inner walls of both solids are no boundary.
     let block = |low: f64, high: f64| {
         let corner = |k: usize| {
             [
@@ -293,7 +293,7 @@ fn bodies_that_overlap_count_by_their_union() {
     // The solids cannot tell that inner walls do not belong to the boundary. These walls widen the interval.
     assert!(found.a_to_b.distance.contains(0.0) && found.b_to_a.distance.contains(0.0), "{found:?}");
     assert!(found.a_to_b.distance.upper < 0.6 && found.b_to_a.distance.upper < 0.05, "{found:?}");
-    // Walls that cross at lines: all of the union is known but next to these.
+    // Walls that cross at lines. All of the union is known except near these lines.
     let bar = |turn: usize| {
         let corner = |k: usize| {
             [0, 1, 2].map(|axis| {

@@ -139,7 +139,7 @@ const CONSUMERS: [Consumer; 17] = [
         },
     },
     Consumer {
-        // It ends as soon as the tolerance is met: how far below the width then is, is chance.
+        // It ends as soon as the tolerance is met. The final width below the tolerance is arbitrary.
         name: "clearance",
         factor: 2.0,
         ask: |solid, frame| {

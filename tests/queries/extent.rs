@@ -159,7 +159,8 @@ fn intervals_hold_the_formulas_at_every_budget() {
             });
             for depth in [1, 4, 20] {
                 let frame = frame_around(&placed, depth);
-                // Where a curved side is touched along a line or a circle, each level takes twice the splits.
+                // Where a plane touches a curved side along a line or a circle, each level takes twice the
+                // splits.
                 let tolerance = if round == 0 { 1e-4 } else { 1e-9 } * frame.edge();
                 // The formulas are rounded.
                 let slack = 1e-13 * (frame.edge() + 20.0);
@@ -250,8 +251,8 @@ fn polytopes_against_their_corners() {
             assert!(found.corners.is_none(), "round {round}, {points:?}: {found:?}");
             continue;
         }
-        // Where a sliver is so thin that more than three planes meet in a finest cell, a corner may lie as
-        // far along it as faces at a thousandth of a radian let it.
+        // A sliver may be so thin that more than three planes meet in a finest cell. Then a corner may lie
+        // along the sliver as far as faces at a thousandth of a radian allow.
         if found.stop_reason != StopReason::Tolerance {
             slivers += 1;
             assert!(found.stop_reason == StopReason::Exhausted && round % 3 == 0, "round {round}: {found:?}");
@@ -261,7 +262,7 @@ fn polytopes_against_their_corners() {
         let truth = farthest(points);
         for (k, side) in sides(&found).into_iter().enumerate() {
             let truth = truth(outward(k));
-            // As far as slivers let the corners be known.
+            // The precision with which slivers determine the corners.
             assert!(
                 side.lower - 1e-7 <= truth && truth <= side.upper + 1e-7,
                 "round {round}, side {k}, {truth}: {found:?}"

@@ -52,7 +52,7 @@ fn two_balls_take_eighty_splits_at_most() {
         check_ball(&over, &frame, "balls");
         let ball = over.ball.unwrap();
         assert!([50.0, 83.0].iter().all(|&c| distance(ball.centre, [c; 3]) + ball.radius <= 30.0));
-        // Other implementations of the same shapes, which know no surfaces, take the cells alone.
+        // Other implementations of the same shapes, without surfaces, provide only cells.
         for (at, expected) in [(86.0, &apart), (83.0, &over)] {
             let found = interference(&plain(50.0), &plain(at), &frame, PROOF, &alone()).unwrap();
             assert_eq!(found.verdict, expected.verdict);
@@ -79,7 +79,7 @@ fn a_shaft_in_a_ring() {
     // Both continue outside the universe, where they might overlap.
     assert_eq!((found.verdict, found.clipped), (Overlap::Undecided, true));
     assert_eq!((found.volume.lower, found.volume.upper), (0.0, f64::INFINITY));
-    // One that is cut off at the universe does not.
+    // A solid cut off at the universe cannot overlap there.
     let universe = Csg::cuboid([0.0; 3], [128.0; 3]).unwrap();
     let cut = Csg::intersection_of([rod(20.0), universe]).unwrap();
     let found = interference(&cut, &ring, &frame, PROOF, &alone()).unwrap();
@@ -388,7 +388,7 @@ fn random_trees_in_random_places() {
         let sides = |p| (a.side(p), b.side(back(&placement, p)));
         let (first, second) = (a.csg(), b.csg());
         let text = format!("case {case}");
-        // Placed by itself, and by way of its cells.
+        // Placed exactly, and by its cells.
         for tolerance in [PROOF, 0.05] {
             let control = up_to(20_000);
             let found =
@@ -436,7 +436,7 @@ fn random_trees_in_random_places() {
             assert!(distance(points[0], points[1]) <= near.distance.upper + 1e-12, "{text}: {near:?}");
         }
     }
-    // Hardly any is left undecided.
+    // Hardly any pair is left undecided.
     assert!(counts[0] > 5 && counts[1] > 5 && counts[2] < 5, "{counts:?}");
 }
 
@@ -589,7 +589,8 @@ fn a_mesh_in_other_places() {
                 assert!(tree.statistics().volume().contains(volume), "{case}");
                 assert_eq!(tree.view().exterior(), Tag::Empty);
             }
-            // Cells that one proves the other one proves, too, or leaves open; and moved vertices blur less.
+            // Decisions by one kind of cells are confirmed or left open by the other kind, and moved vertices
+            // blur less.
             for (a, b) in Dense::of(x.view()).tags.iter().zip(&Dense::of(y.view()).tags) {
                 let contradiction = matches!((a, b), (Tag::Full, Tag::Empty) | (Tag::Empty, Tag::Full));
                 assert!(!contradiction, "{case}");
@@ -612,11 +613,11 @@ fn a_mesh_against_itself() {
     let longest = extent.iter().copied().fold(0.0, f64::max);
     let solid = MeshSolid::new(mesh, FillRule::NonZero).unwrap();
     let tree = build(&solid, &around, Rule::Certified, &Control::default()).unwrap();
-    // In its own place it overlaps itself wholly.
+    // At its own place it overlaps itself entirely.
     let found = interference(&solid, &tree, &around, 0.0, &up_to(2_000_000)).unwrap();
     assert_eq!(found.verdict, Overlap::Overlapping);
     assert!(found.volume.contains(volume) && found.volume.width() < 0.25 * volume, "{found:?}");
-    // Moved by its own extent it touches itself at most.
+    // Moved by its own extent, it touches itself at most.
     for axis in 0..3 {
         let mut offset = [0.0; 3];
         offset[axis] = extent[axis];
@@ -631,7 +632,7 @@ fn a_mesh_against_itself() {
     let mut counts = [0; 3];
     for case in 0..30 {
         let turn = rigid(&mut random, 0.0);
-        // About the centre, then off by up to a whole length.
+        // About the centre, then moved by up to a whole length.
         let centre = [0, 1, 2].map(|axis| 0.5 * (min[axis] + max[axis]));
         let turned = turn.apply(centre);
         let mut rows = *turn.rows();

@@ -108,7 +108,7 @@ fn eight_blocks() {
     let all = splits(&container) + blocks.iter().map(splits).sum::<u64>();
     assert!(all <= 52, "{all}");
     assert_proven(&layout);
-    // By plain numbers: all corners are in the box, and no two blocks have inner points in common.
+    // In plain numbers: all corners are in the box, and no two blocks have common inner points.
     let boxes: Vec<[[f64; 3]; 2]> = layout
         .placed()
         .iter()

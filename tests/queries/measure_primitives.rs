@@ -236,7 +236,7 @@ fn intervals_hold_the_formulas() {
             // Each level halves the unknown volume, approximately.
             let rounding = 1e-10 * placed.volume;
             assert!(widths[5] < (0.4 * widths[3]).max(rounding), "{name}: {widths:?}");
-            // Pass by pass, until hardly more is in doubt than comes of rounding.
+            // Pass by pass, until the uncertainty is mostly rounding.
             let frame = around(&placed.solid, 20);
             for most in (0..16).step_by(3).map(|log| 1 << log) {
                 let control = Control { max_splits: Some(most), ..Control::default() };

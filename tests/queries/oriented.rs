@@ -363,7 +363,7 @@ fn what_is_no_whole_octree_is_searched_by_cells() {
             let found = at(a, b, &[placement])[0];
             let by_cells =
                 interference(a, &Transform::new(b, &frame, &placement), &frame, PROOF, &alone()).unwrap();
-            // (Bounds, which are known of one of both, may let another ball be found.)
+            // (Bounds known for only one of the two may lead to another ball.)
             let all = |found: &Interference| (found.verdict, found.splits, found.level, found.clipped);
             assert_eq!(all(&found), all(&by_cells));
         }

@@ -212,7 +212,7 @@ fn all_operations(depth: u8) -> Vec<Told> {
     heard.of("solid of dexels", |control| DexelSolid::new(model.view(), control));
     heard.of("voxels of dexels", |control| dexel_voxels(model.view(), &[], control));
 
-    // Questions.
+    // Queries.
     let mut random = Random(7);
     let mut point = || [0; 3].map(|_| random.between(-0.9, 0.9));
     let points: Vec<[f64; 3]> = (0..40_000).map(|_| point()).collect();

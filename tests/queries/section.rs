@@ -184,7 +184,7 @@ fn widths_fall_with_the_square_of_the_splits() {
             println!("{name}: {coarse:e} {fine:e} {slope}");
             assert!(slope < -1.75, "round {round}, {name}: {coarse} {fine} {slope}");
         }
-        // To six digits, then to twelve less some.
+        // To six digits, then to about twelve.
         let splits = |tolerance: f64| {
             ask(&Csg::ball([0.1, 0.2, 0.0], 0.8).unwrap(), &frame, &plane, tolerance, &alone()).splits
         };
@@ -571,7 +571,7 @@ fn planes_outside_of_the_universe_have_no_area() {
         let solid = Csg::ball([0.0, 3.0, 1.3], 0.9).unwrap().complement();
         let centre = DVec3::new(0.0, 3.0, 1.3);
         let normal = if round % 4 == 0 { DVec3::AXES[round % 3] } else { vector(&mut random) };
-        // Beyond the farthest corner, just so or by far.
+        // Beyond the farthest corner, slightly or far.
         let reach = normal.abs().element_sum() / normal.length();
         let far = [1.0 + 1e-12, 1.5, 1e9, 1e60][(round / 4) % 4];
         let plane = Plane { point: centre + normal.normalize() * reach * far, normal };
@@ -603,7 +603,7 @@ fn budgets_tolerances_and_depths() {
     let shallow = deep.with_depth(1).unwrap();
     let found = ask(&ball, &shallow, &plane, 0.0, &alone());
     assert_eq!((found.splits, found.stop_reason), (1, StopReason::Exhausted));
-    // To the last bit that rounding leaves it ends, one way or the other.
+    // With the tolerance at the last bit that rounding leaves, the search ends, one way or the other.
     let found = ask(&ball, &deep, &plane, 0.0, &limited(SECTION_SPLITS / 8));
     assert!(found.splits <= SECTION_SPLITS / 8 && found.area.width() < 1e-8, "{found:?}");
     // The same for any number of threads, any length of the normal, and either direction.

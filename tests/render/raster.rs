@@ -205,7 +205,7 @@ const GLASS: [u8; 4] = [80, 120, 200, 64];
 /// its vertices lie.
 #[test]
 fn closed_meshes_have_no_cracks() {
-    // Far less than a pixel a triangle.
+    // Triangles far smaller than a pixel.
     let fine = ball(150);
     fine.check_closed(leafless::FillRule::NonZero).unwrap();
     for lens in [Lens::Perspective(40.0), Lens::Parallel(2.0)] {
@@ -412,7 +412,7 @@ fn faces_in_clip_planes_are_shown() {
             let cut = Shot { clip: Clip::new().within(&bounds).unwrap(), ..whole.clone() };
             let [whole, cut] = [whole, cut].map(|shot| take(&shot, &[&MeshLayer::new(&mesh)]));
             let differ = whole.depths().iter().zip(cut.depths()).filter(|(a, b)| a != b).count();
-            // Only a line of sight along an edge may miss the box itself.
+            // Only a line of sight along an edge may miss the box entirely.
             assert!(differ <= 2, "{from:?} {lens:?}: {differ}");
         }
     }
@@ -517,7 +517,7 @@ fn edges_of_small_triangles_fade() {
         let layer = MeshLayer::new(&mesh).edges(edges, 1.0, [0, 0, 0, 255]);
         take(&Shot { samples: 16, ..shot(front(2.0), [120, 120]) }, &[&layer])
     };
-    // The part of the light that the edges take away, in the middle of the picture.
+    // The part of the light absorbed by the edges, in the middle of the picture.
     let darker = |pixels: f64| {
         let light = |edges| -> f64 {
             let picture = picture(pixels, edges);
@@ -569,7 +569,7 @@ fn lines_cover_what_they_should() {
         let shot = shot(camera, size.map(|side| side as u32));
         let lines = [ends];
         let picture = take(&shot, &[&LinesLayer::new(&lines).width(width)]);
-        // Its ends in the picture, by search for the lines of sight through them.
+        // Its ends in the picture, found by a search for the lines of sight through them.
         let seen = ends.map(|end| {
             let from = add(end, camera.eye(), -1.0);
             let [x, y, z] = [camera.right(), camera.up(), camera.forward()].map(|axis| dot(from, axis));

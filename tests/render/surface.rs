@@ -97,7 +97,7 @@ fn balls_are_where_they_are() {
             for (at, colour, depth) in pixels(&picture) {
                 let (from, along) = line(&shot.camera, at);
                 let (times, near) = meets([from, along], RADIUS);
-                // Near the silhouette cells hide a little more, and depths are anything.
+                // Near the silhouette, cells hide slightly more, and depths are arbitrary.
                 if (near - RADIUS).abs() < 2.0 * cell + 2e-3 {
                     continue;
                 }
@@ -142,7 +142,7 @@ fn what_is_cut_open_is_flat() {
             let point = [0, 1, 2].map(|axis| from[axis] + t * along[axis] - CENTRE[axis]);
             let off = dot(point, point).sqrt() - RADIUS;
             if off < -2.0 * cell {
-                // All of one brightness, and of no green.
+                // Uniform brightness, and no green.
                 assert!(
                     (depth - t).abs() < 1e-5 && colour[0] > 90 && colour[1] == 0,
                     "{at:?} {colour:?} {depth} {t}"
@@ -236,7 +236,7 @@ fn layers_hide_each_other() {
     let octree = OctreeLayer::new(tree.view(), Finish { colour: [0, 255, 0, 255], ..Finish::default() });
     let behind = render(&shot, &[&mesh, &octree], &alone()).unwrap();
     assert_eq!(behind, render(&shot, &[&octree, &mesh], &alone()).unwrap());
-    // A layer's own clip leaves the other one whole.
+    // A layer's own clip does not affect the other layer.
     let clipped = ClippedLayer::new(&octree, Clip::new().plane([0.0, 1.0, 0.0, 0.0]).unwrap());
     let front = render(&shot, &[&mesh, &clipped], &alone()).unwrap();
     let middle = (SIZE[1] / 2 * SIZE[0] + SIZE[0] / 2) as usize;
@@ -247,7 +247,7 @@ fn layers_hide_each_other() {
 
 #[test]
 fn eyes_may_be_anywhere() {
-    // From very far away a time says little of a place in the solid.
+    // From very far away, a time does not determine a place in the solid.
     let solid = ball();
     let tree = build(&solid, &frame(8), Rule::Certified, &alone()).unwrap();
     let layers: [&dyn Layer; 2] = [
@@ -330,7 +330,7 @@ fn faces_of_the_universe_are_flat() {
     for (at, colour, depth) in pixels(&picture).filter(|pixel| pixel.2.is_finite()) {
         let (from, along) = line(&camera, at);
         let point = [0, 1, 2].map(|axis| from[axis] + depth * along[axis]);
-        // At an edge normals turn.
+        // Normals turn at an edge.
         let near = |axis: usize| point[axis].abs() > 1.0 - 12.0 * frame(7).cell_size();
         let faces: Vec<usize> = (0..3).filter(|&axis| near(axis)).collect();
         if let &[axis] = &faces[..] {
@@ -397,8 +397,8 @@ fn edges_are_drawn_where_faces_meet() {
     let edges = Some(Outline { width: 2.0, colour: [255, 0, 0, 255], crease: 40.0 });
     let finish = Finish { edges, ..Finish::default() };
     let trees = [8, 7].map(|depth| build(&block, &frame(depth), Rule::Certified, &alone()).unwrap());
-    // How far ink may be from an edge, and how much must be ink so near to it. Cells of a third of a pixel,
-    // or two, move it.
+    // The greatest distance of ink from an edge, and the amount of ink required near it. Cells of a third of
+    // a pixel, or of two pixels, shift it.
     let layers: [(&dyn Layer, f64, f64, f64); 3] = [
         (&SolidLayer::new(&block, &frame(7), finish), 1.2, 1.0, 0.7),
         (&OctreeLayer::new(trees[0].view(), finish), 1.6, 0.97, 0.4),
@@ -498,7 +498,7 @@ fn nothing_and_everything() {
         let picture = render(&shot, &[&OctreeLayer::new(full.view(), Finish::default())], &control).unwrap();
         assert!(picture.depths()[16 * 32 + 16].is_finite() && picture.depths()[0].is_infinite());
     }
-    // From within.
+    // From inside.
     let full = build(&Csg::ball([0.0; 3], 9.0).unwrap(), &frame(4), Rule::Certified, &control).unwrap();
     let inside = Camera::new([0.1; 3], [1.0, 0.0, 0.0], [0.0, 0.0, 1.0], Lens::Perspective(60.0)).unwrap();
     let finish = Finish { cut: [255, 0, 0, 255], ..Finish::default() };
@@ -545,7 +545,7 @@ fn an_extended_tree_is_shown_as_its_source() {
         let differ = |(a, b): &(&[u8; 4], &[u8; 4])| a.iter().zip(*b).any(|(a, b)| a.abs_diff(*b) > 2);
         let others = own.colours().iter().zip(source.colours()).filter(differ).count();
         assert!(others < 30, "{others}");
-        // Something is seen of it, and through the bores.
+        // A part of it is visible, also through the bores.
         let covered = own.colours().iter().filter(|&&colour| colour != shot.background).count();
         assert!((5_000..20_000).contains(&covered), "{covered}");
     }

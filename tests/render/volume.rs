@@ -205,7 +205,7 @@ impl Oracle<'_> {
             let (from, along) = line(&shot.camera, shot.size, x, y);
             let expected = self.pixel(from, along, shot.background);
             for k in 0..3 {
-                // Half a step of rounding, and a little for single precision.
+                // Half a step of rounding, and a margin for single precision.
                 let off = (f64::from(colour[k]) - expected[k]).abs();
                 assert!(off < 0.51, "{x} {y}: {colour:?} {expected:?} by {shot:?}, {:?}", self.compositing);
             }
@@ -484,7 +484,7 @@ fn colours_are_those_of_the_map() {
         assert!((0..240).step_by(16).all(|i| brightness(i) < brightness(i + 15)), "{map:?}");
     }
     assert_eq!(ColourMap::default(), ColourMap::Viridis);
-    // As matplotlib has them.
+    // The values of matplotlib.
     assert_eq!(ColourMap::Viridis.colour(0.0), [0x44, 0x01, 0x54]);
     assert_eq!(ColourMap::Viridis.colour(1.0), [0xfd, 0xe7, 0x25]);
     assert_eq!(ColourMap::Grey.colour(0.5), [128; 3]);

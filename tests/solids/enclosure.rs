@@ -105,7 +105,7 @@ fn walk(model: &Model, frame: &Frame, csg: &Csg, points: u64, random: &mut Rando
         if children.is_empty() {
             return;
         }
-        // Half of the ways lead to where surfaces meet.
+        // Half of the descents lead to places where surfaces meet.
         let slabs = |(cell, part): &(Cell, _)| {
             way.worker.enclosure(*cell, part).unwrap().map_or(0, |e| known(&e).count())
         };
@@ -459,7 +459,7 @@ fn tight(name: &str, share: f64, make: impl Fn(&mut Maker<'_>) -> Model) {
             let centre = cell.at.map(|i| (2 * i + 1) as f64 * half - 1.0);
             let (gradient, second) = derivatives(&model, centre, half);
             let largest = |v: [f64; 3]| v.iter().fold(0.0, |m: f64, c| m.max(c.abs()));
-            // In units of the function, where it does not nearly stand still.
+            // In units of the function, where its gradient is not nearly zero.
             if largest(gradient) > 1e-3 * half * second && second.is_finite() {
                 let enclosure = way.worker.enclosure(cell, &way.part).unwrap().expect("a half-space");
                 let slab = enclosure.slabs[0];

@@ -237,8 +237,8 @@ fn lazy_octrees_never_replay_and_use_threads() {
     assert_eq!(calls.boxes.load(Relaxed), 8 * lazy.splits() + 1);
     assert!(calls.threads() >= 4);
     assert_eq!(lazy.replays(), 0);
-    // The same cells as one thread splits, in the same octree; also under a budget.
-    // (A limit on bytes has it split cell by cell.)
+    // The same split cells as with one thread, in the same octree; also under a budget. (A limit on bytes
+    // makes it split cell by cell.)
     let serial = Control { max_bytes: Some(1 << 40), ..Control::threads(1) };
     let mut alone = LazyOctree::new(host(&Arc::default(), Duration::ZERO, false), &frame).unwrap();
     alone.refine(&Zone::Whole, 4, &serial).unwrap();
@@ -314,7 +314,7 @@ fn a_cancel_waits_for_the_calls_under_way() {
         let solid = host(&calls, pause, false);
         let done = cancelled(&calls, |control| work(solid, frame, control));
         assert!(matches!(done, Err(Error::Cancelled)), "{name}: {done:?}");
-        // Each of three threads may have looked at the flag just before, and then begins its last call.
+        // Each of three threads may have checked the flag just before, and then begins its last call.
         assert!(calls.late.load(Relaxed) <= 3, "{name}: {} calls", calls.late.load(Relaxed));
     }
 }

@@ -123,7 +123,7 @@ fn products(solid: &AnySolid, frame: &Frame, truth: f64, tolerances: &[f64]) -> 
 #[test]
 fn volumes_converge_with_the_number_of_splits() {
     let truth = 4.0 / 3.0 * PI * RADIUS.powi(3);
-    // The slabs that half-spaces give of the same ball, without their moments, make it that.
+    // The result equals that of the slabs of half-spaces for the same ball, without their moments.
     const HALF_SPACE: f64 = 6.8;
     for (name, solid) in [
         ("gradient", shape(ball, true)),
@@ -135,7 +135,7 @@ fn volumes_converge_with_the_number_of_splits() {
         let found = products(&solid, &universe(20), truth, &[1e-1, 1e-2, 1e-3]);
         assert!(found[2] < 3.0 * found[0] && found[2] < 6.0 * HALF_SPACE, "{name}: {found:?}");
     }
-    // Without help the width goes down with the square root of the splits.
+    // Without the gradient, the width falls with the square root of the splits.
     let alone = products(&shape(ball, false), &universe(20), truth, &[0.5, 0.1]);
     assert!(alone[1] > 3.0 * alone[0], "{alone:?}");
 }
@@ -279,7 +279,7 @@ fn nonsense_says_nothing() {
     ] {
         assert_eq!(told(bad), 0, "{bad:?}");
     }
-    // Extreme numbers are numbers.
+    // Extreme numbers are valid.
     for extreme in [1e-308, 1e-160, 1e160, 1e308] {
         told(TangentBalls { normal: [extreme, -extreme, 0.0], ..balls });
         told(TangentBalls { point: [extreme; 3], ..balls });

@@ -14,5 +14,5 @@ mod moments;
 mod transform;
 mod volume;
 
-// Where the body of the fuzz target expects the model.
+// The path at which the body of the fuzz target expects the model.
 use csg::{model, random};

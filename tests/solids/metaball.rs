@@ -68,7 +68,7 @@ fn what_it_says_of_cells_is_true() {
             slabs += u32::from(known.is_some());
             for _ in 0..4 {
                 let x = [0; 3].map(|_| random.below(17) as f64 / 8.0 - 1.0);
-                // Slabs speak of the open cell.
+                // Slabs describe the open cell.
                 let x = x.map(|x| x.clamp(-0.96875, 0.96875));
                 let truth = sign(&solid.balls, point(way.cell, x));
                 let said = known.map_or(0, |known| told(&known, x));
@@ -99,7 +99,7 @@ fn what_it_says_of_cells_is_true() {
             }
         }
     }
-    // The law is not kept by silence.
+    // Silence is not enough to satisfy the law.
     assert!(
         slabs > 1000 && inner > 1000 && outer > 1000 && decided > 10_000,
         "{slabs} {inner} {outer} {decided}"
@@ -129,8 +129,8 @@ fn slabs_make_it_converge_by_an_order() {
         assert!(a.common(b).is_some(), "{a:?} {b:?}");
     }
     assert!(many > 20 * few, "{many} {few}");
-    // A hundred times as well: a hundred times the splits, where cells alone would take ten thousand times as
-    // many.
+    // A hundred times the precision takes a hundred times the splits, where cells alone would take ten
+    // thousand times as many.
     assert!(more < 400 * few, "{more} {few}");
     let sampled =
         build(&three_balls(Step::Slabs), &frame().with_depth(7).unwrap(), Rule::Sampled, &Control::default());

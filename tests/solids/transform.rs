@@ -295,7 +295,7 @@ proptest! {
 
     #[test]
     fn centres_are_where_they_were(shape in shapes(1..=4), seed: u64) {
-        // Binary trees: every centre can be decided, also one that a map puts onto a face.
+        // Binary trees: every centre can be decided, even if a map takes it onto a face.
         let dense = shape.dense().resolved(Tag::Full);
         let tree = dense.octree();
         let frame = lattice_frame(dense.depth);
@@ -305,8 +305,8 @@ proptest! {
             let moved = build(&Transform::new(&tree, &frame, &step.affine()), &frame, Rule::Sampled, &alone()).unwrap();
             let expected = Dense::from_fn(dense.depth, |at| {
                 let ranges = step.source(at);
-                // The middle, in eighths; on a plane it goes the way of the shift, which the signs may turn
-                // round.
+                // The middle, in eighths. On a plane it goes with the shift, whose direction the signs may
+                // reverse.
                 let middle = [0, 1, 2].map(|axis| ranges[axis].0 + ranges[axis].1);
                 let cell = [0, 1, 2].map(|axis| {
                     let sign = (0..3).find(|&i| step.axes[i] == axis).map(|i| step.signs[i]).unwrap();
@@ -459,7 +459,7 @@ fn centres_on_the_faces_of_the_own_universe_are_decided() {
     let own = Frame::new([0.0; 3], 1.0, 4).unwrap();
     let cube = Csg::cuboid([0.0; 3], [1.0; 3]).unwrap();
     let mirror = Affine::new([[-1.0, 0.0, 0.0, 1.0], [0.0, -1.0, 0.0, 1.0], [0.0, 0.0, 1.0, 0.0]]).unwrap();
-    // All the cells at the cube's surface have their centres on it.
+    // All cells at the cube's surface have their centres on it.
     let frame = Frame::new([-0.5625; 3], 2.0, 4).unwrap();
     for placement in [Affine::IDENTITY, mirror] {
         let tree = build(&Transform::new(&cube, &own, &placement), &frame, Rule::Sampled, &alone()).unwrap();
@@ -504,7 +504,7 @@ fn handed_on<S: Solid + Clone>(solid: &S) -> Told {
         else {
             panic!("decided");
         };
-        // Where a child goes by the inverse of the map.
+        // The child that the inverse of the map gives.
         let source = |cell: Cell| {
             let last = (1i64 << cell.level) - 1;
             let at = [0, 1, 2].map(|j| {

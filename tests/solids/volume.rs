@@ -42,8 +42,8 @@ impl<'s> Oracle<'s> {
     /// Returns the best possible verdict.
     fn tag(&self, cell: Cell) -> Tag {
         let shift = 1 + self.frame.depth() - cell.level;
-        // Voxel j lies between planes j and j + 1, here counted on by one: 0 is all below, n + 1 all above
-        // the grid.
+        // Voxel j lies between planes j and j + 1. The count here is one higher: 0 is below the grid, n + 1
+        // above it.
         let range = |axis: usize| {
             let [from, to] =
                 [cell.at[axis], cell.at[axis] + 1].map(|a| self.planes[axis][(a << shift) as usize]);
@@ -267,7 +267,7 @@ fn the_complement_and_solids_made_of_volumes() {
         let tree = build(&volume, &frame, Rule::Sampled, &alone()).unwrap();
         let expected = complement(tree.view(), &alone()).unwrap();
         assert_eq!(inverse.statistics(), expected.statistics());
-        // Cut by a plane, on a frame that has neither.
+        // Cut by a plane, on a frame that belongs to neither.
         let half = Csg::half_space([1.0, 2.0, 0.5], 0.75).unwrap();
         let cut = Csg::intersection_of([solid, half]).unwrap();
         let other = Frame::around([-3.0; 3], [3.25; 3], 5).unwrap();

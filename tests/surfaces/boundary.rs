@@ -46,7 +46,7 @@ fn away_from_plate([x, y, z]: [f64; 3]) -> f64 {
     let away = |a: f64, b: f64, c: f64| a.hypot(b).hypot(c);
     let (bx, by, bz) = (beside(x, 80.0), beside(y, 60.0), beside(z, 10.0));
     let radius = (x - 40.0).hypot(y - 30.0);
-    // (The two faces with a hole: a place in the hole is nearest to its rim.)
+    // (For the two faces with a hole, the nearest point of a place in the hole is on the rim.)
     let plane = if radius < 5.0 { 5.0 - radius } else { bx.hypot(by) };
     let sides = [away(x.abs().min((x - 80.0).abs()), by, bz), away(y.abs().min((y - 60.0).abs()), bx, bz)];
     let ends = plane.hypot(z.abs().min((z - 10.0).abs()));
@@ -368,7 +368,7 @@ fn check_scenes(scenes: std::ops::Range<usize>) {
         assert_manifold(mesh, &format!("scene {scene}"));
         assert_eq!(found.report().intersecting_pairs, 0, "scene {scene}");
         let proven = found.report().deviation;
-        // (Where surfaces nearly touch, more cells would be needed than are split for the proof.)
+        // (Where surfaces nearly touch, the proof would need more cells than the search splits.)
         beyond += usize::from(proven > tolerance);
         let is_empty = mesh.triangles().is_empty();
         assert!(proven <= 10.0 * tolerance || is_empty, "scene {scene}: {proven} of {tolerance}");
@@ -390,7 +390,7 @@ fn check_scenes(scenes: std::ops::Range<usize>) {
             let at = |side: f64| {
                 [0, 1, 2].map(|k| (a[k] + b[k] + c[k]) / 3.0 + side * 1.5 * tolerance * normal[k] / size)
             };
-            // (Walls may be thinner than that: one of the sides is enough.)
+            // (Walls may be thinner than that. Then one of the sides is enough.)
             let points = [at(1.0), at(-1.0)];
             let mut sides = [Membership::Undecided; 2];
             contains(&solid, &frame, &points, &mut sides, &alone()).unwrap();

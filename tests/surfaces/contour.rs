@@ -97,7 +97,7 @@ fn what_is_proven_is_not_contradicted() {
             [a, [0, 1, 2].map(|k| (a[k] + b[k] + c[k]) / 3.0)]
         });
         let true_one = points.map(|point| away(point).abs()).fold(0.0, f64::max);
-        // (The mesh in the expression is a thousandth beside the ball.)
+        // (The mesh in the expression is a thousandth away from the ball.)
         assert!(true_one <= proven + 2e-3, "{name}: {true_one} {proven}");
     }
     // An octree of samples proves nothing.
@@ -144,7 +144,7 @@ fn hosts_that_contradict_themselves() {
             Err(error) => assert!(matches!(error, Error::Limit { .. }), "{seed}: {error}"),
         }
     }
-    // All is full up to the faces of the universe, which have no other side; and all is empty.
+    // All is full up to the universe's faces, which have no other side; and all is empty.
     for verdict in [Verdict::Full, Verdict::Empty] {
         let host = Callback::new(move |_, _| Ok(verdict)).with_exterior(Tag::Empty);
         let found = contour(&host, &frame, 0.2, &control).unwrap();
@@ -152,13 +152,13 @@ fn hosts_that_contradict_themselves() {
         let is_empty = matches!(verdict, Verdict::Empty);
         assert_eq!(found.report().deviation, if is_empty { 0.0 } else { f64::INFINITY });
     }
-    // Nobody decides points: all that is undecided counts as outside.
+    // Points without a decision count as outside.
     let host = Callback::new(|_, _| Ok(Verdict::Partial(()))).with_exterior(Tag::Empty);
     let found = contour(&host, &frame, 0.2, &control);
     assert!(
         matches!(found, Err(Error::Limit { .. })) || found.is_ok_and(|found| found.report().undecided > 0)
     );
-    // An error in the middle, and a panic of nobody.
+    // An error in the middle is returned.
     let count = AtomicU64::new(0);
     let host = Callback::new(|_, _| match count.fetch_add(1, Relaxed) {
         500.. => Err(Error::Callback { code: 7 }),
@@ -166,7 +166,7 @@ fn hosts_that_contradict_themselves() {
     });
     let refused = contour(&host.with_exterior(Tag::Empty), &frame, 0.2, &control);
     assert!(matches!(refused, Err(Error::Callback { code: 7 })));
-    // Somebody cancels.
+    // A cancel.
     let cancel = AtomicBool::new(true);
     let control = Control { cancel: Some(&cancel), ..alone() };
     let cube = Csg::cuboid([0.0; 3], [1.0; 3]).unwrap();
@@ -246,7 +246,7 @@ fn nothing_and_what_is_refused() {
     }
     let control = Control { max_nodes: Some(3), ..alone() };
     assert!(matches!(contour(&cube, &frame, 0.1, &control), Err(Error::Limit { .. })));
-    // With its splits spent the mesh is coarse, and still a manifold.
+    // Without remaining splits, the mesh is coarse, and still a manifold.
     for splits in [0, 1, 10, 100] {
         let control = Control { max_splits: Some(splits), ..alone() };
         let found = contour(&cube, &frame, 0.01, &control).unwrap();

@@ -93,8 +93,8 @@ impl Samples {
 fn check(mesh: &TriangleMesh, dense: &Dense) {
     let samples = Samples::of(dense);
     assert_eq!(euler_of_manifold(mesh), 2 * samples.euler(), "{dense:?}");
-    // Each component of the surface separates one of the inside from one of the outside, and these form a
-    // tree.
+    // Each component of the surface separates a component of the inside from one of the outside. Together
+    // they form a tree.
     let (inside, outside) = (samples.components(true, 1), samples.components(false, 2));
     assert_eq!(components(mesh), inside + outside - 1, "{dense:?}");
     let difference = mesh.volume() - dense.count(Tag::Full) as f64;

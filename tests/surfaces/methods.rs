@@ -66,7 +66,7 @@ fn scan(frame: &Frame, size: f64) -> Octree {
     let mut samples = Vec::new();
     for i in 0..n * n * n {
         let [x, y, z] = [i % n, i / n % n, i / (n * n)].map(|a| (f64::from(a) + 0.5) / size - 0.5);
-        // Distances in the whole, negative inside.
+        // Distances in the whole universe, negative inside.
         let body = (x.abs() - 0.4).max(y.abs() - 0.3).max(z.abs() - 0.25);
         let bores = [-0.2, 0.2].map(|at| 0.1 - (x - at).hypot(y)).into_iter().fold(f64::MIN, f64::max);
         let pore = 0.07 - (x * x + (y - 0.2) * (y - 0.2) + z * z).sqrt();

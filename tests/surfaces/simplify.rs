@@ -218,8 +218,7 @@ fn meshes_that_are_no_manifolds() {
     let empty = TriangleMesh::new(Vec::new(), Vec::new()).unwrap();
     let found = simplify(&empty, 1.0, &alone()).unwrap();
     assert!(found.mesh().triangles().is_empty() && found.report().deviation == 0.0);
-    // Two cubes with an edge in common, which four triangles have; flat triangles; three triangles at one
-    // edge.
+    // Two cubes with a common edge of four triangles; flat triangles; three triangles at one edge.
     let one = lattice_cube(3, |p| p);
     let other = one.translated([2.0, 2.0, 0.0]).unwrap();
     let mut vertices = [one.vertices(), other.vertices()].concat();

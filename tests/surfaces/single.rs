@@ -108,7 +108,7 @@ fn deviations_and_losses() {
     let single = mesh.in_single_precision(0.05, &alone()).unwrap();
     assert!(single.deviation > 1e-9 && single.deviation < 2e-9);
     assert!(single.mesh.deviation() >= 0.25 + single.deviation);
-    // A tetrahedron that is a point in single precision cannot be mended.
+    // A tetrahedron that collapses to a point in single precision cannot be repaired.
     let tiny = [[0.0; 3], [1e-6, 0.0, 0.0], [0.0, 1e-6, 0.0], [0.0, 0.0, 1e-6]];
     let tiny = tiny.map(|p| p.map(|c| 1e6 + c)).to_vec();
     let tiny = TriangleMesh::new(tiny, triangles.clone()).unwrap();

@@ -126,7 +126,7 @@ fn segments_cross_meshes() {
             [u[1] * v[2] - u[2] * v[1], u[2] * v[0] - u[0] * v[2], u[0] * v[1] - u[1] * v[0]]
         };
         let dot = |u: [f64; 3], v: [f64; 3]| u[0] * v[0] + u[1] * v[1] + u[2] * v[2];
-        // Möller and Trumbore 1997: parameters of the meeting point, and whether the way leads out.
+        // Möller and Trumbore 1997: parameters of the meeting point, and whether the segment leaves there.
         let hits = solid.mesh().triangles().iter().filter_map(|triangle| {
             let [a, b, c] = triangle.map(|v| solid.mesh().vertices()[v as usize]);
             let minus = |p: [f64; 3], q: [f64; 3]| [0, 1, 2].map(|k| p[k] - q[k]);
@@ -158,7 +158,7 @@ fn vertices_of_meshes_lie_on_them() {
     assert!(solid.mesh().volume() > 0.0);
     for depth in [4, 6] {
         let surface = crossings(&solid, &Frame::new([0.0; 3], 1.0, depth).unwrap());
-        // Tips may be samples of their own.
+        // Tips may contain isolated samples.
         assert_eq!(euler_of_manifold(&surface), 2 * components(&surface) as i64);
         let worst = surface.vertices().iter().map(|&v| distance_to(solid.mesh(), v)).fold(0.0, f64::max);
         assert!(worst < 1e-9, "{worst:e}");

@@ -80,7 +80,7 @@ fn octrees_with_their_volumes() {
     let mesh = marching_cubes_with_volume(shifted.view(), &volume, None, &alone()).unwrap();
     assert_eq!(mesh.vertices().len(), own.vertices().len());
     assert!((mesh.volume() - own.volume()).abs() < 1e-9 && (mesh.area() - own.area()).abs() < 1e-9);
-    // The same topology as half-way, and nearer to the ball.
+    // The same topology as with midpoints, and nearer to the ball.
     let half_way = marching_cubes(tree.view(), None, &alone()).unwrap();
     assert_eq!(half_way.triangles(), own.triangles());
     // Cut by a block whose faces lie halfway between samples.
@@ -157,14 +157,14 @@ fn what_is_refused() {
     let flag = AtomicBool::new(true);
     let control = Control { cancel: Some(&flag), ..alone() };
     assert!(matches!(marching_cubes_volume(&volume, &control), Err(Error::Cancelled)));
-    // Cells that are no voxels.
+    // Cells that are not voxels.
     for (origin, edge, depth) in [(0.0, 1.0, 1), (0.0, 1.0, 3), (0.1, 1.0, 2)] {
         let frame = Frame::new([origin; 3], edge, depth).unwrap();
         let tree = build(&volume, &frame, Rule::Sampled, &alone()).unwrap();
         let found = marching_cubes_with_volume(tree.view(), &volume, None, &alone());
         assert!(matches!(found, Err(Error::Argument { name: "volume", .. })), "{frame:?}");
     }
-    // Nothing inside.
+    // An empty inside.
     let none = volume.with_band(Band::at_least(2.0).unwrap(), &alone()).unwrap();
     assert!(marching_cubes_volume(&none, &alone()).unwrap().triangles().is_empty());
 }

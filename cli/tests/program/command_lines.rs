@@ -303,7 +303,7 @@ fn run(place: &Place, words: &[String], input: &str) -> Run {
     let start = Instant::now();
     let mut child = command.spawn().unwrap();
     let id = child.id();
-    // (The program may not care for its input.)
+    // (The program may not read its input.)
     let _ = child.stdin.take().unwrap().write_all(input.as_bytes());
     let (sender, receiver) = std::sync::mpsc::channel();
     let waiting = std::thread::spawn(move || {
@@ -348,7 +348,7 @@ fn attack(seed: u64, runs: u64) {
             done.errors.lines().filter(|line| !line.contains(": warning: ") && !line.contains(": note: "));
         assert!(!done.errors.contains("panicked") && !done.errors.contains("os error"), "{done:?}");
         if code != 0 {
-            // The last line says why.
+            // The last line gives the reason.
             assert!(
                 lines.next_back().is_some_and(|line| line.starts_with("leafless: ") && line.len() > 20),
                 "{done:?}"

@@ -84,7 +84,7 @@ pub fn run(place: &Place, allowed: &str, line: &str, input: &[u8]) -> Run {
     command.stdin(Stdio::piped()).stdout(Stdio::piped()).stderr(Stdio::piped());
     let start = Instant::now();
     let mut child = command.spawn().unwrap();
-    // (The program may not care for its input.)
+    // (The program may not read its input.)
     let _ = child.stdin.take().unwrap().write_all(input);
     let (sender, receiver) = std::sync::mpsc::channel();
     let id = child.id();
@@ -113,7 +113,7 @@ pub fn attempt(place: &Place, allowed: &str, path: &Path, commands: impl Iterato
         let is_error = |line: &&str| !line.contains("warning") && !line.contains(": note: ");
         let errors = done.errors.lines().filter(is_error).count();
         assert_eq!(errors, usize::from(done.code != Some(0)), "{done:?}");
-        // The limit was kept by the program itself.
+        // The program itself kept the limit.
         let is_kept =
             !done.errors.contains("the system has no memory left") && !done.errors.contains("panicked");
         assert!(is_kept, "{done:?}");

@@ -31,7 +31,7 @@ fn scenes_and_meshes() {
     assert_eq!((found["verdict"].as_str(), found["upper"].as_f64()), (Some("within"), Some(0.0)));
     let moved = "deviation cube.stl cube.stl --translate 0.25,0,0 --tolerance 1e-9 --json";
     holds(&place.run(moved).good().json(), 0.25, 1e-9);
-    // For people.
+    // The text output.
     let text =
         place.run("deviation cube.stl cube.stl --translate 0.25,0,0 --within 0.5").good().text().to_owned();
     for (line, name) in text.lines().zip(["verdict", "distance", "a to b", "b to a", "splits"]) {

@@ -64,7 +64,7 @@ fn a_mesh_is_dexelised() {
         assert_eq!(direction["intervals"], side * side);
         assert_eq!(direction["odd_rays"], 0);
         assert!(direction["bytes"].as_u64().unwrap() >= 8 * side * side);
-        // Rays are exact along themselves.
+        // Rays are exact in their own direction.
         let volume = direction["volume"].as_f64().unwrap();
         let exact = (17.0f64 / 8.0).powi(2) * 2.2;
         assert!((volume - exact).abs() < 1e-5, "{volume}, not {exact}");
@@ -257,7 +257,7 @@ fn models_are_combined() {
     place.run("complement rest.lfl -o out.lfl").good();
     let again = model(&place, "out.lfl");
     assert_eq!(again.view().interval_count(), model(&place, "cube.lfl").view().interval_count());
-    // Facts of both; and a model through a pipe.
+    // Metadata of both; and a model through a pipe.
     let info = json(&place, "info rest.lfl");
     assert_eq!((&info["metadata"]["name"], &info["metadata"]["rule"]), (&"cube".into(), &"sampled".into()));
     assert!(info["metadata"].get("source").is_none());
@@ -354,7 +354,7 @@ fn surfaces_are_closed() {
     }
     let text = place.run("mesh cube.lfl -o out.stl --method dual").good();
     assert!(text.text().contains("\n1,734 crossings"), "{text:?}");
-    // Only one direction: half of the crossings lie anywhere.
+    // With only one direction, half of the crossings are arbitrary.
     place.run(&format!("dexelize cube.stl -o flat.lfl --resolution 64 {BOUNDS} --directions z")).good();
     let flat = json(&place, "mesh flat.lfl -o out.stl");
     assert_eq!((&flat["crossings"], &flat["without_rays"]), (&(6 * 17 * 17).into(), &(4 * 17 * 17).into()));
@@ -425,7 +425,7 @@ fn each_kind_becomes_each_other() {
     assert_eq!(place.bytes("open.lfl"), place.bytes("dexels.lfl"));
     place.run("convert bounds.lfl -o out.ply --resolve inner").good();
     place.run("convert bounds.lfl -o open.ply").noted(&["bounds.lfl", "--resolve"]);
-    // From meshes and scenes as the subcommands for them do it.
+    // From meshes and scenes, like the subcommands for them.
     place.run(&format!("convert cube.stl -o out.lfl --to dexels --resolution 64 {BOUNDS}")).good();
     place.run(&format!("dexelize cube.stl -o direct.lfl --resolution 64 {BOUNDS}")).good();
     assert_eq!(place.bytes("out.lfl"), place.bytes("direct.lfl"));
@@ -437,7 +437,7 @@ fn each_kind_becomes_each_other() {
     place.run("convert ball.csg -o out.ply --resolution 16").good();
     place.run("mesh ball.csg -o direct.ply --method mc --depth 4").good();
     assert_eq!(place.bytes("out.ply"), place.bytes("direct.ply"));
-    // The unit has another name here.
+    // The unit has another name in this format.
     place.run("convert cube.stl -o out.lfl --to dexels --unit in --to-unit mm --resolution 16").good();
     assert_eq!(model(&place, "out.lfl").metadata().get("units"), Some("mm"));
     let (inches, extent) = (model(&place, "out.lfl"), 2.2 * 25.4);
@@ -549,7 +549,7 @@ fn materials_travel_to_octrees_records_samples_and_pictures() {
     let records = place.bytes("both.csv");
     let records = String::from_utf8(records).unwrap();
     assert!(records.lines().next().unwrap().contains("material") || records.lines().count() > 2, "{records}");
-    // In a picture each has its colour.
+    // In a picture each material has its colour.
     place.run("render both.dex -o both.png --size 160x120 --samples 1 --no-legend").good();
     place.run("render low.dex -o low.png --size 160x120 --samples 1 --no-legend").good();
     assert_ne!(place.bytes("both.png"), place.bytes("low.png"));
@@ -607,7 +607,7 @@ fn a_model_with_normals_becomes_an_octree_with_surfaces() {
     assert_eq!(report["metadata"]["certified of"], "surface reconstructed from a tri-dexel model");
     let (lower, upper) =
         (report["volume"]["lower"].as_f64().unwrap(), report["volume"]["upper"].as_f64().unwrap());
-    // Ends and normals of a cube are exact but for the rounding of places.
+    // Ends and normals of a cube are exact up to the rounding of places.
     let exact = f64::from(3.3f32 - 1.1).powi(3);
     assert!(
         upper - lower < 1e-2 * exact && lower < 1.001 * exact && upper > 0.999 * exact,

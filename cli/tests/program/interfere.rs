@@ -42,7 +42,7 @@ fn solids_and_meshes() {
     file::save(&tree, path.join("a.lfl")).unwrap();
     for a in ["a.lfl", "a.stl"] {
         for b in ["a.lfl", "a.stl"] {
-            // In place: the whole of it. The frame around the meshes has no planes where their faces are.
+            // In place: the whole mesh. The frame around the meshes has no planes at their faces.
             let found = json(path, &[a, b]);
             assert_eq!(found["verdict"], "overlapping", "{a} {b}");
             assert!(contains(&found["overlap"], 16.0), "{found}");
@@ -73,7 +73,7 @@ fn solids_and_meshes() {
     let found = json(path, &["a.lfl", "a.lfl", "--place-b", "1 0 0 4 0 1 0 0.5 0 0 1 0"]);
     assert_eq!(found["verdict"], "disjoint");
     assert_eq!((&found["clearance"]["lower"], &found["clearance"]["upper"]), (&0.0.into(), &0.0.into()));
-    // For people.
+    // The text output.
     let text = String::from_utf8(run(path, &["interfere", "a.lfl", "a.lfl"]).stdout).unwrap();
     for (line, name) in text.lines().zip(["verdict", "overlap", "clearance", "witness", "splits"]) {
         assert!(line.starts_with(name), "{text}");
@@ -138,7 +138,7 @@ fn many_places() {
     let text = String::from_utf8(output.stdout).unwrap();
     assert!(text.lines().count() == 4 && text.contains("clearance") && text.contains(" and "), "{text}");
 
-    // Far enough apart in the first place only.
+    // Far enough apart only at the first place.
     let gap = [&["interfere"], &command[..], &["--gap-at-least", "1.5"]].concat();
     let output = run(path, &[&gap[..], &["--json"]].concat());
     let told: Value = serde_json::from_slice(&output.stdout).unwrap();

@@ -154,7 +154,7 @@ fn outputs_are_read_back() {
         ["../cube.stl", "../in side/a \"b\".stl", "../in side/far.csg", "../cube.lfl", "../ring.csg"];
     assert_eq!(files, expected);
     place.run("layout --check out/a.json").good();
-    // From another folder, and as a whole tree that was moved.
+    // From another folder, and as a whole tree after a move.
     let run = place.command(["layout", "--check", "a.json"]).current_dir(place.path("out")).output().unwrap();
     Run::new("check", run).good();
 
@@ -170,7 +170,7 @@ fn outputs_are_read_back() {
     // (Surface nets cut off the corners of the solid that consists only of cells.)
     assert!((own - volume).abs() < 1e-2 * volume, "{own} {volume}");
     assert_eq!(mesh["closed"], true, "{mesh}");
-    // The copies of the mesh stand where the JSON says, to the last digit.
+    // The copies of the mesh stand at the JSON's places, to the last digit.
     let bytes = leafless::exchange::read_mesh(&place.bytes("out/a.3mf"), &Default::default()).unwrap().mesh;
     for copy in told["placed"].as_array().unwrap().iter().filter(|copy| copy["item"] == 0) {
         let row = |i: usize| -> Vec<f64> {
@@ -184,7 +184,7 @@ fn outputs_are_read_back() {
         assert!(bytes.vertices().iter().any(|v| near(&v)), "{corner:?}");
     }
 
-    // On standard output: the layout, and the report beside it.
+    // The layout on standard output, and the report beside it.
     let run = place.run("layout box:10,10,10 cube.csg -o -");
     assert!(run.code == Some(0) && run.errors.contains("placed          1 of 1\n"), "{run:?}");
     place.write("piped.json", &run.bytes);
@@ -298,7 +298,7 @@ fn what_is_changed_is_seen() {
     // The requested distance is greater than the real one.
     let (told, _) = changed(&|value| value["clearance"] = json!(50));
     assert!(told["conflicts"].as_array().unwrap().len() >= 2, "{told}");
-    // And another part.
+    // Also another part.
     place.write("cube.stl", stl(&block([-5.0; 3], [50.0; 3])));
     left(&place.run("layout --check a.json"), &["a.json: of 3 copies", "in conflict"]);
     std::fs::remove_file(place.path("cube.stl")).unwrap();

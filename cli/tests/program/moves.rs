@@ -40,7 +40,7 @@ fn moves_act_in_the_order_of_the_command_line() {
             [7.0, 4.0, 1.0],
         ),
     ] {
-        // A mesh becomes a mesh by its own triangles.
+        // A mesh becomes a mesh with its own triangles.
         let report = place.run(&format!("convert slab.stl -o out.obj {moves} --json")).good().json();
         assert_eq!((&report["triangles"], &report["method"]), (&12.into(), &"copy".into()), "{moves}");
         assert!(report["closed"] == true && report["volume"].as_f64().unwrap() > 0.0, "{moves}: {report}");
@@ -59,7 +59,7 @@ fn quarter_turns_are_exact() {
     place.write("slab.stl", stl(&block([2.0, 3.0, 0.0], [6.0, 6.0, 2.0])));
     place.write("cube.stl", stl(&block([-2.0; 3], [2.0; 3])));
     place.write("cube.csg", "cube(4, center = true);");
-    // The cube is itself again, and so are the bytes.
+    // The cube maps onto itself, and the bytes stay the same.
     for line in ["voxelize cube.stl -o out.lfl --depth 6", "csg cube.csg -o out.lfl --depth 6"] {
         place.run(line).good();
         let direct = place.bytes("out.lfl");
@@ -191,7 +191,7 @@ fn volumes_are_moved() {
 fn meshes_keep_surfaces() {
     let place = Place::new();
     place.write("cube.stl", stl(&block([-1.1; 3], [2.2; 3])));
-    // (As the file has them.)
+    // (In single precision, as in the file.)
     let truth = (f64::from(2.2f32) + f64::from(1.1f32)).powi(3);
     for moves in ["", "--rotate 1,1,0,30 --scale 1,1,2"] {
         let made =

@@ -259,7 +259,7 @@ fn what_is_written_is_what_the_table_says_and_true() {
             std::fs::remove_file(place.path("out.lfl")).unwrap();
         }
     }
-    // Lies are seen.
+    // The check notices lies.
     assert!(seen > WAYS.len(), "{seen} of {}", WAYS.len());
 }
 
@@ -267,7 +267,7 @@ fn what_is_written_is_what_the_table_says_and_true() {
 fn listed(help: &str) -> BTreeSet<String> {
     let rest = help.lines().skip_while(|line| *line != "Commands:").skip(1);
     let lines = rest.take_while(|line| !line.is_empty());
-    // A line that goes on is indented further.
+    // A continued line is indented further.
     let names = lines.filter(|line| line.starts_with("  ") && !line.starts_with("   "));
     names.filter_map(|line| line.split_whitespace().next()).map(String::from).collect()
 }
@@ -323,7 +323,7 @@ fn changed_records_prove_nothing() {
         bits(&file::open(place.path("out.lfl")).unwrap())
     };
     assert_eq!(imported(changed(&bytes, |_, array| Some(array))), "11");
-    // A boundary voxel becomes an inside one.
+    // Change a boundary voxel to an inside voxel.
     let kinds = |name: &str, mut array: Vec<u8>| {
         if name == "kinds.npy" {
             *array.iter_mut().rev().find(|kind| **kind == 2).unwrap() = 1;
@@ -331,7 +331,7 @@ fn changed_records_prove_nothing() {
         Some(array)
     };
     assert_eq!(imported(changed(&bytes, kinds)), "00");
-    // The cube is another one: the last byte of its edge.
+    // Change the universe: the last byte of its edge.
     let edge = |name: &str, mut array: Vec<u8>| {
         if name == "edge.npy" {
             let last = array.len() - 2;

@@ -161,12 +161,12 @@ fn cameras_and_legends_fit_what_is_shown() {
     // The hybrid view cuts only the skin away.
     let whole = covered("part.lfl --view hybrid --no-legend");
     assert!(covered("part.lfl --view hybrid --no-legend --clip-box 3,3,3,5,5,5") > whole / 2);
-    // An eye beside the slice is heeded.
+    // An eye beside the slice is used.
     assert_ne!(
         covered("part.lfl --view slice --eye 4,-9,30"),
         covered("part.lfl --view slice --eye 4,-30,9")
     );
-    // Values that are all the same, and large.
+    // Values that are all equal, and large.
     place.run("attribute part.lfl --name big --value 1e17 -o big.lfl").good();
     assert!(covered("big.lfl") > 3000);
     for (line, option) in [
@@ -253,7 +253,7 @@ fn slices_have_a_scale_and_may_do_without_cells() {
         assert!(count(&cells, outline) > 100, "{file}: {}", count(&cells, outline));
         assert_eq!(count(&plain, outline), 0, "{file}");
         assert!(count(&plain, [0, 114, 178]) > 5000, "{file}");
-        // The scale is ink in the lower left corner.
+        // The scale is drawn in the lower left corner.
         let corner = |pixels: &[[u8; 3]]| {
             let ink = |i: usize| pixels[i] == [20, 20, 20] && i % 400 < 200 && i / 400 > 250;
             (0..pixels.len()).filter(|&i| ink(i)).count()
@@ -300,7 +300,7 @@ fn closed_meshes_are_capped_and_cameras_fit_what_is_left() {
     let open = leafless::TriangleMesh::new(closed.vertices().to_vec(), closed.triangles()[..11].to_vec());
     place.write("open.stl", stl(&open.unwrap()));
     assert!(cap(&picture(&format!("open.stl {cut}"))) < 0.8 * expected, "{expected}");
-    // A slice of a sixth of the block fills the picture as the block does.
+    // A slice of a sixth of the block fills the picture like the block.
     for file in ["cube.stl", "block.csg", "cube.lfl", "dexels.lfl", "open.stl"] {
         for cut in ["--clip 0,1,0,-6 --clip 1,0,0,-6", "--clip-box 3,3,3,4,4,4"] {
             // (An open mesh has no inside.)
@@ -324,7 +324,7 @@ fn a_constant_channel_has_a_legend_of_one_value() {
     let place = parts();
     place.run("attribute part.lfl --name heat --value 7 -o constant.lfl").good();
     place.run("attribute part.lfl --name heat --expr z -o rising.lfl").good();
-    // Rows of the picture that the legend changes.
+    // The rows of the picture that the legend changes.
     let rows = |file: &str| {
         let [with, without] = ["", "--no-legend"].map(|more| {
             let line = format!("render {file} -o out.png --size 400x300 --samples 1 --from 0,0 {more}");
@@ -356,7 +356,7 @@ fn what_is_full_is_seen_among_what_is_undecided() {
         (report["covered"].as_u64().unwrap(), run.errors.clone(), png(&place, "out.png").2)
     };
     let (shown, note, _) = render("rest.lfl");
-    // A slab of two by six by six is FULL; the skin of the rest is larger.
+    // A slab of two by six by six is FULL. The skin of the other part is larger.
     assert!(note.is_empty() || note.contains("--undecided"), "{note}");
     let (hidden, _, slab) = render("rest.lfl --undecided hidden");
     let (faint, _, both) = render("rest.lfl --undecided faint");

@@ -401,7 +401,7 @@ mod terminal {
         });
         let (mut bytes, mut buffer) = (Vec::new(), [0; 4096]);
         let mut is_asked = false;
-        // Fails when nobody has the terminal any more.
+        // This fails when no process holds the terminal any more.
         while let Ok(count @ 1..) = master.read(&mut buffer) {
             bytes.extend_from_slice(&buffer[..count]);
             if !is_asked && bytes.windows(3).any(|window| window == b"\x1b[c") {
@@ -440,7 +440,7 @@ mod terminal {
         assert_eq!(blocks(picture(&run)).size(), [100, 26]);
         let run = session(&place, "render ball.csg --show --size 50x20 -o out.png", &[TRUE], "");
         assert!(blocks(picture(&run)) == image(&place.bytes("out.png")));
-        // The file is not made for the terminal.
+        // The file does not depend on the terminal.
         session(&place, "render ball.csg --show -o out.png", &[TRUE], "");
         assert_eq!(image(&place.bytes("out.png")).size(), [1024, 768]);
     }
@@ -453,7 +453,7 @@ mod terminal {
         assert_eq!(found.size(), [800, 432]);
         assert!(colours > 20);
         assert!(!run.text.contains("62;4;22"), "the answer was shown");
-        // One that has few colours, and little space for them.
+        // A terminal with few colours, and little space for them.
         let answer = "\x1b[4;480;800t\x1b[?1;0;16S\x1b[?2;0;300;400S\x1b[?63;1;2;4;6c";
         let run = session(&place, "render ball.csg --show --size 600x200 -o out.png", &[], answer);
         let (found, colours) = sixels(picture(&run));

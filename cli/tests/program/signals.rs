@@ -164,9 +164,9 @@ fn signals_while_the_program_saves() {
     for attempt in 0..30 {
         let signal = SIGNALS[attempt as usize % 3];
         let mut running = start(waiting(&place, line), None);
-        // Mostly near the end, where it saves.
+        // Mostly near the end, during the save.
         std::thread::sleep(whole * (attempt % 10 + 2) / 12);
-        // It may have ended by itself meanwhile.
+        // The program may have ended by itself in the meantime.
         running.signal(signal);
         let status = running.end();
         assert_eq!(place.files(), ["flange.stl", "out.lfl"], "{status}");
@@ -280,7 +280,7 @@ mod terminal {
         for name in ["TMUX", "TERM_PROGRAM", "LC_TERMINAL", "COLORTERM"] {
             command.env_remove(name);
         }
-        // A terminal far away is waited for longer.
+        // The program waits longer for a distant terminal.
         start(
             {
                 command.env("TERM", "xterm").env("SSH_TTY", "/dev/pts/0");
@@ -344,7 +344,7 @@ mod terminal {
             let is_ended = text.ends_with(b"\x1b\\\x1b[0m\r\n");
             running.end().signal() == Some(signal as i32) && is_ended
         };
-        // On a busy machine the program may wait longer for this reader than it does.
+        // On a busy machine, the program may wait longer for this reader.
         assert!(SIGNALS.into_iter().any(cut));
     }
 }

@@ -116,7 +116,7 @@ fn wrong_usage_is_one_line_and_code_2() {
     ] {
         place.run(line).bad(2, words);
     }
-    // Without any command the help stands on standard error.
+    // Without a command, the help goes to standard error.
     let nothing = place.run("");
     assert!(nothing.code == Some(2) && nothing.bytes.is_empty() && nothing.errors.contains("voxelize"));
     assert_eq!(place.files(), before);
@@ -213,7 +213,7 @@ fn the_four_rules_and_both_fills() {
     assert!(lower < 8.0 && 8.0 < upper && upper < 12.0 + 4.0, "{lower} {upper}");
     let (_, (sampled, _)) = run("--fill evenodd --rule sampled");
     assert!((7.0..9.0).contains(&sampled), "{sampled}");
-    // The other ways to ask go by the same rules.
+    // The other queries follow the same rules.
     for (fill, volume) in
         [("", 12.0), ("--fill nonzero", 12.0), ("--fill positive", 12.0), ("--fill evenodd", 8.0)]
     {
@@ -326,7 +326,7 @@ fn a_scene_becomes_a_solid() {
     assert_eq!(info["clipped"], false);
     assert_eq!((&info["metadata"]["name"], &info["metadata"]["touch"]), (&"sphere".into(), &"paper".into()));
 
-    // Without bounds, in words, from standard input, with files beside it.
+    // Without bounds, with text output, from standard input, and with files beside the scene.
     place.write("cube.stl", stl(&block([1.0; 3], [3.0; 3])));
     let scene = b"difference() { cube(4); mesh(\"cube.stl\"); octree(\"small.lfl\"); }";
     place.run_with("csg - -o small.lfl --depth 4 --bounds 0,0,0,8", b"cube([2, 1, 1]);").good();
@@ -490,7 +490,7 @@ fn octrees_of_scenes_keep_their_surfaces() {
     let points = b"14.000001 10 5\n13.999999 10 5\n29.999999 1 1\n30.000001 1 1\n";
     let answers = place.run_with("contains part.lfl", points).good();
     assert_eq!(answers.text(), "inside\noutside\ninside\noutside\n");
-    // The same bytes by any number of threads, and with a depth of one's own.
+    // The same bytes with any number of threads, and with a chosen depth.
     let bytes = place.bytes("part.lfl");
     place.run("csg part.csg -o part.lfl --surfaces --threads 3").good();
     assert_eq!(place.bytes("part.lfl"), bytes);
@@ -541,7 +541,7 @@ fn open_meshes_are_taken_with_a_warning() {
             assert!((undecided - (upper - lower)).abs() < 1e-12, "{undecided} {lower} {upper}");
             assert_eq!(json["mesh"]["boundary_edges"], boundary);
             assert_eq!(json["mesh"]["misoriented_edges"], misoriented);
-            // A twelfth of the surface is missing, and most of the cube decided nevertheless.
+            // A twelfth of the surface is missing, and yet most of the cube is decided.
             assert!(lower > 2.0 && lower < 8.0 && (8.0..14.0).contains(&upper), "{lower} {upper}");
         }
         let info = place.run(&format!("info {name} --json")).good().json();
@@ -636,7 +636,7 @@ fn all_formats_give_the_same_solid() {
     let expected = file::open(place.path("stl.lfl")).unwrap();
     for (format, text) in texts(&block([1.0; 3], [3.0; 3])) {
         place.write(&format!("cube.{format}"), &text);
-        // By name, by content, and because the user says so.
+        // By name, by content, and by the user's option.
         place.write("nameless", &text);
         for line in [format!("cube.{format}"), "nameless".into(), format!("nameless --format {format}")] {
             let json = place.run(&format!("voxelize {line} -o out.lfl --depth 5 --json")).good().json();
@@ -661,7 +661,7 @@ fn units_and_scale() {
         let metadata = json["metadata"].get("units").cloned();
         (json["edge"].as_f64().unwrap(), json["unit"].clone(), metadata)
     };
-    // The edge of the frame is the power of two that holds the cube's, which is 2.
+    // The edge of the frame is the power of two that contains the cube's edge, 2.
     assert_eq!(run(""), (2.0, Value::Null, None));
     assert_eq!(run("--unit cm"), (2.0, "cm".into(), Some("cm".into())));
     assert_eq!(run("--unit cm --to-unit Millimetres"), (32.0, "mm".into(), Some("mm".into())));
@@ -1189,7 +1189,7 @@ fn verify_tells_good_from_bad() {
 #[test]
 fn booleans_are_those_of_the_library() {
     let place = solids();
-    // Cube: 8, slab: 32, in common: 1. The faces lie on the lattice but certified cells touch them.
+    // Volumes: cube 8, slab 32, in common 1. The faces lie on the lattice, but certified cells touch them.
     for (line, truth) in [
         ("union cube.lfl slab.lfl", 39.0),
         ("intersection cube.lfl slab.lfl", 1.0),
@@ -1363,7 +1363,7 @@ fn contains_answers_line_by_line() {
     assert_eq!(run.text(), "inside\ninside\noutside\noutside\nundecided\nundecided\n");
     assert_eq!(place.run("contains cube.lfl").good().text(), "");
     assert_eq!(place.run_with("contains cube.lfl", b"\n# nothing\n").good().text(), "");
-    // A point on the surface may be anything, but never proven wrongly beside it.
+    // A point on the surface may have any answer, but points beside it never have a wrong one.
     for (input, number, found) in [
         ("2 2 2\n1 2\n2 2 2\n", 2, "\"1 2\""),
         ("2 2 2\n\n# x\nx y z\n", 4, "\"x y z\""),
@@ -1384,7 +1384,7 @@ fn contains_answers_line_by_line() {
     assert!(run.errors.contains("line 200001:"), "{}", run.errors);
     let run = place.run_with("contains cube.lfl", b"2 2 2\n\xff\xfe\n");
     assert_eq!((run.code, run.text()), (Some(1), "inside\n"), "{run:?}");
-    // A line without end is refused before it fills the memory.
+    // An endless line is refused before it fills the memory.
     let run = place.run_with("contains cube.lfl", &vec![b'1'; 2_000_000]);
     assert!(run.code == Some(1) && run.errors.contains("line 1") && run.errors.len() < 200, "{run:?}");
 }
@@ -1449,7 +1449,7 @@ fn a_reader_that_leaves_is_no_error() {
     drop(child.stdout.take());
     let mut stdin = child.stdin.take().unwrap();
     let lines = b"2 2 2\n".repeat(10_000);
-    // Until the program has noticed.
+    // Until the program notices.
     while stdin.write_all(&lines).is_ok() {}
     drop(stdin);
     let output = child.wait_with_output().unwrap();
@@ -1460,7 +1460,7 @@ fn a_reader_that_leaves_is_no_error() {
         let output = child.wait_with_output().unwrap();
         assert!(output.status.success() && output.stderr.is_empty(), "{line}: {output:?}");
     }
-    // But a solid that did not arrive is a failure, if a quiet one.
+    // A solid that did not arrive is a failure, if a quiet one.
     place.run("voxelize cube.stl -o large.lfl --depth 9 --bounds 0.9,0.9,0.9,2.2").good();
     assert!(place.bytes("large.lfl").len() > 1 << 17);
     let mut child = start(&place, "complement large.lfl -o -");
@@ -1536,7 +1536,7 @@ fn demo_does_what_it_says() {
     // The folder's content can be made again. A file cannot be a folder.
     place.run("demo new/folder").good();
     place.run("demo new/folder/flange.stl").bad(1, &["flange.stl"]);
-    // Without a folder: in that for temporary files.
+    // Without a folder, the folder for temporary files is used.
     let output = place.command(["demo"]).env("TMPDIR", place.0.path()).output().unwrap();
     if cfg!(unix) {
         assert!(output.status.success() && place.path("leafless-demo/drilled.lfl").is_file(), "{output:?}");

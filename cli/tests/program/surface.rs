@@ -194,7 +194,7 @@ fn normals_are_written_if_asked_for() {
     let body = text.split_once("end_header\n").unwrap().1;
     for (line, vertex) in body.lines().zip(mesh(&place, "plain.ply").vertices()) {
         let numbers: Vec<f64> = line.split(' ').map(|x| x.parse().unwrap()).collect();
-        // On a ball around the origin the normal is the vertex's direction, nearly.
+        // On a ball around the origin, the normal is approximately the vertex's direction.
         for axis in 0..3 {
             assert_eq!(numbers[axis], vertex[axis]);
             assert!((numbers[3 + axis] - vertex[axis] / 2.0).abs() < 0.05, "{line}");
@@ -223,7 +223,7 @@ fn same_as_read(place: &Place, report: &Value) {
     assert_eq!(report["euler"], found.euler_characteristic);
     assert_eq!(report["closed"], found.is_closed() && found.triangles > 0);
     assert_eq!(report["manifold"], found.is_manifold() && found.triangles > 0);
-    // (Numbers may be read from JSON with an error of one unit in the last place.)
+    // (Numbers read from JSON may be wrong by one unit in the last place.)
     for (key, value) in [("area", back.area()), ("volume", back.volume())] {
         let told = report[key].as_f64().unwrap();
         assert!((told - value).abs() <= 2.0 * f64::EPSILON * value.abs(), "{key}: {told} {value}");
@@ -568,7 +568,7 @@ fn what_is_known_of_the_shape_decides() {
     place.run("voxelize cube.stl -o layers.lfl --surfaces=1e-2 --rotate 1,1,0,30").good();
     let layers = json(&place, "mesh layers.lfl -o out.ply --json");
     assert!(layers["method"] == "mc" && layers["closed"] == true, "{layers}");
-    // Options that belong to a method choose it, and say so.
+    // Options that belong to a single method choose it, and the report names it.
     for (line, method) in [
         ("mesh plate.csg --depth 4 --vertices midpoint", "mc"),
         ("mesh plate.csg --depth 4 --resolve outer", "nets"),
@@ -606,7 +606,7 @@ fn triangles_are_taken_out() {
     // The distance of marching cubes from the ball is unknown.
     assert!(few.get("deviation").is_none(), "{few}");
 
-    // A mesh that is copied is the solid.
+    // A mesh copied to the output is the solid.
     let copy = json(&place, "convert full.ply -o simple.ply --simplify 0.05 --json");
     assert_eq!((count(&copy), &copy["method"]), (count(&few), &"copy".into()));
     let proven = copy["deviation"].as_f64().unwrap();

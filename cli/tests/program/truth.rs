@@ -173,7 +173,7 @@ fn what_cells_do_not_prove_is_not_told() {
             assert_eq!(proof["full"], rule == "certified" || rule == "inner", "{command} {rule}");
             assert_eq!(proof["empty"], rule == "certified" || rule == "outer", "{command} {rule}");
         }
-        // An octree in a scene that is built says it likewise.
+        // An octree in a scene has the same effect.
         let made = place.run("csg stored.csg -o again.lfl --depth 5 --json").good().json();
         assert_eq!(made["proof"]["full"], rule == "certified" || rule == "inner", "{rule}");
     }
@@ -230,7 +230,7 @@ fn frames_of_round_parts_are_aligned() {
     place.write("box.stl", stl(&block([0.0; 3], [100.0, 60.0, 30.0])));
     let made = place.run("voxelize box.stl -o box.lfl --depth 7 --json").good().json();
     assert_eq!((&made["edge"], &made["volume"]["lower"]), (&128.0.into(), &180_000.0.into()));
-    // Both lie on one frame, unasked.
+    // Both are on one frame, without an option.
     place.run("difference box.lfl part.lfl -o rest.lfl").good();
     // A scan has no round dimensions.
     place.write("scan.stl", stl(&block([0.0617; 3], [0.7, 0.31, 0.5])));
@@ -428,7 +428,7 @@ fn a_stated_deviation_is_believed() {
     place.write("open.csg", "mesh(\"open.off\", deviation = 0.1);");
     place.run("measure open.csg").bad(1, &["`deviation` needs a mesh that bounds a solid"]);
 
-    // A file that was written with it says so, and is not believed.
+    // A file states its deviation, and the program does not rely on it.
     place.run("convert chords.stl -o chords.ply --deviation 0.5").good();
     place.run("convert chords.stl -o chords.3mf --deviation 0.5 --scale 2").good();
     assert!(!holds("chords.ply", truth) && holds("chords.ply --deviation 0.5", truth));

@@ -65,7 +65,7 @@ fn voxels_become_cells() {
     assert_eq!(volume(&all), (16.0 * 14.0 * 12.0, 16.0 * 14.0 * 12.0));
     let none = json(&place, "voxelize ball.nrrd -o none.lfl --threshold 201 --json");
     assert_eq!(volume(&none), (0.0, 0.0));
-    // Coarser cells, and a cube of one's own.
+    // Coarser cells, and a chosen cube.
     let (lower, upper) = volume(&json(&place, "voxelize ball.nrrd -o c.lfl --depth 3 --json"));
     assert!(lower < wanted.0 && wanted.0 < upper);
     let half = json(&place, "voxelize ball.nrrd -o h.lfl --bounds 0,0,0,16 --depth 5 --json");
@@ -104,7 +104,7 @@ fn volumes_answer_like_solids() {
     let crossing = json(&place, "mesh ball.nrrd -o ball.ply --json");
     let report = json(&place, "mesh ball.nrrd -o ball.ply --method mc --vertices midpoint --json");
     assert_eq!(report["triangles"], crossing["triangles"]);
-    // The threshold lies nearer to the samples inside.
+    // The threshold is nearer to the samples inside.
     assert!(crossing["volume"].as_f64().unwrap() < 0.97 * report["volume"].as_f64().unwrap(), "{crossing}");
     // Voxels need not be cubes.
     let flat = json(&place, "mesh flat.nrrd -o flat.off --json");

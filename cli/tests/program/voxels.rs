@@ -57,7 +57,7 @@ fn there_and_back() {
     place.run("voxels ball.lfl -o a.npz --threads 1").good();
     place.run("voxels ball.lfl -o b.npz --threads 4").good();
     assert_eq!(place.bytes("a.npz"), place.bytes("b.npz"));
-    // With its own surface.
+    // With a chosen surface.
     place.run("mesh ball.csg -o ball.stl --depth 5").good();
     let text = place.run("voxels ball.lfl -o ball.csv --triangles ball.stl --json").good();
     let told: serde_json::Value = serde_json::from_str(text.text()).unwrap();
@@ -75,7 +75,7 @@ fn there_and_back() {
         let mut changed = bytes.clone();
         changed[place_of] ^= 0x55;
         place.write("changed.npz", &changed);
-        // Good or bad, but no crash.
+        // Good or bad, but without a crash.
         let run = place.run("voxels --import changed.npz -o changed.lfl");
         assert!(matches!(run.code, Some(0 | 1)), "{place_of}");
     }

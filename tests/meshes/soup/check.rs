@@ -317,7 +317,7 @@ impl Examiner<'_> {
         for &(_, at) in ranked.iter().take(count.div_ceil(4)) {
             let p = centre(&frame, at);
             for corner in 0..8 {
-                // A hair inside: contact with the surface is no overlap.
+                // Slightly inside: contact with the surface is no overlap.
                 let half = 0.499_999 * frame.cell_size();
                 let p = [0, 1, 2].map(|axis| p[axis] + if corner >> axis & 1 != 0 { half } else { -half });
                 self.probe(p, 1e-8);
@@ -329,7 +329,7 @@ impl Examiner<'_> {
     fn shares(&mut self, cells: &Cells, count: usize) {
         let Case { frame, fill, .. } = *self.case;
         let boundary = Boundary::of(self.case.soup);
-        // The half diagonal, and a little.
+        // Slightly more than the half diagonal.
         let radius = 0.866_026 * frame.cell_size();
         for i in 0..count {
             let at = match i % 2 {

@@ -140,7 +140,7 @@ pub fn damaged(soup: &Soup, damage: Damage, random: &mut Random, grain: f64, ali
         }
         DuplicateOne | DuplicateFifth | Cancel => {
             for _ in 0..if damage == DuplicateOne { 1 } else { some } {
-                // Other corners first, as exporters have it.
+                // Start triangles at other corners, as exporters do.
                 let [a, b, c] = *any(&soup, random);
                 soup.push(if damage == Cancel { [b, a, c] } else { [b, c, a] });
             }

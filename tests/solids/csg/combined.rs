@@ -294,7 +294,7 @@ fn threads_do_not_show() {
         (some, others, both)
     };
     let one = of(1);
-    // So many that threads are worth it.
+    // So many that threads pay off.
     assert!(one.2.view().cuts().unwrap().cells > 8192, "{:?}", one.2.view().cuts());
     for threads in [2, 3] {
         assert!(of(threads) == one);
@@ -320,7 +320,7 @@ fn memory_does_not_grow_with_history() {
         part = union(part.view(), chip.view(), &alone()).unwrap();
         assert_same(&part, &fresh, &format!("round {round}"));
     }
-    // The same all at once.
+    // The same in one operation.
     let whole = union(part.view(), blank.view(), &alone()).unwrap();
     assert_same(&whole, &blank, "all bores are filled");
 }

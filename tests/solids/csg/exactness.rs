@@ -25,7 +25,7 @@ fn compare(solid: &Csg, truth: &Truth, frame: &Frame, target: [u32; 3], random: 
                 cell.child(k)
             );
         }
-        // A target on a lattice plane belongs to the cells on both sides: the first that is cut.
+        // A target on a lattice plane belongs to the cells on both sides. The first cut cell is chosen.
         let shift = frame.depth() - cell.level - 1;
         let near = |k: u8| {
             let child = cell.child(k);
@@ -122,7 +122,7 @@ fn quadrics(frame: &Frame, target: [u32; 3], random: &mut Random) -> Option<(Csg
             1 => random.between(-1.0, 1.0),
             _ => random.below(5) as f64 - 2.0,
         };
-        // Without a square: a paraboloid's axis, or a cylinder's.
+        // Without a square term: a paraboloid's axis, or a cylinder's.
         c[6 + axis] = match c[axis] {
             0.0 => (random.below(3) as f64 - 1.0) * frame.edge(),
             square => -2.0 * square * centre[axis],

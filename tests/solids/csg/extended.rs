@@ -119,8 +119,8 @@ fn no_lies(models: u64, count: usize, make: impl Fn(&mut Maker<'_>) -> Model) {
             judge.ask(count as u64 / 4, &mut random);
             found = judge.found;
         }
-        // Cells are decided by the same surfaces; groups of an expression may decide some by the boxes around
-        // them.
+        // Cells are decided by the same surfaces. Groups of an expression may decide some cells by their
+        // bounding boxes.
         let width = |tree: &Octree| tree.statistics().volume().width();
         if cuts.given_up == 0 && width(&direct) > 0.0 {
             (compared, ratios) = (compared + 1, ratios + width(&plain) / width(&direct));
@@ -344,7 +344,7 @@ fn trees_of_trees() {
     let at_once = extended(&block.difference(&ball).unwrap(), &frame);
     let stored = Csg::solid(leafless::AnySolid::new(extended(&block, &frame)));
     let after = extended(&stored.difference(&ball).unwrap(), &frame);
-    // (Two faces of the block lie in planes of the lattice: cells say all of these.)
+    // (Two faces of the block lie in planes of the lattice, where cells describe them completely.)
     let [once, later] = [&at_once, &after].map(|tree| tree.view().cuts().unwrap());
     assert_eq!((once.given_up, later.given_up, once.surfaces, later.surfaces), (0, 0, 5, 5));
     let [once, later] = [&at_once, &after].map(|tree| measure(tree, &frame, 1e-5, &alone()).unwrap().volume);
@@ -369,7 +369,7 @@ fn meshes_are_kept_to_a_tolerance() {
     let (cube, frame) = (Csg::solid(AnySolid::new(mesh)), Frame::new([-0.77; 3], 2.7, 9).unwrap());
     let part = cube.difference(&ball).unwrap();
     let truth = |p: [f64; 3]| {
-        // How far a point lies inside, at the least.
+        // A lower bound of a point's depth inside.
         let cube = p.iter().map(|&c| c.min(1.0 - c)).fold(f64::INFINITY, f64::min);
         let [x, y, z] = [p[0] - 1.0, p[1] - 0.9, p[2] - 0.8];
         cube.min((x * x + y * y + z * z).sqrt() - 0.6)

@@ -93,8 +93,8 @@ impl Powers {
                     (0..exponent).fold(Exact::from(coefficient), |product, _| product.times(base))
                 };
                 let mut ends = vec![weighted(&base[0]), weighted(&base[1])];
-                // Between ends of different signs the power is zero somewhere, which is the least or the
-                // greatest of an even one, and between the ends of an odd one.
+                // Between ends of different signs, the power is zero somewhere. Zero is the least or the
+                // greatest value of an even power, and lies between the end values of an odd power.
                 if base[0].sign() * base[1].sign() < 0 {
                     ends.push(Exact::from(0.0));
                 }

@@ -133,7 +133,7 @@ fn many_operands_are_joined_as_trees_are() {
                     for (rule, tag) in [(Rule::Inner, Tag::Empty), (Rule::Outer, Tag::Full)] {
                         let resolved = dense(&build(&csg, &frame, rule, &alone()).unwrap());
                         let expected = expected.resolved(tag);
-                        // Where more is known, less is left to the rule.
+                        // Where more is known, the rule decides less.
                         assert!(resolved == found.resolved(tag), "{what}, {rule:?}");
                         assert!(!plain || resolved == expected, "{what}, {rule:?}");
                     }

@@ -118,7 +118,7 @@ fn rays_in_place_do_not_lie() {
                 })
             };
             let mut times: Vec<f64> = (0..20).map(|_| 2.0 * random.unit()).collect();
-            // Lies would stand next to the ends of spans.
+            // Wrong ends would show beside the ends of spans.
             let ends = spans.inner.iter().chain(&spans.outer).flat_map(|span| [span.lower, span.upper]);
             let steps = [0, -1, 1].map(|side| f64::from(side) * 0.5f64.powi(50 - random.below(25) as i32));
             times.extend(ends.filter(|t| t.is_finite()).flat_map(|t| steps.map(|step| t + step * t)));

@@ -271,7 +271,7 @@ fn evaluations_are_counted_where_they_happen() {
     assert_eq!((counted.frames(), counted.solid().evaluations()), (1, once));
     let mut nested = ball.clone();
     for times in 2..5 {
-        // An expression alone would be that expression.
+        // A single expression would be that expression itself.
         nested = Csg::solid(AnySolid::new(SplitCounter::new(nested)));
         let again = SplitCounter::new(&nested);
         build(&again, &frame, Rule::Certified, &alone()).unwrap();

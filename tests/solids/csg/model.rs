@@ -321,7 +321,7 @@ impl Model {
                 0 => return None,
                 sign => sign > 0,
             },
-            // A host's function is rounded.
+            // A host's function has rounding errors.
             Model::Host(..) => return None,
             Model::Prism(..) => match self.sign(&probe.at) {
                 0 => return None,
@@ -374,7 +374,7 @@ impl Other {
             Other::Moved(other, own, placement) => {
                 AnySolid::new(Transform::new(other.solid(own)?, own, placement))
             }
-            // An expression alone would become part of the one that it stands in.
+            // A single expression would become part of the surrounding one.
             Other::Model(model) => AnySolid::new(SplitCounter::new(model.csg(frame)?)),
         })
     }

@@ -120,7 +120,7 @@ fn few_cells_more_are_given_up_by_a_turn() {
     assert!(tree.statistics().nodes() <= 2 * direct.statistics().nodes());
     let (own, other) = (volume(&tree, 1e-6), volume(&direct, 1e-6));
     assert!(own.common(other).is_some(), "{own:?} {other:?}");
-    // Threads do not show.
+    // The number of threads does not matter.
     let image = placed(&extended(&csg, &frame), &map);
     assert_eq!(build_extended(&image, &room, &EXACT, &Control::threads(3)).unwrap(), tree);
 }

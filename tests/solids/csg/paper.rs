@@ -51,7 +51,8 @@ fn compare(primitive: &Primitive, frame: &Frame) -> Dense {
                 let evaluations = csg.evaluations() - before;
                 let children = worker.split(cell, &part).unwrap();
                 assert_eq!(again, children.each_ref().map(|child| child.tag()));
-                // Each of the 27 points at most once, then each half-space for the children that agree.
+                // Each of the 27 points at most once, then each half-space for the children whose vertices
+                // agree.
                 assert!(
                     evaluations >= (n + 2).min(27) && evaluations <= 27 * n + 8 * n,
                     "{evaluations} of {n}"

@@ -84,7 +84,7 @@ fn no_looser(a: &Octree, b: &Octree) -> bool {
 fn check(name: &str, make: impl Fn(&Frame) -> AnySolid, rules: &[Rule]) {
     for depth in 1..=repeated(7, 8) {
         let frames = [Frame::new([-1.0; 3], 2.0, depth), Frame::new([-1.1, -0.9, -1.0], 2.2, depth)];
-        // Large trees take a while: one frame then, and fewer cases.
+        // Large trees take long. They get one frame, and fewer cases.
         let frames = if depth < 7 { &frames[..] } else { &frames[depth as usize % 2..][..1] };
         for frame in frames {
             let frame = *frame.as_ref().unwrap();

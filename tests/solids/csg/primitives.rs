@@ -418,7 +418,7 @@ fn check_points(
     let neat = frame.edge().log2().fract() == 0.0;
     let mut seen = [0; 3];
     for _ in 0..points {
-        // Three of four from where the shape is.
+        // Three of four points are near the shape.
         let mut cell = [0, 1, 2].map(|_| random.below(frame.cells() as u64) as f64);
         if random.below(4) > 0 {
             let (min, max) = shape.bounds;
@@ -688,7 +688,8 @@ fn bounds_of_convex_polyhedra() {
     let mut random = Random(11);
     let sum = |a: [f64; 3], b: [f64; 3]| (0..3).map(|axis| a[axis] * b[axis]).sum::<f64>();
     for i in 0..300 {
-        // Planes that touch a ball, or pass by, around a centre; and their corners by trial of all triples.
+        // Planes that touch a ball, or pass it, around a centre; and their corners, found by trying all
+        // triples.
         let centre = [0, 1, 2].map(|_| random.between(-10.0, 10.0));
         let planes: Vec<([f64; 3], f64)> = (0..4 + i % 10)
             .map(|_| {
@@ -740,7 +741,7 @@ fn bounds_of_convex_polyhedra() {
     assert!(max.iter().all(|&c| (1.0..=1.0000001).contains(&c)), "{max:?}");
     let around = Frame::new([-2.0; 3], 4.0, 3).unwrap();
     assert_eq!(cube.on(&around, &Control::default()).unwrap().exterior(), leafless::Tag::Empty);
-    // Without end, or empty.
+    // Unbounded, or empty.
     assert!(Csg::convex(&planes[..5]).unwrap().bounds().is_none());
     assert!(Csg::convex(&[(unit(0, 1.0), -1.0), (unit(0, -1.0), -1.0)]).unwrap().bounds().is_none());
 }
@@ -872,7 +873,7 @@ fn a_host_is_asked_no_more_than_needed() {
     assert_eq!(split.len(), asked, "a vertex twice");
     assert!(asked <= 27);
     let boxes = boxes.lock().unwrap();
-    // The upper four only: the lower four have vertices on both sides.
+    // Only the upper four: the lower four have vertices on both sides.
     assert_eq!(boxes.len(), 4);
     assert!(boxes.iter().all(|(min, _)| min[2] == 0.5));
     assert_eq!(solid.evaluations() - before.1, (asked + boxes.len()) as u64);

@@ -57,7 +57,7 @@ fn a_solid_and_itself() {
     let nothing_moved = Affine::translation([0.0; 3]).unwrap();
     for (name, a) in solids() {
         let not = a.complement();
-        // As it would come from elsewhere: another node of the same half-spaces.
+        // Another node of the same half-spaces, as if from elsewhere.
         let again = Csg::union_of([a.clone()]).unwrap();
         let cases = [
             ("A minus A", a.difference(&a), Tag::Empty),

@@ -82,7 +82,7 @@ fn main() -> Result<(), Box<dyn Error>> {
             widest = widest.max(distance.width());
         }
         let is_contact = theirs < 0.0;
-        // Triangles that do not meet, of solids that overlap: one lies within the other.
+        // Triangles that do not meet, although the solids overlap: one solid lies within the other.
         if !is_contact && distance.upper == 0.0 && found.depth > 0.0 {
             within += 1;
         } else if is_contact && distance.lower > slack
