@@ -474,7 +474,8 @@ int main(void) { return other_caught() && leafless_test_panic() == LEAFLESS_E_PA
         output(&mut command).map(|_| kit.run(&folder.join("program"), &[])).map(|_| ())
     };
     assert_eq!(make(&[], "-l:libleafless.a"), Ok(()));
-    // Optimised as a whole with Rust's standard library, it contains a part of it that cannot be left out.
+    // Optimised as a whole, the other library contains a part of Rust's standard library that cannot be left
+    // out.
     let whole = ["-Clto=fat", "-Copt-level=1"];
     assert!(make(&whole, "-l:libleafless.a").is_err_and(|told| told.contains("rust_eh_personality")));
     assert_eq!(make(&whole, "-lleafless"), Ok(()));

@@ -2155,7 +2155,7 @@ fn verification(list: &mut List) {
     let one_plane = good(&without_bricks(BINARY));
     let partial = good(&Model::plain(4, |_| Tag::Partial));
     let planes = offset(&one_plane, PLANES);
-    // The first FULL child of the root that has no children.
+    // The first FULL cell of the root element without children.
     let full = number(&one_plane, planes, 8) & number(&one_plane, planes + 8, 8);
     let cell = full & full.wrapping_neg();
     let lower = number(&one_plane, planes, 8) & !cell;

@@ -171,7 +171,7 @@ impl Solid {
         if !self.is_hole {
             return self.figure.holds(at);
         }
-        // Returns false for points as near as this to the figure.
+        // Points as near as this to the figure do not count as inside.
         let near = (0..8).any(|k| {
             self.figure.holds([0, 1, 2].map(|axis| at[axis] + if k >> axis & 1 == 0 { -1e-3 } else { 1e-3 }))
         });

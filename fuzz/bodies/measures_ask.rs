@@ -217,7 +217,7 @@ impl Asked<'_> {
             assert!(reach > 0.0 && common.in_box(min, max).1, "{found:?}");
         }
         assert!(found.splits.iter().sum::<u64>() <= self.most(), "{found:?}");
-        // No ray arrives earlier.
+        // The order of the operands does not matter.
         let other = interference(&b.solid, &a.solid, self.frame, self.tolerance, &control(self.budget));
         let other = other.expect("nothing is wrong with the question").verdict;
         let both = [found.verdict, other];

@@ -90,7 +90,7 @@ fn a_channel_of_a_function_is_sampled_and_summed_up() {
     assert_eq!(sample(path, &["block.lfl", "--name", "heat"], points), ["36", "68", "none", "none"]);
     assert_eq!(sample(path, &["block.lfl", "--everywhere"], "2 2 3.5\n-1 0 0\n"), ["44", "none"]);
     let found = told(path, &["summary", "block.lfl"]);
-    // Layers of 36 cells from z = 1 to 7: 28, 36, …, 68.
+    // Layers of area 36 from z = 1 to 7: 28, 36, …, 68.
     assert_eq!(found["values"][0]["least"], 28.0);
     assert_eq!(found["values"][0]["greatest"], 68.0);
     assert!(

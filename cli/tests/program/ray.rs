@@ -45,7 +45,7 @@ fn json_lines() {
     let hit = &lines[0];
     assert_eq!((&hit["t_lower"], &hit["t_upper"]), (&1.0.into(), &1.0.into()));
     assert_eq!(hit["normal"], serde_json::json!([-1.0, 0.0, 0.0]));
-    // The cube is 2 of 8 units long. On every level from the third on, a cell is shorter.
+    // The cube is 2 of 8 units long, at least a cell on every level from the second on.
     let (level, cell) = (hit["level"].as_u64().unwrap(), hit["cell"][0].as_u64().unwrap());
     assert_eq!(cell << (5 - level), 4, "{hit}");
 }
