@@ -53,7 +53,7 @@ fn corpus(target: &str, body: fn(&[u8])) {
 
 // ---- findings ------------------------------------------------------------------------------------------
 
-/// The points of a box by their coordinates. The image of a box under an affine map has an exact range.
+/// An attribute of the points' coordinates. Its range over a box is the box itself.
 struct Places;
 
 impl Attribute for Places {

@@ -78,7 +78,7 @@ fn numbers(line: &str) -> Vec<u64> {
     line.split(' ').map(|number| number.parse().unwrap()).collect()
 }
 
-/// Reads what `hex` writes.
+/// Parses a double as `hex` formats it.
 fn double(text: &str) -> f64 {
     if !text.contains("0x") {
         return text.parse().unwrap();

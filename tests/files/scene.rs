@@ -651,7 +651,7 @@ fn points_never_contradict_cells() {
             }
         }
     }
-    // The test covers enough cases.
+    // The test decides enough points, inside and outside.
     assert!(decided > asked * 3 / 4 && inside > asked / 50, "{decided} and {inside} of {asked}");
 }
 
