@@ -1,5 +1,5 @@
-//! Points, rays and distances of a mesh in batches, as `peers/python_queries.py` asks them from Python: what
-//! a call costs beyond Rust.
+//! Points, rays and distances of a mesh in batches, the same as `peers/python_queries.py` queries from
+//! Python. The difference is the cost of a Python call.
 //!
 //! ```text
 //! cargo bench -p leafless-benches --bench batches -- MESH
@@ -26,7 +26,7 @@ fn share(state: &mut u64) -> f64 {
     ((z ^ z >> 31) >> 11) as f64 / 9_007_199_254_740_992.0
 }
 
-/// The median time of a call in seconds.
+/// Returns the median time of a call in seconds.
 fn median(mut call: impl FnMut() -> Result<(), Error>) -> Result<f64, Error> {
     let mut times = Vec::new();
     while times.len() < 5 || times.iter().sum::<f64>() < 0.3 && times.len() < 2000 {

@@ -1,5 +1,5 @@
-//! Queries from Rust: what `c_tests/boundary.c` and `boundary.cpp`, with the same ball and points, are held
-//! against for what the interfaces for C and C++ cost. Like them it prints medians of processor time.
+//! Queries from Rust, as a reference for the cost of the C and C++ interfaces: `c_tests/boundary.c` and
+//! `boundary.cpp` have the same ball and points. Like them, this program prints medians of processor time.
 //!
 //! ```text
 //! cargo bench --bench boundary
@@ -19,8 +19,7 @@ fn now() -> f64 {
     time.tv_sec as f64 * 1e9 + time.tv_nsec as f64
 }
 
-/// Prints the median time of `work` for each of `count` questions. `work` returns what every round must
-/// return.
+/// Prints the median time of `work` for each of `count` queries. All rounds must return the same.
 fn timed<R: PartialEq>(name: &str, count: usize, mut work: impl FnMut() -> R) -> R {
     let mut times = [0.0; ROUNDS];
     let mut results = times.each_mut().map(|time| {

@@ -4,8 +4,8 @@
 //! cargo bench --bench channels
 //! ```
 //!
-//! A ball of 512 cells per axis with channels of four kinds: what they take, and how long they are filled,
-//! asked and carried through a Boolean.
+//! A ball of 512 cells per axis with channels of four kinds: their sizes, and the times to fill them, query
+//! them and carry them through a Boolean.
 
 use criterion::{Criterion, Throughput, criterion_group, criterion_main};
 use leafless::attribute::{
@@ -41,7 +41,7 @@ fn between(low: [f64; 3], high: [f64; 3], of: impl Fn([f64; 3]) -> f64) -> Value
     ValueRange::Within([Interval::new(of(low), of(high)).unwrap(); 4])
 }
 
-/// The channels of the table, with what they are asked for.
+/// The channels of the table, with their names.
 fn channels(solid: &Octree, threads: usize) -> Vec<(&'static str, Channel)> {
     let frame = *solid.frame();
     let constant = ConstantAttribute::new(&[200.0, 100.0, 50.0, 255.0]).expect("a value");

@@ -1,8 +1,7 @@
-//! How fast the measures of solids close in on the truth: the width of the interval against the number of
-//! splits.
+//! Convergence of the measures of solids: the width of the interval against the number of splits.
 //!
-//! `cargo bench --bench convergence` prints a table and writes the picture `benches/convergence.svg`. No
-//! clock is read: the figures are the same on every machine.
+//! `cargo bench --bench convergence` prints a table and writes the picture `benches/convergence.svg`. The
+//! figures do not depend on time, and are the same on every machine.
 
 use leafless::query::surface_area;
 use leafless::{Affine, Control, Csg, Error, Frame, Interval, measure};
@@ -12,7 +11,7 @@ use std::path::Path;
 /// Budgets of splits, four to an octave.
 const BUDGETS: std::ops::Range<u32> = 32..81;
 
-/// Slopes are those of the last so many octaves.
+/// Octaves at the end from which slopes are computed.
 const LAST: f64 = 6.0;
 
 struct Shape {
@@ -48,7 +47,7 @@ fn shapes() -> Result<Vec<Shape>, Error> {
     ])
 }
 
-/// Splits and relative width after each pass that a budget allows.
+/// Returns the splits and the relative width after each pass that a budget allows.
 fn passes(
     measured: impl Fn(&Control<'_>) -> Result<(Interval, u64), Error>,
 ) -> Result<Vec<(f64, f64)>, Error> {
@@ -57,7 +56,7 @@ fn passes(
         let splits = 2f64.powf(budget as f64 / 4.0) as u64;
         let (found, spent) = measured(&Control { max_splits: Some(splits), ..Control::default() })?;
         let width = 2.0 * found.width() / (found.upper + found.lower);
-        // Once there is rounding alone, more splits do not help.
+        // Once only rounding remains, more splits do not help.
         let is_better =
             points.last().is_none_or(|&(last, least)| last < spent as f64 && width < 0.98 * least);
         if is_better && spent > 0 && width.is_finite() {
@@ -67,7 +66,7 @@ fn passes(
     Ok(points)
 }
 
-/// Of the straight line through the logarithms, by least squares.
+/// Returns the slope of the straight line through the logarithms, by least squares.
 fn slope(points: &[(f64, f64)]) -> f64 {
     let most = points.last().map_or(0.0, |&(splits, _)| splits);
     let last: Vec<(f64, f64)> = points

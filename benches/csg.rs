@@ -4,10 +4,9 @@
 //! cargo bench --bench csg
 //! ```
 //!
-//! `splits` asks a solid of one half-space to split each of its PARTIAL cells of level 8, one by one. The
-//! scene is a ball with three square bars and twelve cylinders taken out; `peers` (see `benches/README.md`)
-//! builds it with another program. Figures measured with this file, and what limits them, stand in
-//! `benches/README.md`.
+//! `splits` splits each PARTIAL cell of level 8 of a solid of one half-space, one by one. The scene is a ball
+//! minus three square bars and twelve cylinders; `peers` (see `benches/README.md`) builds it with another
+//! program. `benches/README.md` has figures measured with this file, and explains what limits them.
 
 use criterion::{Criterion, Throughput, criterion_group, criterion_main};
 use leafless::solid::HalfSpace;
@@ -24,7 +23,7 @@ fn universe(depth: u8) -> Frame {
     Frame::new([-1.0; 3], 2.0, depth).expect("a good frame")
 }
 
-/// The PARTIAL cells of a level.
+/// Returns the PARTIAL cells of a level.
 fn partial(solid: &Csg, frame: &Frame, level: u8) -> (CsgWorker, Vec<(Cell, CsgPart)>) {
     let classifier = solid.on(frame, &Control::threads(1)).expect("an expression on the frame");
     let mut worker = classifier.worker().expect("a worker");
@@ -86,7 +85,7 @@ fn scenes(c: &mut Criterion) {
             });
         }
     }
-    // Ten thousand balls at pseudo-random places: apart, overlapping, and most of space.
+    // Ten thousand balls at pseudo-random places: apart, overlapping, and filling most of space.
     for radius in [0.01, 0.02, 0.04] {
         let mut state = 1u64;
         let mut number = || {

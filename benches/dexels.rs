@@ -37,7 +37,7 @@ fn megabytes(model: &TriDexel) -> f64 {
     model.view().bytes() as f64 / 1e6
 }
 
-/// Around its five holes the bunny as scanned is bounded by no triangle.
+/// The bunny as scanned. No triangle bounds it at its five holes.
 fn open_bunny(control: &Control<'_>) {
     let Some(folder) = std::env::var_os("LEAFLESS_MODELS") else { return };
     let bytes = std::fs::read(std::path::Path::new(&folder).join("stanford-bunny.obj")).expect("the model");

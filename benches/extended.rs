@@ -1,12 +1,12 @@
-//! Speed of extended octrees, beside plain ones and beside the expression, on one thread.
+//! Speed of extended octrees, compared with plain octrees and with the expression, on one thread.
 //!
 //! ```text
 //! cargo bench --bench extended
 //! ```
 //!
-//! A plate of 80 × 60 × 10 with twenty bores of radius 2.5, aligned with the lattice and turned by a rational
-//! rotation: built, mapped and asked for one point, points anywhere in its box, rays from outside to its
-//! middle, volume to 10^-6.
+//! A plate of 80 × 60 × 10 with twenty bores of radius 2.5, aligned with the lattice and rotated by a
+//! rational rotation. It is built, mapped and queried: one point, points anywhere in its box, rays from
+//! outside to its middle, and the volume to 10^-6.
 
 use criterion::{Criterion, Throughput, criterion_group, criterion_main};
 use leafless::query::Obstacle;

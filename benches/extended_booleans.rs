@@ -1,11 +1,11 @@
-//! Set operations of extended octrees, on one thread: bores in a plate, balls out of a block, one by one and
-//! at once.
+//! Set operations of extended octrees, on one thread: bores in a plate and balls out of a block, one by one
+//! and at once.
 //!
 //! ```text
 //! cargo bench --bench extended_booleans
 //! ```
 //!
-//! Medians of several runs, wall clock. Sizes are those of the file; widths those of the volume after 2^20
+//! Medians of several runs, wall clock. Sizes are file sizes; widths are those of the volume after 2^20
 //! splits.
 
 use leafless::op::difference_of;
@@ -22,7 +22,7 @@ fn extended(csg: &Csg, frame: &Frame) -> Octree {
     build_extended(csg, frame, &SurfaceOptions::default(), &control()).unwrap()
 }
 
-/// The median of the times of `runs` runs, and what the last one made.
+/// Returns the median time of `runs` runs, and the result of the last one.
 fn timed<R>(runs: usize, mut run: impl FnMut() -> R) -> (Duration, R) {
     let mut times = Vec::new();
     let mut made = None;
@@ -80,7 +80,7 @@ fn bore(x: f64, y: f64, frame: &Frame) -> Octree {
     extended(&Csg::cylinder(2.5, -1.0, 11.0).unwrap().placed(&to).unwrap(), frame)
 }
 
-/// A plate of 80 × 60 × 10 and twenty bores, and one more.
+/// A plate of 80 × 60 × 10 with twenty bores, and one more bore.
 fn plate() {
     let frame = Frame::around([0.0; 3], [80.0, 60.0, 10.0], 20).unwrap();
     let stock = extended(&Csg::cuboid([0.0; 3], [80.0, 60.0, 10.0]).unwrap(), &frame);

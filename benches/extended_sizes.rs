@@ -1,11 +1,11 @@
-//! Sizes of extended octrees beside plain ones, and what is known of their volumes.
+//! Sizes of extended octrees compared with plain octrees, and the bounds of their volumes.
 //!
 //! ```text
 //! cargo bench -p leafless-benches --bench extended_sizes
 //! ```
 //!
-//! It draws `extended.svg`, too. Bytes are those of the file; the width is that of the volume's interval, of
-//! extended trees after 4096, 2^16 and 2^20 splits. `README.md` has the table.
+//! The program also draws `extended.svg`. Bytes are those of the file. The width is that of the volume's
+//! interval, for extended trees after 4096, 2^16 and 2^20 splits. `README.md` has the table.
 
 use leafless::{
     Affine, Control, Csg, Error, Frame, Interval, Octree, Rule, Solid, SurfaceOptions, build, build_extended,
@@ -25,7 +25,7 @@ fn plate() -> Result<Csg, Error> {
     Csg::cuboid([0.0; 3], [80.0, 60.0, 10.0])?.difference(&Csg::union_of(bores)?)
 }
 
-/// A block of edge 1, less a hundred balls of 6 % around points that look random.
+/// A block of edge 1 minus a hundred balls of 6 % around pseudo-random points.
 fn sponge() -> Result<Csg, Error> {
     let mut state = 1u64;
     let mut next = || {
@@ -39,10 +39,10 @@ fn sponge() -> Result<Csg, Error> {
     Csg::cuboid([0.0; 3], [1.0; 3])?.difference(&Csg::union_of(balls)?)
 }
 
-/// What is drawn of a tree: bytes of the file, and the relative width of the volume.
+/// A drawn point of a tree: bytes of the file, and relative width of the volume.
 type Spot = (f64, f64);
 
-/// The trees of a part: plain ones, and the extended one after ever more splits.
+/// The trees of a part: plain trees, and the extended tree after ever more splits.
 struct Curves {
     name: &'static str,
     plain: Vec<Spot>,
@@ -53,7 +53,7 @@ fn relative(volume: Interval) -> f64 {
     volume.width() / (0.5 * (volume.lower + volume.upper))
 }
 
-/// Prints a line about a tree; what is drawn of it.
+/// Prints a line about a tree; returns its point in the drawing.
 fn row(name: &str, what: &str, tree: &Octree, seconds: f64, volume: Interval) -> Result<Spot, Error> {
     let cuts = tree.view().cuts();
     let bytes = file::to_bytes(tree)?.len();

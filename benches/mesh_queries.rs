@@ -1,14 +1,14 @@
-//! Single questions to a mesh's solid, without an octree: rays, distances and points, one by one and in a
-//! batch. On one thread, processor time, medians of five rounds.
+//! Single queries of a mesh's solid without an octree: rays, distances and points, one by one and in a batch.
+//! On one thread, processor time, medians of five rounds.
 //!
 //! ```text
 //! LEAFLESS_MODELS=/path/to/models cargo bench --bench mesh_queries -- [QUESTIONS [TIMES]]
 //! ```
 //!
-//! 1000 questions of each kind unless told otherwise. Each triangle is divided in four so many TIMES
-//! beforehand (0). The frame has depth 20. `peers/mesh_queries.cpp`, `.py` and
-//! `peers/src/bin/mesh_queries.rs` ask other programs the same, `peers/mesh_queries.c` asks through the C
-//! interface; see `benches/README.md`.
+//! There are 1000 queries of each kind by default. Each triangle is divided in four TIMES times beforehand
+//! (default 0). The frame has depth 20. `peers/mesh_queries.cpp`, `.py` and `peers/src/bin/mesh_queries.rs`
+//! send the same queries to other programs, `peers/mesh_queries.c` sends them through the C interface; see
+//! `benches/README.md`.
 
 use leafless::query::{
     DistanceTo, Obstacle, PointDistance, RayHit, StopReason, cast_rays, contains, distances, ray_spans,
@@ -26,25 +26,25 @@ mod mesh_questions;
 
 const DEPTH: u8 = 20;
 const ROUNDS: usize = 5;
-/// How wide a distance's interval may be, of the bounding box's diagonal.
+/// Allowed width of a distance's interval, as a fraction of the bounding box's diagonal.
 const TOLERANCE: f64 = 1e-9;
 
-/// Nanoseconds of processor time.
+/// Returns the processor time in nanoseconds.
 fn now() -> f64 {
     let time = clock_gettime(ClockId::ProcessCPUTime);
     time.tv_sec as f64 * 1e9 + time.tv_nsec as f64
 }
 
-/// What all answers come to.
+/// Sums over all answers.
 #[derive(Debug, Default, Clone, Copy, PartialEq)]
 struct Sums {
-    /// Hits, or points inside.
+    /// Number of hits, or of points inside.
     count: usize,
-    /// Of the middles of intervals with two ends.
+    /// Sum of the middles of intervals with two ends.
     sum: f64,
-    /// Answers that are neither yes nor no, or wider than the tolerance.
+    /// Number of undecided answers, and of answers wider than the tolerance.
     undecided: usize,
-    /// The widest interval with two ends.
+    /// Width of the widest interval with two ends.
     widest: f64,
 }
 
@@ -75,7 +75,7 @@ impl Sums {
     }
 }
 
-/// Prints the median time of a question.
+/// Prints the median time of a query.
 fn asked(name: &str, count: usize, mut all: impl FnMut() -> Sums) {
     let mut times = [0.0; ROUNDS];
     let mut sums = Sums::default();
@@ -144,7 +144,7 @@ fn ask(name: &str, solid: &Prepared, frame: &Frame, [min, max]: [[f64; 3]; 2], c
             let mut sums = Sums::default();
             for ray in &rays {
                 let spans = ray_spans(solid, frame, ray, &control).expect("an answer");
-                // A ray that begins inside crosses the surface once only.
+                // A ray that begins inside crosses the surface only once.
                 let ends = |span: &leafless::Interval| (span.lower > 0.0) as usize + 1;
                 sums.count += spans.outer.iter().map(ends).sum::<usize>();
                 sums.undecided += (spans.outer.len() != spans.inner.len()) as usize;
@@ -188,7 +188,7 @@ fn ask(name: &str, solid: &Prepared, frame: &Frame, [min, max]: [[f64; 3]; 2], c
     });
 }
 
-/// The mesh with each triangle divided in four.
+/// Returns the mesh with each triangle divided in four.
 fn finer(mesh: &TriangleMesh) -> TriangleMesh {
     let facets = mesh.triangles().iter().flat_map(|triangle| {
         let [a, b, c] = triangle.map(|vertex| mesh.vertices()[vertex as usize]);

@@ -1,17 +1,17 @@
-//! Questions to a triangle mesh, the same for Leafless and its peers: rays and points at random. All numbers
-//! are rounded to single precision, so that no program asks about others. `peers/mesh_queries.h` makes the
-//! same in C.
+//! Queries of a triangle mesh, the same for Leafless and its peers: rays and points at random. All numbers
+//! are rounded to single precision, so that all programs receive the same numbers. `peers/mesh_queries.h`
+//! makes the same queries in C.
 
 type Vector = [f64; 3];
 
-/// An origin, and a direction of length 1 but for rounding.
+/// A ray: its origin, and its direction of length 1 up to rounding.
 pub type Line = [[f32; 3]; 2];
 
 /// splitmix64.
 struct Random(u64);
 
 impl Random {
-    /// A number in [0, 1).
+    /// Returns a number in [0, 1).
     fn share(&mut self) -> f64 {
         self.0 = self.0.wrapping_add(0x9E37_79B9_7F4A_7C15);
         let z = (self.0 ^ self.0 >> 30).wrapping_mul(0xBF58_476D_1CE4_E5B9);
@@ -23,7 +23,7 @@ impl Random {
         [0, 1, 2].map(|axis| min[axis] + self.share() * (max[axis] - min[axis]))
     }
 
-    /// A direction, all equally likely: that of a point of the unit ball.
+    /// Returns a uniformly distributed direction: that of a point of the unit ball.
     fn direction(&mut self) -> Vector {
         loop {
             let v = [0; 3].map(|_| 2.0 * self.share() - 1.0);
@@ -70,7 +70,7 @@ pub fn points_within(min: Vector, max: Vector, count: usize) -> Vec<[f32; 3]> {
     (0..count).map(|_| random.in_box(min, max).map(|c| c as f32)).collect()
 }
 
-/// The sum of the numbers' bits: tells whether questions are the same.
+/// Returns the sum of the numbers' bits, which shows whether queries are the same.
 pub fn sum_of_bits<'a>(numbers: impl IntoIterator<Item = &'a f32>) -> u64 {
     numbers.into_iter().map(|number| number.to_bits() as u64).sum()
 }

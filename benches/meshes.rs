@@ -5,9 +5,9 @@
 //! ```
 //!
 //! A torus of half a million triangles and a quarter of a million vertices, in files of every format that
-//! `fuzz/` knows to write, coordinates with six places, as most programs write them. `weld` is what every
-//! reader does in the end, alone. Figures measured with this file, and what limits them, stand in
-//! `benches/README.md`.
+//! `fuzz/` can write. Coordinates have six places, as most programs write them. `weld` is the last step of
+//! every reader alone. `benches/README.md` has figures measured with this file, and explains what limits
+//! them.
 
 use criterion::{BatchSize, Criterion, Throughput, criterion_group, criterion_main};
 use leafless::{TriangleMesh, exchange};
@@ -65,14 +65,14 @@ fn read(c: &mut Criterion) {
     group.finish();
 }
 
-/// As most programs write it.
+/// Writes an OBJ as most programs do.
 fn plain_obj(mesh: &TriangleMesh) -> Vec<u8> {
     let vertices = mesh.vertices().iter().map(|[x, y, z]| format!("v {x} {y} {z}\n"));
     let faces = mesh.triangles().iter().map(|t| t.map(|v| v + 1)).map(|[a, b, c]| format!("f {a} {b} {c}\n"));
     vertices.chain(faces).collect::<String>().into_bytes()
 }
 
-/// Pairs of triangles as one face.
+/// Writes pairs of triangles as one face.
 fn quadrilaterals(mesh: &TriangleMesh) -> Vec<u8> {
     let vertices = mesh.vertices().iter().map(|[x, y, z]| format!("v {x} {y} {z}\n"));
     let faces = mesh.triangles().chunks_exact(2).map(|pair| {

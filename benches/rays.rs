@@ -4,10 +4,10 @@
 //! LEAFLESS_MODELS=/path/to/models cargo bench --bench rays
 //! ```
 //!
-//! A million rays of a camera, in scan order, to their first hit: parallel ones and those of a perspective
-//! view, on the bunny and on the machined part at 1024³, decided at cell centres as the peers' grids are. The
-//! camera stands as that of the peers: eye at the centre of the bounding box + 2 D w, D its diagonal, w along
-//! (1, 0.7, 0.5), half width D/2.
+//! A million rays of a camera, in scan order, to their first hit: parallel rays and rays of a perspective
+//! view, on the bunny and on the machined part at 1024³, decided at cell centres like the peers' grids. The
+//! camera is that of the peers: eye at the centre of the bounding box + 2 D w, D its diagonal, w along (1,
+//! 0.7, 0.5), half width D/2.
 
 use criterion::{Criterion, Throughput, criterion_group, criterion_main};
 use leafless::query::{Obstacle, RayHit};
@@ -35,7 +35,7 @@ fn unit(a: Vector) -> Vector {
     a.map(|c| c / length)
 }
 
-/// The rays of a camera that looks at a box.
+/// Returns the rays of a camera that looks at a box.
 fn rays(min: Vector, max: Vector, perspective: bool) -> Vec<Ray> {
     let diagonal = [0, 1, 2].map(|axis| max[axis] - min[axis]);
     let size = diagonal.iter().map(|c| c * c).sum::<f64>().sqrt();
@@ -56,7 +56,7 @@ fn rays(min: Vector, max: Vector, perspective: bool) -> Vec<Ray> {
     pixels.map(|pixel| ray(pixel).expect("a good ray")).collect()
 }
 
-/// A model at cell centres, and its bounding box.
+/// Returns a model decided at cell centres, and its bounding box.
 fn octree(name: &str, rule: Rule) -> Option<(Octree, Vector, Vector)> {
     let Some(folder) = std::env::var_os("LEAFLESS_MODELS") else {
         eprintln!("SKIPPED {name}: LEAFLESS_MODELS is not set");

@@ -1,4 +1,5 @@
-//! Speed of voxel records, a million of them, on one thread: of a ball with a colour, in 512 cells an axis.
+//! Speed of voxel records on one thread: a million records of a ball with a colour, in 512 cells along an
+//! axis.
 //!
 //! ```text
 //! cargo bench --bench records

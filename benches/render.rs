@@ -21,8 +21,8 @@ use std::hint::black_box;
 /// Pixels on a side of the picture.
 const SIDE: u32 = 1024;
 
-/// The voxels of a block with a spherical hollow in a lattice of 256³ cells; what they hold changes with the
-/// distance from a corner, and they are as fine as that asks for.
+/// The voxels of a block with a spherical hollow in a lattice of 256³ cells. Their values change with the
+/// distance from a corner, and the voxels are as fine as the values require.
 fn voxels(control: &Control<'_>) -> VoxelRecords {
     let frame = Frame::new([-1.0; 3], 2.0, 8).expect("a frame");
     let block = Csg::cuboid([-0.95; 3], [0.95; 3]).expect("a block");
@@ -96,7 +96,7 @@ fn surfaces(c: &mut Criterion) {
     group.finish();
 }
 
-/// A mesh, and what scenes make of it: the same alone, cut open, and with a hole.
+/// A mesh, and scenes made from it: the mesh alone, cut open, and with a hole.
 fn scenes(c: &mut Criterion) {
     let control = Control::threads(2);
     let frame = Frame::new([-1.125; 3], 2.25, 6).expect("a frame");

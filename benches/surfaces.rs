@@ -4,8 +4,8 @@
 //! LEAFLESS_MODELS=/path/to/models cargo bench --bench surfaces
 //! ```
 //!
-//! A ball and, with models, the closed bunny, in octrees of 256, 512 and 1024 cells per axis. One thread and
-//! two. Coplanar shrink on these and on machined parts, with the counts that are left.
+//! A ball and, with models, the closed bunny, in octrees of 256, 512 and 1024 cells per axis, on one thread
+//! and two. Coplanar shrink runs on these and on machined parts, and prints the remaining counts.
 
 use criterion::measurement::WallTime;
 use criterion::{BenchmarkGroup, Criterion, Throughput, criterion_group, criterion_main};
@@ -82,8 +82,8 @@ fn extract(c: &mut Criterion) {
     group.finish();
 }
 
-/// Of each solid the counts by simple marching cubes, by the published form of shrink and by ours, and the
-/// time of ours.
+/// For each solid, prints the counts by simple marching cubes, by the published form of shrink and by
+/// Leafless's form, and the time of the last.
 fn shrink(c: &mut Criterion) {
     let tetrahedron = vec![[3.0; 3], [94.0, 3.0, 3.0], [3.0, 94.0, 3.0], [3.0, 3.0, 94.0]];
     let mesh = TriangleMesh::new(tetrahedron, vec![[0, 2, 1], [0, 1, 3], [0, 3, 2], [1, 2, 3]]);
@@ -116,7 +116,7 @@ fn shrink(c: &mut Criterion) {
     group.finish();
 }
 
-/// A ball, and the bunny, with vertices on the surface, of 256 cells per axis.
+/// A ball, and the bunny, with vertices on the surface, in 256 cells per axis.
 fn crossings(c: &mut Criterion) {
     let mut group = c.benchmark_group("marching cubes of solids, 256");
     group.sample_size(10);

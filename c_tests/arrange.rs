@@ -1,26 +1,26 @@
-//! Arranges the header: cbindgen writes all types before all functions, a reader wants sections.
+//! Arranges the header. cbindgen writes all types before all functions; readers want sections.
 //!
-//! A section is made of files of `capi/src`, and what it declares stands in the order of these files, so that
-//! a type comes before the functions that take it. Comments are wrapped, short ones stand behind what they
-//! explain, and parameters fill their lines.
+//! A section is made of files of `capi/src`. Its declarations stand in the order of these files, so that a
+//! type comes before the functions that take it. Comments are wrapped, short ones stand behind the line that
+//! they explain, and parameters fill their lines.
 
 use std::fmt::Write;
 
 /// Columns of a line.
 const WIDTH: usize = 110;
 
-/// How the types of numbers begin that stand for members of an enumeration, of 32 and of 8 bits. In the
+/// Prefixes of the types of numbers, of 32 and of 8 bits, that stand for members of an enumeration. In the
 /// header they are the enumeration.
 const NUMBERS: [&str; 2] = ["Number_", "Byte_"];
 
 /// A part of the header.
 pub struct Section {
     pub title: &'static str,
-    /// The files of `capi/src` that it is made of, without `.rs`.
+    /// The files of `capi/src` that make up the section, without `.rs`.
     pub files: &'static [&'static str],
 }
 
-/// Something that the header declares.
+/// A declaration of the header.
 struct Item {
     name: String,
     /// The lines of its comment, without `///`.
@@ -30,13 +30,13 @@ struct Item {
 }
 
 impl Item {
-    /// Whether it is an object of which only pointers are known.
+    /// True if the item is an object known only by pointers.
     fn is_handle(&self) -> bool {
         self.code[0].starts_with("typedef struct ") && self.code[0].ends_with(';')
     }
 }
 
-/// What `cbindgen` wrote, by blocks between empty lines; without what only tests have.
+/// Splits the output of `cbindgen` into blocks between empty lines, without items that only tests have.
 fn items(raw: &str) -> Vec<Item> {
     let mut items = Vec::new();
     for block in raw.split("\n\n") {
@@ -60,13 +60,13 @@ fn items(raw: &str) -> Vec<Item> {
     items
 }
 
-/// A line of a comment without what makes it one.
+/// Returns a comment line's text without the comment marks.
 fn comment_text(line: &str) -> String {
     let text = line.trim_start().strip_prefix("///").expect("a comment");
     text.strip_prefix(' ').unwrap_or(text).to_string()
 }
 
-/// The name that a declaration declares.
+/// Returns the name that a declaration declares.
 fn name_of(code: &[String]) -> String {
     let first = code[0].as_str();
     let word = |text: &str| {
@@ -86,7 +86,7 @@ fn name_of(code: &[String]) -> String {
     before.rsplit([' ', '*']).next().unwrap_or_default().to_string()
 }
 
-/// A paragraph or an entry of a list in lines that fit.
+/// Wraps a paragraph or a list entry to the width.
 fn wrapped(doc: &[String], indent: &str, out: &mut String) {
     let mut paragraphs: Vec<String> = Vec::new();
     let mut joins = false;
@@ -127,7 +127,7 @@ fn wrapped(doc: &[String], indent: &str, out: &mut String) {
     }
 }
 
-/// The lines between braces: fields or enumerators, each with its comment.
+/// Writes the lines between braces: fields or enumerators, each with its comment.
 fn body(lines: &[String], out: &mut String) {
     let mut doc: Vec<String> = Vec::new();
     for line in lines {
@@ -148,14 +148,13 @@ fn body(lines: &[String], out: &mut String) {
     }
 }
 
-/// Code in which structs go by the names that their typedefs have, and numbers by those of their
-/// enumerations.
+/// Returns code that names structs by their typedefs, and numbers by their enumerations.
 fn plain(code: &str) -> String {
     let code = NUMBERS.iter().fold(code.to_string(), |code, number| code.replace(number, ""));
     if code.starts_with("typedef struct ") { code } else { code.replace("struct leafless_", "leafless_") }
 }
 
-/// A declaration with its parameters in lines that fit.
+/// Writes a declaration whose parameters fill their lines.
 fn filled(code: &[String], out: &mut String) {
     let text = code.iter().map(|line| line.trim()).collect::<Vec<_>>().join(" ").replace("( ", "(");
     let text = plain(&text);
@@ -193,7 +192,7 @@ fn declare(item: &Item, out: &mut String) {
     }
 }
 
-/// Where a name is defined in a source file.
+/// Returns the place in a source file where a name is defined.
 fn defined_at(source: &str, name: &str) -> Option<usize> {
     ["enum", "struct", "fn", "const", "type"].iter().find_map(|kind| {
         let definition = format!("{kind} {name}");
@@ -205,11 +204,11 @@ fn defined_at(source: &str, name: &str) -> Option<usize> {
     })
 }
 
-/// The declarations of `raw` in sections, and the list of these; `read` gives the text of a file of
-/// `capi/src`.
+/// Returns the declarations of `raw` in sections, and the list of the sections. `read` returns the text of a
+/// file of `capi/src`.
 pub fn arranged(raw: &str, sections: &[Section], read: impl Fn(&str) -> String) -> (String, String) {
     let mut items = items(raw);
-    // Each with the section, the file in it and the place in the file where it is defined.
+    // Each item with its section, its file in the section, and its place in the file.
     let mut placed: Vec<(bool, usize, usize, usize, Item)> = Vec::new();
     for (k, section) in sections.iter().enumerate() {
         for (f, file) in section.files.iter().enumerate() {
@@ -232,7 +231,7 @@ pub fn arranged(raw: &str, sections: &[Section], read: impl Fn(&str) -> String) 
         let title = format!("{}. {title}", k + 1);
         writeln!(contents, " *   {title}").expect("memory");
         write!(text, "\n/* ---- {title} {:-<1$} */\n", "", WIDTH - 13 - title.len()).expect("memory");
-        // Handles stand first, because every section may speak of them.
+        // Handles stand first, because every section may mention them.
         let of_section =
             placed.iter().filter(|(is_other, section, ..)| if *is_other { section + 1 == k } else { k == 0 });
         for (.., item) in of_section {

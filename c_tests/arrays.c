@@ -346,7 +346,7 @@ static void bad_fields(void) {
     refused(LEAFLESS_E_ARGUMENT, &arrays, "arrays.indices");
     arrays.triangle_stride = ((uint64_t)1 << 62) + 12;
     refused(LEAFLESS_E_ARGUMENT, &arrays, "arrays.indices");
-    /* Of one element the stride does not matter. */
+    /* For one element the stride does not matter. */
     {
         const double point[3] = {1, 2, 3};
         leafless_mesh *mesh = NULL;
@@ -395,7 +395,7 @@ static void bad_fields(void) {
         leafless_mesh_free(mesh);
     }
 
-    /* Never initialised, and what this library does not know. */
+    /* Uninitialised options, and options unknown to this library. */
     memset(&arrays, 0, sizeof arrays);
     refused(LEAFLESS_E_ARGUMENT, &arrays, "struct_size");
     memset(&arrays, 0x33, sizeof arrays);
@@ -412,7 +412,7 @@ static void bad_fields(void) {
         newer.unknown = 0;
         is_cube(&newer.known);
     }
-    /* A program from before `scale`: what lies there is not read. */
+    /* A program older than `scale`: the bytes at its place are not read. */
     arrays = good;
     arrays.struct_size = offsetof(leafless_mesh_arrays, scale);
     arrays.scale = NAN;

@@ -1,5 +1,5 @@
-// What a careless host does: counts that overflow, attributes that answer nonsense and call back, an editor in many threads,
-// layers that outlive what they were made of. Nothing crashes, and what is returned is documented.
+// Mistakes of a careless host: counts that overflow, attributes with nonsensical answers that call back, an editor in many
+// threads, layers that outlive their sources. Nothing crashes, and every returned status is documented.
 #include "check.h"
 
 #include <atomic>
@@ -24,8 +24,8 @@ leafless_options with_threads(uint32_t threads) {
 
 // --- Counts ------------------------------------------------------------------------------------------------------------
 
-// Every function that takes numbers of things refuses numbers whose bytes do not fit into memory, also where the product
-// wraps around to a small one.
+// Every function that takes a count refuses counts whose bytes do not fit into memory, also where the product wraps around
+// to a small number.
 void counts() {
     const leafless_frame frame = check_frame(3);
     leafless_octree *octree = check_ball(3, LEAFLESS_RULE_CERTIFIED);
@@ -91,7 +91,7 @@ void counts() {
             return leafless_layer_new_voxels(&arrays, &transfer, 0, &layer);
         },
     };
-    // (Bytes of what is smaller might be there, for all that the library knows.)
+    // (Smaller arrays might exist; the library cannot know.)
     const uint64_t numbers_of_things[] = {UINT64_MAX,          UINT64_MAX / 8 + 2,  UINT64_MAX / 16 + 2,
                                           UINT64_C(1) << 63,   UINT64_C(1) << 61,   UINT64_C(1) << 60};
     for (const auto &function : functions) {
@@ -138,7 +138,7 @@ bool is_expected(leafless_status status) {
     return status == LEAFLESS_OK || status == LEAFLESS_E_CALLBACK || status == LEAFLESS_E_ARGUMENT;
 }
 
-// All that asks an attribute asks this one.
+// Every function that queries an attribute queries this one.
 void ask(const leafless_attribute *attribute, uint32_t threads) {
     const leafless_options options = with_threads(threads);
     const leafless_frame frame = check_frame(4);
@@ -340,7 +340,7 @@ void editor_in_threads() {
     }
     for (std::thread &thread : threads) thread.join();
     CHECK(done > 0 && done + busy == 4 * 60 * 3);
-    // It goes on, and what was cut is cut: the editor's model lies in the block.
+    // The editor continues, and its cuts stay: its model lies in the block.
     leafless_tridexel *left = nullptr, *beyond = nullptr;
     OK(leafless_tridexel_editor_freeze(editor, nullptr, &left));
     OK(leafless_tridexel_check(left));
@@ -359,7 +359,7 @@ void editor_in_threads() {
     leafless_solid_free(block);
 }
 
-// --- Layers that outlive what they were made of ------------------------------------------------------------------------
+// --- Layers that outlive their sources ---------------------------------------------------------------------------------
 
 std::vector<uint8_t> picture(const std::vector<const leafless_layer *> &layers) {
     leafless_shot shot;

@@ -1,4 +1,4 @@
-// A lambda as an attribute, asked from many threads at once; eight threads on one channel; progress and cancelling.
+// A lambda as an attribute, called from many threads at once; eight threads on one channel; progress and cancelling.
 #include "check.h"
 
 #include <atomic>
@@ -77,7 +77,7 @@ void many_threads() {
     OK(leafless_channel_equal(one.get(), several.get(), &equal));
     CHECK(equal);
 
-    // Mapped unverified, its links are checked by whoever asks first.
+    // If it is mapped unverified, the first query checks its links.
     static const char PATH[] = "attribute.lfl";
     leafless_octree *solid = nullptr, *with = nullptr, *mapped = nullptr;
     OK(leafless_octree_new_uniform(&frame, LEAFLESS_TAG_FULL, LEAFLESS_TAG_EMPTY, &solid));

@@ -1,4 +1,4 @@
-/* Layouts: whether copies may stand where they do, searches, and what copies amount to, against what arithmetic says. */
+/* Layouts: checks of placements, searches, and the sums over copies, against plain arithmetic. */
 #include "check.h"
 
 static leafless_solid *box(double x, double y, double z) {
@@ -61,7 +61,7 @@ static void balls(void) {
     CHECK(standing.has_nearest && standing.nearest.beside == LEAFLESS_BESIDE_PLACED && standing.nearest.number == first);
     CHECK(holds(standing.nearest.gap_model, 0.5) && standing.nearest.verdict == LEAFLESS_GAP_VERDICT_NO);
     CHECK(standing.nearest.gap_model.upper - standing.nearest.gap_model.lower < 1e-3);
-    /* Their number is told as well where there is no room for them. */
+    /* Their number is returned even if the buffer has no room for them. */
     standing.conflict_count = 0;
     OK(leafless_layout_check(layout, second, NULL, NULL, 0, &standing));
     CHECK(standing.conflict_count == 1);
@@ -199,7 +199,7 @@ static void cancelled(void) {
 static leafless_layout *in_use;
 static leafless_status told;
 
-/* The half of space above z = 14.5, which asks for more while it is asked. */
+/* The half-space above z = 14.5. Its function uses the layout that calls it. */
 static int32_t above(void *ctx, const double *min, const double *max) {
     leafless_placement one;
     (void)ctx;
@@ -210,7 +210,7 @@ static int32_t above(void *ctx, const double *min, const double *max) {
     return min[2] >= 14.5 ? LEAFLESS_TAG_FULL : max[2] <= 14.5 ? LEAFLESS_TAG_EMPTY : LEAFLESS_TAG_PARTIAL;
 }
 
-/* A function of the host cannot change the layout that asks it. */
+/* A function of the host cannot change the layout that calls it. */
 static void busy(void) {
     static const double bounds[6] = {40, 0, 14.5, 60, 30, 30};
     leafless_solid *container = box(60, 30, 30), *item = ball(0, 10), *shape = NULL;

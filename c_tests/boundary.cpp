@@ -14,7 +14,7 @@ namespace {
 
 constexpr int ROUNDS = 11;
 
-/// Prints the median of the processor time of `work` for each of `count` questions. `work` returns what every round must return.
+/// Prints the median processor time of `work` for each of `count` queries. All rounds must return the same.
 template <class F> double timed(const char *name, std::size_t count, F &&work) {
     std::vector<double> times;
     double first = 0;

@@ -1,4 +1,4 @@
-/* The host's own shape: a ball that the library knows only through boxes or distances, and what a host may get wrong. */
+/* The host's own shape: a ball given only by verdicts on boxes or by distances; and mistakes of hosts. */
 #include "check.h"
 
 typedef struct host {
@@ -6,14 +6,14 @@ typedef struct host {
     int classified;
     int decided;
     int destroyed;
-    int32_t answer;          /* what `garbage` returns */
-    leafless_octree *octree; /* what `asks` asks */
+    int32_t answer;          /* the result of `garbage` */
+    leafless_octree *octree; /* the octree that `asks` uses */
     leafless_solid *self;
     int calls;               /* of functions that get many at once */
     uint64_t most_boxes;     /* in one call, and so on */
     uint64_t most_points;
     uint64_t most_distances;
-    double nothing;          /* what `says_nothing` says */
+    double nothing;          /* the answer of `says_nothing` */
     int fails_at;            /* the call in which `distances` gives up, or 0 */
 } host;
 
@@ -96,7 +96,7 @@ static void gone(void *ctx) {
     ((host *)ctx)->destroyed++;
 }
 
-/* May call the library: here it gives back what the context holds. */
+/* May call the library: here it frees the context's objects. */
 static void gone_with_all(void *ctx) {
     host *h = (host *)ctx;
     leafless_octree *complement = NULL;
@@ -130,7 +130,7 @@ static int32_t in_balls(void *ctx, const double *points, uint64_t count, int32_t
     return ((host *)ctx)->answer;
 }
 
-/* The exact signed distances, but for a margin that is far more than what is rounded. */
+/* The exact signed distances, with a margin far larger than the rounding. */
 static int32_t distances(void *ctx, const double *points, uint64_t count, double *distances_model) {
     host *h = (host *)ctx;
     uint64_t i;
@@ -160,7 +160,7 @@ static int32_t says_nothing(void *ctx, const double *points, uint64_t count, dou
     return 0;
 }
 
-/* The function |p|^2 - r^2 over a box, with more than what is rounded; or what `nothing` says. */
+/* The function |p|^2 - r^2 over a box, with a margin larger than the rounding; or the value of `nothing`. */
 static int32_t gradient(void *ctx, const double *min, const double *max, const double *middle,
                         leafless_gradient *gradient) {
     host *h = (host *)ctx;
@@ -184,7 +184,7 @@ static int32_t gradient(void *ctx, const double *min, const double *max, const d
     return 0;
 }
 
-/* The ball by its nearest point, and by a half-space outside; or what `nothing` says. */
+/* The ball by its nearest point, and by a half-space outside; or the value of `nothing`. */
 static int32_t tangent(void *ctx, const double *min, const double *max, const double *middle,
                        leafless_tangent *tangent) {
     host *h = (host *)ctx;
@@ -322,7 +322,7 @@ static void is_destroyed_once(void) {
     }
     CHECK(h.destroyed == 1);
 
-    /* Nobody has to be told, and nobody needs a context. */
+    /* `destroy` and the context are optional. */
     callbacks.destroy = NULL;
     callbacks.contains = NULL;
     callbacks.classify = garbage;
@@ -598,7 +598,7 @@ static void by_distance_and_boxes(void) {
     }
 }
 
-/* An error of the host's ends the work: nobody is asked again. */
+/* An error of the host ends the work: the host is not called again. */
 static void distance_gives_up(void) {
     const leafless_frame frame = check_frame(6);
     const double at[3] = {0.7, 0.2, 0.1}, beside[3] = {0.8, 0.3, 0.2};
@@ -637,7 +637,7 @@ static void distance_gives_up(void) {
             OK(leafless_lazy_new(solid, &frame, &lazy));
             fails_with(leafless_lazy_refine(lazy, NULL, 6, &options, NULL), "code -23");
             CHECK(h.calls == last);
-            /* What failed is asked again. */
+            /* The failed call is repeated. */
             h.fails_at = 0;
             OK(leafless_lazy_refine(lazy, NULL, 6, &options, NULL));
             leafless_lazy_free(lazy);
@@ -652,7 +652,7 @@ static void distance_gives_up(void) {
     }
 }
 
-/* What the host knows of the surface in a cell makes measures and boxes quick, and changes no verdict. */
+/* The host's knowledge of the surface in a cell makes measures and boxes quick, and changes no verdict. */
 static void by_slabs(void) {
     const double volume = 4.0 / 3.0 * 3.14159265358979323846 * 0.75 * 0.75 * 0.75;
     const leafless_frame frame = check_frame(20), shallow = check_frame(6);
@@ -698,8 +698,8 @@ static void by_slabs(void) {
     }
 }
 
-/* Where a point under the inverse of a turn by the angle whose cosine is 0.8, and an offset, lies to the brick: the
-   least of what it is inside of the six faces. */
+/* The depth of a point in the brick: the least of its depths inside the six faces. The point is taken back by the inverse
+   of a rotation by the angle with cosine 0.8 and an offset. */
 static double in_brick(const double *offset, const double *point) {
     const double q[3] = {point[0] - offset[0], point[1] - offset[1], point[2] - offset[2]};
     double at[3], least = INFINITY;

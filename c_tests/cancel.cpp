@@ -1,4 +1,4 @@
-// Long operations can be watched and stopped: by what the progress callback returns, and from other threads.
+// Long operations can be watched and stopped: by the progress callback's result, and from other threads.
 #include "check.h"
 
 #include <atomic>
@@ -105,7 +105,7 @@ struct Slow {
     std::atomic<long> calls{0};
 };
 
-// A shape that is never decided, and slow: nobody could wait for the end of it.
+// A slow shape that is never decided: without a cancel, the work would take too long.
 int32_t endless(void *ctx, const double *, const double *) {
     Slow &slow = *static_cast<Slow *>(ctx);
     slow.started = true;
@@ -200,7 +200,7 @@ struct Inner {
     std::atomic<bool> entered_again{false};
 };
 
-// A classifier that builds an octree of its own each time it is asked about a large box.
+// A classifier that builds an octree of its own for each query of a large box.
 int32_t builds(void *ctx, const double *min, const double *max) {
     Inner &inner = *static_cast<Inner *>(ctx);
     inner.calls++;

@@ -9,7 +9,7 @@ static bool same(const leafless_cell *a, const leafless_cell *b) {
     return memcmp(a->cell, b->cell, sizeof a->cell) == 0 && a->level == b->level && a->tag == b->tag;
 }
 
-/* All leaves fill the universe, and say what points in them say. */
+/* All leaves fill the universe, and agree with the points in them. */
 static void leaves(void) {
     static leafless_cell all[40000], again[40000];
     leafless_cells *cells = NULL;
@@ -93,7 +93,7 @@ static void faces(void) {
     OK(leafless_faces_next(faces, some, 1, &count));
     CHECK(count == 1);
     leafless_faces_free(faces);
-    /* Of what is outside of the solid, the universe's own boundary is none, as the exterior is EMPTY. */
+    /* The faces of the outside exclude the universe's own boundary, because the exterior is EMPTY. */
     OK(leafless_faces_new(octree, LEAFLESS_TAGS_EMPTY, 0, 20, NULL, NULL, &faces));
     OK(leafless_faces_next(faces, some, 100, &count));
     CHECK(count == 100 && some[0].inner.tag == LEAFLESS_TAG_EMPTY && some[0].has_outer);

@@ -1,4 +1,4 @@
-/* Attributes and channels: filled, asked, changed, carried, saved and read again, against what is asked cell by cell. */
+/* Attributes and channels: filled, queried, changed, carried, saved and read again, against queries cell by cell. */
 #include "check.h"
 
 #include <math.h>
@@ -167,7 +167,7 @@ static void attributes(void) {
         }
     }
     CHECK(isnan(found[6]) && isnan(found[8]));
-    /* Many points are asked in several calls. */
+    /* Many points are queried in several calls. */
     for (i = 0; i < 1000; i++) {
         crowd[3 * i] = i * 0.001;
     }
@@ -282,7 +282,7 @@ static void filled(void) {
         leafless_channel_free(channels[1]);
     }
     {
-        /* Outside of the cube there is nothing, and what is no number is nowhere. */
+        /* Points outside the cube have no value, nor have points with NaN. */
         const double beyond[2][3] = {{1.5, 0, 0}, {0, NAN, 0}};
         const uint32_t cell[3] = {0, SIDE, 0};
         leafless_attribute *attribute = constant(4);
@@ -471,7 +471,7 @@ static void octrees(void) {
     leafless_channel_free(channel);
     OK(leafless_octree_channel(octree, "none", 4, &channel));
     CHECK(channel == NULL);
-    /* Cells are what counts. */
+    /* Equality concerns the cells. */
     OK(leafless_octree_without_channel(octree, "heat", 4, &bare));
     CHECK(check_channels(bare) == 1 && check_same(bare, octree));
     leafless_octree_free(bare);

@@ -1,4 +1,4 @@
-/* What the programs here have in common: checks that say what failed and where, and a few octrees. C99 and C++11. */
+/* Shared parts of the programs here: checks that report failures and their places, and a few octrees. C99 and C++11. */
 #ifndef CHECK_H
 #define CHECK_H
 

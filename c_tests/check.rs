@@ -3,16 +3,17 @@
 use std::path::{Path, PathBuf};
 use std::process::Command;
 
-/// What watches over the programs.
+/// The checker of the programs.
 #[derive(Clone, Copy, PartialEq)]
 pub enum Check {
-    /// Nothing.
+    /// No checker.
     Plain,
-    /// AddressSanitizer and UndefinedBehaviorSanitizer in the programs; of the library, what it allocates.
+    /// AddressSanitizer and UndefinedBehaviorSanitizer in the programs. In the library, only allocations are
+    /// checked.
     Address,
-    /// AddressSanitizer in the library too, which needs a nightly toolchain.
+    /// AddressSanitizer in the library, too. It needs a nightly toolchain.
     AddressAll,
-    /// ThreadSanitizer in programs and library, which needs a nightly toolchain.
+    /// ThreadSanitizer in programs and library. It needs a nightly toolchain.
     Thread,
     Valgrind,
 }
@@ -45,12 +46,12 @@ impl Check {
         self == Check::Plain
     }
 
-    /// Whether programs can be run in little address space: checkers reserve terabytes of it.
+    /// True if programs can run in a small address space. Checkers reserve terabytes of it.
     pub fn limits_memory(self) -> bool {
         self.is_plain()
     }
 
-    /// What the library is built with.
+    /// Returns the flags that build the library.
     pub fn rust_flags(self) -> Option<&'static str> {
         match self {
             Check::AddressAll => Some("-Zsanitizer=address -Cunsafe-allow-abi-mismatch=sanitizer"),
@@ -59,7 +60,7 @@ impl Check {
         }
     }
 
-    /// What the programs are compiled with.
+    /// Returns the flags that compile the programs.
     pub fn compiler_flags(self) -> &'static [&'static str] {
         match self {
             Check::Plain | Check::Valgrind => &[],
@@ -71,7 +72,7 @@ impl Check {
         }
     }
 
-    /// A name that is in every program that is watched over.
+    /// Returns a symbol that is in every checked program.
     pub fn symbol(self) -> Option<&'static str> {
         match self {
             Check::Plain | Check::Valgrind => None,
@@ -80,7 +81,7 @@ impl Check {
         }
     }
 
-    /// The name of the toolchain's own runtime, which is newer than the compiler's and serves both.
+    /// Returns the name of the toolchain's own runtime, which is newer than the compiler's and serves both.
     pub fn runtime(self) -> Option<&'static str> {
         match self {
             Check::AddressAll => Some("asan"),
@@ -89,7 +90,7 @@ impl Check {
         }
     }
 
-    /// How a program is run; `folder` has the suppressions.
+    /// Returns the command that runs a program; `folder` has the suppressions.
     pub fn command(self, program: &Path, folder: &Path) -> Command {
         let mut command = match self {
             Check::Valgrind => {
@@ -118,13 +119,13 @@ impl Check {
         command
     }
 
-    /// How much longer programs may take.
+    /// Returns the factor by which programs may take longer.
     pub fn patience(self) -> u32 {
         if self.is_plain() { 1 } else { 10 }
     }
 }
 
-/// The runtime of a sanitizer in the toolchain that builds the library.
+/// Returns the runtime of a sanitizer in the toolchain that builds the library.
 pub fn runtime_archive(rustc: &mut Command, name: &str) -> Result<PathBuf, String> {
     let told =
         rustc.args(["--print", "target-libdir"]).output().map_err(|error| format!("rustc: {error}"))?;

@@ -38,7 +38,7 @@ static void of_a_mesh(void) {
 /* A function of the host: a ball around the origin. */
 typedef struct host {
     double radius;
-    int32_t answer; /* if it is not 0, that is what it says of points */
+    int32_t answer; /* if it is not 0, the answer for points */
 } host;
 
 static int32_t boxes(void *ctx, const double *min, const double *max) {

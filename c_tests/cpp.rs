@@ -1,5 +1,5 @@
-//! Makes `include/leafless.hpp` of `include/leafless.h`: every function of the C interface as a member of a
-//! class, or as a function, by the rules that stand at the top of the result.
+//! Generates `include/leafless.hpp` from `include/leafless.h`. Every function of the C interface becomes a
+//! member of a class or a function, by the rules at the top of the generated file.
 
 use std::fmt::Write;
 
@@ -12,11 +12,11 @@ struct Parameter {
     pointers: usize,
     name: String,
     array: Option<usize>,
-    /// How many numbers an element of it has, if it is an array of any length.
+    /// For an array of any length, how many numbers each element has.
     dimension: usize,
 }
 
-/// Arrays whose elements have several numbers: the function, or all, the parameter, and the number.
+/// Arrays whose elements have several numbers: the function (empty for all), the parameter, and the number.
 const DIMENSIONS: &[(&str, &str, usize)] = &[
     ("leafless_layer_new_lines", "points_model", 6),
     ("leafless_tridexel_voxels", "colours", 4),
@@ -30,10 +30,10 @@ const DIMENSIONS: &[(&str, &str, usize)] = &[
     ("", "matrices", 12),
 ];
 
-/// Functions with several arrays that may be left out. Their parameters are those of C.
+/// Functions with several optional arrays. Their parameters are those of C.
 const AS_IN_C: &[&str] = &["leafless_tridexel_copy", "leafless_octree_voxels", "leafless_voxels_moved"];
 
-/// Functions whose answers have several numbers each, and how these are counted.
+/// Functions whose answers have several numbers each, and the statement that counts these numbers.
 const VALUES: &[(&str, &str)] = &[
     ("leafless_attribute_values", "const std::size_t components = detail::components_of(get());"),
     ("leafless_channel_values", "const std::size_t components = detail::components_of(get());"),
@@ -56,17 +56,17 @@ impl Parameter {
         Parameter { base: base.to_string(), is_const, pointers, name: name.to_string(), array, dimension }
     }
 
-    /// Whether it is `const T *name`.
+    /// True for `const T *name`.
     fn is_input(&self) -> bool {
         self.is_const && self.pointers == 1 && self.array.is_none()
     }
 
-    /// Whether it is `T *name`.
+    /// True for `T *name`.
     fn is_output(&self) -> bool {
         !self.is_const && self.pointers == 1 && self.array.is_none()
     }
 
-    /// Whether it says how many elements there are.
+    /// True for an output that counts elements.
     fn is_count(&self) -> bool {
         self.is_output() && (self.name.ends_with("count") || self.name.ends_with("length"))
     }
@@ -81,12 +81,12 @@ impl Parameter {
         if self.dimension == 1 { base.to_string() } else { array_of(base, self.dimension) }
     }
 
-    /// The type of a fixed number of them.
+    /// The type of an array of fixed length.
     fn fixed(&self) -> String {
         array_of(&self.base, self.array.expect("a number"))
     }
 
-    /// As it stands in C.
+    /// The declaration in C.
     fn in_c(&self) -> String {
         let qualifier = if self.is_const { "const " } else { "" };
         let stars = "*".repeat(self.pointers + usize::from(self.array.is_some()));
@@ -94,7 +94,7 @@ impl Parameter {
     }
 }
 
-/// An array of so many elements; some have names.
+/// Returns the type of an array of `count` elements. Some have names.
 fn array_of(base: &str, count: usize) -> String {
     match (base, count) {
         ("double", 3) => "point".to_string(),
@@ -113,7 +113,7 @@ struct Function {
     parameters: Vec<Parameter>,
 }
 
-/// What the header declares, without comments.
+/// Returns the header's functions, without comments.
 fn functions(header: &str) -> Vec<Function> {
     let mut functions = Vec::new();
     let mut lines = header.lines().filter(|line| !line.trim_start().starts_with("//"));
@@ -143,26 +143,26 @@ fn functions(header: &str) -> Vec<Function> {
     functions
 }
 
-/// A function in C++, while it is put together.
+/// A function in C++ under construction.
 #[derive(Default)]
 struct Translation {
-    /// Parameters with their defaults, and whether they have one.
+    /// Parameters, each with its default if it has one.
     parameters: Vec<(String, Option<&'static str>)>,
-    /// What is passed to the C function, in its order.
+    /// The arguments of the C function, in its order.
     arguments: Vec<String>,
     /// Statements before the call.
     before: Vec<String>,
-    /// Statements between the first call, which asks for sizes, and the second.
+    /// Statements between the first call, which queries sizes, and the second.
     sizes: Vec<String>,
-    /// Arguments of the first call that differ.
+    /// Arguments of the first call that differ, by their indices.
     first: Vec<(usize, String)>,
-    /// Types and values that are returned.
+    /// Types and values of the results.
     results: Vec<(String, String)>,
     is_const: bool,
     has_self: bool,
 }
 
-/// Which pointers may be NULL: pairs of a function and a parameter.
+/// Returns whether a pointer may be NULL, given a function and a parameter.
 pub type Nullable<'n> = dyn Fn(&str, &str) -> bool + 'n;
 
 struct Translator<'a> {
@@ -173,7 +173,7 @@ struct Translator<'a> {
 }
 
 impl Translator<'_> {
-    /// The class of a function and its name there, if it has a class.
+    /// Returns the class of a function and the function's name there, if it has a class.
     fn class_of<'f>(&self, name: &'f str) -> Option<(&str, &'f str)> {
         let rest = name.strip_prefix("leafless_").expect("a prefix");
         let fitting = self
@@ -198,7 +198,7 @@ impl Translator<'_> {
         while let Some(p) = list.get(i) {
             let next = |k: usize| list.get(i + k);
             let (name, base) = (p.name.as_str(), p.base.as_str());
-            // (Corners of rectangles of rays are NULL both, or none of them.)
+            // (The two corners of a rectangle of rays are both NULL or both not.)
             let is_corner = p.is_const && p.array == Some(2);
             let may_be_null = is_corner || (self.nullable)(&function.name, name);
             if i == 0 && p.pointers == 1 && class.is_some_and(|class| base == format!("leafless_{class}")) {
@@ -222,7 +222,7 @@ impl Translator<'_> {
                 && next(1).is_some_and(|capacity| capacity.name.ends_with("capacity"))
                 && (function.name.ends_with("_next") || !next(2).is_some_and(Parameter::is_count))
             {
-                // Filled as far as there is room for it.
+                // Filled as far as there is room.
                 made.parameters.push((format!("span<{}> {name}", p.element()), None));
                 made.arguments.push(pointer_to(p));
                 made.arguments.push(format!("{name}.size()"));
@@ -326,7 +326,7 @@ impl Translator<'_> {
                 }
                 i += 1;
             } else if p.is_output() && asked.is_some() && is_plural(name) && base != "void" {
-                // One answer for each question, where the caller wants it.
+                // One answer for each query, in the caller's buffer if there is one.
                 made.parameters.push((format!("span<{}> {name}", p.element()), None));
                 let asked = asked.expect("questions");
                 match VALUES.iter().find(|(of, _)| *of == function.name) {
@@ -357,13 +357,13 @@ impl Translator<'_> {
                 i += 1;
             }
         }
-        // Only what stands at the end may be left out.
+        // Only the last parameters may have defaults.
         let last = made.parameters.iter().rposition(|(_, default)| default.is_none()).map_or(0, |at| at + 1);
         made.parameters[..last].iter_mut().for_each(|(_, default)| *default = None);
         made
     }
 
-    /// How many arrays of numbers, structs or objects begin here that have one count.
+    /// Returns the number of arrays of numbers, structs or objects that begin here and share one count.
     fn arrays_in(&self, list: &[Parameter]) -> Option<usize> {
         let is_array = |p: &Parameter| match self.is_handle(&p.base) {
             true => p.is_const && p.pointers == 2,
@@ -380,7 +380,7 @@ impl Translator<'_> {
         (is_counter && is_one).then_some(count)
     }
 
-    /// Whether buffers begin here that are filled in two steps: how many, and of how many parameters.
+    /// If buffers begin here that are filled in two steps, returns how many buffers and how many parameters.
     fn two_steps(&self, list: &[Parameter]) -> Option<(usize, usize)> {
         let buffers = list.iter().take_while(|p| p.is_output() && p.base != "bool").count();
         let [capacity, count] = list.get(buffers..buffers + 2)? else { return None };
@@ -393,13 +393,13 @@ impl Translator<'_> {
     }
 }
 
-/// Whether an output of this name has one element for each question.
+/// True if an output of this name has one element for each question.
 fn is_plural(name: &str) -> bool {
     let name = name.trim_end_matches("_model");
     name.ends_with('s') && !["bytes", "cells"].contains(&name)
 }
 
-/// The pointer to the first number of an array.
+/// Returns the pointer to the first number of an array.
 fn pointer_to(array: &Parameter) -> String {
     let name = &array.name;
     match array.dimension {
@@ -419,7 +419,7 @@ fn returned(made: &Translation) -> String {
     }
 }
 
-/// Members that C++ has no name for.
+/// Returns a name that is legal in C++ for a member.
 fn spelled(name: &str) -> &str {
     match name {
         "new" => "make",
@@ -428,13 +428,13 @@ fn spelled(name: &str) -> &str {
     }
 }
 
-/// The structs of the header that begin with their size.
+/// Returns the structs of the header that begin with their size.
 fn sized(header: &str) -> Vec<&str> {
     let structs = header.split("typedef struct ").filter_map(|text| text.split_once(" {\n"));
     structs.filter(|(_, body)| body.starts_with("    uint32_t struct_size;")).map(|(name, _)| name).collect()
 }
 
-/// The declarations of classes, and their bodies.
+/// Returns the declarations of classes, and their bodies.
 pub fn made_of(header: &str, nullable: &Nullable<'_>) -> String {
     let functions = functions(header);
     let names = |suffix: &str| -> Vec<String> {
@@ -497,7 +497,7 @@ fn write_function(
     let space = if result.ends_with('*') { "" } else { " " };
     let qualifier = if class.is_some() && made.has_self && made.is_const { " const" } else { "" };
     let is_static = if class.is_some() && !made.has_self { "static " } else { "" };
-    // What changes its object may be called for that alone.
+    // A function that changes its object may be called for this effect alone.
     let changes = made.has_self && !made.is_const;
     let discards = if changes || returned(made) == "void" && is_fallible { "" } else { "[[nodiscard]] " };
     let indent = if class.is_some() { "    " } else { "" };
@@ -546,7 +546,7 @@ fn write_function(
     bodies.push_str("}\n");
 }
 
-/// A line that is broken behind commas where it is too long.
+/// Breaks a long line behind commas.
 fn wrapped(text: &str, indent: usize) -> String {
     let mut out = String::new();
     let mut line = String::new();

@@ -1,4 +1,4 @@
-/* Constructive solid geometry: primitives, their joins and placements, and what they refuse. */
+/* Constructive solid geometry: primitives, their combinations and placements, and refused calls. */
 #include "check.h"
 
 static const leafless_frame frame = {{-2, -2, -2}, 4, 6};
@@ -213,11 +213,11 @@ static leafless_solid *joined(uint32_t operation, const leafless_solid *a, const
     return solid;
 }
 
-/* What is told about moving a solid of each kind, and of all of them in one; and where they are then. */
+/* The reported motions of a solid of each kind, and of all of them in one; and their places afterwards. */
 static void motions(void) {
     /* A quarter turn about x, half the size, and an offset of whole cells. */
     const double exact[12] = {0.5, 0, 0, 0.25, 0, 0, -0.5, 0.5, 0, 0.5, 0, -0.75};
-    /* Turned by the angle whose cosine is 0.8, half the size, moved. */
+    /* Rotated by the angle with cosine 0.8, half the size, moved. */
     const double turn[12] = {0.4, -0.3, 0, 0.2, 0.3, 0.4, 0, -0.1, 0, 0, 0.5, 0.3};
     const double low[3] = {-1, -1, -1}, high[3] = {1, 1, 1}, above[3] = {0.25, 0.25, 0.55};
     const double outside[3] = {-1.5, 1.5, 1.5};
@@ -264,7 +264,7 @@ static void motions(void) {
         leafless_solid_free(a);
     }
 
-    /* The worst of all parts is told, under whatever joins them. */
+    /* The worst of all parts is reported, in every combination. */
     two = joined(LEAFLESS_OPERATION_UNION, box, meshed);
     all = joined(LEAFLESS_OPERATION_UNION, two, stored);
     OK(leafless_solid_complement(all, &not_all));
@@ -307,7 +307,7 @@ static void build_alone(const leafless_solid *solid) {
     leafless_octree_free(octree);
 }
 
-/* Each expression counts what is evaluated for it, and nothing else. */
+/* Each expression counts only its own evaluations. */
 static void evaluations(void) {
     const double low[3] = {-1, -1, -1}, high[3] = {1, 1, 1}, at[3] = {0.3, 0.2, 0.95};
     leafless_solid *box = NULL, *round = ball(1.125), *both, *again, *other = NULL, *reference = NULL;
@@ -383,7 +383,7 @@ static void same_octrees(leafless_solid *solid, const leafless_solid *other) {
     leafless_solid_free(solid);
 }
 
-/* Of no solid, of one, and of three; and what is no operation. */
+/* No solid, one, and three; and invalid operations. */
 static void other_numbers(void) {
     const double low[3] = {-1, -1, -1}, high[3] = {1, 1, 1}, slab[3] = {0.5, -2, -2}, end[3] = {2, 2, 2};
     const double of_none[4] = {0, 64, -1, 0};
@@ -407,7 +407,7 @@ static void other_numbers(void) {
         }
         OK(leafless_solid_combine(operation, parts, 1, &solid));
         same_octrees(solid, box);
-        /* Of three, one after the other. */
+        /* Three solids, one after the other. */
         OK(leafless_solid_combine(operation, parts, 3, &solid));
         two = joined(operation, box, round);
         three = joined(operation, two, side);
@@ -435,7 +435,7 @@ int main(void) {
     const double low[3] = {-1, -1, -1}, high[3] = {1, 1, 1}, radii[3] = {1, 1.5, 0.5};
     /* 1 - x^2 - y^2 - z^2 + xy, an ellipsoid: det of the form is 3/4. */
     const double quadric[10] = {-1, -1, -1, 1, 0, 0, 0, 0, 0, 1};
-    /* Half the size, turned about z, moved. */
+    /* Half the size, rotated about z, moved. */
     const double matrix[12] = {0.4, -0.3, 0, 0.2, 0.3, 0.4, 0, -0.1, 0, 0, 0.5, 0.3};
     const double singular[12] = {1, 0, 0, 0, 1, 0, 0, 0, 0, 0, 1, 0};
     const double from[3] = {0, 0, -1}, to[3] = {0, 0, 1.5}, up[3] = {0, 0, 1};

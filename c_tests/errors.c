@@ -8,7 +8,7 @@
 
 static bool seen[64];
 
-/* The last call failed so: status, message, and everything that tells of it. */
+/* Checks how the last call failed: status, message, and every function that reports them. */
 static void failed(leafless_status expected, const char *name, const char *part) {
     char message[512], shorter[8], one[1] = {'x'};
     size_t length = leafless_last_error(message, sizeof message);
@@ -20,7 +20,7 @@ static void failed(leafless_status expected, const char *name, const char *part)
         fprintf(stderr, "%s: \"%s\" does not say \"%s\"\n", name, message, part);
         exit(1);
     }
-    /* A buffer that is too short gets a terminated beginning, and the whole length is told all the same. */
+    /* A buffer that is too short gets a terminated beginning, and the whole length is returned all the same. */
     CHECK(leafless_last_error(NULL, 0) == length);
     CHECK(leafless_last_error(shorter, sizeof shorter) == length);
     CHECK(strlen(shorter) <= 7 && strncmp(shorter, message, strlen(shorter)) == 0);
@@ -182,7 +182,7 @@ static leafless_status deep_ball(void) {
     return status;
 }
 
-/* A wavy sheet of 2 * 80 * 80 triangles, some of which are missing: all that can be done with an open mesh. */
+/* A wavy sheet of 2 * 80 * 80 triangles, some missing: all operations on an open mesh. */
 static leafless_status open_sheet(void) {
     enum { SIDE = 81 };
     static float vertices[SIDE * SIDE][3];
@@ -237,7 +237,7 @@ static leafless_status open_sheet(void) {
     return status;
 }
 
-/* A volume of 64³ samples: its solid, its octree, the surface, what is told of it, its file and the volume's. */
+/* A volume of 64³ samples: its solid, its octree, the surface and its report, its file and the volume's. */
 static leafless_status scanned_ball(void) {
     enum { SIDE = 64 };
     static uint16_t samples[SIDE * SIDE * SIDE];
@@ -354,7 +354,7 @@ static long address_space(void) {
     return pages < 0 ? -1 : pages * sysconf(_SC_PAGESIZE);
 }
 
-/* Work under limits of memory at many places, some of which are enough. */
+/* Work under many limits of memory, some of them sufficient. */
 static void runs_out(leafless_status (*work)(void), long first, long end, long step) {
     int refused = 0, done = 0;
     long more;
@@ -372,8 +372,8 @@ static void runs_out(leafless_status (*work)(void), long first, long end, long s
 }
 
 int main(int argc, char **argv) {
-    /* Sanitizers and valgrind need address space beyond any limit; what allocators refuse by themselves is tested
-       with them too. */
+    /* Sanitizers and valgrind need address space beyond any limit. Requests that allocators refuse by themselves are
+       tested with them, too. */
     const bool limited = argc > 1 && strcmp(argv[1], "limited") == 0;
     const leafless_frame frame = check_frame(4), other = check_frame(5);
     leafless_octree *ball = check_ball(4, LEAFLESS_RULE_CERTIFIED), *finer = check_ball(5, LEAFLESS_RULE_CERTIFIED);
@@ -387,7 +387,7 @@ int main(int argc, char **argv) {
     leafless_statistics levels[2];
     size_t i;
 
-    /* The names of all, and of what is none. */
+    /* The names of all statuses, and of invalid ones. */
     CHECK(strcmp(leafless_status_name(LEAFLESS_OK), "LEAFLESS_OK") == 0);
     CHECK(strcmp(leafless_status_name(-1), "LEAFLESS_E_UNKNOWN") == 0);
     CHECK(strcmp(leafless_status_name(22), "LEAFLESS_E_UNKNOWN") == 0);
@@ -418,7 +418,7 @@ int main(int argc, char **argv) {
     FAILS(LEAFLESS_E_FRAME, check_octrees(LEAFLESS_OPERATION_UNION, ball, finer, NULL, &octree));
     failed(LEAFLESS_E_FRAME, "LEAFLESS_E_FRAME", "different frames: origin [");
     {
-        /* A stored octree is known on its own universe only, whatever it is asked; a mesh on any. */
+        /* Every query of a stored octree needs its own universe; a mesh allows any. */
         const leafless_frame apart = {{0, 0, 0}, 1, 4};
         const double centre[3] = {0.5, 0.5, 0.5}, corner[3] = {0.75, 0.75, 0.75};
         leafless_solid *stored = NULL, *meshed = NULL;
@@ -546,7 +546,7 @@ int main(int argc, char **argv) {
     FAILS(LEAFLESS_E_LIMIT, leafless_octree_build(solid, &frame, LEAFLESS_RULE_CERTIFIED, &options, &octree));
     failed(LEAFLESS_E_LIMIT, "LEAFLESS_E_LIMIT", "100 bytes");
 
-    /* 96 GB of vertices, of which none is read before there is memory for all. */
+    /* 96 GB of vertices. None is read before there is memory for all. */
     if (limited) {
         const leafless_mesh_arrays arrays = check_arrays(CHECK_CUBE, UINT32_MAX, NULL, 0);
         struct rlimit limit, old;
@@ -582,7 +582,7 @@ int main(int argc, char **argv) {
     FAILS(LEAFLESS_E_CANCELLED, leafless_octree_build(solid, &other, LEAFLESS_RULE_CERTIFIED, &options, &octree));
 
     {
-        /* Whoever asks a solid can be stopped, and hears of the host's own errors. */
+        /* Every query of a solid can be cancelled, and returns the host's own errors. */
         const double at[3] = {0.7, 0.2, 0.1}, beside[3] = {0.8, 0.3, 0.2};
         leafless_solid_callbacks callbacks;
         leafless_solid *host = NULL;
@@ -618,7 +618,7 @@ int main(int argc, char **argv) {
     FAILS(LEAFLESS_E_IO, mesh_open("no/such/file", 12, NULL, NULL, &mesh));
     failed(LEAFLESS_E_IO, "LEAFLESS_E_IO", "no/such/file: No such file");
     {
-        /* Of a long path the end is told, and the reason after it. */
+        /* For a long path, the message has its end, and the reason after it. */
         char path[3 * 1000 + 9] = {0};
         int i;
         for (i = 0; i < 1000; i++) memcpy(path + 3 * i, "no/", 3);
@@ -715,7 +715,7 @@ int main(int argc, char **argv) {
     }
 
     {
-        /* Tri-dexel models: two lattices, other directions, what no interval can be, and limits. */
+        /* Tri-dexel models: two lattices, other directions, impossible intervals, and limits. */
         const leafless_frame apart = {{0, 0, 0}, 1, 4};
         leafless_tridexel *model = NULL, *other = NULL, *column = NULL, *result = (leafless_tridexel *)UNTOUCHED;
         leafless_tridexel_editor *editor = NULL;
@@ -743,7 +743,7 @@ int main(int argc, char **argv) {
                                                         0, &count));
         failed(LEAFLESS_E_BUFFER, "LEAFLESS_E_BUFFER", "offsets: has a capacity of 1, and ");
         {
-            /* Intervals of a file that nobody has verified. */
+            /* Intervals of an unverified file. */
             leafless_tridexel *viewed = NULL;
             leafless_file_info probe = LEAFLESS_INIT(leafless_file_info);
             leafless_file_section sections[32];
@@ -799,7 +799,7 @@ int main(int argc, char **argv) {
     }
 
     {
-        /* A function that is asked about a cell of an octree uses that octree. */
+        /* A function called for a cell of an octree uses that octree. */
         leafless_lazy *lazy = NULL;
         leafless_solid_callbacks callbacks;
         leafless_solid *host = NULL;

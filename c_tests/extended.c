@@ -1,4 +1,4 @@
-/* Octrees that keep surfaces: a bored block, built, saved, mapped, asked where it lies and as a solid, and read; a plate that is
+/* Octrees that keep surfaces: a bored block, built, saved, mapped, queried in place and as a solid, and read; a plate that is
  * bored twenty times by set operations. */
 #include "check.h"
 

@@ -79,7 +79,7 @@ struct arrays {
     }
 };
 
-/* Many threads on one volume, of which nobody has asked anything yet, each with bands of its own. */
+/* Many threads on one fresh volume, each with bands of its own. */
 void threads_on_one_volume(const std::vector<uint16_t> &samples) {
     std::vector<arrays> expected;
     for (int i = 0; i < 4; i++) {

@@ -1,10 +1,10 @@
-//! `include/leafless.h` is what `capi/src` says. After a change of the interface,
+//! `include/leafless.h` matches `capi/src`. After a change of the interface,
 //!
 //! ```text
 //! LEAFLESS_BLESS=1 cargo test --test c_api generated
 //! ```
 //!
-//! writes it anew. What it begins with is `include/preface.h`; the functions in C are those of
+//! writes the header anew. It begins with `include/preface.h`; its functions in C come from
 //! `include/helpers.h`.
 
 use crate::arrange::{Section, arranged};
@@ -12,10 +12,10 @@ use crate::cpp;
 use crate::root;
 use std::sync::OnceLock;
 
-/// The section whose structs the functions in C make.
+/// The section whose structs the functions in C fill.
 const SOURCES: &str = "Sources and sinks";
 
-/// The header's sections in the order in which one needs them, and the files that each is made of.
+/// The header's sections in the order of use, with the files of each.
 const SECTIONS: &[Section] = &[
     Section { title: "Versions", files: &["version"] },
     Section { title: "Errors", files: &["status", "boundary"] },
@@ -64,7 +64,7 @@ fn source(file: &str) -> String {
     std::fs::read_to_string(root().join("capi/src").join(file).with_extension("rs")).unwrap()
 }
 
-/// Made once: cbindgen takes seconds.
+/// Returns the generated header, made once because cbindgen takes seconds.
 fn generated() -> &'static str {
     static HEADER: OnceLock<String> = OnceLock::new();
     HEADER.get_or_init(generate)
@@ -90,7 +90,8 @@ fn generate() -> String {
     )
 }
 
-/// The header for C++, made of the one for C. Which pointers may be NULL the tests of NULL pointers know.
+/// Returns the header for C++, made from the one for C. The tests of NULL pointers provide which pointers may
+/// be NULL.
 fn generated_for_cpp() -> String {
     let read = |name: &str| std::fs::read_to_string(root().join(name)).unwrap();
     let tests = ["null", "null_tridexel", "null_picture", "null_layout"]
@@ -121,7 +122,7 @@ fn is_current(name: &str, generated: &str) {
     );
 }
 
-/// Every function of the C interface is called by the header for C++.
+/// The header for C++ calls every function of the C interface.
 #[test]
 fn the_header_for_cpp_is_complete() {
     let (c, cpp) = (generated(), generated_for_cpp());
@@ -135,7 +136,7 @@ fn the_header_for_cpp_is_complete() {
     }
 }
 
-/// The header's functions with the lines of their comments.
+/// Returns the header's functions with the lines of their comments.
 fn functions(header: &str) -> Vec<(&str, Vec<&str>)> {
     let mut functions = Vec::new();
     let mut comment = Vec::new();
@@ -170,13 +171,14 @@ fn every_comment_has_the_fixed_order() {
         let places: Option<Vec<usize>> = places.by_ref().collect();
         assert!(places.is_some_and(|places| places.is_sorted_by(|a, b| a < b)), "{name}: {heads:?}");
     }
-    // The sources export just these.
+    // The sources export exactly these.
     let files = || SECTIONS.iter().flat_map(|section| section.files);
     let exported = files().map(|file| source(file).matches("#[unsafe(no_mangle)]").count()).sum::<usize>();
     // `boundary` has a function for tests.
     assert_eq!(functions.len() + 1, exported);
     let sources = std::fs::read_dir(root().join("capi/src")).unwrap().count();
-    // And `lib.rs` and `number.rs`, which export nothing themselves, and `layout.rs`, which is for tests.
+    // Three more: `lib.rs` and `number.rs`, which export nothing themselves, and `layout.rs`, which is for
+    // tests.
     assert_eq!(sources, files().count() + 3);
 }
 
@@ -187,7 +189,7 @@ fn no_line_is_long() {
     }
 }
 
-/// What the library's lists name, the interface names: it cannot be compiled against them to the last.
+/// The interface names every error that the library's lists name. The compiler cannot check this completely.
 #[test]
 fn every_error_has_a_status() {
     let errors = std::fs::read_to_string(root().join("src/error.rs")).unwrap();
@@ -210,8 +212,8 @@ fn every_error_has_a_status() {
     }
 }
 
-/// The rule for names in the preface: members begin with the name of their enumeration, and UNDECIDED is one
-/// number.
+/// The preface's rule for names: members begin with the name of their enumeration, and UNDECIDED is the same
+/// number everywhere.
 #[test]
 fn members_of_enumerations_go_by_its_name() {
     let mut members = 0;

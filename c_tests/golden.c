@@ -90,7 +90,7 @@ static void check_fact(const char *line, const leafless_octree *octree, const le
         OK(leafless_octree_levels(octree, levels, COUNT(levels), &count));
         i = whole(value, &end);
         CHECK(i < count && levels[i].nodes == whole(end, &end));
-        /* The file counts the cells of a level, the library those of the tree cut there. */
+        /* The file counts the cells of a level, the library the cells of the tree cut there. */
         (void)whole(end, &end);
     } else if ((value = value_of(line, "cells")) != NULL) {
         OK(leafless_octree_statistics(octree, &all));

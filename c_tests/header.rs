@@ -1,4 +1,4 @@
-//! What stands in the header, read as text.
+//! The contents of the header, read as text.
 
 pub struct Function {
     pub name: String,
@@ -9,12 +9,12 @@ pub struct Function {
 #[derive(Default)]
 pub struct Header {
     pub functions: Vec<Function>,
-    /// Structs whose fields are public.
+    /// Structs with public fields.
     pub structs: Vec<(String, Vec<String>)>,
     /// Enumerators, and macros that are numbers.
     pub values: Vec<String>,
-    /// Everything else that has a name: opaque structs, enumerations, function types, other macros, and
-    /// functions that no library exports, because they stand in the header.
+    /// All other names: opaque structs, enumerations, function types, other macros, and functions defined in
+    /// the header, which no library exports.
     others: Vec<String>,
 }
 
@@ -30,13 +30,13 @@ fn code(text: &str) -> String {
     code.lines().map(|line| line.split("//").next().unwrap_or_default()).collect::<Vec<_>>().join("\n")
 }
 
-/// The last name in a declarator, without what stands in brackets behind it.
+/// Returns the last name in a declarator, without the brackets behind it.
 fn declared(declarator: &str) -> &str {
     let name = declarator.split('[').next().unwrap_or_default().trim();
     name.rsplit(|c: char| !(c.is_alphanumeric() || c == '_')).next().unwrap_or_default()
 }
 
-/// What follows the body that `text` begins with.
+/// Returns the text after the body that `text` begins with.
 fn after_body(text: &str) -> &str {
     let mut depth = 0;
     for (at, brace) in text.match_indices(['{', '}']) {
@@ -63,7 +63,7 @@ impl Header {
                 }
             }
         }
-        // Macros go on behind a backslash.
+        // A backslash continues a macro on the next line.
         let mut plain = String::new();
         let mut is_macro = false;
         for line in code.lines() {
@@ -125,7 +125,7 @@ impl Header {
     }
 }
 
-/// All words that begin with the prefix.
+/// Returns all words that begin with the prefix.
 pub fn words(text: &str) -> Vec<String> {
     let mut words: Vec<String> = text
         .split(|c: char| !(c.is_alphanumeric() || c == '_'))

@@ -1,4 +1,4 @@
-//! Builds the libraries, compiles programs against them, runs these.
+//! Builds the libraries, compiles programs against them, and runs the programs.
 
 use crate::check::{Check, runtime_archive};
 use crate::header::Header;
@@ -32,14 +32,14 @@ pub enum Link {
 
 pub struct Kit {
     pub check: Check,
-    /// What programs with the static library must be linked to, as rustc tells.
+    /// The libraries needed to link programs with the static library, as reported by rustc.
     pub native_libraries: String,
     folder: PathBuf,
     triple: String,
     runtime: Option<PathBuf>,
 }
 
-/// The libraries are built once, however many tests ask.
+/// Returns the kit. The libraries are built once for all tests.
 pub fn kit() -> &'static Kit {
     static KIT: OnceLock<Result<Kit, String>> = OnceLock::new();
     match KIT.get_or_init(Kit::new) {
@@ -48,7 +48,7 @@ pub fn kit() -> &'static Kit {
     }
 }
 
-/// The lines of all `sh` blocks, those that a backslash continues as one.
+/// Returns the lines of all `sh` blocks. Lines continued by a backslash are joined.
 pub fn documented(text: &str) -> Vec<String> {
     let blocks = text.split("```sh\n").skip(1).filter_map(|block| block.split_once("```"));
     let joined: String = blocks.map(|(block, _)| block.replace("\\\n", " ")).collect();
@@ -59,18 +59,18 @@ pub fn documented(text: &str) -> Vec<String> {
         .collect()
 }
 
-/// Says that a test is skipped, past the test harness, which keeps what is printed by tests that pass.
+/// Reports a skipped test past the test harness, which keeps the output of passing tests.
 pub fn skipped(test: &str, reason: &str) {
     let _ = std::io::Write::write_fmt(&mut std::io::stderr(), format_args!("SKIPPED {test}: {reason}\n"));
 }
 
-/// A command as it could be typed, without its environment.
+/// Returns a command as one would type it, without its environment.
 fn line(command: &Command) -> String {
     let words = std::iter::once(command.get_program()).chain(command.get_args());
     words.map(|word| word.to_string_lossy()).collect::<Vec<_>>().join(" ")
 }
 
-/// What a command prints on standard output and on standard error, if it succeeds.
+/// Runs a command. Returns its standard output and standard error if it succeeds.
 pub fn output(command: &mut Command) -> Result<(String, String), String> {
     let told = command.output().map_err(|error| format!("{}: {error}", line(command)))?;
     let (out, err) = (String::from_utf8_lossy(&told.stdout), String::from_utf8_lossy(&told.stderr));
@@ -90,7 +90,7 @@ impl Kit {
         kit.triple =
             version.lines().find_map(|line| line.strip_prefix("host: ")).ok_or("rustc has no host")?.into();
         for standard in [Standard::C(""), Standard::Cpp("")] {
-            // Asked before the long work: without a compiler these tests have failed.
+            // This check runs before the long work: without a compiler these tests fail.
             output(kit.compiler(standard)?.arg("--version")).map_err(|problem| {
                 format!("a compiler for C and one for C++ are needed, such as gcc and g++ (or set CC and CXX): {problem}")
             })?;
@@ -115,7 +115,7 @@ impl Kit {
             (None, _) => Command::new(std::env::var_os("RUSTC").unwrap_or_else(|| program.into())),
         };
         if let Some(flags) = self.check.rust_flags() {
-            // What cargo has set for this very test is not meant for another toolchain.
+            // Cargo's settings for this test must not apply to another toolchain.
             for variable in ["RUSTC", "CARGO", "RUSTUP_TOOLCHAIN", "CARGO_ENCODED_RUSTFLAGS"] {
                 command.env_remove(variable);
             }
@@ -125,8 +125,8 @@ impl Kit {
         command
     }
 
-    /// Builds both libraries, with the function that panics. As a part of what `cargo test` has built: with
-    /// the same features of all packages, so that only the interface is left to compile.
+    /// Builds both libraries, with the function that panics. The build has the same features of all packages
+    /// as `cargo test`, so that only the interface is left to compile.
     fn build(&mut self) -> Result<(), String> {
         let mut command = self.rust("cargo");
         command.args(["build", "--lib", "--features", "leafless-capi/test"]);
@@ -141,7 +141,7 @@ impl Kit {
             command.args(["--test", "c_api"]);
         }
         output(&mut command)?;
-        // What the standard library needs is what the library needs.
+        // The library needs the libraries that the standard library needs.
         let source = self.folder("native").join("empty.rs");
         std::fs::write(&source, "").map_err(|error| error.to_string())?;
         let mut rustc = self.rust("rustc");
@@ -157,7 +157,7 @@ impl Kit {
         Ok(())
     }
 
-    /// `symbols.h` and `layout.h`, which are made of the header.
+    /// Writes `symbols.h` and `layout.h`, which are made from the header.
     fn write_lists(&self) -> Result<(), String> {
         let header = Header::read(&text("include/leafless.h"));
         let mut symbols = String::new();
@@ -181,24 +181,24 @@ impl Kit {
         Ok(())
     }
 
-    /// The folder of this very program's profile.
+    /// Returns the folder of this program's profile.
     fn own(&self) -> PathBuf {
         let program = std::env::current_exe().unwrap_or_default();
         // …/debug/deps/c_api-…
         program.ancestors().nth(2).map(Path::to_owned).unwrap_or_default()
     }
 
-    /// Its name.
+    /// Returns the profile's name.
     fn profile(&self) -> &'static str {
         if self.own().ends_with("release") { "release" } else { "debug" }
     }
 
-    /// The target folder of another toolchain.
+    /// Returns the target folder of another toolchain.
     fn target(&self) -> PathBuf {
         Path::new(env!("CARGO_TARGET_TMPDIR")).join("c_api").join(self.check.name()).join("target")
     }
 
-    /// Where the libraries are.
+    /// Returns the folder of the libraries.
     pub fn libraries(&self) -> PathBuf {
         match self.check.rust_flags() {
             Some(_) => self.target().join(&self.triple).join(self.profile()),
@@ -206,7 +206,7 @@ impl Kit {
         }
     }
 
-    /// An existing folder for files of a test.
+    /// Returns an existing folder for files of a test.
     pub fn folder(&self, name: &str) -> PathBuf {
         let folder = self.folder.join(name);
         std::fs::create_dir_all(&folder).unwrap_or_else(|error| panic!("{}: {error}", folder.display()));
@@ -227,7 +227,7 @@ impl Kit {
         self.try_compile(name, sources, standard, link).unwrap_or_else(|problem| panic!("{problem}"))
     }
 
-    /// A program of these sources, in a folder of its own.
+    /// Compiles a program from these sources, in a folder of its own.
     pub fn try_compile(
         &self,
         name: &str,
@@ -235,7 +235,7 @@ impl Kit {
         standard: Standard,
         link: Link,
     ) -> Result<PathBuf, String> {
-        // With a sanitizer's runtime there is the static library only.
+        // With a sanitizer's runtime, only the static library exists.
         let link = if self.runtime.is_some() { Link::Static } else { link };
         let (Standard::C(year) | Standard::Cpp(year)) = standard;
         let folder =
@@ -306,7 +306,7 @@ impl Kit {
         self.try_run(program, arguments).unwrap_or_else(|problem| panic!("{problem}"))
     }
 
-    /// What a program prints, run in the folder where it is; it has a minute.
+    /// Runs a program in its folder, for at most a minute, and returns its output.
     pub fn try_run(&self, program: &Path, arguments: &[&str]) -> Result<String, String> {
         let folder = program.parent().ok_or("a program without a folder")?;
         let printed = folder.join("stdout");
@@ -314,7 +314,7 @@ impl Kit {
         let file =
             |path: &Path| std::fs::File::create(path).map_err(|error| format!("{}: {error}", path.display()));
         let mut command = self.check.command(program, &root().join("c_tests"));
-        // Where cargo keeps libraries for this very test, no program shall look.
+        // Programs must not look into the folders where cargo keeps libraries for this test.
         command.args(arguments).current_dir(folder).stdin(Stdio::null()).env_remove("LD_LIBRARY_PATH");
         command.stdout(file(&printed)?).stderr(file(&problems)?);
         let mut child = command.spawn().map_err(|error| format!("{}: {error}", line(&command)))?;

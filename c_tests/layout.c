@@ -1,5 +1,5 @@
-/* What C makes of the header's structs and constants; with any argument, what the library was built with. layout.h
-   is made of the header: STRUCT(name), FIELD(struct, name) and VALUE(name) for each. */
+/* The layouts of the header's structs and the values of its constants in C; with any argument, those of the library.
+   layout.h is made from the header: STRUCT(name), FIELD(struct, name) and VALUE(name) for each. */
 #include "check.h"
 
 int main(int argc, char **argv) {

@@ -49,7 +49,7 @@ kinds mixed(uint32_t count) {
     return {leafless::layout::make(bay), mesh, stored};
 }
 
-// Threads that read one layout are told the same, whatever they ask; one that changes it meanwhile is told to come back.
+// Threads that read one layout get the same answers to all queries; a thread that changes it meanwhile is refused.
 void many_threads() {
     kinds all = mixed(6);
     leafless_search_options search = LEAFLESS_INIT(leafless_search_options);
@@ -92,7 +92,7 @@ void many_threads() {
     CHECK(std::memcmp(all.layout.placements().data(), placements.data(), placements.size() * sizeof placements[0]) == 0);
 }
 
-// What may be spent ends a search, and what was placed by then is proven.
+// Budgets end a search, and the placements so far are proven.
 void budgets() {
     uint64_t last = 0;
     for (const uint64_t most : {1, 5, 1000}) {
@@ -148,7 +148,7 @@ void comes_out() {
     }
 }
 
-// More are in the way than are told.
+// More copies are in conflict than are returned.
 void crowd() {
     leafless::bay bay = leafless::bay::make(solid::new_box({0, 0, 0}, {4, 4, 4}), 0, 0);
     const uint64_t item = bay.add_item(solid::new_box({0, 0, 0}, {1, 1, 1}), 1);

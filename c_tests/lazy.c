@@ -141,7 +141,7 @@ static void zones(const leafless_solid *solid) {
     leafless_lazy_free(lazy);
 }
 
-/* Half-spaces are counted once an octree that is split on demand is given back; replays are for those who need them. */
+/* Half-spaces are counted once an octree that is split on demand is freed; only some solids need replays. */
 static void evaluations(void) {
     const double centre[3] = {0, 0, 0}, here[3] = {0.74, 0.11, 0.05}, there[3] = {-0.74, 0.11, 0.05};
     leafless_solid *solid = NULL;
@@ -161,7 +161,7 @@ static void evaluations(void) {
     leafless_lazy_free(lazy);
     after = evaluations_of(solid);
     CHECK(after > before);
-    /* The solid is on this frame already: what is asked again is counted again, and no more. */
+    /* The solid is on this frame already: repeated queries count again, and nothing else does. */
     OK(leafless_lazy_new(solid, &frame, &lazy));
     OK(check_refine(lazy, check_zone_point(here), DEPTH, NULL));
     leafless_lazy_free(lazy);
@@ -209,7 +209,7 @@ static void limits(const leafless_solid *solid) {
     CHECK(!done && counts_of(lazy).bytes <= 6400 && counts_of(lazy).splits > 50);
     options.max_bytes = 0;
 
-    /* Cancelled, it keeps what it has, and goes on. */
+    /* After a cancel, it keeps its cells, and can go on. */
     OK(leafless_control_new(&control));
     options.control = control;
     options.progress = stops;
@@ -225,9 +225,9 @@ static void limits(const leafless_solid *solid) {
     leafless_control_free(control);
 }
 
-/* A slab -0.3 <= z <= 0.4 of the host's, which counts what it is asked. */
+/* A slab -0.3 <= z <= 0.4 of the host. It counts its calls. */
 static int32_t slab(void *ctx, const double *min, const double *max) {
-    /* Several threads ask. (C99 has no atomics; these are those of gcc and clang.) */
+    /* Several threads call. (C99 has no atomics; these are the builtins of gcc and clang.) */
     __atomic_add_fetch((uint64_t *)ctx, 1, __ATOMIC_RELAXED);
     if (max[2] <= -0.3 || min[2] >= 0.4) {
         return LEAFLESS_TAG_EMPTY;
@@ -266,7 +266,7 @@ static void taken_up(const leafless_solid *ball) {
     OK(leafless_lazy_new(solid, &frame, &lazy));
     OK(leafless_lazy_refine(lazy, NULL, 3, NULL, NULL));
     OK(check_refine(lazy, check_zone_point(point), 6, NULL));
-    /* No cell is asked about twice: the host needs no way to a cell. */
+    /* No cell is queried twice: the host needs no way to a cell. */
     CHECK(counts_of(lazy).replays == 0 && asked == 1 + 8 * counts_of(lazy).splits);
     octree = frozen(lazy);
     OK(leafless_octree_peek_metadata(octree, "source", 6, &source, &source_length));
@@ -276,7 +276,7 @@ static void taken_up(const leafless_solid *ball) {
     OK(octree_from_bytes(bytes, length, &loaded));
     free(bytes);
 
-    /* By what made it, and by nothing else. */
+    /* Only the solid that made it can resume it. */
     FAILS(LEAFLESS_E_SOURCE, leafless_lazy_resume(loaded, other, &frame, NULL, &never));
     FAILS(LEAFLESS_E_SOURCE, leafless_lazy_resume(loaded, ball, &frame, NULL, &never));
     FAILS(LEAFLESS_E_ARGUMENT, leafless_lazy_resume(loaded, nameless, &frame, NULL, &never));

@@ -209,11 +209,11 @@ static void set_algebra(void) {
     for (operation = 0; operation < 4; operation++) {
         OK(check_octrees(operation, a, b, &options, &r[operation]));
         OK(leafless_octree_combine(operation, both, 3, &options, &r[4 + operation]));
-        /* Of one it is itself. */
+        /* The combination of one octree is the octree itself. */
         OK(leafless_octree_combine(operation, both, 1, &options, &one));
         CHECK(check_same(one, a));
         leafless_octree_free(one);
-        /* Of three, one after the other. */
+        /* Three octrees, one after the other. */
         OK(leafless_octree_combine(operation, three, 3, &options, &one));
         OK(check_octrees(operation, r[operation], c, &options, &rest));
         CHECK(check_same(one, rest));
@@ -378,7 +378,7 @@ static void octrees(void) {
             OK(leafless_octree_describe(said, &info));
             CHECK(info.proof.full == (i % 2 == 1) && info.proof.empty == (i / 2 == 1));
             CHECK(info.proof.displacement_model == 0.125);
-            /* A complement exchanges them; a union has what both have, and is moved by the more. */
+            /* A complement exchanges the bits. A union has the common bits, and the greater displacement. */
             OK(leafless_octree_complement(said, NULL, &inverse));
             OK(leafless_octree_describe(inverse, &info));
             CHECK(info.proof.full == (i / 2 == 1) && info.proof.empty == (i % 2 == 1));
@@ -409,7 +409,7 @@ static void octrees(void) {
     text_equals(value, value_length, "mm");
 
     {
-        /* What the operands agree on holds of what is made of them. */
+        /* The result has the metadata that the operands agree on. */
         const leafless_octree *const both[3] = {more, named, more}, *const same[2] = {more, more};
         leafless_octree *made[6] = {NULL, NULL, NULL, NULL, NULL, NULL};
         int i;

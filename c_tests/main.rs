@@ -5,8 +5,9 @@
 //! LEAFLESS_C_CHECK=valgrind cargo test --test c_api     # also: address, address-all, thread
 //! ```
 //!
-//! The libraries are built as these tests are, by the same profile, of the same compiled parts. Every program
-//! is compiled and linked as a user would do it, and run; `README.md` here tells what each is for.
+//! The libraries are built like these tests, with the same profile and from the same compiled parts. Every
+//! program is compiled, linked and run as a user would do it. `README.md` in this folder explains the purpose
+//! of each.
 
 #![cfg(unix)]
 
@@ -41,7 +42,7 @@ fn header() -> Header {
     Header::read(&text("include/leafless.h"))
 }
 
-/// Compiles a program of this folder, runs it, and returns what it prints.
+/// Compiles a program of this folder, runs it, and returns its output.
 fn run(name: &str, standard: Standard, link: Link, arguments: &[&str]) -> String {
     let kit = kit();
     let source = root().join("c_tests").join(format!("{name}.{}", standard.extension()));
@@ -49,7 +50,7 @@ fn run(name: &str, standard: Standard, link: Link, arguments: &[&str]) -> String
     kit.run(&program, arguments)
 }
 
-/// The programs are documented to be complete: no file of the folder is left out.
+/// The list of programs is documented as complete. No file of the folder may be missing from it.
 #[test]
 fn every_file_is_used() {
     let driver = text("c_tests/main.rs") + &text("c_tests/kit.rs");
@@ -92,13 +93,13 @@ fn header_in_two_files() {
     kit().run(&program, &[]);
 }
 
-/// What the header's texts speak of, it declares.
+/// The header declares everything that its texts mention.
 #[test]
 fn header_speaks_of_nothing_else() {
     let header = header();
     for word in header::words(&text("include/leafless.h")) {
         let known = header.names().any(|name| name == word || word.strip_suffix('s') == Some(name));
-        // The guard, what tests define, and the name of what is no status.
+        // The guard, the tests' macro, and the name of an unknown status.
         let other = ["LEAFLESS_H", "LEAFLESS_TEST", "LEAFLESS_E_UNKNOWN"].contains(&word.as_str());
         assert!(known || other, "the header speaks of {word}");
     }
@@ -131,7 +132,7 @@ fn layout() {
     let lines =
         header.structs.iter().map(|(_, fields)| 1 + fields.len()).sum::<usize>() + header.values.len();
     assert_eq!(c.lines().count(), lines);
-    // Some that everybody knows, so that the comparison is one.
+    // A few well-known lines, so that the comparison is meaningful.
     assert!(c.lines().any(|line| line == "leafless_frame 40"), "{c}");
     assert!(c.lines().any(|line| line == "LEAFLESS_E_PANIC 17"), "{c}");
     assert!(lines > 100, "{lines}");
@@ -143,7 +144,7 @@ fn version() {
     run("version", C99, Link::Shared, &[env!("CARGO_PKG_VERSION")]);
 }
 
-// --- What the functions do
+// --- The functions
 // --------------------------------------------------------------------------------------
 
 #[test]
@@ -166,7 +167,7 @@ fn panic() {
 
 #[test]
 fn null() {
-    // Each pointer that goes in or out is tried: the programs name all of them.
+    // Each pointer that goes in or out is tried. The programs name all of them.
     let programs = ["null", "null_source", "null_tridexel", "null_picture", "null_layout"];
     let source: String = programs.iter().map(|name| text(format!("c_tests/{name}.c"))).collect();
     let flat = source.split_whitespace().collect::<Vec<_>>().join(" ");
@@ -177,7 +178,7 @@ fn null() {
                 .iter()
                 .any(|check| flat.contains(&format!("{check}({name}, {parameter},")));
             let freed = name.ends_with("_free") && flat.contains(&format!("{name}(NULL)"));
-            // The host's own, which the library does not look at; and texts, whose buffers may be absent.
+            // Functions that return texts, whose buffers may be absent.
             let own = matches!(name.as_str(), "leafless_last_error" | "leafless_test_layout");
             assert!(
                 tried || freed || own,
@@ -312,7 +313,7 @@ fn options() {
     run("options", C99, Link::Static, &[]);
 }
 
-/// Structs that the library fills, by older and newer programs; the program tries every function that fills
+/// Older and newer programs with structs that the library fills. The program tries every function that fills
 /// one.
 #[test]
 fn outputs() {
@@ -378,7 +379,7 @@ fn threads() {
     run("threads", CPP17, Link::Shared, &[]);
 }
 
-/// What a careless host does.
+/// The mistakes of a careless host.
 #[test]
 fn attacks() {
     run("attack", CPP17, Link::Static, &[]);
@@ -407,7 +408,7 @@ fn golden() {
     assert!(valid > 20 && points > 500 && invalid > 50, "{told}");
 }
 
-/// A smoke test: figures come from more points, see the file.
+/// A smoke test. Real figures need more points, see the file.
 #[test]
 fn boundary() {
     for language in [C99, CPP17] {
@@ -416,10 +417,10 @@ fn boundary() {
     }
 }
 
-// --- What users read
+// --- The documentation
 // --------------------------------------------------------------------------------------------
 
-/// The blocks of code in C and C++ of a text, with the standard of each.
+/// Returns the blocks of code in C and C++ of a text, with the standard of each.
 fn blocks(text: &str) -> Vec<(Standard, &str)> {
     let pieces = text.split("\n```");
     let standard = |piece: &'_ str| match piece.split('\n').next() {
@@ -472,8 +473,8 @@ fn header_example() {
     std::fs::write(&source, format!("{includes}int main(void) {{\n{}\n{end}", lines.join("\n"))).unwrap();
     let program = kit().compile("header_example", &[source], C99, Link::Static);
     let told = kit().run(&program, &[]);
-    // A ball of radius 0.75 with a bore of radius 0.25: what is left is 4π/3 times the third power of half
-    // the bore's length.
+    // A ball of radius 0.75 with a bore of radius 0.25. The rest has 4π/3 times the third power of half the
+    // bore's length.
     let bounds: Vec<f64> = told.split(" to ").map(|bound| bound.trim().parse().unwrap()).collect();
     let truth = 4.0 / 3.0 * std::f64::consts::PI * (0.75f64.powi(2) - 0.25f64.powi(2)).powf(1.5);
     assert!(bounds[0] <= truth && truth <= bounds[1] && bounds[1] - bounds[0] < 0.2, "{told} {truth}");
@@ -520,7 +521,7 @@ fn native_libraries_are_documented() {
     assert_eq!(list.trim(), kit.native_libraries, "include/README.md and rustc name different libraries");
 }
 
-/// Lines of a tool's output, as words.
+/// Returns the lines of a tool's output, split into words.
 fn table(program: &str, arguments: &[&str], file: &Path) -> Vec<Vec<String>> {
     let told = Command::new(program).args(arguments).arg(file).output();
     let told = told.unwrap_or_else(|error| panic!("{program} (of binutils) cannot be run: {error}"));
@@ -557,7 +558,7 @@ fn shared_library_exports_the_header() {
     assert_eq!(soname.expect("a SONAME").last().unwrap(), "[libleafless.so.0]");
 }
 
-/// Whatever of the static library another library could clash with is Rust's own, or has the prefix.
+/// Every name of the static library that could clash with another library belongs to Rust or has the prefix.
 #[test]
 #[cfg(target_os = "linux")]
 fn static_library_has_no_other_names() {
@@ -565,7 +566,7 @@ fn static_library_has_no_other_names() {
         return;
     }
     let library = kit().libraries().join("libleafless.a");
-    // Strong and global; hidden ones and weak ones give way.
+    // Strong and global names. Hidden and weak names give way.
     let mut ours = Vec::new();
     for object in elf_symbols(&library) {
         let name = object.as_str();
@@ -582,7 +583,7 @@ fn static_library_has_no_other_names() {
     assert_eq!(ours, sorted_functions());
 }
 
-/// The names of an archive's symbols that are global, defined, and neither weak nor hidden.
+/// Returns an archive's symbols that are global, defined, and neither weak nor hidden.
 #[cfg(target_os = "linux")]
 fn elf_symbols(archive: &Path) -> Vec<String> {
     // Num: Value Size Type Bind Vis Ndx Name
@@ -595,7 +596,7 @@ fn elf_symbols(archive: &Path) -> Vec<String> {
         .collect()
 }
 
-/// With a sanitizer, it is really there.
+/// With a sanitizer, the program really contains it.
 #[test]
 fn sanitizer_is_in() {
     let kit = kit();
@@ -607,7 +608,7 @@ fn sanitizer_is_in() {
     }
 }
 
-/// What fails is seen to fail, by this kit and by the checker.
+/// This kit and the checker detect failing programs.
 #[test]
 fn failing_programs_fail() {
     let kit: &Kit = kit();
@@ -627,7 +628,7 @@ fn failing_programs_fail() {
 
     let watched = |checks: &[Check]| checks.contains(&kit.check);
     let octree = "leafless_octree *octree = check_ball(4, LEAFLESS_RULE_CERTIFIED);";
-    // An octree that is never given back.
+    // An octree that is never freed.
     assert_eq!(
         fails("leaks", &format!("{{ {octree} CHECK(octree != nullptr); }} (void)check_cube();")),
         watched(&[Check::Address, Check::AddressAll, Check::Valgrind])

@@ -1,4 +1,4 @@
-/* Files: all ways in and out, and what becomes of files that are cut short, flipped, removed and replaced. */
+/* Files: all ways in and out, and files that are cut short, flipped, removed and replaced. */
 #define _POSIX_C_SOURCE 200809L
 #include "check.h"
 
@@ -29,7 +29,7 @@ static int32_t writes(void *ctx, const uint8_t *bytes, uint64_t count) {
     return 0;
 }
 
-/* Every query there is, on a tree that may be damaged: whatever the answers, they come. */
+/* Runs every query on a tree that may be damaged. All of them return. */
 static void ask_everything(const leafless_octree *octree) {
     static const double POINTS[5][3] = {{0, 0, 0}, {0.7, 0, 0}, {-0.3, 0.4, 0.5}, {0.99, -0.99, 0.99}, {5, 5, 5}};
     const double low[3] = {-0.9, -0.9, -0.9}, high[3] = {0.9, 0.9, 0.9};
@@ -171,7 +171,7 @@ static void ways_in_and_out(void) {
     free(bytes);
     leafless_octree_free(named);
 
-    /* A file says what its cells prove. */
+    /* A file states what its cells prove. */
     OK(leafless_octree_with_proof(ball, LEAFLESS_PROVEN_EMPTY, 0.5, &named));
     OK(octree_save(named, PATH("ball.lfl")));
     leafless_octree_free(named);
@@ -259,7 +259,7 @@ static void removed_and_replaced(void) {
 
     OK(octree_save(ball, PATH("one.lfl")));
     OK(octree_map(PATH("one.lfl"), &first));
-    /* Another solid takes the name; the mapping stays what it was. */
+    /* Another solid takes the name. The mapping stays unchanged. */
     OK(octree_save(box, PATH("one.lfl")));
     OK(octree_map(PATH("one.lfl"), &second));
     CHECK(check_same(first, ball) && check_same(second, box));

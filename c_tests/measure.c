@@ -91,7 +91,7 @@ static void ball(void) {
     CHECK(again.volume_model.lower < volume && volume < again.volume_model.upper);
     FAILS(LEAFLESS_E_ARGUMENT, leafless_solid_measure(solid, &frame, 0.0, -1.0, NULL, &again));
 
-    /* The area, in one thread as in many. Of a block beyond the universe, with a face in a plane of the lattice, that face
+    /* The area, with one thread and with many. If a block reaches beyond the universe, its face in a plane of the lattice
      * counts. */
     {
         const double area = 4.0 * PI * 0.75 * 0.75, low[3] = {-9.0, -9.0, -9.0}, high[3] = {0.5, 9.0, 9.0};
@@ -227,7 +227,7 @@ static void block(void) {
     leafless_octree_free(octree);
 }
 
-/* The host's own shapes: one that fails, and one that knows nothing. */
+/* The host's own shapes: one that fails, and one that decides nothing. */
 static void host(void) {
     const leafless_frame frame = check_frame(3);
     leafless_solid_callbacks callbacks;

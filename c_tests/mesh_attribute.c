@@ -43,7 +43,7 @@ static void colours(void) {
     fill.scalar = LEAFLESS_SCALAR_TYPE_U8;
     OK(leafless_channel_fill(colour, &frame, &fill, NULL, &channel));
     OK(leafless_channel_values(channel, &points[0][0], 2, &at[0][0]));
-    /* Of the cells from y = 2 and from y = 6. */
+    /* The values of the cells from y = 2 and from y = 6. */
     CHECK(at[0][0] == 75 && at[1][0] == 195);
     leafless_channel_free(channel);
     leafless_attribute_free(colour);

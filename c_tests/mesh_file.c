@@ -237,7 +237,7 @@ static void units(const sample *one) {
         if (own < COUNT(UNITS)) {
             reads(one, &options, UNITS[i].unit, 3.0 * UNITS[own].micrometres / UNITS[i].micrometres);
         } else {
-            /* What the file does not say nobody can convert. */
+            /* Without a unit in the file there is no conversion. */
             refused(LEAFLESS_E_MESH_FILE, one->bytes, one->length, &options, "unit");
         }
     }
@@ -282,7 +282,7 @@ static void damaged(const sample *one) {
     size_t i, end;
     options.format = one->format;
     for (end = 0; end < length; end++) {
-        /* On the heap, so that memory checkers see what is read beyond the end. */
+        /* On the heap, so that memory checkers notice reads beyond the end. */
         uint8_t *bytes = (uint8_t *)malloc(end + 1);
         leafless_mesh *mesh = NULL;
         CHECK(bytes != NULL);
@@ -371,7 +371,7 @@ static void bad_options(void) {
     options = defaults();
     options.struct_size = 3;
     refused(LEAFLESS_E_ARGUMENT, one->bytes, one->length, &options, "struct_size");
-    /* A program from before `scale`: what lies there is not read. */
+    /* A program older than `scale`: the bytes at its place are not read. */
     options = defaults();
     options.struct_size = offsetof(leafless_mesh_options, scale);
     options.scale = NAN;
@@ -409,7 +409,7 @@ static void bad_files(void) {
     options.format = LEAFLESS_MESH_FORMAT_STL;
     refused(LEAFLESS_E_MESH_FILE, bytes, length - 1, &options, "3 facets");
     refused(LEAFLESS_E_MESH_FILE, "solid\nfacet normal 0 0 0\nouter hoop\n", 36, NULL, "line 3");
-    /* A count of 4294967295 facets is believed by nobody. */
+    /* A count of 4294967295 facets is refused. */
     memset(bytes + 80, 0xff, 4);
     refused(LEAFLESS_E_MESH_FILE, bytes, length, &options, "4294967295 facets");
     free(bytes);

@@ -1,7 +1,7 @@
-/* What is told about meshes that are not as they should be: counts, and where. */
+/* Reports about defective meshes: counts and places. */
 #include "check.h"
 
-/* The cube [0, 1]^3 and 12 more triangles at most, of which the tests make what they need. */
+/* The cube [0, 1]^3 and at most 12 more triangles, for the tests to use. */
 typedef struct surface {
     double vertices[24][3];
     uint32_t triangles[24][3];
@@ -36,7 +36,7 @@ static leafless_mesh *made(const surface *all) {
     return mesh;
 }
 
-/* The report; and of the defects, of which there must be `count`, the first. */
+/* Returns the report, and the first of the defects. There must be `count` defects. */
 static leafless_mesh_report told(const surface *all, uint64_t count, leafless_mesh_defect *first) {
     leafless_mesh *mesh = made(all);
     leafless_mesh_defect defects[8];
@@ -195,14 +195,14 @@ int main(void) {
     CHECK(defect.kind == LEAFLESS_DEFECT_HOLE && defect.count == 4 && defect.length_model == 4.0);
     CHECK(box(&defect, 0, 0, 0, 0, 1, 1));
 
-    /* A triangle turned over. */
+    /* An inverted triangle. */
     all = cube();
     all.triangles[0][0] = 2, all.triangles[0][1] = 0;
     report = told(&all, 1, &defect);
     CHECK(report.misoriented_edges == 3 && report.boundary_edges == 0 && report.open_bodies == 1);
     CHECK(defect.kind == LEAFLESS_DEFECT_MISORIENTED && defect.count == 3 && box(&defect, 0, 0, 0, 1, 1, 0));
 
-    /* All of it turned over. */
+    /* All triangles inverted. */
     all = cube();
     {
         uint32_t i;
@@ -221,7 +221,7 @@ int main(void) {
     report = told(&all, 3, &defect);
     CHECK(report.duplicate == 1 && report.opposite == 0 && report.boundary_edges == 3 && report.non_manifold_edges == 3);
     CHECK(defect.kind == LEAFLESS_DEFECT_HOLE);
-    /* And a third time, turned over: once it is there too often, and once taken away. */
+    /* A third time, inverted: one triangle is redundant, and one is cancelled. */
     add_triangle(&all, 3, 2, 0);
     report = told(&all, 2, &defect);
     CHECK(report.duplicate == 1 && report.opposite == 1 && report.boundary_edges == 0 && report.misoriented_edges == 0);

@@ -1,7 +1,7 @@
-/* Mesh files, written and read again: every format, as text and binary, in memory and on disk; what is refused. */
+/* Mesh files, written and read again: every format, as text and binary, in memory and on disk; refused calls. */
 #include "check.h"
 
-/* A tetrahedron whose coordinates are no short decimal numbers. */
+/* A tetrahedron whose coordinates are not short decimal numbers. */
 static leafless_mesh *tetrahedron(double factor) {
     const double t = factor / 3;
     const double vertices[4][3] = {{t, 0, 0}, {0, t, -t}, {0, 0.1 * t, t}, {-t, 1e-5 * t, 0.7}};
@@ -194,7 +194,7 @@ static void normals(void) {
     leafless_mesh_free(mesh);
 }
 
-/* What a file keeps of a mesh: everything but in an STL, of which a cube far away is a square. */
+/* The losses of a file: none except in an STL, where a cube far away becomes a square. */
 static void losses(void) {
     leafless_mesh *cube = check_cube(), *far = NULL;
     const double matrix[12] = {1, 0, 0, 1e9, 0, 1, 0, 0, 0, 0, 1, 0};
@@ -292,7 +292,7 @@ static void refusals(void) {
     leafless_mesh_free(mesh);
 }
 
-/* A tetrahedron of which one corner is cut off by less than single precision tells. */
+/* A tetrahedron with one corner cut off by less than single precision resolves. */
 static void mended(void) {
     static const double CORNERS[5][3] = {{1, 1, 1}, {2, 1, 1}, {1, 2, 1}, {1, 1, 2}, {1 + 1e-9, 1, 1}};
     static const uint32_t TRIANGLES[6][3] = {{0, 2, 4}, {4, 2, 1}, {0, 4, 3}, {4, 1, 3}, {1, 2, 3}, {2, 0, 3}};

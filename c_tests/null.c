@@ -678,7 +678,7 @@ static void null_pointers(void) {
     untouched();
     CHECK(never == UNTOUCHED);
 
-    /* Texts of no bytes may be NULL, and so may options; and what there is nothing of. */
+    /* Texts of no bytes may be NULL, and so may options and empty arrays. */
     MAY_BE_NULL(leafless_octree_without_metadata, key, leafless_octree_without_metadata(octree, NULL, 0, result));
     leafless_octree_free(*result);
     MAY_BE_NULL(leafless_octree_with_metadata, key, leafless_octree_with_metadata(octree, NULL, 0, NULL, 0, result));
@@ -1187,7 +1187,7 @@ static void lazy_octrees(void) {
     leafless_tag *tags = (leafless_tag *)out, tag;
     bool *flag = (bool *)out, done;
     uint64_t *count = (uint64_t *)out, number;
-    /* Room for what is read beside them. */
+    /* Buffers for the values read beside them. */
     const uint32_t universe[4] = {0, 0, 0, 0};
     const double room[4] = {0, 0, 0, 0}, *numbers = (const double *)WRONG(room);
     const uint32_t *cell = (const uint32_t *)WRONG(universe);
@@ -2168,7 +2168,7 @@ static int32_t number_at(void *ctx, const double *at, double *number) {
     return 0;
 }
 
-/* Of a channel of three numbers. */
+/* A channel of three numbers. */
 static void summaries(const leafless_channel *channel) {
     void *out = fresh(), *never = UNTOUCHED;
     leafless_attribute **made = (leafless_attribute **)&never, *attribute = NULL;

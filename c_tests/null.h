@@ -32,7 +32,7 @@ static inline void refused(leafless_status expected, const char *function, const
     }
 }
 
-/* Room for anything, of which no function may change a byte here: all 0x5a behind a struct_size that makes sense. */
+/* A buffer for any result. No function may change a byte of it here: all are 0x5a behind a valid struct_size. */
 static double room[64];
 
 static inline void *fresh(void) {

@@ -6,7 +6,7 @@ static leafless_tridexel *model;
 static leafless_mesh *mesh;
 static leafless_volume *volume;
 
-/* Where readers put what they read; they put nothing there if they refuse. */
+/* The readers' results. A reader that refuses writes nothing there. */
 static void *result;
 static leafless_file_info probe;
 
@@ -58,7 +58,7 @@ static void free_scene(void *object) {
     leafless_scene_free((leafless_scene *)object);
 }
 
-/* `is_mapped`: it can be used where it lies. `in_place`: bytes are never copied. `empty`: what becomes of no bytes. */
+/* `is_mapped`: the source can be used in place. `in_place`: bytes are never copied. `empty`: the result for no bytes. */
 typedef struct reader {
     const char *name;
     leafless_status (*read)(const leafless_source *source);
@@ -245,7 +245,7 @@ static void sources(const reader *one) {
     bad.path_length = 1;
     refuses(LEAFLESS_E_ARGUMENT, one, "source: has both", &bad);
 
-    /* None: these are no bytes, of which the reader makes what it can. */
+    /* No bytes at all: the reader returns its result for them. */
     bad = leafless_from_bytes(one->bytes, 0, LEAFLESS_ACCESS_COPY);
     if (one->empty == LEAFLESS_OK) {
         takes(one, &none);
@@ -299,7 +299,7 @@ static void sources(const reader *one) {
     refuses(LEAFLESS_E_NULL, one, "source.bytes", &bad);
     bad = leafless_from_bytes(one->bytes, UINT64_MAX, LEAFLESS_ACCESS_COPY);
     refuses(LEAFLESS_E_ARGUMENT, one, "source.bytes", &bad);
-    /* Copies may be made of any address, what is used in place must lie well. */
+    /* Copies may be made from any address; bytes used in place must be aligned. */
     for (access = 0; access <= (one->is_mapped ? 2u : 0u); access++) {
         const bool in_place = one->in_place || access != LEAFLESS_ACCESS_COPY;
         bad = leafless_from_bytes(beside + 1, one->length, access);
@@ -310,7 +310,7 @@ static void sources(const reader *one) {
         }
     }
 
-    /* Structs of other versions, and such as were never initialised. */
+    /* Structs of other versions, and uninitialised ones. */
     bad = file;
     for (i = 0; i < 4; i++) {
         static const uint32_t SIZES[] = {0, 3, 4, 5000};
@@ -402,7 +402,7 @@ static void sinks(const char *name, leafless_status (*write)(const leafless_sink
     refused(LEAFLESS_E_BUFFER, name, "sink.bytes", write(&bad));
     CHECK(length == 77);
 
-    /* Structs of other versions, and such as were never initialised. */
+    /* Structs of other versions, and uninitialised ones. */
     bad = file;
     for (i = 0; i < 4; i++) {
         static const uint32_t SIZES[] = {0, 3, 4, 5000};
@@ -465,7 +465,7 @@ static void parameters(void) {
     NULL_POINTER(leafless_tridexel_write, sink, leafless_tridexel_write(model, NULL));
     MISALIGNED(leafless_tridexel_write, tridexel,
                leafless_tridexel_write((const leafless_tridexel *)WRONG(model), &sink));
-    /* Each knows its own files. */
+    /* Each reader recognises its own files. */
     refused(LEAFLESS_E_ARGUMENT, "leafless_octree_read", "", leafless_octree_read(&rays, octree_result));
     refused(LEAFLESS_E_ARGUMENT, "leafless_tridexel_read", "", leafless_tridexel_read(&solid, tridexel_result));
 
@@ -631,7 +631,7 @@ int main(void) {
     layout.extents[0] = layout.extents[1] = layout.extents[2] = 2;
     OK(volume_of_array(&layout, SAMPLES, sizeof SAMPLES, &volume));
     for (i = 1; i < 3; i++) {
-        /* What lies in a file can only be copied; what lies in memory can be used there. */
+        /* Bytes of a file can only be copied; bytes in memory can be used in place. */
         const leafless_source file = leafless_from_file("source.raw", (leafless_access)i);
         const leafless_source bytes = leafless_from_bytes(SAMPLES, sizeof SAMPLES, (leafless_access)i);
         leafless_volume *viewed = NULL;

@@ -1,4 +1,4 @@
-/* Solids of meshes as they come: with holes, facets turned over, bodies that overlap or are inside out, under each
+/* Solids of meshes in any condition: with holes, inverted facets, overlapping and inside-out bodies, under each
    leafless_fill; against the definition, a sum of solid angles. */
 #include "check.h"
 
@@ -10,8 +10,8 @@ typedef struct surface {
     uint32_t vertex_count, triangle_count;
 } surface;
 
-/* What the lower corner and the edge of single cubes are. Of the first nothing is symmetric; diagonals of the second
-   lead through centres of cells, and all edges of the third. */
+/* The lower corner and the edge of single cubes. The first has no symmetry. The second's diagonals lead through centres
+   of cells, and so do all edges of the third. */
 static const struct {
     double skew[3], low, edge;
 } CUBES[] = {{{0.0, 0.013, -0.0087}, -0.7, 1.4}, {{0, 0, 0}, -0.7, 1.4}, {{0, 0, 0}, -22.5 / 32, 45.0 / 32}};
@@ -219,14 +219,14 @@ static surface cube(uint32_t which) {
     return all;
 }
 
-/* A cube with holes, and with facets turned over, under the rules that allow that. */
+/* A cube with holes, and with inverted facets, under the rules that allow them. */
 static void damaged(const surface *closed, uint32_t fill) {
     const uint32_t few = 2 * agrees(closed, LEAFLESS_FILL_EVEN_ODD);
     leafless_octree *even_odd = built(closed, LEAFLESS_FILL_EVEN_ODD, LEAFLESS_RULE_CERTIFIED);
     leafless_octree *octree = built(closed, fill, LEAFLESS_RULE_CERTIFIED);
     surface mesh = *closed;
     uint32_t i;
-    /* Of a closed body the rules say the same. */
+    /* For a closed body the rules agree. */
     CHECK(check_same(octree, even_odd));
     leafless_octree_free(octree);
     leafless_octree_free(even_odd);

@@ -57,7 +57,7 @@ int main(void) {
     expected = check_ball(5, LEAFLESS_RULE_CERTIFIED);
     accepted(NULL);
 
-    /* From zeros by hand, by the macro, and by leafless_init out of whatever lay there. */
+    /* From zeros by hand, by the macro, and by leafless_init from arbitrary bytes. */
     memset(&options, 0, sizeof options);
     options.struct_size = sizeof options;
     accepted(&options);
@@ -114,7 +114,7 @@ int main(void) {
     options.struct_size = 1 << 20;
     refused(&options, "struct_size");
 
-    /* Older, shorter ones: what they do not have is not read, and is as if zero. */
+    /* Older, shorter ones: missing fields are not read, and count as zero. */
     {
         int calls = 0;
         OK(leafless_init(&options, sizeof options));
@@ -129,7 +129,7 @@ int main(void) {
         options.struct_size = offsetof(leafless_options, control);
         accepted(&options);
         CHECK(calls > 0);
-        /* On the heap, so that memory checkers see what is read beyond the end. */
+        /* On the heap, so that memory checkers notice reads beyond the end. */
         for (size = 8; size <= sizeof options; size += 8) {
             void *exact = malloc(size);
             leafless_options zeros;
@@ -150,7 +150,7 @@ int main(void) {
         }
     }
 
-    /* Newer, longer ones: what this library does not know must not be asked for. */
+    /* Newer, longer ones: fields unknown to this library must be zero. */
     memset(&newer, 0, sizeof newer);
     newer.known.struct_size = sizeof newer;
     accepted(&newer);
@@ -193,7 +193,7 @@ int main(void) {
         OK(leafless_solid_new_callbacks(&longer.known, &all));
         leafless_solid_free(all);
         all = NULL;
-        /* A program of before there were distances: what lies where they are now is not called. */
+        /* A program older than distances: the bytes at their place are not called. */
         callbacks.distance_many = distance;
         callbacks.struct_size = offsetof(leafless_solid_callbacks, distance_many);
         {

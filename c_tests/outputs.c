@@ -1,5 +1,5 @@
-/* Structs that the library fills: those of programs that were compiled with an older or a newer header, and structs that
-   nobody has initialised. Every function that fills one is tried. */
+/* Structs that the library fills: structs of programs compiled with an older or a newer header, and uninitialised ones.
+   Every function that fills one is tried. */
 #include "check.h"
 
 static leafless_frame frame;
@@ -21,7 +21,7 @@ static uint8_t *file;
 static uint64_t file_length;
 static const double zero[3] = {0, 0, 0}, up[3] = {0, 0, 1};
 
-/* A function of a host that is `call`, where `out` is what it fills. */
+/* The calls of a host. `out` is the struct that the call fills. */
 #define OUTPUTS                                                                                                        \
     FILLS(leafless_mesh_info, leafless_mesh_describe(mesh, out))                                                       \
     FILLS(leafless_mesh_report, leafless_mesh_inspect(mesh, out))                                                      \
@@ -68,7 +68,7 @@ static const double zero[3] = {0, 0, 0}, up[3] = {0, 0, 1};
     FILLS(leafless_dexel_surface_report, leafless_tridexel_surface(tridexel, 0, NULL, out, &made))                \
     FILLS(leafless_file_info, leafless_file_describe(&stored, out, NULL, 0))
 
-/* Calls number `which`, or tells the size of what it fills. */
+/* Makes the call number `which`, or returns the size of the struct that it fills. */
 static leafless_status call(int which, void *place, const char **name, size_t *size) {
     static const char text[] = "OFF\n3 1 0\n0 0 0\n1 0 0\n0 1 0\n3 0 1 2\n";
     const leafless_source off = leafless_from_bytes(text, sizeof text - 1, LEAFLESS_ACCESS_COPY);

@@ -1,14 +1,14 @@
-//! What is installed is all that programs elsewhere need: by CMake, by `pkg-config`, and by the commands of
-//! `include/README.md`. The programs are those of `packaging/consumers`.
+//! An installation contains all that programs elsewhere need: for CMake, for `pkg-config`, and for the
+//! commands of `include/README.md`. The programs are those of `packaging/consumers`.
 //!
-//! The program that installs takes the libraries that the kit has built, so that nothing is built twice.
+//! The installing program takes the libraries that the kit has built, so that nothing is built twice.
 
 use crate::kit::{self, Kit, Standard, kit, output};
 use crate::{CPP17, root, text};
 use std::path::{Path, PathBuf};
 use std::process::Command;
 
-/// The installing program, with the kit's libraries.
+/// Returns the installing program, with the kit's libraries.
 fn installer(kit: &Kit) -> Command {
     let mut command = Command::new(env!("CARGO_BIN_EXE_leafless-install"));
     command.env_remove("DESTDIR").arg("--libraries").arg(kit.libraries());
@@ -19,7 +19,7 @@ fn succeed(command: &mut Command) -> String {
     output(command).unwrap_or_else(|problem| panic!("{problem}")).0
 }
 
-/// Whether these programs can be run; if not, says that the test is skipped.
+/// True if these programs can be run; otherwise reports that the test is skipped.
 fn have(test: &str, programs: &[&str]) -> bool {
     for program in programs {
         if !Command::new(program).arg("--version").output().is_ok_and(|told| told.status.success()) {
@@ -45,7 +45,7 @@ fn consumers(kit: &Kit, name: &str) -> PathBuf {
     folder
 }
 
-/// An installation that has been moved to another place.
+/// Makes an installation and moves it to another place.
 fn moved_prefix(kit: &Kit, folder: &Path, options: &[&str]) -> PathBuf {
     let (first, second) = (folder.join("first"), folder.join("moved/second"));
     succeed(installer(kit).arg("--prefix").arg(&first).args(options));
@@ -54,7 +54,7 @@ fn moved_prefix(kit: &Kit, folder: &Path, options: &[&str]) -> PathBuf {
     second
 }
 
-/// Makes a program `cargo` that runs the installing one with the kit's libraries, and builds nothing.
+/// Makes a program `cargo` that runs the installing program with the kit's libraries, and builds nothing.
 fn cargo_that_installs(kit: &Kit, folder: &Path) -> PathBuf {
     let script = format!(
         "#!/bin/sh\nexport HOME='{}'\ntest \"$1\" = run || exit 0\nwhile test \"$1\" != --; do shift; done\nshift\n\
@@ -70,19 +70,19 @@ fn cargo_that_installs(kit: &Kit, folder: &Path) -> PathBuf {
     cargo
 }
 
-/// Runs a consumer, which tells the volume of a bored ball.
+/// Runs a consumer. It prints the volume of a bored ball.
 fn tells_the_volume(kit: &Kit, program: &Path) {
     let told = kit.run(program, &[]);
     let bounds: Vec<f64> = told.split_whitespace().filter_map(|word| word.parse().ok()).collect();
     assert!(matches!(bounds[..], [least, most] if least <= 1.481 && 1.481 <= most), "{told}");
 }
 
-/// Whether a program loads the shared library when it starts.
+/// True if a program loads the shared library when it starts.
 fn loads_the_library(program: &Path) -> bool {
     String::from_utf8_lossy(&std::fs::read(program).unwrap()).contains("libleafless.so.0")
 }
 
-/// The notices name what is linked into the libraries, with licences and their texts, and nothing else.
+/// The notices name exactly the packages linked into the libraries, with licences and their texts.
 fn third_party(file: &Path) {
     let all = std::fs::read_to_string(file).unwrap();
     let (list, texts) = all.split_once("\n----").expect("texts behind the list");
@@ -98,11 +98,11 @@ fn third_party(file: &Path) {
     for name in ["rayon", "num-bigint", "crc32fast", "png"] {
         assert!(lines.iter().any(|line| line.starts_with(&format!("{name} "))), "{name}");
     }
-    // What runs while it is built, or in tests only, is not linked.
+    // Packages that run only at build time or in tests are not linked.
     for name in ["proptest", "cbindgen", "syn", "criterion", "leafless"] {
         assert!(!lines.iter().any(|line| line.starts_with(&format!("{name} "))), "{name}");
     }
-    // (The exception of LLVM's licence speaks of the GPL.)
+    // (The exception of LLVM's licence mentions the GPL.)
     assert!(!list.contains("GPL") && texts.contains("Permission is hereby granted"));
 }
 
@@ -146,7 +146,7 @@ fn installed_files() {
     }
     for name in &lib[lib.len() - 4..] {
         let text = text(folder.join("usr").join(name));
-        // Nothing is left to fill in, and no place is fixed.
+        // No placeholder is left, and no path is fixed.
         assert!(!text.contains('@') && !text.contains("/usr"), "{name}: {text}");
     }
     let only_static = install(&["--prefix", "/usr", "--only", "static"]).unwrap();
@@ -200,7 +200,8 @@ fn programs_by_cmake() {
     }
 }
 
-/// The examples in C++ are a project of CMake, with that for Open CASCADE where it is installed.
+/// The examples in C++ are a CMake project, which includes the Open CASCADE example where Open CASCADE is
+/// installed.
 #[test]
 fn open_cascade() {
     let kit = kit();
@@ -228,8 +229,8 @@ fn open_cascade() {
         let (lower, upper) = line.split_once(" to ").unwrap_or((line, line));
         [lower, upper].map(|bound| bound.trim().parse::<f64>().unwrap())
     };
-    // The block less its bore, of 4345 square millimetres in all. What lies within the deflection of its
-    // facets is not known.
+    // The block minus its bore, 4345 square millimetres in all. Points within the deflection of its facets
+    // are unknown.
     let truth = 40.0 * 24.0 * 16.0 - std::f64::consts::PI * 6.0 * 6.0 * 16.0;
     let [[by_them, _], triangles, distances] =
         ["volume by Open CASCADE", "volume by triangles", "volume by distances"].map(bounds);
@@ -253,7 +254,7 @@ fn open_cascade() {
     }
 }
 
-/// Which versions a program may ask for, and that parts that are not installed are missed.
+/// The versions that a program may request, and the errors for parts that are not installed.
 #[test]
 fn what_cmake_finds() {
     let kit = kit();
@@ -324,7 +325,7 @@ fn programs_by_pkg_config() {
         ("c_shared", both.join("lib/x86"), &["leafless"][..], Standard::C("c99")),
         ("cpp_shared", both.join("lib/x86"), &["leafless"], CPP17),
         ("c_static", both.join("lib/x86"), &["leafless-static"], Standard::C("c99")),
-        // The conventional way, which needs the static library to be the only one.
+        // The conventional way. It works only if the static library is the only one.
         ("cpp_static", alone.join("lib"), &["--static", "leafless"], CPP17),
     ] {
         let mut flags = Command::new("pkg-config");
@@ -349,7 +350,7 @@ fn programs_by_pkg_config() {
     );
 }
 
-/// The command lines of `include/README.md` work word by word, with another `cargo`.
+/// The command lines of `include/README.md` work word by word, with a substitute for `cargo`.
 #[test]
 fn documented_commands() {
     let kit = kit();
@@ -407,13 +408,13 @@ fn documented_commands() {
     }
     // In the clone a C program with each library, and a C++ program; elsewhere a C++ program in three ways.
     assert!(compiled >= 6, "{compiled}");
-    // After the first command two are for CMake, two for each library by pkg-config, and one is for paths.
+    // After the first command, two are for CMake, two for each library by pkg-config, and one is for paths.
     let lines = kit::documented(installed);
     let count = |start: &str| lines.iter().filter(|line| line.starts_with(start)).count();
     assert_eq!([count("cargo run"), count("cmake"), count("export"), count("g++")], [1, 2, 1, 3]);
 }
 
-/// A plugin exports its own functions only, as `include/README.md` says, and works.
+/// A plugin exports only its own functions, as `include/README.md` says, and works.
 #[test]
 #[cfg(target_os = "linux")]
 fn plugin() {
@@ -440,7 +441,8 @@ fn plugin() {
     kit.run(&folder.join("host"), &[]);
 }
 
-/// A program may hold another static library that the same rustc made, and with the shared library any other.
+/// A program may contain another static library made by the same rustc. With the shared library, it may
+/// contain any other.
 #[test]
 #[cfg(target_os = "linux")]
 fn beside_another_library_of_rust() {
@@ -449,7 +451,8 @@ fn beside_another_library_of_rust() {
         return;
     }
     let folder = fresh(kit, "two_of_rust");
-    // It starts a thread and catches a panic, so that both libraries need the same of Rust's.
+    // The other library starts a thread and catches a panic, so that both libraries need the same parts of
+    // Rust's.
     let other = "#[unsafe(no_mangle)]
 pub extern \"C\" fn other_caught() -> bool { std::thread::spawn(|| panic!(\"caught\")).join().is_err() }";
     let program = "#include <leafless.h>
@@ -471,13 +474,14 @@ int main(void) { return other_caught() && leafless_test_panic() == LEAFLESS_E_PA
         output(&mut command).map(|_| kit.run(&folder.join("program"), &[])).map(|_| ())
     };
     assert_eq!(make(&[], "-l:libleafless.a"), Ok(()));
-    // Optimised as one with Rust's standard library it has a part of that which cannot be left out.
+    // Optimised as a whole, the other library contains a part of Rust's standard library that cannot be left
+    // out.
     let whole = ["-Clto=fat", "-Copt-level=1"];
     assert!(make(&whole, "-l:libleafless.a").is_err_and(|told| told.contains("rust_eh_personality")));
     assert_eq!(make(&whole, "-lleafless"), Ok(()));
 }
 
-/// The port for vcpkg, with functions of our own in place of vcpkg's.
+/// The port for vcpkg, with substitutes for vcpkg's functions.
 #[test]
 fn vcpkg_port() {
     let kit = kit();
@@ -532,7 +536,7 @@ include(\"${{port}}/portfile.cmake\")\n",
     }
 }
 
-/// What `cargo cinstall` puts into a prefix is all that programs in C and C++ need.
+/// The prefix that `cargo cinstall` fills has all that programs in C and C++ need.
 #[test]
 #[cfg(target_os = "linux")]
 fn installed_by_cargo_c() {
@@ -547,7 +551,7 @@ fn installed_by_cargo_c() {
     let words = line.split_whitespace().skip(1);
     let words = words.map(|word| if word.starts_with('/') { prefix.as_os_str() } else { word.as_ref() });
     succeed(kit.rust("cargo").args(words).arg("--libdir").arg("lib"));
-    // The same files as by the program of this repository, but for those of CMake and of the static library
+    // The same files as from this repository's program, except those of CMake and of the static library
     // alone.
     let files = |prefix: &Path| {
         let told = succeed(Command::new("find").args([".", "!", "-type", "d"]).current_dir(prefix));

@@ -51,7 +51,7 @@ static int is(const uint8_t *found, const uint8_t *expected) {
     return memcmp(found, expected, 4) == 0;
 }
 
-/* The ball of radius 0.75 as a picture of 1 sample shows it, to a tolerance; what lies beyond y = `cut` only. */
+/* Checks a picture of 1 sample of the ball of radius 0.75, to a tolerance. Only the part beyond y = `cut` is shown. */
 static void check_ball_depths(double cut, double tolerance) {
     int x, y, seen = 0;
     for (y = 0; y < SIDE; y++) {
@@ -143,7 +143,7 @@ static void surfaces(void) {
     }
     leafless_layer_free(layer);
     leafless_octree_free(octree);
-    /* A cube, of which every triangle is red but those of the front. */
+    /* A cube whose triangles are red except those of the front. */
     OK(leafless_mesh_new(&arrays, &mesh));
     {
         double vertices[24];
@@ -327,7 +327,7 @@ static void volumes(void) {
     voxels.codes = &code;
     voxels.levels = &level;
     voxels.kinds = &inside;
-    /* Two units of what lets half through. */
+    /* Two units of a medium that transmits one half. */
     OK(leafless_layer_new_voxels(&voxels, &transfer, 0, &layer));
     take(&shot, layer);
     CHECK(abs(middle[3] - 191) <= 1 && abs(middle[0] - 160) <= 1);

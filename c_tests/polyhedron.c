@@ -175,7 +175,7 @@ static void block_with_a_hole(void) {
     arrays.scale = 0.5;
     CHECK(near(volume(&arrays), 3.0));
     arrays.scale = 0.0;
-    /* Each loop a face: those of the holes close a second box, which is inside out. */
+    /* Each loop is a face. The faces of the holes close a second box, which is inside out. */
     arrays.faces = NULL;
     arrays.face_count = 0;
     CHECK(near(volume(&arrays), 24.0));
@@ -343,7 +343,7 @@ static void bad_arrays(void) {
     arrays.loop_count = 0;
     refused(LEAFLESS_E_MESH, &arrays, "offsets of the loops");
 
-    /* What they describe: a face that is missing, one turned over, one that is bent, a hole outside of its face. */
+    /* The described solid: a missing face, an inverted face, a bent face, a hole outside its face. */
     AGAIN;
     arrays.corner_count = 44;
     arrays.loop_count = 11;
@@ -430,7 +430,7 @@ static void bad_fields(void) {
     ABSENT(solids);
     memset(&arrays, 0, sizeof arrays);
     refused(LEAFLESS_E_ARGUMENT, &arrays, "struct_size");
-    /* A program from before the tolerance: what lies there is not read. */
+    /* A program older than the tolerance: the bytes at its place are not read. */
     arrays = block();
     arrays.struct_size = offsetof(leafless_polyhedron_arrays, tolerance_model);
     arrays.tolerance_model = -1.0;

@@ -79,7 +79,7 @@ static void agrees(const leafless_solid *solid, const leafless_frame *frame, boo
     leafless_octree_free(octree);
 }
 
-/* The ball is known as deep as there are frames; what is answered is true. */
+/* The ball is known on frames of any depth, and answers are true. */
 static void ball(void) {
     const leafless_frame frame = check_frame(20);
     static leafless_membership answers[POINTS];
@@ -104,7 +104,7 @@ static void ball(void) {
         for (i = 0; i < 6; i++) {
             CHECK(of_odd[i] == (i == 4 ? LEAFLESS_MEMBERSHIP_INSIDE : LEAFLESS_MEMBERSHIP_UNDECIDED));
         }
-        /* No more is written than was asked for; of no points nothing. */
+        /* No more answers are written than points are given; without points, none. */
         CHECK(of_odd[6] == 0x5a);
         OK(leafless_solid_contains_many(solid, &frame, odd[0], 0, NULL, of_odd + 6));
         OK(leafless_solid_contains_many(solid, &frame, NULL, 0, NULL, NULL));
@@ -135,7 +135,7 @@ static void boxes(void) {
     /* What is outside of the universe is not known. */
     CHECK(region_of(solid, 0, 0.9, 1.5) == LEAFLESS_REGION_UNDECIDED);
     CHECK(region_of(solid, 0, 1.5, 1.75) == LEAFLESS_REGION_UNDECIDED);
-    /* Under a limit it is told as far as it is known, and never wrong. */
+    /* Under a limit, the answer is undecided or right. */
     CHECK(region_of(solid, 1, -0.4, 0.4) == LEAFLESS_REGION_UNDECIDED);
     for (splits = 1; splits < 200; splits++) {
         const leafless_region inside = region_of(solid, splits, -0.4, 0.4);
@@ -169,7 +169,7 @@ typedef struct host {
     uint64_t decided;
 } host;
 
-/* The half-space x <= 0.2, of which points are known exactly. */
+/* The half-space x <= 0.2. Its points are decided exactly. */
 static int32_t half(void *ctx, const double *min, const double *max) {
     ((host *)ctx)->classified++;
     return max[0] <= 0.2 ? LEAFLESS_TAG_FULL : min[0] >= 0.2 ? LEAFLESS_TAG_EMPTY : LEAFLESS_TAG_PARTIAL;

@@ -116,7 +116,7 @@ static void spans(void) {
     until.t_last = 1;
     OK(leafless_octree_ray_spans(octree, &until, NULL, 0, &inner_count, NULL, 0, &outer_count));
     CHECK(inner_count == 0 && outer_count == 0);
-    /* Of one list only; and in a buffer that is too small, nothing of either. */
+    /* Only one of the lists; with a buffer that is too small, nothing of either. */
     OK(leafless_octree_ray_spans(octree, &ray, NULL, 0, &inner_count, outer, 4, &outer_count));
     CHECK(inner_count == 1 && outer_count == 1);
     inner[0] = outer[0] = untouched;
@@ -138,14 +138,14 @@ static void sight(void) {
     CHECK(found == LEAFLESS_SIGHT_CLEAR);
     OK(leafless_solid_line_of_sight(solid, &frame, left, near, NULL, &found));
     CHECK(found == LEAFLESS_SIGHT_CLEAR);
-    /* It touches the ball, which nobody can see in cells. */
+    /* It touches the ball, which cells cannot decide. */
     OK(leafless_init(&options, sizeof options));
     options.max_splits = 1000;
     OK(leafless_solid_line_of_sight(solid, &frame, tangent[0], tangent[1], &options, &found));
     CHECK(found == LEAFLESS_SIGHT_UNDECIDED);
 }
 
-/* One bad ray among good ones: the message tells which, and no hit is written. */
+/* One bad ray among good ones: the message names it, and no hit is written. */
 static void bad_rays(void) {
     static const double numbers[] = {(double)NAN, INFINITY, -INFINITY, 1e300, 1e-300};
     leafless_ray rays[100];

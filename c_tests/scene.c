@@ -1,4 +1,4 @@
-/* Scenes from files and from memory: their bounds, their solids, files that they name, and what is wrong with texts. */
+/* Scenes from files and from memory: their bounds, their solids, files that they name, and errors in texts. */
 #include "check.h"
 
 static const leafless_frame frame = {{-4, -4, -4}, 8, 5};
@@ -35,7 +35,7 @@ static void refused(const char *text, const char *folder, const char *words) {
     }
 }
 
-/* Options, and what is told of a scene. */
+/* Options, and the report about a scene. */
 static void reports(void) {
     static const char text[] = "cylinder($fn = 6, h = 4, r = 2);\n"
                                " polyhedron([[0, 0, 0], [4, 0, 0], [0, 4, 0], [0, 0, 4]], "

@@ -1,4 +1,4 @@
-/* Octrees in shards, as several machines make them: what is joined, counted, measured and asked part by part is the whole,
+/* Octrees in shards, as several machines make them: joined, counted, measured and queried part by part, they equal the whole,
  * byte for byte. */
 #include "check.h"
 
@@ -124,7 +124,7 @@ static bool same_bytes(const leafless_octree *a, const leafless_octree *b) {
     return same;
 }
 
-/* Moves what shards know that do not split their cell into the top. */
+/* Moves the data of shards that do not split their cell into the top. */
 static void settle(parts *made) {
     const leafless_octree *few[1 + MOST];
     leafless_octree *top = NULL;
@@ -150,7 +150,7 @@ static void settle(parts *made) {
     made->top = top;
 }
 
-/* The counts of the whole, from those that each machine tells of its shard. */
+/* The counts of the whole, from the counts that each machine reports for its shard. */
 static void statistics(const parts *made, const leafless_octree *whole) {
     static leafless_statistics told[LEVELS * MOST];
     leafless_statistics expected[LEVELS], found[LEVELS];
@@ -168,7 +168,7 @@ static void statistics(const parts *made, const leafless_octree *whole) {
                                        LEVELS * (made->count - 1), found, LEVELS, &count));
     CHECK(found[DEPTH].upper_cells - found[DEPTH].lower_cells > expected[DEPTH].upper_cells - expected[DEPTH].lower_cells);
     CHECK(found[DEPTH].lower_cells <= expected[DEPTH].lower_cells && found[DEPTH].upper_cells >= expected[DEPTH].upper_cells);
-    /* Of a cell that the octree decides nothing more can be said; and codes ascend. */
+    /* A cell that the octree decides has no more counts, and codes must ascend. */
     FAILS(LEAFLESS_E_ARGUMENT, leafless_octree_statistics_with(whole, made->level, made->codes, 1, told, LEVELS, found, LEVELS,
                                                                &count));
     {
@@ -236,7 +236,7 @@ static void masses(const parts *made, const leafless_octree *whole) {
     OK(leafless_mass_sum_measures(&sum, &found));
     CHECK(same_measures(&found, &expected) && !found.is_exact && found.volume_model.upper > 1);
     if (made->count == 0) return;
-    /* What is taken off and put back leaves what there was. */
+    /* Subtracting a part and adding it again restores the sum. */
     {
         const leafless_mass_sum own = measured(made->shards[0], made->level, made->codes[0]);
         leafless_mass_sum less = LEAFLESS_INIT(leafless_mass_sum);
@@ -365,7 +365,7 @@ static void check(way how, uint32_t level) {
     leafless_octree_free(whole);
 }
 
-/* Shards on disk, of which only the solid is left. */
+/* Shards on disk. Only the solid is left in memory. */
 static void mapped(void) {
     const way how = {false, LEAFLESS_RULE_CERTIFIED};
     static parts made;
@@ -417,7 +417,7 @@ static void solids(void) {
     leafless_solid_free(ball);
 }
 
-/* Whatever bytes a sum has, it is refused or told. */
+/* A sum with any bytes is refused or evaluated. */
 static void damaged(void) {
     leafless_octree *octree = check_ball(4, LEAFLESS_RULE_CERTIFIED);
     const leafless_frame other = check_frame(5);
@@ -463,7 +463,7 @@ static void damaged(void) {
     }
     CHECK(refused > 1000);
 
-    /* Sums that do not go together; what comes out stays as it was. */
+    /* Incompatible sums. The output stays unchanged. */
     out = good;
     before = out;
     OK(leafless_mass_sum_unknown(&other, 0, 0, &bad));

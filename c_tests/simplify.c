@@ -1,4 +1,4 @@
-/* Meshes with fewer triangles: a ball by marching cubes, a plane face in many pieces, nothing; what is refused. */
+/* Meshes with fewer triangles: a ball by marching cubes, a plane face in many pieces, an empty mesh; refused calls. */
 #include "check.h"
 
 static leafless_mesh_info counts_of(const leafless_mesh *mesh) {
@@ -56,7 +56,7 @@ static void ball(void) {
     leafless_octree_free(octree);
 }
 
-/* A square pyramid whose base has a vertex in the middle, which goes. A mesh without triangles stays one. */
+/* A square pyramid with a vertex in the middle of its base, which is removed. A mesh without triangles stays empty. */
 static void pyramid(void) {
     static const double CORNERS[6][3] = {{0, 0, 0}, {2, 0, 0}, {2, 2, 0}, {0, 2, 0}, {1, 1, 0}, {1, 1, 3}};
     static const uint32_t TRIANGLES[8][3] = {{1, 0, 4}, {2, 1, 4}, {3, 2, 4}, {0, 3, 4},

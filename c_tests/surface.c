@@ -1,5 +1,5 @@
-/* Surfaces of octrees, volumes and solids: from the arrays that come out, whether they are closed, what they enclose and
-   where their vertices lie; what is refused. */
+/* Surfaces of octrees, volumes and solids: checks of the arrays for closedness, enclosed volume and places of vertices;
+   refused calls. */
 #include "check.h"
 
 static const double PI = 3.14159265358979323846;
@@ -60,7 +60,7 @@ static uint64_t edges_of(const surface_of *s, bool *is_balanced) {
     return is_manifold && *is_balanced ? count / 2 : 0;
 }
 
-/* What the library tells is what the arrays say. */
+/* Checks the library's report against the arrays. */
 static leafless_mesh_report told(const leafless_mesh *mesh) {
     surface_of s = take(mesh);
     leafless_mesh_report report = LEAFLESS_INIT(leafless_mesh_report);

@@ -124,7 +124,7 @@ void reads(const leafless_octree *octree) {
     }
 }
 
-// Every thread takes references and gives back its own, and whoever comes last frees the octree.
+// Every thread takes references and frees its own; the last one frees the octree.
 void references() {
     leafless_octree *octree = check_ball(5, LEAFLESS_RULE_CERTIFIED);
     leafless_octree *own[THREADS];
@@ -178,7 +178,7 @@ void solids() {
         options.threads = 1 + number % 3;
         OK(leafless_octree_build(own[number], &frame, LEAFLESS_RULE_CERTIFIED, &options, &built[number]));
         leafless_mesh_report report = LEAFLESS_INIT(leafless_mesh_report);
-        // Its edges are analysed once, by whoever asks first.
+        // The first query analyses its edges, once.
         OK(leafless_mesh_inspect(mesh, &report));
         CHECK(report.bodies == 1 && report.boundary_edges == 0);
         leafless_solid *cube = nullptr;
@@ -221,7 +221,7 @@ void messages() {
     leafless_octree_free(octree);
 }
 
-// Threads of this process, or 0 where that cannot be told.
+// The number of threads of this process, or 0 if it is unknown.
 long threads_of_the_process() {
     long threads = 0;
     if (FILE *status = fopen("/proc/self/status", "r")) {
@@ -287,7 +287,7 @@ void numbers_of_threads(const std::vector<uint32_t> &numbers) {
     leafless_solid_free(solid);
 }
 
-// An open mesh of which nobody has asked anything yet; and its octree is the same for any number of threads.
+// A fresh open mesh. Its octree is the same for any number of threads.
 void open_mesh() {
     const leafless_frame frame = check_frame(6);
     leafless_mesh *mesh = check_some_of_cube(9);
@@ -370,7 +370,7 @@ Answers ask(const leafless_solid *solid, const leafless_frame &frame, uint32_t t
     return answers;
 }
 
-// Threads ask one solid on one frame, and on frames of their own: what it keeps of the last one is never another's.
+// Threads query one solid on one frame, and on frames of their own. Its cache of the last frame never serves another.
 // `solid_of` makes the same solid anew.
 template <typename Make>
 void on_frames(const Make &solid_of) {
@@ -513,7 +513,7 @@ void lazy_at_once() {
     leafless_lazy_free(lazy);
     leafless_solid_free(solid);
 
-    // The host's function that is asked about a cell comes back to the octree.
+    // The host's function, called for a cell, calls the octree again.
     Asking asking{nullptr, {0}};
     leafless_solid_callbacks callbacks;
     leafless_solid *host = nullptr;

@@ -1,4 +1,4 @@
-/* Tri-dexel models: what rays, cells and volumes are, against the analytic ones; laws of sets; cuts in place. */
+/* Tri-dexel models: rays, cells and volumes against analytic ones; laws of sets; cuts in place. */
 #include "check.h"
 
 static const double PI = 3.14159265358979323846, RADIUS = 0.75;
@@ -121,7 +121,7 @@ static void boxes(void) {
     }
     leafless_tridexel_free(model);
     {
-        /* One direction; the others are asked in vain. */
+        /* One direction; queries of the others are refused. */
         leafless_tridexel_format along_y = format_of(0, 0, 0, 0);
         leafless_dexel dexel;
         leafless_dexel_statistics statistics = LEAFLESS_INIT(leafless_dexel_statistics);
@@ -264,8 +264,8 @@ static void balls(void) {
     }
 }
 
-/* Ends beside centres of cells, on a frame whose centres no doubles are: out and in again, by coordinates, by places, and
-   by both. */
+/* Ends beside centres of cells, on a frame whose centres are no doubles: read and written back, by coordinates, by places,
+   and by both. */
 static void places(void) {
     enum { DEPTH = 3 };
     static const double ends_cells[4] = {1.5000000000000002, 2.5, 3.4999999999999996, 7.5};
@@ -404,7 +404,7 @@ static void sources(void) {
     for (axis = 0; axis < 3; axis++) {
         CHECK(volume(inner, axis) < volume(model, axis) && volume(model, axis) < volume(outer, axis));
     }
-    /* What is inside lies in what is there, and that in what is outside of it. */
+    /* The inner model lies in the model, and the model in the outer one. */
     CHECK(same_and_free(both(LEAFLESS_OPERATION_UNION, inner, model), both(LEAFLESS_OPERATION_UNION, model, inner)));
     CHECK(same_and_free(both(LEAFLESS_OPERATION_DIFFERENCE, inner, model),
                         both(LEAFLESS_OPERATION_DIFFERENCE, model, outer)));
@@ -522,7 +522,7 @@ static void contents(void) {
     FAILS(LEAFLESS_E_ARGUMENT, leafless_tridexel_with_format(box, &least, NULL, &plain));
     CHECK(plain == NULL);
 
-    /* Along x through (1/32, 1/32): steel to about 0.75, there copper begins or ends, by whose turn it is. */
+    /* Along x through (1/32, 1/32): steel to about 0.75. The order of the operands decides where copper begins or ends. */
     OK(leafless_tridexel_with_material(ball, 1, NULL, &steel));
     OK(leafless_tridexel_with_material(box, 2, NULL, &copper));
     steel = with_fact(with_fact(with_fact(steel, "name", "part"), "units", "mm"), "maker", "me");
@@ -538,7 +538,7 @@ static void contents(void) {
     OK(leafless_tridexel_ray(joined, 0, ray, dexels, 3, &count));
     CHECK(count == 2 && dexels[0].material == 1 && dexels[1].material == 2 && fabs(dexels[1].start.at_model) < 1e-9);
     leafless_tridexel_free(joined);
-    /* A cut shows the other side of the tool: its surface, and its normal turned about. */
+    /* A cut shows the other side of the tool: its surface with the reversed normal. */
     cut = both(LEAFLESS_OPERATION_DIFFERENCE, box, ball);
     OK(leafless_tridexel_ray(cut, 0, ray, dexels, 3, &count));
     CHECK(count == 1 && dexels[0].start.surface == 0 && dexels[0].start.normal[0] < -0.99);

@@ -1,4 +1,4 @@
-/* Tri-dexel models from arrays, and what they become: meshes, octrees, solids, voxels, files. */
+/* Tri-dexel models from arrays, converted to meshes, octrees, solids, voxels and files. */
 #include "check.h"
 
 #include <stdint.h>
@@ -70,7 +70,7 @@ static void surfaces(void) {
     copied(cubes, &vertices, &vertex_count, &triangles, &triangle_count);
     CHECK(found.crossings >= vertex_count && found.without_rays == 0 && found.disagreeing == 0);
     for (i = 0; i < vertex_count; i++) {
-        /* Half of 2^-30 is what is rounded along a ray, more or less steep. */
+        /* The rounding along a ray is half of 2^-30, at any slope. */
         const double *at = vertices[i];
         CHECK(fabs(sqrt(at[0] * at[0] + at[1] * at[1] + at[2] * at[2]) - RADIUS) < 2e-9);
     }
@@ -114,14 +114,14 @@ static void octrees_and_solids(void) {
     CHECK(!info.proof.full && !info.proof.empty && info.is_binary);
     OK(leafless_octree_peek_metadata(tree, "name", 4, &value, &length));
     CHECK(length == 4 && memcmp(value, "ball", 4) == 0);
-    /* And back: what an octree's cells are. */
+    /* Back again: a model of an octree's cells. */
     OK(leafless_solid_from_octree(tree, &source));
     OK(leafless_tridexel_build(source, &frame, LEAFLESS_RULE_SAMPLED, NULL, NULL, &again));
     leafless_octree_free(tree);
     tree = NULL;
     OK(leafless_octree_from_tridexel(again, NULL, &tree));
     CHECK(check_same(tree, expected));
-    /* By the ends: what is decided is as the centres say. */
+    /* By the ends: decided cells agree with the centres. */
     {
         leafless_octree *ends = NULL;
         leafless_statistics centres, bounds;
@@ -134,7 +134,7 @@ static void octrees_and_solids(void) {
         CHECK(centres.volume_model.upper < bounds.volume_model.upper);
         leafless_octree_free(ends);
     }
-    /* Sampled again on a lattice that is twice as coarse, and turned. */
+    /* Sampled again on a lattice that is twice as coarse, and rotated. */
     {
         const double turned[12] = {0.8, -0.6, 0, 0, 0.6, 0.8, 0, 0, 0, 0, 1, 0};
         leafless_frame coarse = frame;
@@ -319,7 +319,7 @@ static void arrays(void) {
     leafless_tridexel_free(plain);
 }
 
-/* What a file's writer is told. */
+/* The context of a file's writer. */
 typedef struct {
     uint8_t *to;
     uint64_t length;

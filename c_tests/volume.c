@@ -354,7 +354,7 @@ static void bands_and_places(void) {
     OK(leafless_volume_bounds(volume, min, max));
     CHECK(min[1] == 0.5 && max[0] == -3 + 0.25 * NX && max[1] == 0.5 + 0.25 * NY && max[2] == 2 + 0.25 * NZ);
 
-    /* Voxels that are no cubes: any frame does, and the volume is between what is proven. */
+    /* Voxels that are no cubes: any frame is allowed, and the volume lies within the proven bounds. */
     other = bytes_volume(corner, boxes);
     FAILS(LEAFLESS_E_ARGUMENT, leafless_volume_frame(other, &frame));
     OK(leafless_volume_bounds(other, min, max));
@@ -457,7 +457,7 @@ static void files(void) {
     leafless_volume_free(volume);
 }
 
-/* A header apart from its samples, MetaImage, and axes that are turned. */
+/* A header apart from its samples, MetaImage, and rotated axes. */
 static void headers(void) {
     static const char DETACHED[] = "NRRD0004\ntype: int\ndimension: 3\nsizes: 2 2 2\nencoding: raw\nendian: little\n"
                                    "space units: \"mm\" \"mm\" \"mm\"\nspace dimension: 3\n"
@@ -498,7 +498,7 @@ static void headers(void) {
     FAILS(LEAFLESS_E_ARGUMENT, volume_to_bytes(volume, LEAFLESS_VOLUME_FORMAT_NRRD, NULL, 0, &length));
     OK(volume_to_bytes(volume, LEAFLESS_VOLUME_FORMAT_RAW, NULL, 0, &length));
     CHECK(length == 32);
-    /* Voxels of 2³, turned by a quarter: from 7 to 11, 19 to 23, 29 to 33. */
+    /* Voxels of 2³, rotated by a quarter turn: from 7 to 11, 19 to 23, 29 to 33. */
     OK(leafless_volume_bounds(volume, min, max));
     CHECK(min[0] <= 7 && min[0] > 6.999 && max[0] >= 11 && max[0] < 11.001 && min[1] <= 19 && max[1] >= 23);
     OK(leafless_frame_around(min, max, 6, &frame));

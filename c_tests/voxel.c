@@ -57,7 +57,7 @@ static void list(const leafless_voxel_options *options) {
                                                     count - 1, &again));
 }
 
-/* Every finest cell is in a record that says what its tag says. */
+/* Every finest cell is in a record that agrees with its tag. */
 static void against_cells(void) {
     const uint32_t n = 1u << DEPTH, up = lattice.depth - DEPTH;
     uint32_t at[3], place[3], axis;

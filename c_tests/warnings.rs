@@ -1,5 +1,5 @@
-//! Both headers are silent under whatever compilers warn of, so that a host program can be as strict as it
-//! likes.
+//! Both headers compile without warnings under the strictest flags, so that a host program can be as strict
+//! as it likes.
 
 use crate::kit::{Kit, Standard, kit, output, skipped};
 use crate::{CPP17, root};
@@ -7,7 +7,7 @@ use std::process::Command;
 
 const GCC: [&str; 6] = ["-Wall", "-Wextra", "-Wpedantic", "-Wconversion", "-Wsign-conversion", "-Wshadow"];
 
-/// Everything but what is no defect here.
+/// All warnings except those that are no defect here.
 const CLANG: [&str; 7] = [
     "-Weverything",
     // Structs have the layout of the interface.
@@ -22,8 +22,8 @@ const CLANG: [&str; 7] = [
     "-Wno-unknown-warning-option",
 ];
 
-/// Every standard that the headers support with a program that uses what they define in C or C++: macros,
-/// functions, templates.
+/// Every standard that the headers support, with a program that uses the headers' macros, functions and
+/// templates.
 const PROGRAMS: [(Standard, &str); 7] = [
     (Standard::C("c99"), "header_c.c"),
     (Standard::C("c11"), "header_c.c"),
@@ -34,7 +34,7 @@ const PROGRAMS: [(Standard, &str); 7] = [
     (CPP17, "wrapper_plain.cpp"),
 ];
 
-/// What these macros become is looked at here, because compilers tell of it where they are used.
+/// Uses of these macros, because compilers report a macro's warnings at the place of use.
 const MACROS: &str = "
 leafless_options warned_options(void);
 leafless_options warned_options(void) { return LEAFLESS_INIT(leafless_options); }
@@ -42,7 +42,8 @@ int warned_fits(void);
 int warned_fits(void) { return LEAFLESS_COMPATIBLE(); }
 ";
 
-/// What a compiler says of the headers while it compiles a program that may have warnings of its own.
+/// Returns a compiler's warnings about the headers while it compiles a program. The program may have warnings
+/// of its own.
 fn warnings(kit: &Kit, compiler: &str, (standard, program): (Standard, &str), flags: &[&str]) -> Vec<String> {
     let (Standard::C(year) | Standard::Cpp(year)) = standard;
     let name = if program.starts_with("wrapper") { "leafless.hpp" } else { "leafless.h" };
@@ -83,7 +84,7 @@ fn headers_are_silent() {
             assert!(told.is_empty(), "{}", told.join("\n"));
         }
     }
-    // It is seen that something is seen.
+    // The check detects warnings.
     let strict = [&CLANG[..], &["-Wpadded"]].concat();
     if Command::new("clang").arg("--version").output().is_ok() {
         assert!(!warnings(kit, "clang", PROGRAMS[0], &strict).is_empty());

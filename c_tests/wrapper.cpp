@@ -37,7 +37,7 @@ leafless_tag classify(const leafless::point &min, const leafless::point &max) {
                                     : LEAFLESS_TAG_PARTIAL;
 }
 
-// A ball of radius 1/2 with all that a host may tell.
+// A ball of radius 1/2 with every function that a host may provide.
 struct ball {
     std::shared_ptr<std::atomic<int>> calls = std::make_shared<std::atomic<int>>(0);
 
@@ -123,7 +123,7 @@ void questions() {
     }
     const leafless_measures measures = whole.measure(FRAME, 1e-3, 0);
     CHECK(measures.volume_model.lower <= VOLUME && VOLUME <= measures.volume_model.upper);
-    // What is filled in two calls, what is several results, and what may be left out.
+    // Buffers filled in two calls, several results, and optional arguments.
     const std::vector<leafless_statistics> levels = octree.levels();
     CHECK(levels.size() == 7 || !levels.empty());
     const auto [inner, outer] = octree.bitmap(6, {0, 0, 0}, {64, 64, 64});
@@ -156,7 +156,7 @@ void failures() {
     } catch (const leafless::error &failure) {
         CHECK(failure.status() == LEAFLESS_E_ARGUMENT && std::string(failure.what()).find("radius") == 0);
     }
-    // An exception in a lambda comes out as what it was, whichever thread threw it.
+    // An exception in a lambda comes out unchanged, whichever thread threw it.
     for (const std::uint32_t threads : {1u, 4u}) {
         leafless_options options = LEAFLESS_INIT(leafless_options);
         options.threads = threads;
@@ -374,7 +374,7 @@ void walks() {
         const double edge = 2.0 / static_cast<double>(1u << std::max(face.inner.level, face.outer.level));
         area += edge * edge;
     }
-    // Faces along the axes: at least those of the shadows of the ball.
+    // Axis-aligned faces have at least the area of the ball's shadows.
     CHECK(area > 6 * 3.14159265 / 4);
 }
 

@@ -1,5 +1,5 @@
-//! Test vectors with cuts. The sections are put together here, number by number, and points are judged by
-//! exact arithmetic: neither comes from the library.
+//! Test vectors with cuts. This file builds the sections number by number, and decides points in exact
+//! arithmetic. Neither comes from the library.
 
 use super::{
     APPLICATION, CERTIFIED, F32, F64, Field, List, Model, NEWER, Parts, RECORD, ScalarType, Section, U8, U16,
@@ -24,7 +24,7 @@ const CELL_SLABS: u64 = 23;
 const GROUPS: u64 = 24;
 const MOMENTS: u64 = 25;
 
-/// The same with their names, types and components.
+/// The kinds with their names, types and components.
 const KINDS: [(u64, &str, (u64, u64)); 11] = [
     (HEADS, "cut heads", (U8, 1)),
     (IDS, "cut ids", (U8, 1)),
@@ -39,7 +39,7 @@ const KINDS: [(u64, &str, (u64, u64)); 11] = [
     (MOMENTS, "moments", (F64, 23)),
 ];
 
-/// Whether the sections of a kind are for cuts.
+/// True if sections of a kind belong to cuts.
 pub fn is_of_cuts(kind: u64) -> bool {
     KINDS.iter().any(|&(own, ..)| own == kind)
 }
@@ -65,21 +65,21 @@ impl Kind {
 /// Rows of an affine map.
 type Map = [[f64; 4]; 3];
 
-/// A slab that is stored as one of a cell: its words and what they say.
+/// A slab stored as a slab of a cell: the values that its words encode.
 #[derive(Debug, Clone, Copy)]
 struct CellSlab {
     cell: Cell,
-    /// Which of the cell's slabs it is.
+    /// The slab's index among the cell's slabs.
     index: u64,
     axis: usize,
     is_negative: bool,
     /// The components of the normal along the next two axes, in units of 2^-15.
     others: [i64; 2],
-    /// In steps from the cell's centre.
+    /// The inner offset, in steps from the cell's centre.
     offset: i64,
-    /// In steps.
+    /// The width, in steps.
     width: u64,
-    /// A step is 2^-step of the universe's edge.
+    /// The exponent of the step: a step is 2^-step of the universe's edge.
     step: u64,
 }
 
@@ -97,7 +97,7 @@ impl CellSlab {
         [home | self.index << 61, planes | (self.axis as u64) << 61 | u64::from(self.is_negative) << 63]
     }
 
-    /// The normal and the two offsets in units of the universe. Everything is a multiple of 2^-50, and exact.
+    /// Returns the normal and the two offsets in units of the universe. All are exact multiples of 2^-50.
     fn numbers(&self) -> [f64; 5] {
         let unit = 1i128 << 50;
         let mut normal = [0i128; 3];
@@ -119,16 +119,16 @@ impl CellSlab {
     }
 }
 
-/// A surface: its numbers, each as the doubles whose sum it is.
+/// A surface. Each of its numbers is given by the doubles that sum up to it.
 #[derive(Clone)]
 pub struct Surface {
     kind: Kind,
     numbers: Vec<Vec<f64>>,
-    /// The outermost map first.
+    /// The maps, with the outermost first.
     maps: Vec<Map>,
-    /// What a slab was made from, and its number there.
+    /// The origin of a slab, and the slab's number there.
     origin: Option<([u64; 2], u64)>,
-    /// The same as a slab of a cell, if it is stored as one. It is placed by the map of the universe.
+    /// The slab of a cell, if the surface is stored as one. The map of the universe places it.
     cell: Option<CellSlab>,
 }
 
@@ -152,7 +152,7 @@ impl Surface {
         Surface::new(Kind::Slab, &[normal[0], normal[1], normal[2], inner, outer])
     }
 
-    /// Positive inside.
+    /// A ball, positive inside.
     fn ball(centre: [f64; 3], radius: f64) -> Surface {
         let [x, y, z] = centre;
         let constant = radius * radius - x * x - y * y - z * z;
@@ -161,7 +161,7 @@ impl Surface {
         Surface::new(Kind::Quadric, &[-1.0, -1.0, -1.0, 0.0, 0.0, 0.0, x, y, z, constant])
     }
 
-    /// The number `i` is the sum of these doubles.
+    /// Returns the surface with the number `i` as the sum of these doubles.
     fn with(mut self, i: usize, doubles: &[f64]) -> Surface {
         self.numbers[i] = doubles.to_vec();
         self
@@ -172,7 +172,7 @@ impl Surface {
         self
     }
 
-    /// A slab of a cell; `origin` 0 for none.
+    /// A slab of a cell; `origin` is 0 for none.
     fn of_cell(frame: &Frame, slab: CellSlab, origin: u64) -> Surface {
         let ([x, y, z], edge) = (frame.origin(), frame.edge());
         let map = [[edge, 0.0, 0.0, x], [0.0, edge, 0.0, y], [0.0, 0.0, edge, z]];
@@ -186,8 +186,8 @@ impl Surface {
         self
     }
 
-    /// Whether the function is positive at a point; `Err` if it is not known, or the point lies on the
-    /// surface.
+    /// Returns whether the function is positive at a point. It is `Err` if the sign is unknown, or if the
+    /// point lies on the surface.
     fn side(&self, point: &[Q; 3]) -> Result<bool, ()> {
         let mut p = point.clone();
         for map in &self.maps {
@@ -241,23 +241,24 @@ impl Surface {
     }
 }
 
-/// What is known of a cell.
+/// The knowledge about a cell.
 #[derive(Clone)]
 pub enum Cut {
-    /// Nothing.
+    /// None: the cell was given up.
     Nothing,
-    /// Surfaces of the model, and bit m is set if the solid is where those are positive whose bits m has.
+    /// Surfaces of the model, and a truth table. Bit m is set if a point is inside when exactly the surfaces
+    /// whose bits m has are positive there.
     Table(Vec<usize>, u8),
-    /// What is known of the children.
+    /// The knowledge about the children.
     Split,
 }
 
-/// What is known of the PARTIAL cells of a tree, and below.
+/// The knowledge about the PARTIAL cells of a tree, and below them.
 #[derive(Clone)]
 pub struct Cuts {
     surfaces: Vec<Surface>,
     cut: Arc<dyn Fn(Cell) -> Cut + Send + Sync>,
-    /// A point, and both ends of the volume, of the first and of the second moments about it.
+    /// A point, and both ends of the volume and of the first and second moments about the point.
     moments: Option<[f64; 23]>,
 }
 
@@ -270,7 +271,7 @@ impl Cuts {
         Cuts { moments: Some(moments), ..self }
     }
 
-    /// One table of all of up to three surfaces for all cells.
+    /// Gives all cells one table of all surfaces, of which there are up to three.
     fn everywhere(surfaces: Vec<Surface>, table: u8) -> Cuts {
         let all: Vec<usize> = (0..surfaces.len()).collect();
         Cuts::new(surfaces, move |_| Cut::Table(all.clone(), table))
@@ -281,14 +282,14 @@ impl Cuts {
 const POSITIVE: u8 = 0xAA;
 const NEGATIVE: u8 = 0x55;
 
-/// The value of a table, each bit of which follows from three signs.
+/// Returns a table. Each of its bits follows from three signs.
 fn table(inside: impl Fn(bool, bool, bool) -> bool) -> u8 {
     (0..8u8).fold(0, |all, m| all | u8::from(inside(m & 1 != 0, m & 2 != 0, m & 4 != 0)) << m)
 }
 
 // ---- rational numbers -----------------------------------------------------------------------------------
 
-/// A quotient of integers, the second of which is positive.
+/// A quotient of two integers with a positive denominator.
 #[derive(Debug, Clone)]
 struct Q(BigInt, BigInt);
 
@@ -347,7 +348,7 @@ impl std::iter::Sum for Q {
     }
 }
 
-/// The point that a map takes to `p`.
+/// Returns the point that a map takes to `p`.
 fn inverse(map: &Map, p: &[Q; 3]) -> [Q; 3] {
     let m = map.map(|row| row.map(Q::of));
     let q = [0, 1, 2].map(|i| p[i].clone() - m[i][3].clone());
@@ -365,30 +366,30 @@ fn inverse(map: &Map, p: &[Q; 3]) -> [Q; 3] {
 
 // ---- sections -------------------------------------------------------------------------------------------
 
-/// Cuts as they are stored.
+/// The stored form of cuts.
 #[derive(Default)]
 struct Stored {
     heads: Vec<u8>,
     ids: Vec<u64>,
     blocks: Vec<[u32; 2]>,
     first: Vec<u32>,
-    /// The model's surfaces in the order of the file, the first of which are stored as records.
+    /// The model's surfaces in the order of the file. The first `records` of them are stored as records.
     order: Vec<usize>,
     records: usize,
-    /// Of each record: the place of its map, and of its origin.
+    /// For each record, the place of its map and the place of its origin.
     places: Vec<[u64; 2]>,
     placements: Vec<(Map, u64)>,
     origins: Vec<[u64; 2]>,
-    /// For each group of slabs of cells the origin, and where it ends.
+    /// For each group of slabs of cells, its origin and its end.
     groups: Vec<([u64; 2], u64)>,
 }
 
-/// Bits of an id where there are so many surfaces.
+/// Returns the number of bits of an id for this number of surfaces.
 fn bits_of_an_id(surfaces: usize) -> usize {
     (0..).find(|&bits| 1 << bits >= surfaces).map_or(1, |bits: usize| bits.max(1))
 }
 
-/// Numbers in a stream of bits.
+/// Packs numbers into a stream of bits.
 fn packed(numbers: &[u64], bits: usize) -> Vec<u8> {
     let mut bytes = vec![0; (numbers.len() * bits).div_ceil(8)];
     for (i, number) in numbers.iter().enumerate() {
@@ -399,7 +400,8 @@ fn packed(numbers: &[u64], bits: usize) -> Vec<u8> {
     bytes
 }
 
-/// The same table of surfaces in another order: the i-th is the one that was at the i-th place of `order`.
+/// Returns the same table for surfaces in another order. The i-th surface was at the i-th place of `order`
+/// before.
 fn permuted(table: u8, order: &[usize]) -> u8 {
     let low = (1 << order.len()) - 1;
     (0..8u8).fold(0, |all, m| {
@@ -410,12 +412,13 @@ fn permuted(table: u8, order: &[usize]) -> u8 {
 }
 
 impl Model {
-    /// The tag of a cell in the canonical tree.
+    /// Returns the tag of a cell in the canonical tree.
     fn canonical(&self, cell: Cell) -> Tag {
         self.count(cell, &mut vec![[0; 3]; self.frame.depth() as usize + 1])
     }
 
-    /// The PARTIAL cells of the tree in their order, and how many there are before each element and brick.
+    /// Returns the PARTIAL cells of the tree in their order, and the number of them before each element and
+    /// brick.
     fn partial_cells(&self) -> (Vec<Cell>, Vec<u32>) {
         let (mut cells, mut first) = (vec![], vec![]);
         // The root of odd depth has one octant, the universe.
@@ -452,8 +455,8 @@ impl Model {
     fn stored(&self, cuts: &Cuts) -> Stored {
         let (cells, first) = self.partial_cells();
         let mut all = Stored { first, ..Stored::default() };
-        // The surfaces of all tables in the order of their first use; then those of records first, and then
-        // group by group.
+        // The surfaces of all tables in the order of their first use; after that, those of records first,
+        // then group by group.
         let mut met: Vec<usize> = vec![];
         let mut walk = VecDeque::from(cells.clone());
         while let Some(cell) = walk.pop_front() {
@@ -531,7 +534,7 @@ impl Model {
 }
 
 impl Stored {
-    /// Bits of an id.
+    /// Returns the number of bits of an id.
     fn width(&self) -> usize {
         bits_of_an_id(self.order.len())
     }
@@ -543,7 +546,7 @@ impl Stored {
             let mut counts: Vec<usize> = surface.numbers.iter().map(Vec::len).collect();
             let first = words.len() as u32;
             words.extend(surface.numbers.iter().flatten().map(|c| c.to_bits()));
-            // The number of a slab, if it is not its place.
+            // The number of a slab, if it differs from its place.
             if let Some((_, number)) = surface.origin.filter(|&(_, number)| number != i as u64) {
                 counts.push(1);
                 words.push(number);
@@ -594,10 +597,10 @@ impl Parts {
     }
 }
 
-// ---- what is expected -----------------------------------------------------------------------------------
+// ---- expected results -----------------------------------------------------------------------------------
 
 impl Model {
-    /// What a text says of cuts, as keys and values.
+    /// Returns the cuts' part of a text, as keys and values.
     pub(super) fn cut_facts(&self) -> Vec<(&'static str, String)> {
         let Some(cuts) = &self.cuts else { return vec![] };
         let stored = self.stored(cuts);
@@ -651,7 +654,7 @@ impl Model {
         facts
     }
 
-    /// The lines for points, with the cuts.
+    /// Returns the lines for points, with the cuts.
     pub(super) fn cut_points(&self) -> Vec<String> {
         let Some(cuts) = &self.cuts else { return vec![] };
         let (mut lines, mut counts) = (vec![], BTreeMap::new());
@@ -670,13 +673,13 @@ impl Model {
                 *count += 1;
             }
         }
-        // Outside of the universe, and where points are none.
+        // Points outside the universe, and invalid points.
         let outside = points(&self.frame).into_iter().filter(|&point| cell_of(&self.frame, point).is_none());
         outside.for_each(|point| line(point, "undecided"));
         lines
     }
 
-    /// What is to be said of a point with the cuts; nothing next to a surface.
+    /// Returns the expected answer for a point with the cuts; `None` next to a surface.
     fn answer(&self, cuts: &Cuts, point: [f64; 3]) -> Option<&'static str> {
         let word = |inside: bool| if inside { "inside" } else { "outside" };
         let finest = cell_of(&self.frame, point)?;
@@ -747,7 +750,7 @@ fn ball(depth: u8) -> Model {
     Model::plain(depth, shape).cuts(Cuts::everywhere(vec![Surface::ball(centre, radius)], POSITIVE))
 }
 
-/// The moments of a ball about a point. What is rounded is less than 2^-48 of each of them.
+/// Returns the moments of a ball about a point. The rounding error is below 2^-48 of each moment.
 fn moments_of_ball(centre: [f64; 3], radius: f64, point: [f64; 3]) -> [f64; 23] {
     let volume = 4.0 / 3.0 * std::f64::consts::PI * radius * radius * radius;
     let d = [0, 1, 2].map(|i| centre[i] - point[i]);
@@ -786,7 +789,7 @@ fn box_with_moments() -> Model {
     Model::plain(1, shape).cuts(plane.moments(moments))
 }
 
-/// A PARTIAL universe of which nothing is known, and moments that say nothing either.
+/// A PARTIAL universe that was given up, with moments that say nothing, either.
 fn nothing_with_moments() -> Model {
     let mut moments = [0.0; 23];
     for (i, c) in moments[3..].iter_mut().enumerate().skip(1) {
@@ -802,8 +805,8 @@ fn whole(depth: u8, cuts: Cuts) -> Model {
     Model::plain(depth, |_| Tag::Partial).exterior(Tag::Partial).cuts(cuts)
 }
 
-/// Two planes and a ball in a tree of depth 4: tables of one to three surfaces, splits, cells of which
-/// nothing is known.
+/// Two planes and a ball in a tree of depth 4: tables of one to three surfaces, splits, and cells that were
+/// given up.
 fn tables() -> Model {
     let shape = |cell: Cell| match cell.level {
         0 => Tag::Branch,
@@ -833,12 +836,12 @@ fn tables() -> Model {
     Model::plain(4, shape).cuts(Cuts::new(surfaces, cut))
 }
 
-/// A turn by an angle of the sine 0.6 and the cosine 0.8, as doubles have it.
+/// A rotation by the angle with sine 0.6 and cosine 0.8, rounded to doubles.
 const TURN: Map = [[0.8, -0.6, 0.0, 0.25], [0.6, 0.8, 0.0, -0.5], [0.0, 0.0, 1.0, 0.125]];
 const SHEAR: Map = [[1.0, 0.0, 0.5, 0.0], [0.0, -2.0, 0.0, 0.0], [0.0, 0.25, 1.5, 1.0]];
 const SHIFT: Map = [[1.0, 0.0, 0.0, 1.0], [0.0, 1.0, 0.0, -1.0], [0.0, 0.0, 1.0, 3.0]];
 
-/// A torus, a sum of powers and a plane, each moved by two or three maps, the first of which are the same.
+/// A torus, a sum of powers and a plane, each moved by two or three maps. Their first maps are the same.
 fn placed() -> Model {
     let torus = Surface::new(Kind::Torus, &[2.0, 1.5, 1.0, 0.25]).placed(&[SHIFT, TURN]);
     let powers = [-1.0, 0.5, 4.0, -0.5, -0.5, 6.0, -1.0, 0.0, 2.0, 20.0];
@@ -849,8 +852,8 @@ fn placed() -> Model {
     Model { frame: Frame::new([-4.0, -4.0, -1.0], 8.0, 5).expect("a frame"), ..whole(5, cuts) }
 }
 
-/// Slabs of two origins, and slabs without. The number of one is its place, and that of another no double at
-/// all.
+/// Slabs of two origins, and slabs without an origin. One slab's number is its place; another slab's number
+/// is not exact as a double.
 fn slabs() -> Model {
     let slab = Surface::slab;
     let surfaces = vec![
@@ -870,7 +873,7 @@ fn slabs() -> Model {
     whole(3, Cuts::new(surfaces, cut))
 }
 
-/// More surfaces than eight bits can tell, in more cuts than a block has.
+/// More surfaces than eight bits can number, in more cuts than a block has.
 fn many() -> Model {
     let plane = |i: usize| Surface::plane(1.0, i as f64 / 256.0, 0.5, -0.03125 * i as f64);
     let cut = |cell: Cell| {
@@ -920,7 +923,7 @@ fn all_kinds() -> Model {
     Model::plain(3, shape).cuts(Cuts::new(surfaces, cut))
 }
 
-/// A slab of a cell that cuts it about in the middle, whose width is an eighth of the cell's edge.
+/// A slab that cuts a cell about in the middle. Its width is an eighth of the cell's edge.
 fn middle(cell: Cell, index: u64) -> CellSlab {
     let hash = cell.at.iter().fold(u64::from(cell.level) + 5 * index, |hash, &a| mix(hash ^ u64::from(a)));
     let part = |shift: u32| (hash >> shift & 0x7FFF) as i64 - 0x4000;
@@ -936,14 +939,14 @@ fn middle(cell: Cell, index: u64) -> CellSlab {
     }
 }
 
-/// Cells of one level at which a PARTIAL universe is split.
+/// Cells of the level at which a PARTIAL universe is split.
 fn cells_of(level: u8) -> Vec<Cell> {
     let side = 0..1u32 << level;
     let each = |z: u32| side.clone().flat_map(move |y| (0..1u32 << level).map(move |x| [x, y, z]));
     side.clone().flat_map(each).map(|at| Cell { level, at }).collect()
 }
 
-/// Slabs of cells, of two origins and of none, beside a plane and a slab that is not one of a cell.
+/// Slabs of cells, of two origins and of none, beside a plane and a slab that does not belong to a cell.
 fn cell_slabs() -> Model {
     let frame = Frame::new([-1.0, 0.5, 0.0], 4.0, 3).expect("a frame");
     let mut surfaces = vec![
@@ -973,7 +976,7 @@ fn cell_slabs() -> Model {
     Model { frame, ..whole(3, Cuts::new(surfaces, cut)) }
 }
 
-/// The same with nothing but slabs of cells: one of each of the eight octants.
+/// Only slabs of cells: one of each of the eight octants.
 fn cell_slabs_alone() -> Model {
     let frame = Model::plain(2, |_| Tag::Partial).frame;
     let cells = cells_of(1);
@@ -988,7 +991,7 @@ fn cell_slabs_alone() -> Model {
     whole(2, Cuts::new(surfaces, cut))
 }
 
-/// Slabs of the finest cells that there are and of the universe, with the greatest and the least numbers.
+/// Slabs of the smallest possible cells and of the universe, with the greatest and the least numbers.
 fn cell_slabs_extreme() -> Model {
     let frame = Model::plain(20, |_| Tag::Partial).frame;
     let finest = Cell { level: 20, at: [0xF_FFFF, 0x5_5555, 0] };
@@ -1024,7 +1027,7 @@ fn cell_slabs_extreme() -> Model {
     whole(20, Cuts::everywhere(surfaces, table(inside)))
 }
 
-/// All valid vectors with cuts, and some that say something of cuts.
+/// All valid vectors with cuts, and some that mention cuts.
 pub(super) fn valid() -> Vec<Valid> {
     let mut vectors = vec![];
     let mut add = |name, about, model: Model| {
@@ -1116,7 +1119,7 @@ pub(super) fn valid() -> Vec<Valid> {
         let cuts = model.cuts.clone().expect("cuts");
         parts.add_cuts(&model, &cuts);
         put(&mut parts.head, 10, 3, 2);
-        // As unknown sections they may be anything.
+        // As unknown sections they may have any content.
         parts.section(FIRST).bytes.truncate(4);
         parts.section(HEADS).bytes.fill(0xF0);
     });
@@ -1170,7 +1173,7 @@ fn first(index: u64) -> String {
     format!("Damaged(CutCount {{ index: {index} }})")
 }
 
-/// The vectors with cuts.
+/// The invalid vectors with cuts.
 pub(super) fn invalid(list: &mut List) {
     tables_of_sections(list);
     list.way = Way::Verification;
@@ -1180,7 +1183,7 @@ pub(super) fn invalid(list: &mut List) {
     surfaces(list);
 }
 
-/// A file with cuts that is changed.
+/// Returns a file with cuts after a change.
 fn changed(model: &Model, change: impl FnOnce(&mut Parts)) -> Vec<u8> {
     let mut parts = Parts::of(model);
     change(&mut parts);
@@ -1194,7 +1197,7 @@ fn pop(bytes: &mut Vec<u8>, count: usize) {
 
 fn tables_of_sections(list: &mut List) {
     let (model, cell_slabs, moments) = (all_kinds(), cell_slabs(), box_with_moments());
-    // One that has sections of a kind.
+    // A file with sections of a kind.
     let with = |kind: u64| match kind {
         MOMENTS => &moments,
         CELL_SLABS | GROUPS => &cell_slabs,
@@ -1401,7 +1404,7 @@ fn records(list: &mut List) {
     add("cut-uniform", "", about, record(uniform), &|parts| {
         parts.section(HEADS).bytes[known..known + 8].fill(0);
     });
-    // The first cut that has two surfaces, and where its ids begin.
+    // The first cut with two surfaces, and the beginning of its ids.
     let count = |head: u8| usize::from(SURFACES_OF[usize::from(head)]);
     let pair = heads.iter().position(|&head| count(head) >= 2).expect("a table of two");
     let at: usize = heads[..pair].iter().map(|&head| count(head)).sum();
@@ -1461,8 +1464,7 @@ fn slabs_of_cells(list: &mut List) {
     let mut add = |rule, of: &str, about, error: String, model: &Model, change: &dyn Fn(&mut Parts)| {
         list.add(rule, of, about, error, changed(model, change));
     };
-    // The origins of the slabs are 1 1 3 3 3 0 0 5. Their cuts follow the one of the universe, which is
-    // split.
+    // The origins of the slabs are 1 1 3 3 3 0 0 5. Their cuts follow the split cut of the universe.
     assert!(stored.groups.iter().map(|&(_, end)| end).eq([2, 5, 7, 8]) && stored.heads.len() == 9);
     let word = |parts: &mut Parts, kind: u64, at: usize, value: u64| {
         put(&mut parts.section(kind).bytes, 8 * at, value, 8)
@@ -1594,10 +1596,10 @@ fn slabs_of_cells(list: &mut List) {
     add("cell-slab", "behind", about, surface(2), &mixed, &|parts| part(parts, 1, 61, 2, 3));
 }
 
-/// Moments that are none.
+/// Invalid moments.
 fn moments(list: &mut List) {
     let model = ball_with_moments();
-    // Places: the point from 0 on, the volume from 3, the first moments from 5, the second ones from 11.
+    // Offsets: the point from 0 on, the volume from 3, the first moments from 5, the second moments from 11.
     let legal = model.cuts.as_ref().and_then(|cuts| cuts.moments).expect("moments");
     assert!(legal[3] > 0.0 && legal[7] < 0.0 && legal[5..7] == [0.0; 2]);
     for (of, about, place, value) in [
@@ -1624,7 +1626,7 @@ fn moments(list: &mut List) {
     }
 }
 
-/// How many surfaces a table has.
+/// The number of surfaces of each table.
 const SURFACES_OF: [u8; 256] = {
     let mut counts = [0; 256];
     let mut head = 0;

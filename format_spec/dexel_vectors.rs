@@ -1,5 +1,4 @@
-//! Test vectors with tri-dexel models. The files are put together here, number by number, and not by the
-//! library.
+//! Test vectors with tri-dexel models. This file builds them number by number, without the library.
 
 use super::{
     APPLICATION, COUNT, F32, F64, HEADER, Invalid, KIND, LEVELS, List, METADATA, NEWER, NO_PARENT, OBJECTS,
@@ -10,10 +9,10 @@ use leafless::Metadata;
 use std::collections::BTreeMap;
 use std::fmt::Write as _;
 
-/// Kinds of sections: the windows, and the first of the five of each direction.
+/// Kinds of sections: the windows, and the first of the five kinds of each direction.
 const WINDOWS: u64 = 32;
 const STARTS: [u64; 3] = [33, 38, 43];
-/// The kinds of a direction, from its first on.
+/// The kinds of a direction, relative to its first.
 const SPANS: u64 = 1;
 const NORMALS: u64 = 2;
 const SURFACES: u64 = 3;
@@ -23,23 +22,23 @@ const NAMES: [&str; 5] = ["starts", "spans", "normals", "surfaces", "materials"]
 /// The type of an object that is a tri-dexel model.
 const DEXELS: u64 = 3;
 
-/// Where the header says what is stored.
+/// Offset of the header's byte that says what is stored.
 const FORM: usize = 71;
 
-/// No surface, and no normal in 16 and in 32 bits.
+/// Codes for no surface, and for no normal in 16 and in 32 bits.
 const NO_SURFACE: u32 = u32::MAX;
 const NO_NORMAL: [u32; 3] = [0, 0x8080, 0x8000_8000];
 
-/// An interval: both ends in cells, and what it carries, of which only that is stored which the model stores.
+/// An interval: both ends in cells, and its attributes. A model stores only the attributes of its format.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Interval {
-    /// In cells.
+    /// Both ends, in cells.
     pub ends: [f64; 2],
-    /// Codes, in as many bits as the model stores.
+    /// Codes of the normals, in as many bits as the model stores.
     pub normals: [u32; 2],
     /// Numbers of surfaces.
     pub surfaces: [u32; 2],
-    /// What it is made of.
+    /// Number of the material.
     pub material: u32,
 }
 
@@ -59,27 +58,27 @@ impl Interval {
 pub struct Dexels {
     /// The universe's lower corner.
     pub origin: [f64; 3],
-    /// Its edge.
+    /// The universe's edge.
     pub edge: f64,
-    /// Its depth.
+    /// The depth.
     pub depth: u8,
-    /// Ends are doubles.
+    /// True if ends are stored as doubles.
     pub double: bool,
-    /// Bits of a normal, over 16.
+    /// Bits of a normal, divided by 16.
     pub normals: usize,
-    /// Numbers of surfaces are stored.
+    /// True if numbers of surfaces are stored.
     pub surfaces: bool,
-    /// Materials are stored.
+    /// True if materials are stored.
     pub materials: bool,
-    /// What else the file says.
+    /// The file's metadata.
     pub metadata: Metadata,
-    /// Of each direction the rays that are not empty, by their indices on the other two axes, the higher axis
-    /// first.
+    /// For each direction, the rays that are not empty, by their indices on the other two axes, the higher
+    /// axis first.
     pub rays: [Option<BTreeMap<[u32; 2], Vec<Interval>>>; 3],
 }
 
 impl Dexels {
-    /// One with rays in these directions, which are empty.
+    /// A model with empty rays in these directions.
     pub fn new(depth: u8, directions: [bool; 3]) -> Dexels {
         Dexels {
             origin: [0.0; 3],
@@ -98,13 +97,14 @@ impl Dexels {
         Dexels { double, normals, surfaces, materials, ..self }
     }
 
-    /// The same with an interval more on a ray, which has the indices `u` and `v` on the other two axes.
+    /// Returns the model with one more interval on the ray with the indices `u` and `v` on the other two
+    /// axes.
     fn with(mut self, axis: usize, [u, v]: [u32; 2], interval: Interval) -> Dexels {
         self.rays[axis].as_mut().expect("a direction").entry([v, u]).or_default().push(interval);
         self
     }
 
-    /// A cuboid of cells, in all directions.
+    /// Adds a cuboid of cells, in all directions.
     fn cuboid(mut self, low: [u32; 3], high: [u32; 3]) -> Dexels {
         for (axis, [a, b]) in [[1, 2], [0, 2], [0, 1]].into_iter().enumerate() {
             for (u, v) in (low[a]..high[a]).flat_map(|u| (low[b]..high[b]).map(move |v| (u, v))) {
@@ -117,7 +117,7 @@ impl Dexels {
         self
     }
 
-    /// Some intervals on some rays, by chance. The directions say nothing of one another.
+    /// Random intervals on some rays. The directions are independent.
     pub fn random(seed: u64, depth: u8, form: u8) -> Dexels {
         let mut state = seed;
         let mut random = |end: u64| {
@@ -128,7 +128,7 @@ impl Dexels {
         let model = Dexels::new(depth, directions);
         let mut model =
             model.carrying(form & 1 != 0, (form >> 1 & 3) as usize, form & 8 != 0, form & 16 != 0);
-        // Fixed-point ends are halves of cells; of doubles some are not.
+        // Fixed-point ends are halves of cells; some double ends are not.
         let cells = 1u64 << depth;
         for axis in (0..3).filter(|&axis| directions[axis]) {
             for _ in 0..random(3 * cells) {
@@ -164,14 +164,15 @@ impl Dexels {
         model
     }
 
-    /// The byte that says what is stored.
+    /// Returns the byte that says what is stored.
     pub fn form(&self) -> u8 {
         let directions = (0..3).map(|axis| u8::from(self.rays[axis].is_some()) << (5 + axis)).sum::<u8>();
         let carried = u8::from(self.surfaces) << 3 | u8::from(self.materials) << 4;
         u8::from(self.double) | (self.normals as u8) << 1 | carried | directions
     }
 
-    /// Of the rays that are not empty the least window: the first, and how many there are.
+    /// Returns the least window that contains all rays that are not empty: the first ray, and the number of
+    /// rays.
     fn window(&self, axis: usize) -> [[u32; 2]; 2] {
         let keys = || self.rays[axis].iter().flat_map(|rays| rays.keys());
         let least = |i: usize| keys().map(|key| key[i]).min().unwrap_or(0);
@@ -183,7 +184,7 @@ impl Dexels {
         self.rays[axis].iter().flat_map(|rays| rays.values().flatten())
     }
 
-    /// Units of fixed-point ends to a cell.
+    /// Returns the units of fixed-point ends in a cell.
     fn unit(&self) -> f64 {
         f64::from(1u32 << (31 - self.depth))
     }
@@ -259,17 +260,17 @@ impl Dexels {
         parts
     }
 
-    /// The file.
+    /// Returns the file.
     pub fn bytes(&self) -> Vec<u8> {
         self.parts().bytes()
     }
 
-    /// What of a code is stored.
+    /// Returns the stored part of a code.
     fn code(&self, code: u32) -> u32 {
         if self.normals == 1 { code & 0xFFFF } else { code }
     }
 
-    /// Whether the centre of a cell lies inside, as a direction says it.
+    /// Returns whether the centre of a cell lies inside according to a direction.
     pub fn holds(&self, axis: usize, cell: [u32; 3]) -> Option<bool> {
         let [a, b] = [[1, 2], [0, 2], [0, 1]][axis];
         let ray = self.rays[axis].as_ref()?.get(&[cell[b], cell[a]]);
@@ -278,13 +279,13 @@ impl Dexels {
     }
 }
 
-/// A file that must be read, and what is in it.
+/// A file that readers must accept, and its contents.
 pub struct ValidDexels {
     /// Name of the file without its ending.
     pub name: &'static str,
-    /// What it is there for.
+    /// Purpose of the file.
     pub about: &'static str,
-    /// Whether it is what a writer should make of the model.
+    /// True if a writer should make this file of the model.
     pub canonical: bool,
     /// The file.
     pub bytes: Vec<u8>,
@@ -292,7 +293,7 @@ pub struct ValidDexels {
     pub model: Dexels,
 }
 
-/// A bracket of two cuboids that touch, in every direction; the upper one is of another material.
+/// A bracket of two touching cuboids, in every direction. The upper one is of another material.
 fn bracket() -> Dexels {
     let model = Dexels::new(3, [true; 3]).carrying(false, 2, true, true);
     let mut model = model.cuboid([1, 1, 1], [6, 7, 3]);
@@ -370,7 +371,7 @@ pub fn valid() -> Vec<ValidDexels> {
         parts.object(9, 1, 0);
         parts.sections.push(Section::new(VALUES, (F32, 4), vec![0x3F; 32]).of(1));
         parts.sections.push(Section::new(APPLICATION, (U16, 1), vec![1; 6]));
-        // What a kind means to an octree it need not mean to a tri-dexel model.
+        // A kind's meaning for octrees does not apply to tri-dexel models.
         parts.sections.push(Section::new(PLANES, (U8, 1), vec![2; 5]).flagged(0));
         parts.sections.push(Section::new(WINDOWS, (U8, 3), vec![3; 9]).of(2));
     });
@@ -401,7 +402,7 @@ pub fn valid() -> Vec<ValidDexels> {
 }
 
 impl ValidDexels {
-    /// What a reader must find, as the lines of a text; `README.md` explains them.
+    /// Returns the facts that a reader must find, as the lines of a text; `README.md` explains them.
     pub fn facts(&self) -> String {
         let (bytes, model) = (&self.bytes, &self.model);
         let mut text = String::new();
@@ -462,7 +463,7 @@ impl ValidDexels {
         text
     }
 
-    /// Some cells: beside the ends of some intervals, and some by chance.
+    /// Some cells: cells beside the ends of some intervals, and random ones.
     fn cells(&self) -> Vec<[u32; 3]> {
         let most = (1 << self.model.depth) - 1;
         let mut cells = vec![[0; 3], [most; 3]];
@@ -651,7 +652,8 @@ fn contents(list: &mut List) {
     let mut one = |rule, of: &str, about, (axis, ray): (usize, u64), change: &dyn Fn(&mut Vec<u8>)| {
         list.add(rule, of, about, damaged(axis, ray), changed(&raw, change));
     };
-    // Along x and y each ray of the bracket has one interval, along z the first two of each row have two.
+    // Along x and y each ray of the bracket has one interval; along z the first two rays of each row have
+    // two.
     let starts = at(0, 0);
     one("dexel-starts", "first", "the first ray begins at the second interval", (0, 0), &|bytes| {
         bytes[starts] = 1

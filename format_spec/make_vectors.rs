@@ -1,13 +1,12 @@
-//! Makes the test vectors of the file format: small files, valid and invalid, and what a reader must say of
-//! each.
+//! Makes the test vectors of the file format: small files, valid and invalid, and the expected results of a
+//! reader for each.
 //!
 //! ```sh
 //! cargo run --release --example make_vectors -- format_spec/vectors
 //! ```
 //!
-//! What is expected of the valid files does not come from the library's readers: tags come from the shapes
-//! that the files were made from, counts from a plain recursion over them, and the cells of points from
-//! integers.
+//! The expected results of valid files do not come from the library's readers. Tags come from the shapes of
+//! the files, counts from a plain recursion over the shapes, and the cells of points from integers.
 
 pub mod cut_vectors;
 pub mod dexel_vectors;
@@ -40,7 +39,7 @@ fn main() -> std::io::Result<()> {
     Ok(())
 }
 
-/// All files of the folder, by their paths in it.
+/// Returns all files of the folder, by their paths in it.
 pub fn files() -> Vec<(PathBuf, Vec<u8>)> {
     let (valid, mut invalid) = (valid(), invalid());
     invalid.extend(dexel_vectors::invalid());
@@ -62,10 +61,10 @@ pub fn files() -> Vec<(PathBuf, Vec<u8>)> {
 
 // ---- shapes ---------------------------------------------------------------------------------------------
 
-/// What a tree is made from: the tag of a cell, BRANCH where it is to be cut.
+/// The source of a tree: the tag of each cell, BRANCH for cells to be cut.
 type Shape = Arc<dyn Fn(Cell) -> Tag + Send + Sync>;
 
-/// A shape in a frame: solid, handle and worker.
+/// A shape in a frame. It is solid, classifier and worker at once.
 #[derive(Clone)]
 struct Model {
     frame: Frame,
@@ -73,7 +72,7 @@ struct Model {
     proof: Proof,
     metadata: Metadata,
     shape: Shape,
-    /// In the order of their names.
+    /// Channels in the order of their names.
     channels: Vec<Field>,
     cuts: Option<cut_vectors::Cuts>,
 }
@@ -101,7 +100,7 @@ impl Classifier for Model {
         self.exterior
     }
 
-    // What the file shall claim is set once the tree is made.
+    // The file's claim is set once the tree is made.
     fn proof(&self) -> Proof {
         Proof::CERTIFIED
     }
@@ -148,7 +147,7 @@ impl Model {
         Model { frame, exterior: Tag::Empty, proof, metadata, shape: Arc::new(shape), channels, cuts: None }
     }
 
-    /// One in which lattice coordinates are model coordinates.
+    /// A model on a frame whose lattice coordinates are model coordinates.
     fn plain(depth: u8, shape: impl Fn(Cell) -> Tag + Send + Sync + 'static) -> Model {
         Model::new([0.0; 3], (1u32 << depth) as f64, depth, shape)
     }
@@ -199,7 +198,7 @@ impl Model {
         })
     }
 
-    /// The tag of a finest cell.
+    /// Returns the tag of a finest cell.
     fn finest(&self, at: [u32; 3]) -> Tag {
         let depth = self.frame.depth();
         let on = |level: u8| Cell { level, at: at.map(|a| a >> (depth - level)) };
@@ -207,7 +206,7 @@ impl Model {
         tags.into_iter().find(|&tag| tag != Tag::Branch).expect("the finest cells are not cut")
     }
 
-    /// The canonical tag of a cell; what is below it is added to `levels`, the cell itself is not.
+    /// Returns the canonical tag of a cell. Adds the cells below it to `levels`, but not the cell itself.
     fn count(&self, cell: Cell, levels: &mut [[u64; 3]]) -> Tag {
         let tag = (self.shape)(cell);
         if tag != Tag::Branch {
@@ -234,7 +233,7 @@ impl Model {
         Tag::Branch
     }
 
-    /// The universe's tag and the level table: nodes, FULL and PARTIAL cells.
+    /// Returns the universe's tag and the level table: nodes, FULL and PARTIAL cells.
     fn levels(&self) -> (Tag, Vec<[u64; 3]>) {
         let mut levels = vec![[0; 3]; self.frame.depth() as usize + 1];
         let root = self.count(Cell::ROOT, &mut levels);
@@ -243,10 +242,10 @@ impl Model {
     }
 }
 
-/// What a channel says of a point.
+/// A channel's value at a point.
 type Value = Option<[f64; 4]>;
 
-/// What a channel is made from: a value, or none, of every finest cell of a lattice of its own.
+/// The source of a channel: for each finest cell of the channel's own lattice a value or none.
 #[derive(Clone)]
 struct Field {
     depth: u8,
@@ -255,10 +254,10 @@ struct Field {
     value: Arc<dyn Fn([u32; 3]) -> Value + Send + Sync>,
 }
 
-/// What a file must say of a channel.
+/// The expected facts of a channel in a file.
 struct Told {
     root: Tag,
-    /// Nodes, cells that have a value, cells that start one.
+    /// For each level, the numbers of nodes, of cells with a value, and of cells that start a value.
     levels: Vec<[u64; 3]>,
     values: u64,
 }
@@ -293,7 +292,7 @@ impl Field {
         channel.with_metadata(self.metadata.clone())
     }
 
-    /// The value of a cell; `None` if it has several, or a value and none.
+    /// Returns the value of a cell; `None` if the cell has several values, or partly none.
     fn uniform(&self, level: u8, at: [u32; 3]) -> Option<Value> {
         if level == self.depth {
             return Some((self.value)(at));
@@ -303,7 +302,7 @@ impl Field {
         (1..8).all(|k| child(k) == Some(first)).then_some(first)
     }
 
-    /// The cells of a level in Morton order.
+    /// Returns the cells of a level in Morton order.
     fn morton(level: u8) -> impl Iterator<Item = [u32; 3]> {
         let bit =
             move |m: u32, axis: u32| (0..u32::from(level)).map(move |i| (m >> (3 * i + axis) & 1) << i).sum();
@@ -322,7 +321,7 @@ impl Field {
             levels[level as usize][0] = cut.count() as u64;
         }
         let (mut before, mut values) = (None, 0);
-        // The levels on which cells of elements lie.
+        // The levels of the cells of elements.
         for level in (1..=self.depth).filter(|level| (self.depth - level).is_multiple_of(2)) {
             let above = level.min(2);
             for (m, at) in Field::morton(level).enumerate() {
@@ -344,7 +343,7 @@ impl Field {
     }
 }
 
-/// One number.
+/// A value with one number.
 fn one_value(value: f64) -> Value {
     Some([value, 0.0, 0.0, 0.0])
 }
@@ -354,7 +353,7 @@ fn cells(depth: u8, tag: impl Fn([u32; 3]) -> Tag + Sync + 'static) -> impl Fn(C
     move |cell| if cell.level < depth { Tag::Branch } else { tag(cell.at) }
 }
 
-/// All coordinates of the finest cells in `low..high`.
+/// A cube of the finest cells with all coordinates in `low..high`.
 fn cuboid(depth: u8, low: u32, high: u32) -> impl Fn(Cell) -> Tag + Sync {
     cells(depth, move |at| solid(at.iter().all(|a| (low..high).contains(a))))
 }
@@ -369,7 +368,7 @@ fn mix(mut x: u64) -> u64 {
     x ^ x >> 31
 }
 
-/// Another tree for every seed, with coarse and fine cells of the given tags.
+/// A different tree for every seed, with coarse and fine cells of the given tags.
 fn noise(depth: u8, seed: u64, tags: &'static [Tag]) -> impl Fn(Cell) -> Tag + Sync {
     move |cell| {
         let hash = cell.at.iter().fold(mix(seed + 1 + cell.level as u64), |hash, &a| mix(hash ^ a as u64));
@@ -384,7 +383,7 @@ fn noise(depth: u8, seed: u64, tags: &'static [Tag]) -> impl Fn(Cell) -> Tag + S
 const BINARY: &[Tag] = &[Tag::Empty, Tag::Full];
 const CERTIFIED: &[Tag] = &[Tag::Empty, Tag::Full, Tag::Partial];
 
-/// A certified ball: cells of the lattice against integers.
+/// A certified ball, computed from cells of the lattice in integers.
 fn ball(depth: u8) -> impl Fn(Cell) -> Tag + Sync {
     cells(depth, move |at| {
         let (centre, radius) = (1i64 << (depth - 1), (1i64 << (depth - 1)) - 1);
@@ -399,12 +398,12 @@ fn ball(depth: u8) -> impl Fn(Cell) -> Tag + Sync {
     })
 }
 
-/// Only the first number counts.
+/// Keeps only the first number.
 fn first([value, ..]: [f64; 4]) -> [f64; 4] {
     [value, 0.0, 0.0, 0.0]
 }
 
-/// Values that the type can say: the smallest and the greatest among them.
+/// Values that the type can represent, among them the smallest and the greatest.
 fn types_of(name: &str, depth: u8, kind: (ScalarType, u8)) -> Field {
     let list: &'static [f64] = match kind.0 {
         ScalarType::U8 => &[0.0, 255.0, 1.0, 7.0],
@@ -419,7 +418,7 @@ fn types_of(name: &str, depth: u8, kind: (ScalarType, u8)) -> Field {
     })
 }
 
-/// Coarse and fine regions of a few values, and of none.
+/// Coarse and fine regions with a few values, and with none.
 fn grain(name: &str, depth: u8) -> Field {
     Field::new(name, depth, (ScalarType::F32, 1), move |at| {
         let hash = |bits: u8| at.iter().fold(mix(5), |hash, &a| mix(hash ^ u64::from(a >> (depth - bits))));
@@ -435,7 +434,7 @@ fn grain(name: &str, depth: u8) -> Field {
     })
 }
 
-/// The example with two channels: the first of odd depth with an element and bricks, the second of one brick.
+/// The example with two channels. The first has odd depth, an element and bricks, the second has one brick.
 fn channelled() -> Model {
     let second = |[x, y, z]: [u32; 3]| (x != 1).then_some([(x + y) as f64, z as f64, 0.0, 0.0]);
     example().channel(grain("a", 3).fact("unit", "K")).channel(Field::new(
@@ -446,8 +445,8 @@ fn channelled() -> Model {
     ))
 }
 
-/// The finest cells `marks` have tags of their own, everything else is EMPTY: long branches, nothing beside
-/// them.
+/// The finest cells `marks` have tags of their own, and everything else is EMPTY. The branches are long, with
+/// nothing beside them.
 fn sparse(depth: u8, marks: &'static [([u32; 3], Tag)]) -> impl Fn(Cell) -> Tag + Sync {
     move |cell| {
         let below = |at: [u32; 3]| at.map(|a| a >> (depth - cell.level)) == cell.at;
@@ -479,25 +478,25 @@ fn shared_channels() -> Model {
     corner.channel(first).channel(Field::new("second", 4, (ScalarType::F32, 1), move |at| value(at, 0.5)))
 }
 
-/// Depth 5, binary: faces away from the bricks' own make many bricks of few kinds, hence a dictionary.
+/// Depth 5, binary. Faces away from the bricks' own faces make many bricks of few kinds, hence a dictionary.
 fn coded() -> Model {
     Model::plain(5, cuboid(5, 2, 29))
 }
 
-/// Depth 6: decided in the elements, so that there is no brick.
+/// Depth 6, decided in the elements, so that there is no brick.
 fn without_bricks(tags: &'static [Tag]) -> Model {
     Model::plain(6, noise(4, 11, tags))
 }
 
 // ---- valid vectors --------------------------------------------------------------------------------------
 
-/// A file that must be read, and what is in it.
+/// A file that readers must accept, and its contents.
 pub struct Valid {
     /// Name of the file without its ending.
     pub name: &'static str,
-    /// What it is there for.
+    /// Purpose of the file.
     pub about: &'static str,
-    /// Whether it is what a writer should make of the tree.
+    /// True if a writer should make this file of the tree.
     pub canonical: bool,
     /// The file.
     pub bytes: Vec<u8>,
@@ -661,7 +660,7 @@ pub fn valid() -> Vec<Valid> {
         for (kind, element) in own {
             parts.sections.push(Section::new(kind, element, vec![0x3F; 32]).of(1).flagged(0));
         }
-        // What a kind means to the solid it need not mean to another object; nor whether it is required.
+        // A kind's meaning for the solid does not apply to another object; nor does its being required.
         parts.sections.push(Section::new(REL, (F64, 2), vec![0; 16]).of(2).flagged(0));
         let levels = parts.shared(LEVELS, 3, LEVELS);
         let metadata = parts.shared(METADATA, 3, APPLICATION);
@@ -731,7 +730,7 @@ pub fn valid() -> Vec<Valid> {
         parts.sections.push(Section::new(17, (F64, 1), vec![2; 24]).of(1));
         parts.sections.push(Section::new(APPLICATION, (U8, 1), vec![3; 3]).of(1));
         parts.sections.push(Section::new(VALUES, (U8, 1), vec![4; 3]).of(2));
-        // What a kind means to a channel it need not mean to the solid.
+        // A kind's meaning for a channel does not apply to the solid.
         parts.sections.push(Section::new(VALUES, (F32, 3), vec![5; 12]).flagged(0));
         parts.sort();
         parts.bytes()
@@ -768,7 +767,7 @@ pub fn valid() -> Vec<Valid> {
 }
 
 impl Valid {
-    /// What a reader must find, as the lines of a text; `README.md` explains them.
+    /// Returns the facts that a reader must find, as the lines of a text; `README.md` explains them.
     pub fn facts(&self) -> String {
         let (bytes, model) = (&self.bytes, &self.model);
         let (frame, (root, levels)) = (&model.frame, model.levels());
@@ -866,8 +865,8 @@ impl Valid {
     }
 }
 
-/// Elements and bricks, from the level table: the nodes of every second level, the finest of which are
-/// bricks.
+/// Returns the numbers of elements and bricks, from the level table. They are the nodes of every second
+/// level; the finest of these levels has the bricks.
 fn entries_of(depth: u8, levels: &[[u64; 3]]) -> (u64, u64) {
     let own = |level: usize| level == 0 || (level + depth as usize).is_multiple_of(2);
     let last = (depth as usize).saturating_sub(2);
@@ -877,7 +876,7 @@ fn entries_of(depth: u8, levels: &[[u64; 3]]) -> (u64, u64) {
     (nodes(0..last), nodes(last..depth as usize))
 }
 
-/// The name of a tag in the specification.
+/// Returns the name of a tag in the specification.
 pub fn name(tag: Tag) -> &'static str {
     match tag {
         Tag::Empty => "EMPTY",
@@ -887,7 +886,7 @@ pub fn name(tag: Tag) -> &'static str {
     }
 }
 
-/// A double as C writes it with `%a`: without loss, and `strtod` reads it.
+/// Formats a double as C does with `%a`: without loss, and readable by `strtod`.
 pub fn hex(value: f64) -> String {
     let sign = if value.is_sign_negative() { "-" } else { "" };
     if value.is_nan() {
@@ -911,7 +910,7 @@ pub fn hex(value: f64) -> String {
 
 // ---- points ---------------------------------------------------------------------------------------------
 
-/// A double as a multiple of 2^-1074.
+/// Returns a double as a multiple of 2^-1074.
 fn integer(value: f64) -> BigInt {
     let bits = value.to_bits();
     let (exponent, fraction) = (bits >> 52 & 0x7FF, bits & ((1 << 52) - 1));
@@ -922,7 +921,7 @@ fn integer(value: f64) -> BigInt {
     if value.is_sign_negative() { -magnitude } else { magnitude }
 }
 
-/// The finest cell that contains a point, by the specification's rule, in integers.
+/// Returns the finest cell that contains a point, by the specification's rule, in integers.
 fn cell_of(frame: &Frame, point: [f64; 3]) -> Option<[u32; 3]> {
     let mut at = [0; 3];
     for axis in 0..3 {
@@ -944,11 +943,11 @@ fn cell_of(frame: &Frame, point: [f64; 3]) -> Option<[u32; 3]> {
     Some(at)
 }
 
-/// Points inside of cells, on planes and next to them, on the universe's faces, and outside.
+/// Points inside cells, on planes and next to planes, on the universe's faces, and outside.
 fn points(frame: &Frame) -> Vec<[f64; 3]> {
     let (origin, edge, cells) = (frame.origin(), frame.edge(), frame.cells());
     let size = edge / cells as f64;
-    // Rounded; which cell it is in is found out in integers.
+    // Rounded points. Their cells are determined in integers.
     let at = |t: [f64; 3]| [0, 1, 2].map(|axis| origin[axis] + t[axis] * size);
     let end = cells as f64;
     let mut points = vec![
@@ -971,7 +970,7 @@ fn points(frame: &Frame) -> Vec<[f64; 3]> {
         at([0.5, 0.5, 524_287.5].map(|t| t % end)),
         at([262_144.0, 5.0, 6.0].map(|t| t % end)),
         at([2.5, 3.5, 4.5]),
-        // Those of the specification's example.
+        // The points of the specification's example.
         [2.5, 2.5, 3.5],
         [2.0, 1.0, 1.0],
         [3.0, 4.0, 4.5],
@@ -992,7 +991,7 @@ fn points(frame: &Frame) -> Vec<[f64; 3]> {
 
 // ---- bytes ----------------------------------------------------------------------------------------------
 
-/// A little-endian number of `length` bytes.
+/// Reads a little-endian number of `length` bytes.
 pub fn number(bytes: &[u8], at: usize, length: usize) -> u64 {
     let mut raw = [0; 8];
     raw[..length].copy_from_slice(&bytes[at..at + length]);
@@ -1036,15 +1035,15 @@ const CHANNEL: u64 = 2;
 /// The parent of an object that has none.
 const NO_PARENT: u64 = u32::MAX as u64;
 
-/// A minor version that is newer than this one.
+/// A minor version newer than this one.
 const NEWER: u64 = 5;
 
 /// Length of a header, and of the record of an object.
 const HEADER: usize = 128;
-/// Length of an entry of the section table.
+/// Length of an entry of the section table, in bytes.
 pub const ENTRY: usize = 48;
 
-/// Where the fields of an entry are.
+/// Offsets of the fields of an entry.
 const KIND: usize = 0;
 const OWNER: usize = 4;
 const TYPE: usize = 8;
@@ -1058,8 +1057,8 @@ const COUNT: usize = 32;
 const CRC: usize = 40;
 const SAME: usize = 44;
 
-/// Where the fields of the header are that the record of the solid repeats, where they are in the record, and
-/// how many bytes they take.
+/// The fields of the header that the solid's record repeats: offset in the header, offset in the record, and
+/// length in bytes.
 const MIRRORED: [(usize, usize, usize); 8] = [
     // Depth, root tag, exterior.
     (64, 12, 3),
@@ -1076,7 +1075,7 @@ const MIRRORED: [(usize, usize, usize); 8] = [
     (88, 96, 8),
 ];
 
-/// Makes the record of the solid say what the header says, where there is one.
+/// Copies the header's fields into the solid's record, if there is one.
 pub fn mirror(bytes: &mut [u8]) {
     let Some(at) = entries(bytes).next().filter(|&at| number(bytes, at + KIND, 8) == OBJECTS) else { return };
     let start = number(bytes, at + OFFSET, 8) as usize;
@@ -1086,7 +1085,7 @@ pub fn mirror(bytes: &mut [u8]) {
     for (from, to, length) in MIRRORED {
         bytes.copy_within(from..from + length, start + to);
     }
-    // What a tri-dexel model stores.
+    // The byte that says what a tri-dexel model stores.
     if number(bytes, start, 4) == 3 {
         bytes.copy_within(71..72, start + 21);
     }
@@ -1116,30 +1115,30 @@ pub fn seal_head(bytes: &mut [u8]) {
     put(bytes, 124, crc.into(), 4);
 }
 
-/// Where the entries of the section table are.
+/// Returns the offsets of the section table's entries.
 fn entries(bytes: &[u8]) -> impl Iterator<Item = usize> + use<> {
     let end = bytes.len();
     (0..number(bytes, 96, 4) as usize).map(|i| HEADER + ENTRY * i).take_while(move |at| at + ENTRY <= end)
 }
 
-/// Where the table's entry of a kind is.
+/// Returns the offset of the table's entry of a kind.
 fn entry(bytes: &[u8], kind: u64) -> usize {
     entries(bytes).find(|&at| number(bytes, at, 4) == kind).expect("a section of this kind")
 }
 
-/// Where the record of an object begins.
+/// Returns the offset of the record of an object.
 fn record(bytes: &[u8], object: u64) -> usize {
     offset(bytes, OBJECTS) + HEADER * object as usize
 }
 
-/// The numbers of the objects that are channels.
+/// Returns the numbers of the objects that are channels.
 fn channels(bytes: &[u8]) -> impl Iterator<Item = u64> {
     let known = number(bytes, 10, 2) >= 2;
     let objects = number(bytes, entry(bytes, OBJECTS) + COUNT, 8);
     (1..objects).filter(move |&object| known && number(bytes, record(bytes, object), 4) == CHANNEL)
 }
 
-/// Whether a file has anything that no reader of this version knows: objects, sections.
+/// True if a file has objects or sections that no reader of this version understands.
 #[allow(dead_code)]
 pub fn has_unknown_parts(bytes: &[u8]) -> bool {
     let objects = number(bytes, entry(bytes, OBJECTS) + COUNT, 8);
@@ -1154,13 +1153,13 @@ pub fn has_unknown_parts(bytes: &[u8]) -> bool {
     channels(bytes).count() as u64 + 1 != objects || entries(bytes).any(unknown)
 }
 
-/// Where the section of a kind begins that an object owns.
+/// Returns the offset of an object's section of a kind.
 fn offset_of(bytes: &[u8], owner: u64, kind: u64) -> usize {
     let is_it = |&at: &usize| (number(bytes, at + OWNER, 4), number(bytes, at, 4)) == (owner, kind);
     number(bytes, entries(bytes).find(is_it).expect("a section of this kind") + OFFSET, 8) as usize
 }
 
-/// Where the section of a kind begins.
+/// Returns the offset of the section of a kind.
 fn offset(bytes: &[u8], kind: u64) -> usize {
     number(bytes, entry(bytes, kind) + OFFSET, 8) as usize
 }
@@ -1180,17 +1179,17 @@ struct Section {
     encoding: u64,
     reserved: u64,
     flags: u64,
-    /// How many elements, if not as many as fit into the bytes.
+    /// Number of elements, if it is not the number that fits into the bytes.
     count: Option<u64>,
     bytes: Vec<u8>,
-    /// Owner and kind of the section whose bytes these are, too.
+    /// Owner and kind of another section with the same bytes in the file.
     same: Option<(u64, u64)>,
-    /// Zeros before it, besides those of the alignment.
+    /// Zero bytes before the section, in addition to those of the alignment.
     gap: usize,
 }
 
 impl Section {
-    /// One of the solid's. It is required if it is one that all readers know, and no metadata.
+    /// A section of the solid. It is required if all readers know its kind, unless it is metadata.
     fn new(kind: u64, element: (u64, u64), bytes: Vec<u8>) -> Section {
         let of_dexels = (32..48).contains(&kind);
         let known = kind <= SEGMENTS || [VALUES, VALUE_REL, VALUE_BASE].contains(&kind) || of_dexels;
@@ -1209,7 +1208,7 @@ impl Section {
         }
     }
 
-    /// The same of another object.
+    /// Returns the section with another owner.
     fn of(self, owner: u64) -> Section {
         Section { owner, ..self }
     }
@@ -1218,7 +1217,7 @@ impl Section {
         Section { flags, ..self }
     }
 
-    /// Bytes of an element.
+    /// Returns the bytes of an element.
     fn size(&self) -> usize {
         let (kind, components) = self.element;
         [8, 1, 2, 4, 8, 4, 8].get(kind as usize).map_or(1, |size| size * components as usize)
@@ -1244,7 +1243,7 @@ impl Parts {
         parts
     }
 
-    /// The solid's section of a kind.
+    /// Returns the solid's section of a kind.
     fn section(&mut self, kind: u64) -> &mut Section {
         let of_solid = |section: &&mut Section| section.kind == kind && section.owner == 0;
         self.sections.iter_mut().find(of_solid).expect("a section of this kind")
@@ -1254,7 +1253,7 @@ impl Parts {
         self.take_of(0, kind)
     }
 
-    /// An object's section of a kind.
+    /// Returns an object's section of a kind.
     fn own(&mut self, owner: u64, kind: u64) -> &mut Section {
         let is_it = |section: &&mut Section| (section.owner, section.kind) == (owner, kind);
         self.sections.iter_mut().find(is_it).expect("a section of this kind")
@@ -1265,17 +1264,17 @@ impl Parts {
         self.sections.remove(at.expect("a section of this kind"))
     }
 
-    /// The record of an object.
+    /// Returns the record of an object.
     fn record(&mut self, object: u64) -> &mut [u8] {
         &mut self.section(OBJECTS).bytes[HEADER * object as usize..][..HEADER]
     }
 
-    /// A section of `kind` for `owner`, of which the bytes are those of the solid's section `of`.
+    /// Returns a section of `kind` for `owner` that shares the bytes of the solid's section `of`.
     fn shared(&mut self, of: u64, owner: u64, kind: u64) -> Section {
         Section { kind, owner, same: Some((0, of)), ..self.section(of).clone() }
     }
 
-    /// Adds the record of an object that has not been told more about than this; what can be told follows.
+    /// Adds the record of an object with only these fields. Returns the rest of the record, to be filled.
     fn object(&mut self, kind: u64, parent: u64, flags: u64) -> &mut [u8] {
         let records = &mut self.section(OBJECTS).bytes;
         let at = records.len();
@@ -1286,12 +1285,12 @@ impl Parts {
         &mut records[at + 12..]
     }
 
-    /// Puts sections into the order that the table demands.
+    /// Sorts sections into the order that the table requires.
     fn sort(&mut self) {
         self.sections.sort_by_key(|section| (section.owner, section.kind));
     }
 
-    /// The file, with right offsets and checksums.
+    /// Returns the file, with right offsets and checksums.
     fn bytes(&self) -> Vec<u8> {
         let mut bytes = self.head.clone();
         bytes.resize(HEADER + ENTRY * self.sections.len(), 0);
@@ -1332,7 +1331,7 @@ impl Parts {
         bytes
     }
 
-    /// The same with raw bricks.
+    /// Returns the file with raw bricks.
     fn decoded(mut self) -> Parts {
         let (indices, entries) = (self.take(INDICES), self.take(ENTRIES));
         self.take(SEGMENTS);
@@ -1348,7 +1347,7 @@ impl Parts {
         self
     }
 
-    /// The same, bricks of one plane through a dictionary, with segments of 2^16 bricks.
+    /// Returns the file with bricks of one plane through a dictionary, with segments of 2^16 bricks.
     fn in_small_segments(mut self) -> Parts {
         let (shift, entries, starts) = (self.head[69], self.take(ENTRIES).bytes, self.take(SEGMENTS).bytes);
         let indices = self.take(INDICES).bytes;
@@ -1376,7 +1375,7 @@ impl Parts {
         self
     }
 
-    /// The same with all bricks through a dictionary of one segment; all bricks are different.
+    /// Returns the file with all bricks through a dictionary of one segment. All bricks are different.
     fn encoded(mut self) -> Parts {
         let raw = self.take(BRICKS);
         let size = raw.size();
@@ -1399,21 +1398,22 @@ impl Parts {
 
 // ---- invalid vectors ------------------------------------------------------------------------------------
 
-/// The weakest way in that refuses a file; all stronger ones do as well, all weaker ones let it in.
+/// The weakest way in that refuses a file. All stronger ways refuse it as well, and all weaker ones accept
+/// it.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Way {
     /// Header and section table.
     Probing,
-    /// What the arrays' bounds rest on.
+    /// Checks that keep arrays within bounds.
     Plain,
-    /// The same with the metadata.
+    /// The same, and the metadata.
     Metadata,
-    /// Everything.
+    /// Complete verification.
     Verification,
 }
 
 impl Way {
-    /// Its name in the texts.
+    /// Returns the way's name in the texts.
     pub fn name(self) -> &'static str {
         match self {
             Way::Probing => "probing",
@@ -1424,26 +1424,27 @@ impl Way {
     }
 }
 
-/// A file that must be refused.
+/// A file that readers must refuse.
 pub struct Invalid {
-    /// Name of the file without its ending: the rule, and which case of it.
+    /// Name of the file without its ending: the rule, and the case of the rule.
     pub name: String,
     /// Name of the rule in the specification.
     pub rule: &'static str,
-    /// What is wrong.
+    /// Description of the error in the file.
     pub about: &'static str,
-    /// Who must refuse it.
+    /// The weakest way in that must refuse the file.
     pub way: Way,
-    /// The error by which the library refuses it, as its `Debug` text.
+    /// The library's error, as its `Debug` text.
     pub error: String,
-    /// The same for readers that know the number of the file's bytes, where they are refused by that before.
+    /// The error of readers that know the number of the file's bytes, if this number makes them refuse the
+    /// file earlier.
     pub error_of_length: Option<String>,
     /// The file.
     pub bytes: Vec<u8>,
 }
 
 impl Invalid {
-    /// What a reader must do, as the lines of a text; `README.md` explains them.
+    /// Returns the expected behaviour of a reader, as the lines of a text; `README.md` explains them.
     pub fn facts(&self) -> String {
         let mut text = format!("about: {}\nrule: {}\n", self.about, self.rule);
         text += &format!("refused-by: {}\nerror: {}\n", self.way.name(), self.error);
@@ -1475,7 +1476,7 @@ struct List {
 }
 
 impl List {
-    /// A vector of `rule`; the case `of` it goes to the file's name.
+    /// Adds a vector of `rule`. The case `of` becomes part of the file's name.
     fn add(
         &mut self,
         rule: &'static str,
@@ -1489,7 +1490,7 @@ impl List {
         self.vectors.push(Invalid { name, rule, about, way: self.way, error, error_of_length: None, bytes });
     }
 
-    /// The last vector is shorter than its header says.
+    /// Notes that the last vector is shorter than its header says.
     fn but_length(&mut self, expected: usize) {
         let last = self.vectors.last_mut().expect("a vector");
         last.error_of_length = Some(length(expected, last.bytes.len()));
@@ -1532,7 +1533,7 @@ fn good(model: &Model) -> Vec<u8> {
     file::to_bytes(&model.octree()).expect("a file")
 }
 
-/// `bytes` with one number changed, the header repeated by the record of the solid, and right checksums.
+/// Returns `bytes` with one number changed, the header repeated in the solid's record, and right checksums.
 fn with(bytes: &[u8], at: usize, value: u64, length: usize) -> Vec<u8> {
     changed(bytes, |bytes| put(bytes, at, value, length))
 }
@@ -1559,7 +1560,7 @@ const KINDS: [(u64, &str); 10] = [
     (SEGMENTS, "dictionary segments"),
 ];
 
-/// §10.1, the header.
+/// Vectors for §10.1, the header.
 fn header(list: &mut List) {
     let (raw, coded) = (good(&example()), good(&coded()));
     let uniform = good(&Model::plain(4, |_| Tag::Full));
@@ -1711,7 +1712,7 @@ fn seal_header(bytes: &mut [u8]) {
     put(bytes, 124, crc.into(), 4);
 }
 
-/// §10.1, the section table.
+/// Vectors for §10.1, the section table.
 fn table(list: &mut List) {
     let (raw, coded) = (good(&example()), good(&coded()));
     let end = raw.len() as u64;
@@ -1744,7 +1745,7 @@ fn table(list: &mut List) {
     one("section-required", "objects", "objects that are not", "section flags", at(OBJECTS) + FLAGS, 0, 4);
     one("section-required", "metadata", "metadata that are", "section flags", at(METADATA) + FLAGS, 1, 4);
 
-    // What the elements are.
+    // Element types and components.
     let mut strange = |of: &str, about, kind: u64, components: u64| {
         let bytes = changed(&raw, |bytes| {
             put(bytes, at(PLANES) + TYPE, kind, 1);
@@ -1768,7 +1769,7 @@ fn table(list: &mut List) {
     let about = "planes in an unknown encoding of a newer minor version";
     list.add("table-encoding", "newer", about, required("section encoding", 1), newer);
 
-    // Where they are.
+    // Offsets, lengths and counts.
     let extent = |kind: u64, length: u64, count: u64| {
         changed(&raw, |bytes| {
             put(bytes, at(kind) + LENGTH, length, 8);
@@ -1791,7 +1792,7 @@ fn table(list: &mut List) {
     let far = changed(&extent(BRICKS, 64, 4), |bytes| put(bytes, at(BRICKS) + OFFSET, u64::MAX - 63, 8));
     list.add("section-beyond", "overflow", "its end is 2^64", field("section length", 64), far);
 
-    // What must be known.
+    // Kinds that readers must understand.
     let unknown = |kind: u64| with(&raw, at(BRICKS), kind, 4);
     let about = "a required section of kind 20";
     list.add("section-unknown", "", about, required("section", 20), unknown(20));
@@ -1801,7 +1802,7 @@ fn table(list: &mut List) {
     let about = "a required section of a newer minor version";
     list.add("section-unknown", "newer", about, required("section", u32::MAX.into()), newer);
 
-    // Whose they are, and in which order.
+    // Owners and order.
     let mut parts = |rule, of: &str, about, error: String, change: &dyn Fn(&mut Parts)| {
         let mut parts = Parts::of(&example());
         change(&mut parts);
@@ -1845,7 +1846,7 @@ fn table(list: &mut List) {
         parts.section(OBJECTS).owner = 1;
     });
 
-    // Bytes that several sections have.
+    // Bytes shared by several sections.
     let two_owners = |change: &dyn Fn(&mut Parts)| {
         let mut parts = Parts::of(&example());
         parts.object(2, 0, 0);
@@ -1862,7 +1863,7 @@ fn table(list: &mut List) {
     let mut same = |of: &str, about, change: &dyn Fn(&mut Vec<u8>)| {
         let bytes = changed(&shared, change);
         let value = number(&bytes, last + SAME, 4);
-        // Checksums are made right by whoever changes bytes, also where that is what is wrong.
+        // Every change repairs the checksums.
         list.add("table-same", of, about, field("shared section", value), bytes);
     };
     same("itself", "a section that shares its own bytes", &|bytes| put(bytes, last + SAME, 9, 4));
@@ -1882,7 +1883,7 @@ fn table(list: &mut List) {
         put(bytes, last + COUNT, 2, 8);
     });
     let later = changed(&shared, |bytes| {
-        // The last but one names the last, which has bytes of its own.
+        // The last section but one names the last, which has bytes of its own.
         put(bytes, last - ENTRY + SAME, 9, 4);
         put(bytes, last + SAME, 0, 4);
     });
@@ -1909,7 +1910,7 @@ fn table(list: &mut List) {
         let at = entry(base, kind);
         let of = name.replace(' ', "-");
         let other = changed(base, |bytes| {
-            // Of the same size, but of another type; bytes have none but their own.
+            // Elements of the same size with another type. No other type has the size of a byte.
             let (element, count) = (number(bytes, at + TYPE, 1), number(bytes, at + COUNT, 8));
             match element {
                 RECORD => put(bytes, at + TYPE, U64, 1),
@@ -1951,7 +1952,7 @@ fn table(list: &mut List) {
     let about = "one plane in the header, two in the section";
     list.add("section-size", "header", about, section("bricks"), bytes);
 
-    // Of what is too long only the beginning is there.
+    // Only the beginning of a file that is too long.
     let mut begun = |rule, of: &str, about, error: String, kind, length: usize| {
         let mut parts = Parts::of(&example());
         parts.section(kind).bytes.resize(length, 0);
@@ -1974,7 +1975,7 @@ fn table(list: &mut List) {
     list.add("section-end", "", "a byte after the last section, which the header counts", error, longer);
 }
 
-/// §10.2, the records of objects.
+/// Vectors for §10.2, the records of objects.
 fn objects(list: &mut List) {
     let records = |change: &dyn Fn(&mut Parts)| {
         let mut parts = Parts::of(&example());
@@ -1983,7 +1984,7 @@ fn objects(list: &mut List) {
     };
     let raw = records(&|_| {});
     let solid = offset(&raw, OBJECTS);
-    // The record alone, behind the back of what makes it right.
+    // Only the record, without the repair.
     let mut other = |of: &str, about, at: usize, value: u64, length: usize| {
         let mut bytes = raw.clone();
         assert_ne!(number(&bytes, solid + at, length), value);
@@ -2058,7 +2059,7 @@ fn objects(list: &mut List) {
     list.add("object-parent", "later", about, field("object parent", 2), later);
 }
 
-/// §10.2.
+/// Vectors for §10.2.
 fn before_use(list: &mut List) {
     let (raw, coded) = (good(&example()), good(&coded()));
     let uniform = good(&Model::plain(4, |_| Tag::Full));
@@ -2117,7 +2118,7 @@ fn before_use(list: &mut List) {
     text("twice", "a key that stands twice", b"\x01\0\0\0\0\0\0\0a\x01\0\0\0\0\0\0\0a");
 }
 
-/// §10.3.
+/// Vectors for §10.3.
 fn verification(list: &mut List) {
     list.way = Way::Verification;
     let (raw, coded) = (good(&example()), good(&coded()));
@@ -2154,7 +2155,7 @@ fn verification(list: &mut List) {
     let one_plane = good(&without_bricks(BINARY));
     let partial = good(&Model::plain(4, |_| Tag::Partial));
     let planes = offset(&one_plane, PLANES);
-    // The first FULL cell of the root's without children.
+    // The first FULL cell of the root element without children.
     let full = number(&one_plane, planes, 8) & number(&one_plane, planes + 8, 8);
     let cell = full & full.wrapping_neg();
     let lower = number(&one_plane, planes, 8) & !cell;
@@ -2291,7 +2292,8 @@ fn dictionaries(list: &mut List) {
     let about = "the first brick's index is 65535";
     list.add("dictionary-index", "large", about, damaged(0), with(&coded, indices, 0xFFFF, 2));
 
-    // Bricks of other values would be other trees; here only their spelling matters, and that comes first.
+    // Bricks with other values would be other trees. Here only their encoding matters, and it is checked
+    // first.
     let unused = changed(&coded, |bytes| {
         for b in 0..bricks {
             if index(bytes, b) == count - 1 {
@@ -2326,7 +2328,7 @@ fn dictionaries(list: &mut List) {
     let same = with(&coded, entries + 8 * tie as usize, value(tie - 1), 8);
     let about = "an entry that is used as often as the one before it is the same";
     list.add("dictionary-order", "same", about, entry_order(tie), same);
-    // In the place of an entry of other frequency, where its value does not disturb the order.
+    // In the place of an entry of another frequency, where its value does not disturb the order.
     let fits = |&(i, j): &(u64, u64)| {
         uses(i) != uses(j)
             && (uses(j - 1) != uses(j) || value(j - 1) < value(i))
@@ -2368,7 +2370,7 @@ fn bricks(list: &mut List) {
     list.add("brick-branch", "all", "all cells of the only brick are BRANCH", branch(0), all);
 }
 
-/// §10.2, the records and sections of channels.
+/// Vectors for §10.2, the records and sections of channels.
 fn channel_records(list: &mut List) {
     list.way = Way::Metadata;
     let raw = good(&channelled());
@@ -2522,7 +2524,7 @@ fn channel_records(list: &mut List) {
     crowd.head[10] = 2;
     for channel in 1..=257u64 {
         let record = crowd.object(CHANNEL, 0, 0);
-        // Of depth 1, without a value, in the solid's universe: the fields from the depth on.
+        // A channel of depth 1, without a value, in the solid's universe: the fields from the depth on.
         (record[0], record[4], record[7], record[8]) = (1, 2, 1, 1);
         put(record, 56 - 12, 2f64.to_bits(), 8);
         let name = format!("{channel:03}");
@@ -2534,7 +2536,7 @@ fn channel_records(list: &mut List) {
     list.add("channel-count", "", "257 channels", field("channels", 257), crowd.bytes());
 }
 
-/// §10.3, the contents of channels.
+/// Vectors for §10.3, the contents of channels.
 fn channel_contents(list: &mut List) {
     list.way = Way::Verification;
     let raw = good(&channelled());
@@ -2588,7 +2590,7 @@ fn channel_contents(list: &mut List) {
     one("channel-rank", "overflow", about, rank(0), &|bytes| put(bytes, base, u64::MAX, 8));
     let about = "a value starts that no array has";
     let starts = |bytes: &mut Vec<u8>| {
-        // Of the second channel, the last cell that continues a value starts one.
+        // In the second channel, the last cell that continues a value starts one.
         let block = at(2, BRICKS);
         let [lower, upper] = [number(bytes, block, 8), number(bytes, block + 8, 8)];
         let last = (upper & !lower).checked_ilog2().expect("a cell that continues a value");
@@ -2655,7 +2657,7 @@ fn channel_contents(list: &mut List) {
     list.add("dictionary-index", "channel", about, error, with(&coded, entry + 6, 1, 2));
 }
 
-// ---- what is too large for the folder -------------------------------------------------------------------
+// ---- vectors too large for the folder -------------------------------------------------------------------
 
 fn many() -> Model {
     Model::plain(8, |cell| {
@@ -2672,7 +2674,7 @@ fn many() -> Model {
     })
 }
 
-/// A file of 64³ bricks, of 25 000 kinds in every block of 2^16: two dictionary segments of 2^17 bricks.
+/// A file of 64³ bricks with 25 000 kinds in every block of 2^16: two dictionary segments of 2^17 bricks.
 #[allow(dead_code)]
 pub fn many_bricks() -> Vec<u8> {
     good(&many())
@@ -2684,7 +2686,7 @@ pub fn many_bricks_in_small_segments() -> Vec<u8> {
     Parts::of(&many()).in_small_segments().bytes()
 }
 
-// ---- what lists them ------------------------------------------------------------------------------------
+// ---- the list of vectors --------------------------------------------------------------------------------
 
 fn readme(valid: &[Valid], invalid: &[Invalid]) -> String {
     let mut text = String::from(include_str!("vectors.md"));

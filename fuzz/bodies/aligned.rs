@@ -1,7 +1,7 @@
-//! Bytes where a view can be had of them. The tests of the format and of files use this, too.
+//! Bytes that are aligned for a view. The tests of the format and of files use this module, too.
 #![allow(dead_code)]
 
-/// Bytes on an address that is a multiple of 8.
+/// Bytes at an address that is a multiple of 8.
 pub struct Aligned(Vec<u64>, usize);
 
 impl Aligned {
@@ -15,7 +15,7 @@ impl Aligned {
         &bytemuck::cast_slice::<u64, u8>(&self.0)[..self.1]
     }
 
-    /// The words that the bytes lie in, for ever.
+    /// Returns the words that contain the bytes, alive for the rest of the program.
     pub fn leak(self) -> &'static [u64] {
         self.0.leak()
     }

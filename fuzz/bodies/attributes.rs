@@ -1,6 +1,6 @@
-//! Any bytes as an attribute, honest or not, in any place, and what is made of it: channels, summaries,
-//! regions, edits, what set operations carry along, voxel records. An honest attribute is known in unit
-//! cells, so that a dense array decides; one that lies about its ranges may hide details, and nothing else.
+//! Any bytes as an attribute, honest or not, at any place, and its uses: channels, summaries, regions, edits,
+//! set operations that carry values, and voxel records. An honest attribute has one value in each unit cell,
+//! so that a dense array decides. An attribute with false ranges may hide details, and nothing else.
 
 use leafless::attribute::{
     Attribute, CarryRule, Channel, ChannelOperand, ChannelRef, Criterion, Detail, FillOptions,
@@ -10,7 +10,7 @@ use leafless::voxel::{VoxelOptions, VoxelRecords};
 use leafless::{Affine, Bounds, Control, Csg, Error, Frame, Interval, Octree, Rule, Tag, build, union};
 use std::sync::atomic::{AtomicU64, Ordering::Relaxed};
 
-/// The bytes that are left; 0 for each that is missing.
+/// The remaining bytes; 0 for each missing one.
 struct Bytes<'a>(&'a [u8]);
 
 impl Bytes<'_> {
@@ -24,7 +24,7 @@ impl Bytes<'_> {
         self.byte() % end
     }
 
-    /// Mostly a small integer; or a number that few types hold.
+    /// A number: mostly a small integer, sometimes one that few types can represent.
     fn number(&mut self) -> f64 {
         let odd = [
             f64::NAN,
@@ -70,28 +70,28 @@ const CONTROL: Control<'static> = Control {
 
 type Value = Option<[f64; 4]>;
 
-/// How an attribute tells its ranges.
+/// The way in which an attribute answers queries of ranges.
 #[derive(Clone, Copy, PartialEq, Debug)]
 enum Range {
     Unknown,
     Honest,
-    /// One value of many.
+    /// Returns one value of many.
     Narrow,
-    /// Another value.
+    /// Returns another value.
     Wrong([f64; 4]),
-    /// From one infinity to the other.
+    /// Returns everything from −∞ to ∞.
     Everything,
     Nowhere,
-    /// Now this, now that, as the box is.
+    /// Alternates with the box.
     Fickle,
 }
 
-/// An attribute that has one value in each unit cell. The cells repeat themselves.
+/// An attribute that has one value in each unit cell. The pattern of cells repeats itself.
 struct Cells {
     components: usize,
     values: Vec<Value>,
     range: Range,
-    /// Values that were asked for.
+    /// Number of values queried.
     asked: AtomicU64,
 }
 
@@ -120,7 +120,7 @@ impl Cells {
         Cells { components, values, range, asked: AtomicU64::new(0) }
     }
 
-    /// The value in the unit cell of a point. Cells in blocks of two have the same one.
+    /// Returns the value in the unit cell of a point. Cells in blocks of two share a value.
     fn at(&self, point: [f64; 3]) -> Value {
         let at = point.map(|c| (c.clamp(-1e6, 1e6).floor() as i64).div_euclid(2));
         let place = (at[0] + 3 * at[1] + 7 * at[2]).rem_euclid(self.values.len() as i64);
@@ -202,7 +202,7 @@ impl Attribute for Cells {
     }
 }
 
-/// The coordinates of points, whose ranges are boxes.
+/// An attribute of the points' coordinates. Its ranges are boxes.
 struct Places;
 
 impl Attribute for Places {
@@ -226,7 +226,7 @@ impl Attribute for Places {
     }
 }
 
-/// What the fuzz target does.
+/// Runs the fuzz target.
 pub fn attributes(data: &[u8]) {
     let mut bytes = Bytes(data);
     let bytes = &mut bytes;
@@ -260,7 +260,7 @@ pub fn attributes(data: &[u8]) {
     world.recorded(bytes, &solid);
 }
 
-/// A map from one lattice to another, or any; and whether it is exact.
+/// A map from one lattice to another, or an arbitrary map; with a flag for an exact one.
 fn map(bytes: &mut Bytes<'_>) -> (Affine, bool) {
     let code = bytes.byte();
     let axes = [[0, 1, 2], [0, 2, 1], [1, 0, 2], [1, 2, 0], [2, 0, 1], [2, 1, 0]][code % 6];
@@ -280,7 +280,7 @@ fn map(bytes: &mut Bytes<'_>) -> (Affine, bool) {
     (Affine::new(rows).expect("a good map"), true)
 }
 
-/// The range of a moved attribute holds its values in the box, also at its corners.
+/// Checks that the range of a moved attribute contains its values in the box, also at the box's corners.
 fn moved_ranges(bytes: &mut Bytes<'_>) {
     let mut rows = [[0.0; 4]; 3];
     for entry in rows.iter_mut().flatten() {
@@ -321,7 +321,7 @@ fn moved_ranges(bytes: &mut Bytes<'_>) {
     }
 }
 
-/// A box of whole or half coordinates, certified, so that cells it cuts are PARTIAL.
+/// A certified box with integer or half-integer coordinates. Cells that it cuts are PARTIAL.
 fn solid(bytes: &mut Bytes<'_>, frame: &Frame) -> Octree {
     let min = [0, 1, 2].map(|axis| frame.origin()[axis] + bytes.below(12) as f64 / 2.0);
     let max = min.map(|low| low + (1 + bytes.below(12)) as f64 / 2.0);
@@ -346,9 +346,9 @@ struct World<'a> {
     frame: Frame,
     attribute: &'a MovedAttribute<&'a Cells>,
     cells: &'a Cells,
-    /// Whether its ranges are true.
+    /// True if the attribute's ranges are true.
     honest: bool,
-    /// Whether no coordinate is rounded on the way to the attribute's own place.
+    /// True if no coordinate is rounded on the way to the attribute's own place.
     exact: bool,
 }
 
@@ -360,12 +360,13 @@ impl World<'_> {
         })
     }
 
-    /// The value at the centre of a finest cell.
+    /// Returns the value at the centre of a finest cell.
     fn truth(&self, at: [u32; 3]) -> Value {
         self.attribute.value(self.centre(at)).expect("it has values")
     }
 
-    /// Values that may be asked for: at the centre of each cell of each level, and at all corners.
+    /// Returns the greatest allowed number of queried values: at the centre of each cell of each level, and
+    /// at all corners.
     fn most(&self) -> u64 {
         16 << (3 * self.frame.depth())
     }
@@ -381,7 +382,7 @@ impl World<'_> {
         self.cells.asked.store(0, Relaxed);
         let found = fill_channel(self.attribute, &options, &CONTROL);
         assert!(self.cells.asked.load(Relaxed) <= self.most(), "{:?} times", self.cells.asked);
-        // What cannot be kept is an error, if somebody had to look at it.
+        // A value that cannot be stored is an error, if a query needed it.
         let needed = |at: [u32; 3]| !within || tag(solid, at) != Tag::Empty;
         let kept = |at: [u32; 3]| self.truth(at).map(|value| value_type.nearest(value)).transpose();
         if self.honest {
@@ -412,7 +413,7 @@ impl World<'_> {
         }
     }
 
-    /// A channel that follows the attribute no further than a detail says.
+    /// Checks a channel that follows the attribute only to a given detail.
     fn detailed(
         &self,
         bytes: &mut Bytes<'_>,
@@ -452,7 +453,7 @@ impl World<'_> {
         Some(channel)
     }
 
-    /// Two operands with values, and their union's.
+    /// Checks two operands with values, and their union with its values.
     fn carried(&self, bytes: &mut Bytes<'_>, operands: [(&Octree, &ChannelRef<'_>); 2]) {
         let rule = [CarryRule::Left, CarryRule::Right, CarryRule::Max, CarryRule::Mean][bytes.below(4)];
         let result = union(operands[0].0.view(), operands[1].0.view(), &CONTROL).expect("enough memory");
@@ -480,7 +481,7 @@ impl World<'_> {
         }
     }
 
-    /// Voxel records whose inside is split for the attribute.
+    /// Checks voxel records whose inside is split for the attribute.
     fn recorded(&self, bytes: &mut Bytes<'_>, solid: &Octree) {
         let code = bytes.byte();
         let mut options = VoxelOptions::new().outside(code & 1 != 0).refined(code & 2 != 0);
@@ -490,7 +491,7 @@ impl World<'_> {
         {
             options = options.detail(detail);
         }
-        // A detail may ask for more voxels than there is memory; then there are no records.
+        // A detail may require more voxels than memory holds. Then there are no records.
         let control = Control { max_bytes: Some(1 << 18), ..CONTROL };
         let Ok(records) = VoxelRecords::of(solid.view(), &options, Some(self.attribute), &control) else {
             return;
@@ -505,7 +506,7 @@ impl World<'_> {
             let centre = [0, 1, 2]
                 .map(|axis| records.frame().origin()[axis] + f64::from(2 * record.cell.at[axis] + 1) * half);
             let value = self.attribute.value(centre).expect("it has values");
-            // A record whose first number is none has no value.
+            // A record whose first number is NaN has no value.
             let has_numbers = value.is_none_or(|value| !value.iter().any(|c| c.is_nan()));
             if has_numbers {
                 assert_eq!(bits(record.value), bits(value), "{record:?}");
@@ -530,7 +531,7 @@ fn same(a: &ChannelRef<'_>, b: &ChannelRef<'_>) {
     }
 }
 
-/// Sums over finest cells, of which a box may hold a part.
+/// Checks sums over finest cells. A box may contain a part of a cell.
 fn summarised(bytes: &mut Bytes<'_>, view: &ChannelRef<'_>, solid: &Octree) {
     let frame = view.frame();
     let min = [0; 3].map(|_: i32| bytes.below(64) as f64 / 4.0 - 4.0);
@@ -585,7 +586,7 @@ fn summarised(bytes: &mut Bytes<'_>, view: &ChannelRef<'_>, solid: &Octree) {
     }
 }
 
-/// The cells whose values lie in a band.
+/// Checks the cells whose values lie in a band.
 fn banded(bytes: &mut Bytes<'_>, view: &ChannelRef<'_>) {
     let [low, high] = [(); 2].map(|()| [0; 4].map(|_: i32| bytes.number()));
     let components = view.value_type().components();
@@ -601,7 +602,7 @@ fn banded(bytes: &mut Bytes<'_>, view: &ChannelRef<'_>) {
     }
 }
 
-/// A value that was put in somewhere.
+/// Checks an edit that inserts a value.
 fn edited(bytes: &mut Bytes<'_>, view: &ChannelRef<'_>, solid: &Octree) {
     let value = (bytes.below(3) != 0).then(|| [0; 4].map(|_: i32| bytes.number()));
     let kept = value.map(|value| view.value_type().nearest(value)).transpose();

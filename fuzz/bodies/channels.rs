@@ -1,14 +1,14 @@
-//! Everything that the channels of a file can be asked, also those that nobody has verified.
+//! All queries of a file's channels, verified or not.
 
 use super::{CONTROL, Random};
 use leafless::attribute::{Attribute, CarryRule, ChannelOperand, ChannelRef, ValueRange, carry_channel};
 use leafless::{Bounds, Control, Membership, Octree};
 
-/// Cells that are looked at in each channel.
+/// Number of examined cells of each channel.
 const CELLS: usize = 24;
 
-/// Asks all channels of `tree`. Whatever their bytes: answers are given within bounds and agree, and work on
-/// a whole channel ends or names damage. Of what is `verified` every result is well-formed and right.
+/// Queries all channels of `tree`. Whatever their bytes, answers stay within bounds and agree, and work on a
+/// whole channel ends or reports damage. If `verified`, every result is well-formed and right.
 pub fn channels(tree: &Octree, verified: bool) {
     let names: Vec<&str> = tree.channels().iter().map(|channel| channel.name()).collect();
     assert!(names.len() <= 256 && names.is_sorted_by(|a, b| a < b), "{names:?}");
@@ -48,7 +48,7 @@ pub fn channels(tree: &Octree, verified: bool) {
 
 type Value = Option<[f64; 4]>;
 
-/// Of a channel that is sound, a range holds what is in it.
+/// Checks that the range of a sound channel contains its values.
 fn in_range(range: &Result<ValueRange, leafless::Error>, value: Value, view: &ChannelRef<'_>, sound: bool) {
     match range {
         Ok(ValueRange::Nowhere) if sound => assert_eq!(value, None),
@@ -61,7 +61,7 @@ fn in_range(range: &Result<ValueRange, leafless::Error>, value: Value, view: &Ch
     }
 }
 
-/// Channels that are made of this one.
+/// Checks channels derived from this one.
 fn changed(tree: &Octree, view: &ChannelRef<'_>, cells: &[[u32; 3]], verified: bool) {
     let control = Control { max_nodes: Some(1 << 14), max_bytes: Some(1 << 20), ..CONTROL };
     let operand = ChannelOperand { solid: tree.view(), channel: view };
@@ -88,7 +88,7 @@ fn changed(tree: &Octree, view: &ChannelRef<'_>, cells: &[[u32; 3]], verified: b
     }
 }
 
-/// Corners of the universe and cells anywhere.
+/// Returns corners of the universe and random cells.
 fn cells(view: &ChannelRef<'_>) -> Vec<[u32; 3]> {
     let end = view.frame().cells();
     let mut random = Random(view.value_count() ^ view.element_count() << 32);

@@ -1,6 +1,6 @@
-//! Any bytes as two solids on small whole numbers that touch, or nearly do, and as what is asked about them:
-//! no answer contradicts another one, points that surely lie in both, or a distance that is known in whole
-//! numbers.
+//! Any bytes as two solids with small integer coordinates that touch, or nearly do, and as queries about
+//! them. No answer contradicts another one, points that surely lie in both solids, or a distance known in
+//! integers.
 
 use leafless::query::{GapVerdict, Overlap, gap_at_least};
 use leafless::{
@@ -8,7 +8,7 @@ use leafless::{
     interference, measure,
 };
 
-/// The bytes that are left; 0 for each that is missing.
+/// The remaining bytes; 0 for each missing one.
 struct Bytes<'a>(&'a [u8]);
 
 impl Bytes<'_> {
@@ -22,25 +22,25 @@ impl Bytes<'_> {
         self.byte() % end
     }
 
-    /// A whole number between −`end` and `end`.
+    /// Returns an integer between −`end` and `end`.
     fn around(&mut self, end: usize) -> f64 {
         self.below(2 * end + 1) as f64 - end as f64
     }
 }
 
-/// A primitive in numbers that are exact.
+/// A primitive with exact numbers.
 #[derive(Debug, Clone, Copy)]
 enum Figure {
     Ball([f64; 3], f64),
     Box([f64; 3], [f64; 3]),
-    /// The axis, the middle of the lower end, the radii at both ends, the height.
+    /// A frustum: its axis, the middle of the lower end, the radii at both ends, the height.
     Frustum(usize, [f64; 3], [f64; 2], f64),
     Ellipsoid([f64; 3], [f64; 3]),
     /// The points of a cube with n · x ≤ c.
     Slope([f64; 3], f64),
 }
 
-/// Half the edge of the cube around all solids without an end.
+/// Half the edge of the cube around all unbounded solids.
 const AROUND: f64 = 14.0;
 
 impl Figure {
@@ -90,7 +90,7 @@ impl Figure {
         solid.expect("a good figure")
     }
 
-    /// Whether a point surely lies inside.
+    /// True if a point surely lies inside.
     fn holds(&self, at: [f64; 3]) -> bool {
         const LITTLE: f64 = 1e-6;
         let from = |centre: [f64; 3]| [0, 1, 2].map(|k| at[k] - centre[k]);
@@ -116,8 +116,8 @@ impl Figure {
         }
     }
 
-    /// Whether the interiors have no point in common, if whole numbers tell, and how far balls are apart. The
-    /// second is moved along x.
+    /// If integers can decide, returns whether the interiors have no common point, and the distance if it is
+    /// known. The second figure is moved along x.
     fn apart(&self, other: &Figure, shift: f64) -> Option<(bool, Option<f64>)> {
         match (*self, *other) {
             (Figure::Ball(a, r), Figure::Ball(b, s)) => {
@@ -147,7 +147,7 @@ impl Figure {
     }
 }
 
-/// A solid, what it is made of, and whether it is what is left of a block around the figure.
+/// A solid made from a figure. If `is_hole`, it is a block around the figure minus the figure.
 struct Solid {
     figure: Figure,
     is_hole: bool,
@@ -171,15 +171,14 @@ impl Solid {
         if !self.is_hole {
             return self.figure.holds(at);
         }
-        // No point that is as near as that to the figure.
+        // Points as near as this to the figure do not count as inside.
         let near = (0..8).any(|k| {
             self.figure.holds([0, 1, 2].map(|axis| at[axis] + if k >> axis & 1 == 0 { -1e-3 } else { 1e-3 }))
         });
         !near && !self.figure.holds(at) && self.is_clear(at)
     }
 
-    /// Whether a point is surely outside of the figure, which is convex: some of its points are far from it
-    /// on the other side.
+    /// True if a point is surely outside the figure. Only balls and boxes are decided.
     fn is_clear(&self, at: [f64; 3]) -> bool {
         match self.figure {
             Figure::Ball(centre, radius) => {
@@ -190,13 +189,14 @@ impl Solid {
                 (0..3).any(|k| at[k] < low[k] - 1e-6 || at[k] > high[k] + 1e-6)
                     && at.iter().all(|c| c.abs() < AROUND - 1e-6)
             }
-            // (Of others no point is known to be outside.)
+            // (For other figures, no point is known to be outside.)
             _ => false,
         }
     }
 }
 
-/// A map of both: none, a turn that is rounded, one along the axes, a shear, another scale.
+/// A map of both solids: the identity, a rounded rotation, a rotation along the axes, a shear, or another
+/// scale.
 fn common(code: usize) -> Affine {
     let ((s, c), (t, d)) = (0.47f64.sin_cos(), 1.7f64.sin_cos());
     let rows = match code % 6 {
@@ -212,7 +212,7 @@ fn do_meet(a: Interval, b: Interval, slack: f64) -> bool {
     a.lower <= b.upper + slack && b.lower <= a.upper + slack
 }
 
-/// What the fuzz target does.
+/// Runs the fuzz target.
 pub fn contacts(data: &[u8]) {
     let mut bytes = Bytes(data);
     let map_code = bytes.byte();
@@ -267,7 +267,7 @@ pub fn contacts(data: &[u8]) {
     }
     assert!(do_meet(distance, gap.evidence.distance, 0.0), "{}: {known:?} {gap:?}", told());
 
-    // Points of both in a lattice that is not theirs.
+    // Points of both, in a lattice unrelated to theirs.
     let (mut of_a, mut of_b) = (None, None);
     for k in 0..512u32 {
         let at = [k % 8, k / 8 % 8, k / 64].map(|k| 1.3 * f64::from(k) - 4.7);
@@ -290,7 +290,7 @@ pub fn contacts(data: &[u8]) {
         (first.is_hole, second.is_hole, first.figure.apart(&second.figure, shift))
     {
         assert!(if apart { !is_overlapping } else { !is_disjoint }, "{}: {found:?}", told());
-        // (Turns along the axes keep distances to the last digit.)
+        // (Rotations along the axes keep distances to the last digit.)
         if let (Some(least), 0 | 1 | 4) = (least, map_code % 6) {
             let slack = 1e-12;
             let holds = distance.lower <= least + slack && least <= distance.upper + slack;

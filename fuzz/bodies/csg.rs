@@ -1,16 +1,16 @@
-//! Any bytes as an expression of half-spaces, asked on a small lattice: whatever it is, no vertex of the
-//! lattice and no centre contradicts the verdicts, by exact arithmetic.
+//! Any bytes as an expression of half-spaces on a small lattice. By exact arithmetic, no vertex of the
+//! lattice and no centre contradicts the verdicts.
 
 use crate::common::exact::Exact;
 use crate::model::{Model, Other, Point, Probe};
 use leafless::op::{DexelOptions, octree_from_dexels};
 use leafless::{Affine, Control, Error, Frame, Octree, Rule, Tag, build, complement, dexelize};
 
-/// Most primitives of an expression, which is written out. (Exact arithmetic is slow, and few find as much as
-/// many.)
+/// The most primitives of an expression, written out. (Exact arithmetic is slow, and few primitives find as
+/// many errors as many do.)
 const MOST: usize = 12;
 
-/// The bytes that are left.
+/// The remaining bytes.
 struct Bytes<'a>(&'a [u8]);
 
 impl Bytes<'_> {
@@ -20,7 +20,7 @@ impl Bytes<'_> {
         Some(first)
     }
 
-    /// Mostly an eighth of a small integer; or one that is hard to take, or any double.
+    /// A number: mostly an eighth of a small integer, sometimes a difficult number, sometimes any double.
     fn number(&mut self) -> Option<f64> {
         Some(match self.byte()? {
             code @ 0..160 => (code as f64 - 64.0) / 8.0,
@@ -54,7 +54,7 @@ impl Bytes<'_> {
         Some(numbers)
     }
 
-    /// As many numbers as a mask has bits; the others are zero.
+    /// Reads as many numbers as a mask has bits; the others are zero.
     fn sparse<const N: usize>(&mut self) -> Option<[f64; N]> {
         let mask = u16::from_le_bytes([self.byte()?, self.byte()?]);
         let mut numbers = [0.0; N];
@@ -81,7 +81,7 @@ impl Bytes<'_> {
         }
     }
 
-    /// A primitive, or what an operation makes of the models before it.
+    /// Pushes a primitive, or the result of an operation on the models before it.
     fn step(&mut self, stack: &mut Vec<Model>) -> Option<()> {
         let code = self.byte()?;
         let pop = |stack: &mut Vec<Model>| stack.pop().unwrap_or(Model::Union(Vec::new()));
@@ -157,7 +157,7 @@ fn primitives(model: &Model) -> usize {
     }
 }
 
-/// Reads an expression and a frame; checks what the library says of them.
+/// Reads an expression and a frame, and checks the library's verdicts.
 pub fn csg(data: &[u8]) {
     let mut bytes = Bytes(data);
     let Some(frame) = bytes.frame() else { return };
@@ -179,9 +179,9 @@ pub fn csg(data: &[u8]) {
     let control = Control::threads(1);
     let made = |rule| match build(&csg, &frame, rule, &control) {
         Ok(tree) => Some(tree),
-        // (Other solids that are moved may not know their points.)
+        // (Other moved solids may not decide points.)
         Err(Error::Limit { .. } | Error::NotSampled) => None,
-        // (Moved as far as doubles reach.)
+        // (Moved as far as doubles allow.)
         Err(Error::Argument { name: "placement", .. }) => None,
         Err(other) => panic!("{other}"),
     };
@@ -196,7 +196,7 @@ pub fn csg(data: &[u8]) {
             let dexels = dexelize(&csg, &frame, &options, &control).expect("as much");
             dexels.view().check().expect("a sound model");
             let found = octree_from_dexels(dexels.view(), &control).expect("memory");
-            // (What lies outside of the universe no ray tells.)
+            // (Rays show nothing about points outside the universe.)
             let n = frame.cells();
             for i in 0..n * n * n {
                 let at = [i % n, i / n % n, i / n / n];
@@ -224,7 +224,7 @@ pub fn csg(data: &[u8]) {
     });
 }
 
-/// A point of which the function is zero, and the one beside it. The numbers are long, and rarely needed.
+/// A point where the function is zero, and the point beside it. The numbers are long, and rarely needed.
 fn beside(at: Point) -> Probe {
     let mut beside = at.clone();
     for (axis, coordinate) in beside[..3].iter_mut().enumerate() {
@@ -239,7 +239,7 @@ fn for_each_point(frame: &Frame, mut work: impl FnMut([u32; 3])) {
     (0..n * n * n).for_each(|i| work([i % n, i / n % n, i / n / n]));
 }
 
-/// Compares all cells that meet at a point, in half cells, with the side on which it is.
+/// Compares all cells that meet at a point, in half cells, with the point's side.
 fn contradicts(tree: &Octree, at: [u32; 3], sign: i32, model: &Model) {
     let lie = match sign {
         1 => Tag::Empty,

@@ -1,10 +1,10 @@
-//! The oracle of the target `measures`: a scene as the bits of unit cells, counted in whole numbers.
+//! The oracle of the target `measures`: a scene as the bits of unit cells, with integer counts.
 
 use leafless::{Cell, Frame};
 
 /// The first coordinate of the world along each axis.
 pub const LOW: i32 = -9;
-/// Unit cells of the world along each axis. The outermost ones are as the space around the world is.
+/// Number of unit cells of the world along each axis. The outermost cells equal the space around the world.
 pub const N: i32 = 34;
 
 /// A union of unit cells of the world. The space around the world is one more cell.
@@ -23,14 +23,14 @@ fn cells() -> impl Iterator<Item = [i32; 3]> {
     (0..N).flat_map(|z| (0..N).flat_map(move |y| (0..N).map(move |x| [x, y, z])))
 }
 
-/// How much of a unit cell lies in an interval along an axis.
+/// Returns the share of a unit cell that lies in an interval along an axis.
 fn share(c: i32, low: f64, high: f64) -> f64 {
     let start = f64::from(c + LOW);
     ((start + 1.0).min(high) - start.max(low)).max(0.0)
 }
 
-/// The cells whose interiors meet an interval along an axis; cells beyond the world stand for the space
-/// around it.
+/// Returns the cells whose interiors meet an interval along an axis. Cells outside the world stand for the
+/// space around it.
 fn met(low: f64, high: f64) -> std::ops::Range<i32> {
     let first = (low.clamp(-100.0, 100.0).floor() as i32 - LOW).max(-1);
     let end = (high.clamp(-100.0, 100.0).ceil() as i32 - LOW).min(N + 1);
@@ -55,12 +55,12 @@ impl Dense {
         dense
     }
 
-    /// Whether a cell, counted from the world's lower corner, is solid.
+    /// True if a cell, counted from the world's lower corner, is solid.
     pub fn has(&self, at: [i32; 3]) -> bool {
         if at.iter().all(|c| (0..N).contains(c)) { self.bits[index(at)] } else { self.outside }
     }
 
-    /// The bits, x fastest.
+    /// Returns the bits, x fastest.
     pub fn bits(&self) -> &[bool] {
         &self.bits
     }
@@ -76,7 +76,7 @@ impl Dense {
         self.joined(self, |a, _| !a)
     }
 
-    /// The image under `x ↦ from[axis] of x, mirrored, then moved`. `None` if something would leave the
+    /// Returns the image under `x ↦ from[axis] of x, mirrored, then moved`; `None` if a part would leave the
     /// world.
     pub fn moved(&self, axes: [usize; 3], mirrored: [bool; 3], by: [i32; 3]) -> Option<Dense> {
         let mut moved = Dense { outside: self.outside, bits: vec![self.outside; self.bits.len()] };
@@ -93,7 +93,7 @@ impl Dense {
         Some(moved)
     }
 
-    /// The share of each cell in a box that the solid has, and where.
+    /// Returns the parts of a box's cells that are solid: volume and extent of each.
     pub fn parts(&self, min: [f64; 3], max: [f64; 3]) -> impl Iterator<Item = (f64, [[f64; 2]; 3])> + '_ {
         cells_in(min, max).filter(|&at| self.has(at)).map(move |at| {
             let piece = [0, 1, 2].map(|axis| {
@@ -104,13 +104,13 @@ impl Dense {
         })
     }
 
-    /// The volume in a box that lies in the world.
+    /// Returns the volume in a box that lies in the world.
     pub fn volume(&self, [min, max]: [[f64; 3]; 2]) -> f64 {
         self.parts(min, max).map(|(volume, _)| volume).sum()
     }
 
-    /// Whether the interiors of the solid and of a box have points in common, and whether the box lies in the
-    /// solid.
+    /// Returns whether the interiors of the solid and of a box have common points, and whether the box lies
+    /// in the solid.
     pub fn in_box(&self, min: [f64; 3], max: [f64; 3]) -> (bool, bool) {
         let mut found = (false, true);
         for at in cells_in(min, max) {
@@ -120,14 +120,14 @@ impl Dense {
         found
     }
 
-    /// The same of a cell of a frame.
+    /// The same for a cell of a frame.
     pub fn in_cell(&self, frame: &Frame, cell: Cell) -> (bool, bool) {
         let edge = frame.edge() / f64::from(1u32 << cell.level);
         let min = [0, 1, 2].map(|axis| frame.origin()[axis] + f64::from(cell.at[axis]) * edge);
         self.in_box(min, min.map(|c| c + edge))
     }
 
-    /// Whether all of the solid lies in a box.
+    /// True if all of the solid lies in a box.
     pub fn ends_in(&self, [min, max]: [[f64; 3]; 2]) -> bool {
         !self.outside
             && cells()
@@ -135,7 +135,7 @@ impl Dense {
                 .all(|at| (0..3).all(|axis| share(at[axis], min[axis], max[axis]) == 1.0))
     }
 
-    /// The area of the faces between cells that differ, in a closed box and in its interior.
+    /// Returns the area of the faces between different cells, in a closed box and in its interior.
     pub fn area(&self, [min, max]: [[f64; 3]; 2]) -> [f64; 2] {
         let mut area = [0.0; 2];
         for at in cells() {
@@ -155,7 +155,7 @@ impl Dense {
         area
     }
 
-    /// Where the solid begins and ends in a box; `None` if there is nothing of it.
+    /// Returns the bounding box of the solid's part in a box; `None` if it is empty.
     pub fn extent(&self, [min, max]: [[f64; 3]; 2]) -> Option<[[f64; 3]; 2]> {
         let mut extent: Option<[[f64; 3]; 2]> = None;
         for (_, piece) in self.parts(min, max) {
@@ -169,9 +169,9 @@ impl Dense {
         extent
     }
 
-    /// The square of the least distance between two solids; infinite if one is empty.
+    /// Returns the squared distance of two solids; infinite if one is empty.
     pub fn distance_to(&self, other: &Dense) -> f64 {
-        // Of each cell, axis by axis: the squared distance from the other solid. A gap is one less than the
+        // For each cell, axis by axis: the squared distance from the other solid. A gap is one less than the
         // steps.
         let mut squares: Vec<i32> = other.bits.iter().map(|&bit| if bit { 0 } else { FAR }).collect();
         for axis in 0..3 {
@@ -198,8 +198,8 @@ impl Dense {
         }
     }
 
-    /// The square of a point's distance from the solid; infinite if that is empty. The space around the world
-    /// is as its outermost cells are.
+    /// Returns the squared distance of a point from the solid; infinite if the solid is empty. The space
+    /// around the world equals its outermost cells.
     pub fn distance_from(&self, point: [f64; 3]) -> f64 {
         let away = |at: [i32; 3]| -> f64 {
             let gap = |axis: usize| {
@@ -215,7 +215,7 @@ impl Dense {
         cells().filter(|&at| self.has(at)).map(away).fold(f64::INFINITY, f64::min)
     }
 
-    /// Whether a point lies in the closed solid, and whether in its interior.
+    /// Returns whether a point lies in the closed solid, and whether it lies in its interior.
     pub fn at(&self, point: [f64; 3]) -> (bool, bool) {
         let near = |c: f64| if c == c.floor() { [c - 0.5, c + 0.5] } else { [c, c] };
         let mut found = (false, true);
@@ -229,8 +229,7 @@ impl Dense {
         found
     }
 
-    /// The faces of the boundary, as triangles seen counter-clockwise from outside. Only of a solid that
-    /// ends.
+    /// Returns the boundary's faces as triangles, counter-clockwise from outside. The solid must be bounded.
     pub fn triangles(&self) -> (Vec<[f64; 3]>, Vec<[u32; 3]>) {
         let (mut vertices, mut triangles) = (Vec::new(), Vec::new());
         for at in cells().filter(|&at| self.has(at)) {
@@ -250,10 +249,10 @@ impl Dense {
     }
 }
 
-/// Larger than any squared distance in the world.
+/// A bound above every squared distance in the world.
 const FAR: i32 = 1 << 20;
 
-/// The cells whose interiors meet a box.
+/// Returns the cells whose interiors meet a box.
 fn cells_in(min: [f64; 3], max: [f64; 3]) -> impl Iterator<Item = [i32; 3]> {
     let [xs, ys, zs] = [0, 1, 2].map(|axis| met(min[axis], max[axis]));
     zs.flat_map(move |z| {
@@ -262,7 +261,7 @@ fn cells_in(min: [f64; 3], max: [f64; 3]) -> impl Iterator<Item = [i32; 3]> {
     })
 }
 
-/// A face of a cell, counter-clockwise as seen from outside of the cell.
+/// Returns a face of a cell, counter-clockwise as seen from outside the cell.
 fn face(at: [i32; 3], axis: usize, upper: bool) -> [[f64; 3]; 4] {
     let (u, v) = ((axis + 1) % 3, (axis + 2) % 3);
     let around = if upper { [[0, 0], [1, 0], [1, 1], [0, 1]] } else { [[0, 0], [0, 1], [1, 1], [1, 0]] };

@@ -1,5 +1,5 @@
-//! Any bytes as tri-dexel models, and as triangles: the laws of sets, changes in place, closed surfaces, and
-//! the same samples along all three axes.
+//! Any bytes as tri-dexel models and as triangles: the laws of sets, changes in place, closed surfaces, and
+//! equal samples along all three axes.
 
 use leafless::dexel::{Dexel, DexelEditor, DexelEnd, DexelEnds, DexelFormat, DexelNormals};
 use leafless::op::{DexelOptions, octree_from_dexels};
@@ -9,7 +9,7 @@ use leafless::{
 };
 use std::collections::HashMap;
 
-/// Bytes from the front; zeros behind the end.
+/// The remaining bytes from the front; zeros behind the end.
 struct Bytes<'a>(&'a [u8]);
 
 impl Bytes<'_> {
@@ -20,7 +20,7 @@ impl Bytes<'_> {
     }
 }
 
-/// Reads two models, or triangles; checks what the library says of them.
+/// Reads two models or triangles, and checks the library's results.
 pub fn dexel_algebra(data: &[u8]) {
     let mut bytes = Bytes(data);
     let (depth, form) = (bytes.next(), bytes.next());
@@ -40,7 +40,7 @@ pub fn dexel_algebra(data: &[u8]) {
     }
 }
 
-/// A model of what the bytes say; `None` if they say what no model is.
+/// Returns the model that the bytes describe; `None` if they describe none.
 fn model(
     bytes: &mut Bytes<'_>,
     frame: &Frame,
@@ -53,7 +53,7 @@ fn model(
         let count = bytes.next() % 4;
         for _ in 0..count {
             let [gap, length, what] = [bytes.next(), bytes.next(), bytes.next()];
-            // Eighths of cells, and now and then next to nothing.
+            // Eighths of cells, and sometimes almost nothing.
             let step = |byte: u8| if byte == 255 { 1e-12 } else { f64::from(byte % 32) / 8.0 };
             let end = |at: f64, flip: f64| DexelEnd {
                 surface: (what & 1 != 0).then_some(u32::from(what)),
@@ -79,7 +79,7 @@ fn model(
     }
 }
 
-/// Every edge is run along as often in one direction as in the other.
+/// True if triangles use every edge equally often in both directions.
 fn is_balanced(mesh: &TriangleMesh) -> bool {
     let mut edges: HashMap<(u32, u32), i64> = HashMap::new();
     for &[a, b, c] in mesh.triangles() {
@@ -96,7 +96,7 @@ fn models(bytes: &mut Bytes<'_>, frame: &Frame, format: DexelFormat, form: u8) {
     let directions = [0, 1, 2].map(|axis| mask >> axis & 1 != 0);
     let Some(a) = model(bytes, frame, format, directions) else { return };
     let Some(b) = model(bytes, frame, format, directions) else { return };
-    // Of plain models the laws hold bit for bit.
+    // For plain models the laws hold bit for bit.
     let plain = DexelFormat { ends: format.ends, ..DexelFormat::default() };
     let [p, q] = [&a, &b].map(|model| model.view().to_format(plain, &control).expect("a format"));
     let not = |x: &TriDexel| x.view().complement(&control).expect("a complement");
@@ -110,7 +110,7 @@ fn models(bytes: &mut Bytes<'_>, frame: &Frame, format: DexelFormat, form: u8) {
     assert!(less(&p, &q) == and(&p, &not(&q)));
     assert!(xor(&p, &q) == or(&less(&p, &q), &less(&q, &p)));
     assert!(or(&less(&p, &and(&p, &q)), &and(&p, &q)) == p);
-    // What they carry changes nothing of where they are.
+    // Attributes of ends do not change their places.
     for (whole, expected) in
         [(or(&a, &b), or(&p, &q)), (less(&a, &b), less(&p, &q)), (xor(&a, &b), xor(&p, &q))]
     {
@@ -143,7 +143,7 @@ fn triangles(bytes: &mut Bytes<'_>, frame: &Frame, format: DexelFormat) {
         triangles.push([0; 3].map(|_| u32::from(bytes.next()) % count as u32));
     }
     let Ok(mesh) = TriangleMesh::new(vertices, triangles) else { return };
-    // (Around holes cells are split twenty levels down for each end.)
+    // (Around holes, cells are split twenty levels deep for each end.)
     let is_open = mesh.check_closed(FillRule::NonZero).is_err();
     let frame =
         &frame.with_depth(if is_open { frame.depth().min(2) } else { frame.depth() }).expect("a frame");
@@ -156,7 +156,7 @@ fn triangles(bytes: &mut Bytes<'_>, frame: &Frame, format: DexelFormat) {
             let model = dexelize(&solid, frame, &options, &control).expect("rays");
             model.view().check().expect("a sound model");
             let found = octree_from_dexels(model.view(), &control).expect("an octree");
-            // (What lies outside of the universe no ray tells.)
+            // (Rays show nothing about points outside the universe.)
             let n = frame.cells();
             for i in 0..n * n * n {
                 let at = [i % n, i / n % n, i / n / n];
@@ -170,7 +170,7 @@ fn triangles(bytes: &mut Bytes<'_>, frame: &Frame, format: DexelFormat) {
     }
 }
 
-/// Inputs of all kinds to begin with.
+/// Initial inputs of all kinds.
 pub fn seeds() -> Vec<Vec<u8>> {
     let octahedron = [
         &[2, 128, 3][..],

@@ -1,4 +1,4 @@
-//! Any bytes through every way in to tri-dexel models: none panics, and all agree.
+//! Any bytes through every way in to tri-dexel models. No way panics, and all agree.
 
 use super::ways_in::scratch_file;
 use super::{Aligned, CONTROL};
@@ -8,13 +8,13 @@ use leafless::surface::{dual_contouring_dexels, marching_cubes_dexels};
 use leafless::voxel::dexel_voxels;
 use leafless::{Error, TriDexel, file, file::dexels};
 
-/// What became of an attempt, as a text that can be compared.
+/// Returns the outcome of an attempt as a comparable text.
 fn outcome<T>(result: &Result<T, Error>) -> Result<(), String> {
     result.as_ref().map(|_| ()).map_err(|error| error.cause().to_string())
 }
 
-/// Reads `data` in every way, also by those that need a file if `as_a_file`; whether it is verified as a good
-/// tri-dexel model.
+/// Reads `data` in every way, including the ways that need a file if `as_a_file`. Returns whether it is
+/// verified as a good tri-dexel model.
 pub fn dexels_in_all_ways(data: &[u8], as_a_file: bool) -> bool {
     let aligned = Aligned::new(data);
     // SAFETY: the model and all that is read from it are gone before the bytes are.
@@ -24,8 +24,8 @@ pub fn dexels_in_all_ways(data: &[u8], as_a_file: bool) -> bool {
     let copied = dexels::from_bytes(bytes);
     let still = dexels::from_static(bytes);
     let verified = outcome(&copied);
-    // Each way in demands what the one before it does, and then more. (What is no text is found behind
-    // checksums, too.)
+    // Each way in requires what the previous one requires, and more. (Invalid text is found behind checksums,
+    // too.)
     assert!(
         viewed.is_ok()
             || still.is_err() && outcome(&still) == outcome(&viewed) && verified == outcome(&viewed)
@@ -54,7 +54,7 @@ pub fn dexels_in_all_ways(data: &[u8], as_a_file: bool) -> bool {
         let path = scratch_file();
         std::fs::write(&path, data).expect("a place for a file");
         assert_eq!(outcome(&dexels::open(&path)), verified);
-        // SAFETY: nobody else knows the file, and it is removed only when the models are gone.
+        // SAFETY: no other process uses the file, and it is removed only when the models are gone.
         #[allow(unsafe_code)]
         let (mapped, scanned) = unsafe { (dexels::map(&path), dexels::map_verified(&path)) };
         assert_eq!((outcome(&mapped), outcome(&scanned)), (outcome(&still), verified.clone()));
@@ -64,7 +64,7 @@ pub fn dexels_in_all_ways(data: &[u8], as_a_file: bool) -> bool {
     verified.is_ok()
 }
 
-/// Single rays and cells, of arrays that may say anything.
+/// Queries single rays and cells of arrays with any content.
 fn asked(view: &TriDexelRef<'_>, sound: bool) {
     let most = view.frame().cells() - 1;
     for rays in (0..3).filter_map(|axis| view.rays(axis)) {
@@ -89,7 +89,7 @@ fn asked(view: &TriDexelRef<'_>, sound: bool) {
     assert!(view.check().is_ok() || !sound);
 }
 
-/// Operations on all rays: they end, with a model that is sound or with the damage.
+/// Runs operations on all rays. They end, with a sound model or with the damage.
 fn changed(model: &TriDexel) {
     let view = model.view();
     let sound = view.check().is_ok();
@@ -112,7 +112,7 @@ fn changed(model: &TriDexel) {
         results.extend([view.complement(&CONTROL), edited()]);
     }
     if small {
-        // What else meets all rays.
+        // Other operations on all rays.
         let others = [
             octree_from_dexels(view, &CONTROL).map(drop),
             dexel_voxels(view, &[], &CONTROL).map(drop),

@@ -1,6 +1,6 @@
-//! Any bytes as a small mesh, closed or with holes, moved or not, and as rays and points: what is answered
-//! without cells must be true by winding numbers that a look at each triangle tells, in whole numbers or
-//! (with holes) by solid angles, and by distances from each triangle in doubles.
+//! Any bytes as a small mesh, closed or with holes, moved or not, and as rays and points. Answers without
+//! cells must be true by winding numbers, computed from every triangle in integers or (with holes) by solid
+//! angles, and by distances from every triangle in doubles.
 
 use leafless::query::{DistanceTo, Obstacle, distances, line_of_sight, ray_spans};
 use leafless::query::{RaySpans, Sight};
@@ -10,7 +10,7 @@ use leafless::{
 };
 use num_bigint::{BigInt, Sign};
 
-/// The bytes that are left; 0 for each that is missing.
+/// The remaining bytes; 0 for each missing one.
 struct Bytes<'a>(&'a [u8]);
 
 impl Bytes<'_> {
@@ -24,7 +24,7 @@ impl Bytes<'_> {
         self.byte() % end
     }
 
-    /// A number from −1 to 1 with all its digits.
+    /// Returns a number from −1 to 1 with full precision.
     fn fraction(&mut self) -> f64 {
         let seed = (self.byte() << 8 | self.byte()) as u64 + 1;
         let mixed = seed.wrapping_mul(0x9E37_79B9_7F4A_7C15);
@@ -44,7 +44,7 @@ const CONTROL: Control<'static> = Control {
 type Point = [f64; 3];
 type Facet = [Point; 3];
 
-/// Most bodies of a mesh, and most rays and points.
+/// The most bodies of a mesh, and the most rays and points.
 const MOST: usize = 6;
 
 fn at(k: impl Fn(usize) -> f64) -> Point {
@@ -131,7 +131,7 @@ fn sure(x: f64, bound: f64) -> Option<i32> {
     }
 }
 
-/// A point exactly and as doubles, of which each is off by `size` · 2^-50 at most.
+/// An exact point and its doubles. Each double is wrong by at most `size` · 2^-50.
 struct Place {
     exact: [Exact; 3],
     near: Point,
@@ -152,7 +152,7 @@ impl Place {
     }
 }
 
-/// Points in whole numbers of one unit.
+/// Converts points to integers of one common unit.
 fn common<const N: usize>(points: [&[Exact; 3]; N]) -> [[BigInt; 3]; N] {
     let all = points.iter().flat_map(|p| p.iter()).filter(|x| x.0.sign() != Sign::NoSign);
     let unit = all.map(|x| x.1).min().unwrap_or(0);
@@ -161,7 +161,7 @@ fn common<const N: usize>(points: [&[Exact; 3]; N]) -> [[BigInt; 3]; N] {
 
 // ---- the mesh ------------------------------------------------------------------------------------------------
 
-/// A map by whole numbers and a translation, of which the inverse is exact.
+/// A map by integers and a translation. Its inverse is exact.
 struct Motion {
     rows: [[i32; 3]; 3],
     back: [[i32; 3]; 3],
@@ -169,7 +169,7 @@ struct Motion {
 }
 
 impl Motion {
-    /// As the library takes it, unless it is too large or too small.
+    /// Returns the map in the library's form, unless it is too large or too small.
     fn affine(&self) -> Option<Affine> {
         let row = |k: usize| {
             let [x, y, z] = self.rows[k].map(f64::from);
@@ -191,27 +191,28 @@ impl Motion {
     }
 }
 
-/// What is asked, and what is true of it.
+/// A scene to query, with its truth.
 struct Scene {
     /// The facets before they are moved.
     facets: Vec<Facet>,
     exact: Vec<[[Exact; 3]; 3]>,
     fill: FillRule,
     motion: Option<Motion>,
-    /// The facets as the solid has them.
+    /// The facets of the solid.
     moved: Vec<Facet>,
     solid: MeshSolid,
     frame: Frame,
     /// The size of all coordinates.
     size: f64,
-    /// Whether all corners lie on a small lattice.
+    /// True if all corners lie on a small lattice.
     is_plain: bool,
-    /// Whether facets may be missing.
+    /// True if facets may be missing.
     is_open: bool,
 }
 
 impl Scene {
-    /// The winding number at a point; nothing on the surface. The ray along x is shifted by (0, ε, ε²).
+    /// Returns the winding number at a point; `None` on the surface. The ray along x is shifted by (0, ε,
+    /// ε²).
     fn winding(&self, place: &Place) -> Option<i32> {
         let moved;
         let place = match &self.motion {
@@ -237,8 +238,8 @@ impl Scene {
         Some(winding)
     }
 
-    /// Whether the solid holds a point; nothing on the surface of the mesh, or with holes near to it, or to
-    /// where the winding number is one half.
+    /// True if the solid contains a point. The result is `None` on the surface of the mesh; for a mesh with
+    /// holes, also near the surface, and near points whose winding number is one half.
     fn holds(&self, place: &Place) -> Option<bool> {
         if self.is_open {
             let excess = self.excess(place.near);
@@ -248,8 +249,8 @@ impl Scene {
         self.winding(place).map(|winding| encloses(self.fill, winding))
     }
 
-    /// By how much the sum of solid angles (van Oosterom and Strackee 1983) exceeds what the fill rule asks
-    /// for.
+    /// Returns the excess of the sum of solid angles (van Oosterom and Strackee 1983) over the fill rule's
+    /// threshold.
     fn excess(&self, p: Point) -> f64 {
         let angle = |facet: &Facet| {
             let [a, b, c] = facet.map(|corner| minus(corner, p));
@@ -270,7 +271,7 @@ impl Scene {
         self.moved.iter().any(|facet| from_triangle(*facet, p) <= distance)
     }
 
-    /// Whether a point lies near to the plane of a facet: at a small angle times are known less well than
+    /// True if a point lies near the plane of a facet. At a small angle, times are known less well than
     /// places.
     fn is_near_to_a_plane(&self, p: Point, distance: f64) -> bool {
         self.moved.iter().any(|facet| {
@@ -280,8 +281,8 @@ impl Scene {
         })
     }
 
-    /// Whether a facet is so narrow that doubles do not tell its plane: any plane through its longest edge
-    /// may stand for it.
+    /// True if a facet is so narrow that doubles do not determine its plane. Any plane through its longest
+    /// edge may stand for it.
     fn has_a_needle(&self) -> bool {
         self.moved.iter().any(|facet| {
             let [a, b, c] = facet.map(|p| p.map(|c| c / self.size));
@@ -290,7 +291,7 @@ impl Scene {
         })
     }
 
-    /// Where a point lies in regard to the universe, unless it is near to its faces.
+    /// Returns whether a point lies in the universe; `None` if it is near the universe's faces.
     fn is_in_universe(&self, Place { near: p, size, .. }: &Place) -> Option<bool> {
         let (low, edge) = (self.frame.origin(), self.frame.edge());
         let margin = 1e-9 * (edge + size + length(low));
@@ -318,10 +319,10 @@ fn size_of(facet: &Facet, place: &Place) -> f64 {
     facet.iter().flatten().fold(place.size, |most: f64, c| most.max(c.abs()))
 }
 
-/// A bound of what rounding does, as a part of products of sizes.
+/// A bound of the rounding errors, relative to products of sizes.
 const SAFE: f64 = 1e-12;
 
-/// On which side of an edge a point lies, seen along x.
+/// Returns the side of an edge on which a point lies, seen along x.
 fn side(facet: &Facet, exact: &[[Exact; 3]; 3], [i, j]: [usize; 2], place: &Place) -> i32 {
     let (a, b, p) = (facet[i], facet[j], place.near);
     let size = size_of(facet, place);
@@ -334,7 +335,7 @@ fn side(facet: &Facet, exact: &[[Exact; 3]; 3], [i, j]: [usize; 2], place: &Plac
     })
 }
 
-/// On which side of a facet's plane a point lies.
+/// Returns the side of a facet's plane on which a point lies.
 fn over(facet: &Facet, exact: &[[Exact; 3]; 3], place: &Place) -> i32 {
     let [a, b, c] = *facet;
     let size = size_of(facet, place);
@@ -351,7 +352,8 @@ fn over(facet: &Facet, exact: &[[Exact; 3]; 3], place: &Place) -> i32 {
     })
 }
 
-/// Whether a point of a facet's plane lies on the facet, or if that has no area, on the line through it.
+/// True if a point of a facet's plane lies on the facet, or, if the facet has no area, on the line through
+/// it.
 fn is_on(exact: &[[Exact; 3]; 3], place: &Place) -> bool {
     let [a, b, c, p] = common([&exact[0], &exact[1], &exact[2], &place.exact]);
     (0..3).all(|axis| {
@@ -364,7 +366,7 @@ fn is_on(exact: &[[Exact; 3]; 3], place: &Place) -> bool {
     })
 }
 
-/// The distance of a point from a triangle, in doubles.
+/// Returns the distance of a point from a triangle, in doubles.
 fn from_triangle([a, b, c]: Facet, p: Point) -> f64 {
     // (Squares of the smallest numbers vanish.)
     let unit = [a, b, c, p].iter().flatten().fold(0.0, |most: f64, c| most.max(c.abs()));
@@ -392,16 +394,16 @@ fn from_triangle([a, b, c]: Facet, p: Point) -> f64 {
     least * unit
 }
 
-/// How thin a triangle is: its height over its longest edge.
+/// Returns the ratio of a triangle's height to its longest edge.
 fn plumpness([a, b, c]: Facet) -> f64 {
     let longest = length(minus(b, a)).max(length(minus(c, a))).max(length(minus(c, b)));
     let [u, v] = [minus(b, a), minus(c, a)].map(|e| e.map(|c| c / longest));
     length(cross(u, v))
 }
 
-// ---- what bytes make -----------------------------------------------------------------------------------------
+// ---- random scenes ---------------------------------------------------------------------------------------------
 
-/// How corners are made.
+/// The parameters of random corners.
 struct Corners {
     is_plain: bool,
     scale: f64,
@@ -445,9 +447,9 @@ fn soup(bytes: &mut Bytes<'_>, corners: &Corners) -> Vec<Facet> {
                 let [a, b, c, d] = [0; 4].map(|_| corners.corner(bytes));
                 vec![[a, c, b], [a, b, d], [b, c, d], [c, a, d]]
             }
-            // Once more.
+            // The same corner once more.
             6 => last,
-            // A triangle and its other side.
+            // A triangle and its reverse.
             _ => {
                 let [a, b, c] = [0; 3].map(|_| corners.corner(bytes));
                 vec![[a, b, c], [a, c, b]]
@@ -520,7 +522,7 @@ fn scene(bytes: &mut Bytes<'_>, may_be_open: bool) -> Option<Scene> {
     Some(Scene { facets, exact, fill, motion, moved, solid, frame, size, is_plain, is_open })
 }
 
-/// A vertex, the middle of two, a point of the lattice, or any.
+/// A random point: a vertex, the middle of two, a point of the lattice, or any point.
 fn point(bytes: &mut Bytes<'_>, scene: &Scene, corners: &Corners) -> Point {
     let vertices = scene.solid.mesh().vertices();
     match bytes.below(8) {
@@ -534,7 +536,7 @@ fn point(bytes: &mut Bytes<'_>, scene: &Scene, corners: &Corners) -> Point {
     }
 }
 
-/// What the fuzz target does.
+/// Runs the fuzz target.
 pub fn direct(data: &[u8]) {
     let mut bytes = Bytes(data);
     let bytes = &mut bytes;
@@ -546,7 +548,7 @@ pub fn direct(data: &[u8]) {
         offset: scene.frame.origin().map(|c| c + 4.0 * scale),
     };
     let corners = if bytes.below(2) == 0 {
-        // As the mesh's.
+        // Like the mesh's.
         let around = scene.solid.mesh().vertices().first().copied().unwrap_or_default();
         Corners { scale: scene.size.min(scale), offset: around, ..corners }
     } else {
@@ -563,9 +565,9 @@ pub fn direct(data: &[u8]) {
 
 // ---- stored --------------------------------------------------------------------------------------------------
 
-/// What another fuzz target does: the same meshes, stored with the planes of their facets, alone and less a
-/// block. No point is told wrong, and none is left undecided far from the surface, unless its cell was given
-/// up.
+/// Runs the fuzz target `layers`: the same meshes, stored with the planes of their facets, alone and minus a
+/// block. No point is decided wrongly, and no point far from the surface is undecided unless its cell was
+/// given up.
 pub fn layers(data: &[u8]) {
     let mut bytes = Bytes(data);
     let bytes = &mut bytes;
@@ -616,8 +618,8 @@ pub fn layers(data: &[u8]) {
                 let all =
                     scene.moved.iter().map(|facet| from_triangle(*facet, p)).fold(f64::INFINITY, f64::min);
                 let is_far = all > 2.0 * tolerance + 1e-9 * (scene.size + place.size);
-                // (A facet without thickness, whose plane goes on beyond it, may be taken for a body. Planes
-                // are up to 2^-22 wide.)
+                // (A facet without thickness may be taken for a body, because its plane continues beyond it.
+                // Planes are up to 2^-22 wide.)
                 let is_beside =
                     || scene.is_near_to_a_plane(p, 1e-6 * (scene.size + place.size)) || scene.has_a_needle();
                 assert!(!is_known || !is_far || is_beside(), "undecided {all} from the surface: {}", told());
@@ -670,7 +672,7 @@ fn ask_ray(bytes: &mut Bytes<'_>, scene: &Scene, corners: &Corners) {
         let holds = |wide: &Interval| wide.lower <= span.lower && span.upper <= wide.upper;
         assert!(outer.iter().any(holds), "inner beyond outer: {spans:?} {told}");
     }
-    // Ends of spans, and where the ray passes the whole numbers of the lattice.
+    // Ends of spans, and places where the ray crosses integer coordinates.
     let mut times: Vec<f64> = inner.iter().chain(outer).flat_map(|span| [span.lower, span.upper]).collect();
     times.push(0.0);
     for plane in 0..3 * 9 {
@@ -697,7 +699,7 @@ fn ask_ray(bytes: &mut Bytes<'_>, scene: &Scene, corners: &Corners) {
             assert!(!is_outer, "beyond the universe, or behind its end: {t} {spans:?} {told}");
             continue;
         }
-        // (Nothing is known of what is that near to the universe's faces, in doubles.)
+        // (In doubles, places so near the universe's faces are unknown.)
         if scene.is_in_universe(&place).is_none() {
             continue;
         }
@@ -715,14 +717,14 @@ fn ask_ray(bytes: &mut Bytes<'_>, scene: &Scene, corners: &Corners) {
     }
     let told = format!("{full:?} {upper:?} {spans:?} {told}");
     match (full, inner.first()) {
-        // (One point may be one of the universe alone.)
+        // (A point may be the universe's only point on the ray.)
         (None, Some(span)) => assert!(span.width() == 0.0, "no hit: {told}"),
         (Some(hit), Some(span)) => assert!(hit.t.lower <= span.lower, "{told}"),
         _ => {}
     }
     match (upper, outer.first()) {
         (Some(hit), Some(span)) => assert!(span.lower <= hit.t.upper, "{told}"),
-        // (Of a ray along a facet one may prove that it meets nothing, and the other not. Nothing is missed,
+        // (For a ray along a facet, one answer may prove a miss while the other does not. Nothing is missed,
         // see above.)
         (None, _) => {}
         (Some(_), None) => panic!("{told}"),
@@ -744,7 +746,7 @@ fn ask_ray(bytes: &mut Bytes<'_>, scene: &Scene, corners: &Corners) {
                 let turn = dot(normal, hit.normal) / length(normal);
                 assert!(turn.abs() > 1.0 - 1e-6, "another normal: {turn} {told}");
                 let against = dot(hit.normal, way.map(|c| c / length(way)));
-                // (Of what is only touched nobody sees the side.)
+                // (The side of a mere contact is unknown.)
                 let goes_in =
                     is_proven && inner.iter().any(|span| span.lower == hit.t.upper && span.width() > 0.0);
                 assert!(!goes_in || against < 1e-6, "not outward: {against} {told}");
@@ -758,12 +760,12 @@ fn ask_ray(bytes: &mut Bytes<'_>, scene: &Scene, corners: &Corners) {
         for k in 0..5 {
             let near = at(|axis| from[axis] + (end[axis] - from[axis]) * f64::from(k) / 4.0);
             let place = Place::new(near);
-            // (A point beside the segment, but for its ends, where it is far from the surface.)
+            // (A point beside the segment, away from its ends, where the segment is far from the surface.)
             let is_clear = !scene.is_near(near, 1e-9 * (scene.size + length(from) + length(end)));
             if is_clear && scene.is_in_universe(&place) == Some(true) && scene.holds(&place) == Some(true) {
                 assert_ne!(sight, Sight::Clear, "{near:?} {told}");
-                // (Of a moved mesh nothing is known of a ray that comes near to an edge, and of one with
-                // holes nothing of a ray that comes near to its rim; then the cells are asked.)
+                // (For a moved mesh, a ray near an edge is undecided; for a mesh with holes, a ray near the
+                // rim. Then the cells are queried.)
                 let is_told = scene.motion.is_none() && !scene.is_open;
                 assert!(sight == Sight::Blocked || !is_told, "{near:?} {told}");
             }
@@ -780,7 +782,7 @@ fn ask_point(bytes: &mut Bytes<'_>, scene: &Scene, corners: &Corners) {
     let told = format!("{p:?} {:?} {:?} {:?}", scene.facets, scene.fill, scene.frame);
     let all = scene.moved.iter().map(|facet| from_triangle(*facet, p)).fold(f64::INFINITY, f64::min);
     let margin = 1e-9 * (scene.size + place.size);
-    // The tree is there before or after.
+    // The tree is built before or after.
     let mut answers = [Membership::Undecided];
     let ask = |answers: &mut [Membership; 1]| {
         contains(&scene.solid, &scene.frame, &[p], answers, &CONTROL).expect("points");
@@ -791,7 +793,7 @@ fn ask_point(bytes: &mut Bytes<'_>, scene: &Scene, corners: &Corners) {
         (Membership::Outside, Some(truth)) => assert!(!truth, "not outside: {told}"),
         (Membership::Undecided, _) => {
             let is_in = scene.is_in_universe(&place) == Some(true);
-            // (In whole numbers or, with holes, in doubles.)
+            // (In integers or, with holes, in doubles.)
             let is_told = !scene.is_open || scene.is_plain && scene.motion.is_none() && truth.is_some();
             assert!(!is_in || all <= margin || !is_told, "undecided: {told}");
         }
@@ -802,7 +804,7 @@ fn ask_point(bytes: &mut Bytes<'_>, scene: &Scene, corners: &Corners) {
         let distance = found[0].distance;
         let told = format!("{to:?} {:?} {told}", found[0]);
         let Some(near) = found[0].nearest else { continue };
-        // (Where cells were asked, no triangle is known.)
+        // (Where cells were queried, no triangle is known.)
         let Some(surface) = near.surface else { continue };
         let facet = scene.moved[surface as usize];
         let size = distance.lower.abs().max(distance.upper.abs());
@@ -820,9 +822,9 @@ fn ask_point(bytes: &mut Bytes<'_>, scene: &Scene, corners: &Corners) {
             assert!(!inside || truth, "not inside: {told}");
             assert!(outside || inside || all <= margin, "no side told: {told}");
         }
-        // (From far away many points are as near, but for rounding.)
+        // (From far away, many points are equally near, up to rounding.)
         if to == DistanceTo::Boundary && size < 1e6 * scene.size {
-            // (Next to nothing from the surface, all that is near is as near, but for rounding.)
+            // (Almost on the surface, all nearby points are equally near, up to rounding.)
             if size > margin {
                 bounds_the_solid(scene, near.point, facet, &told);
             }
@@ -837,7 +839,8 @@ fn ask_point(bytes: &mut Bytes<'_>, scene: &Scene, corners: &Corners) {
     }
 }
 
-/// Next to a nearest point, a little towards the middle of its triangle, the solid lies on one side.
+/// Checks that the solid lies on exactly one side of the surface next to a nearest point, slightly towards
+/// the middle of its triangle.
 fn bounds_the_solid(scene: &Scene, point: Point, facet: Facet, told: &str) {
     let middle = at(|k| (facet[0][k] / 3.0 + facet[1][k] / 3.0) + facet[2][k] / 3.0);
     let inner = at(|k| point[k] + 1e-3 * (middle[k] - point[k]));
@@ -846,7 +849,7 @@ fn bounds_the_solid(scene: &Scene, point: Point, facet: Facet, told: &str) {
     }
 }
 
-/// Whether the solid lies on either side of a point of a triangle, if nothing else is near.
+/// Returns whether the solid lies on either side of a point of a triangle, if no other triangle is near.
 fn sides(scene: &Scene, point: Point, facet: Facet) -> Option<[bool; 2]> {
     if plumpness(facet) < 1e-3 {
         return None;
@@ -862,7 +865,7 @@ fn sides(scene: &Scene, point: Point, facet: Facet) -> Option<[bool; 2]> {
     Some([scene.holds(&Place::new(beside(1.0)))?, scene.holds(&Place::new(beside(-1.0)))?])
 }
 
-/// The middles of triangles that bound the solid are not nearer.
+/// Checks that the middles of triangles that bound the solid are not nearer.
 fn no_boundary_is_nearer(scene: &Scene, p: Point, distance: f64, margin: f64, told: &str) {
     for facet in &scene.moved {
         let middle = at(|k| (facet[0][k] / 3.0 + facet[1][k] / 3.0) + facet[2][k] / 3.0);

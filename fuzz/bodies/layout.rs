@@ -1,5 +1,5 @@
-//! A file taken apart into header and sections, and put together again: written from the specification, and
-//! on purpose without the library's own code.
+//! Splits a file into header and sections, and assembles it again. This module is written from the
+//! specification, deliberately without the library's code.
 
 /// Length of the header.
 pub const HEADER: usize = 128;
@@ -32,7 +32,7 @@ pub const ORIGINS: u32 = 22;
 pub const CELL_SLABS: u32 = 23;
 pub const GROUPS: u32 = 24;
 pub const MOMENTS: u32 = 25;
-/// Those of cuts.
+/// The kinds of cuts.
 pub const CUTS: [u32; 11] = [
     CUT_HEADS, CUT_IDS, CUT_BLOCKS, CUT_FIRST, SURFACES, NUMBERS, PLACEMENTS, ORIGINS, CELL_SLABS, GROUPS,
     MOMENTS,
@@ -107,7 +107,7 @@ pub const RECORD_FIELDS: [(usize, usize); 29] = [
     (124, 4),
 ];
 
-/// What the record of the solid repeats: offset in the header, offset in the record, length.
+/// The header's fields that the solid's record repeats: offset in the header, offset in the record, length.
 const MIRRORED: [(usize, usize, usize); 8] = [
     (64, 12, 3),
     (70, 15, 1),
@@ -119,7 +119,7 @@ const MIRRORED: [(usize, usize, usize); 8] = [
     (88, 96, 8),
 ];
 
-/// The number in the `length` bytes from `at` on.
+/// Returns the number in the `length` bytes from `at` on.
 pub fn number(bytes: &[u8], at: usize, length: usize) -> u64 {
     let mut raw = [0; 8];
     raw[..length].copy_from_slice(&bytes[at..at + length]);
@@ -131,7 +131,7 @@ pub fn put(bytes: &mut [u8], at: usize, value: u64, length: usize) {
     bytes[at..at + length].copy_from_slice(&value.to_le_bytes()[..length]);
 }
 
-/// A section: its entry in the table as it stands there, and its bytes.
+/// A section: its entry in the table, unchanged, and its bytes.
 #[derive(Clone)]
 pub struct Section {
     pub entry: [u8; ENTRY],
@@ -139,7 +139,7 @@ pub struct Section {
 }
 
 impl Section {
-    /// A section of the solid whose entry has no place yet.
+    /// A section of the solid whose entry has no offset yet.
     pub fn new(kind: u32, bytes: Vec<u8>) -> Section {
         let mut entry = [0; ENTRY];
         put(&mut entry, 0, kind.into(), 4);
@@ -156,18 +156,18 @@ impl Section {
         number(&self.entry, 4, 4) as u32
     }
 
-    /// Whether it is the solid's section of a kind.
+    /// True for the solid's section of a kind.
     pub fn is(&self, kind: u32) -> bool {
         self.kind() == kind && self.owner() == 0
     }
 
-    /// Bytes of an element according to the entry; 1 of a type or of an encoding that nobody knows.
+    /// Returns the bytes of an element according to the entry; 1 for an unknown type or encoding.
     pub fn size(&self) -> usize {
         let element = [8, 1, 2, 4, 8, 4, 8].get(self.entry[8] as usize).filter(|_| self.entry[10] == 0);
         element.map_or(1, |size| size * self.entry[9] as usize).max(1)
     }
 
-    /// The index of the section whose bytes these are, too.
+    /// Returns the index of the section with the same bytes.
     pub fn same(&self) -> Option<usize> {
         (number(&self.entry, 44, 4) as usize).checked_sub(1)
     }
@@ -180,25 +180,24 @@ pub struct File {
     pub sections: Vec<Section>,
 }
 
-/// What is made right when a file is put together.
+/// The repairs made when a file is assembled.
 #[derive(Clone, Copy)]
 pub struct Repairs {
-    /// The tree itself: as many elements and bricks as the branches demand, and the links to them.
+    /// The tree itself: as many elements and bricks as the branches require, and the links to them.
     pub links: bool,
     /// The dictionary of bricks.
     pub dictionary: bool,
     /// The level table.
     pub levels: bool,
-    /// Cuts: as many as there are PARTIAL cells and splits, what is counted before them, and which surfaces
-    /// they have.
+    /// Cuts: as many as there are PARTIAL cells and splits, the counts before them, and their surfaces.
     pub cuts: bool,
     /// The order of the table, and elements and counts, in the entries and in the header.
     pub counts: bool,
     /// The records of objects.
     pub objects: bool,
-    /// Offsets and lengths, also of the file.
+    /// Offsets and lengths, including the file's length.
     pub places: bool,
-    /// Checksums of sections, of the table, of the header.
+    /// Checksums of sections, of the table and of the header.
     pub checksums: [bool; 3],
 }
 
@@ -223,31 +222,31 @@ impl Repairs {
         places: false,
         checksums: [false; 3],
     };
-    /// Whatever says where things are, and the checksums, but nothing of the tree.
+    /// All offsets, counts, records and checksums, but no repairs of the tree.
     pub const FRAME: Repairs =
         Repairs { links: false, dictionary: false, levels: false, cuts: false, ..Repairs::ALL };
 }
 
-/// Sections that are looked at; files may have more.
+/// The most sections examined. Files may have more.
 const MOST_SECTIONS: usize = 64;
-/// Elements and bricks that a repaired tree may have.
+/// The most elements and bricks of a repaired tree.
 const MOST_ENTRIES: usize = 600;
-/// Cuts that a repaired tree may have.
+/// The most cuts of a repaired tree.
 const MOST_CUTS: usize = 2000;
 
-/// Bits of an id where there are so many surfaces.
+/// Returns the number of bits of an id for this number of surfaces.
 fn bits_of_an_id(surfaces: usize) -> usize {
     (1..).find(|&bits| 1 << bits >= surfaces).unwrap_or(1)
 }
 
-/// The numbers of a stream of bits.
+/// Unpacks the numbers of a stream of bits.
 fn unpacked(bytes: &[u8], bits: usize) -> Vec<usize> {
     let bit = |i: usize| usize::from(bytes[i / 8] >> (i % 8) & 1);
     let one = |i: usize| (0..bits).map(|k| bit(i * bits + k) << k).sum();
     (0..8 * bytes.len() / bits).map(one).collect()
 }
 
-/// A stream of bits.
+/// Packs numbers into a stream of bits.
 fn packed(numbers: &[usize], bits: usize) -> Vec<u8> {
     let mut bytes = vec![0; (numbers.len() * bits).div_ceil(8)];
     for (i, number) in numbers.iter().enumerate() {
@@ -258,16 +257,16 @@ fn packed(numbers: &[usize], bits: usize) -> Vec<u8> {
     bytes
 }
 
-/// Surfaces whose numbers are those of their first use.
+/// Surfaces numbered in the order of their first use.
 struct Group {
     start: usize,
-    /// The first one that has not been used.
+    /// The first unused surface.
     next: usize,
     end: usize,
     origin: [u64; 2],
 }
 
-/// Which surfaces cuts use: those of records, then slabs of cells group by group.
+/// The surfaces that cuts use: those of records first, then slabs of cells group by group.
 struct Kept {
     groups: Vec<Group>,
     slabs: Vec<u8>,
@@ -287,7 +286,7 @@ impl Kept {
             add(end, [number(group, 0, 8), number(group, 8, 8)]);
         }
         add(all, [7; 2]);
-        // The others begin where surfaces are; no two of them have one origin.
+        // The other groups begin at existing surfaces, and no two groups have the same origin.
         let mut n = 0;
         kept.groups.retain(|group| {
             n += 1;
@@ -311,7 +310,7 @@ impl Kept {
         id < self.groups[g].next || id == self.groups[g].next && begun
     }
 
-    /// A surface that may be used and is none of some others, `drawn` if that is one.
+    /// Returns an allowed surface that is not among `others`: `drawn` if it is one.
     fn one(&mut self, drawn: usize, others: &[usize]) -> usize {
         let is_good = |id: &usize| self.may_be(*id) && !others.contains(id);
         let all = self.all();
@@ -322,7 +321,7 @@ impl Kept {
         id
     }
 
-    /// What surfaces are called when those are gone that are not used; the slabs of cells, mended, and their
+    /// Returns the surfaces' new numbers without the unused surfaces, the repaired slabs of cells, and their
     /// groups.
     fn finish(&self, depth: usize) -> (Vec<usize>, Vec<u8>, Vec<u8>) {
         let (mut names, mut slabs, mut groups) = (vec![0; self.all()], vec![], vec![]);
@@ -346,13 +345,13 @@ impl Kept {
     }
 }
 
-/// A slab of a cell that is legal.
+/// Makes a slab of a cell legal.
 fn mended_slab(slab: &[u8], depth: usize) -> Vec<u8> {
     let [home, planes] = [number(slab, 0, 8), number(slab, 8, 8)];
     let index = (home >> 61 & 3).min(2);
     let octants = home & ((1 << 61) - 1);
     let is_level = |level: &usize| octants >> (3 * level) == 1;
-    // A cell of the first level is always there.
+    // A cell of the first level is valid at any depth.
     let cell = (0..=depth).find(is_level).map_or(8 | octants & 7, |_| octants);
     let part = |shift: u32, bits: u32| planes >> shift & ((1 << bits) - 1);
     let component = |own: u64| if own == 0x8000 { 0 } else { own };
@@ -362,8 +361,8 @@ fn mended_slab(slab: &[u8], depth: usize) -> Vec<u8> {
 }
 
 impl File {
-    /// The parts of `bytes`, if there are a signature and a header. Sections that lie elsewhere than in the
-    /// file are empty.
+    /// Returns the parts of `bytes`, if they have a signature and a header. Sections outside the file are
+    /// empty.
     pub fn parse(bytes: &[u8]) -> Option<File> {
         let header: [u8; HEADER] = *bytes.first_chunk()?;
         if header[..8] != MAGIC {
@@ -382,7 +381,7 @@ impl File {
         Some(File { header, sections: sections.collect() })
     }
 
-    /// The solid's section of a kind, the first if there are several.
+    /// Returns the solid's section of a kind, the first if there are several.
     pub fn section(&mut self, kind: u32) -> Option<&mut Section> {
         self.sections.iter_mut().find(|section| section.is(kind))
     }
@@ -391,7 +390,7 @@ impl File {
         self.sections.iter().find(|section| section.is(kind)).map_or(&[], |section| &section.bytes)
     }
 
-    /// Makes `bytes` the solid's section of a kind; none if they are empty.
+    /// Sets the solid's section of a kind to `bytes`; removes it if they are empty.
     fn set(&mut self, kind: u32, bytes: Vec<u8>) {
         if bytes.is_empty() {
             let others = (0..self.sections.len()).filter(|&i| !self.sections[i].is(kind));
@@ -404,8 +403,8 @@ impl File {
         }
     }
 
-    /// Keeps the sections that `order` names, in that order. Those that shared the bytes of one that goes
-    /// have them for themselves.
+    /// Keeps the sections that `order` names, in that order. Sections that shared the bytes of a removed
+    /// section get their own copy.
     fn rearrange(&mut self, order: &[usize]) {
         let mut sections: Vec<Section> = order.iter().map(|&i| self.sections[i].clone()).collect();
         for section in &mut sections {
@@ -417,20 +416,21 @@ impl File {
         self.sections = sections;
     }
 
-    /// Puts a section before the one at `at`.
+    /// Inserts a section before the one at `at`.
     pub fn insert(&mut self, at: usize, section: Section) {
         let last = self.sections.len();
         self.sections.push(section);
         self.rearrange(&(0..at).chain([last]).chain(at..last).collect::<Vec<_>>());
     }
 
-    /// Takes the section at `at` away.
+    /// Removes the section at `at`.
     pub fn remove(&mut self, at: usize) {
         let others = (0..self.sections.len()).filter(|&i| i != at);
         self.rearrange(&others.collect::<Vec<_>>());
     }
 
-    /// Whose bytes the section at `at` shares, if it names one that comes before it and has bytes of its own.
+    /// Returns the section whose bytes the section at `at` shares, if that section comes before it and has
+    /// its own bytes.
     fn shared(&self, at: usize) -> Option<usize> {
         self.sections[at].same().filter(|&of| of < at && self.sections[of].same().is_none())
     }
@@ -443,12 +443,12 @@ impl File {
         self.set(kind, words.iter().flat_map(|word| word.to_le_bytes()).collect());
     }
 
-    /// Bytes of a brick according to the header.
+    /// Returns the bytes of a brick according to the header.
     pub fn brick_size(&self) -> usize {
         if self.header[67] == 2 { 16 } else { 8 }
     }
 
-    /// Whether bricks go through a dictionary, according to the header.
+    /// True if bricks go through a dictionary according to the header.
     pub fn coded(&self) -> bool {
         self.header[68] == 1
     }
@@ -457,7 +457,7 @@ impl File {
         Some(self.header[64] as usize).filter(|depth| (1..=20).contains(depth))
     }
 
-    /// The bricks, whether or not they go through a dictionary.
+    /// Returns the bricks, whether or not they go through a dictionary.
     fn decoded(&self) -> Vec<Vec<u8>> {
         let size = self.brick_size();
         if !self.coded() {
@@ -468,7 +468,7 @@ impl File {
         indices.filter_map(|index| entries.get(index % entries.len().max(1))).map(|e| e.to_vec()).collect()
     }
 
-    /// Stores bricks: raw, or through one dictionary.
+    /// Stores bricks, raw or through one dictionary.
     fn encode(&mut self, bricks: &[Vec<u8>], coded: bool) {
         for kind in [BRICKS, INDICES, ENTRIES, SEGMENTS] {
             self.set(kind, vec![]);
@@ -496,7 +496,7 @@ impl File {
         self.set_words(SEGMENTS, &[0]);
     }
 
-    /// Gives the bricks `planes` planes instead of those that they have.
+    /// Converts the bricks to `planes` planes.
     pub fn convert_bricks(&mut self, planes: u8) {
         let bricks = self.decoded();
         let converted: Vec<Vec<u8>> = match (self.header[67], planes) {
@@ -508,8 +508,8 @@ impl File {
         self.encode(&converted, self.coded());
     }
 
-    /// Makes the tree one that hangs together, starting from its planes: drops and repeats elements and
-    /// bricks until there are as many as the branches demand, and ranks the children.
+    /// Makes the tree connected, starting from its planes: drops and repeats elements and bricks until there
+    /// are as many as the branches require, and ranks the children.
     fn repair_links(&mut self) {
         let Some(depth) = self.depth() else { return };
         let levels = depth.div_ceil(2);
@@ -564,7 +564,7 @@ impl File {
         self.encode(&bricks, self.coded());
     }
 
-    /// Sorts the dictionary anew.
+    /// Sorts the dictionary.
     fn repair_dictionary(&mut self) {
         if self.coded() {
             let bricks = self.decoded();
@@ -572,8 +572,8 @@ impl File {
         }
     }
 
-    /// Counts the levels, element by element. Where links are wrong, the level table tells where levels begin
-    /// and is taken as it is.
+    /// Counts the levels, element by element. Where links are wrong, the level table defines the levels'
+    /// beginnings and is kept.
     fn repair_levels(&mut self) {
         let Some(depth) = self.depth() else { return };
         let levels = depth.div_ceil(2);
@@ -620,13 +620,13 @@ impl File {
         self.set_words(LEVELS, &counts.concat());
     }
 
-    /// Whether the sections of cuts are ones, according to the header.
+    /// True if the sections of cuts are valid kinds according to the header, and there are cuts.
     fn has_cuts(&self) -> bool {
         number(&self.header, 10, 2) >= 4 && self.bytes(CUT_HEADS) != [0u8; 0]
     }
 
-    /// The PARTIAL cells' levels in the order of their cuts, and how many there are before each element and
-    /// brick.
+    /// Returns the PARTIAL cells' levels in the order of their cuts, and the number of such cells before each
+    /// element and brick.
     fn partial_cells(&self, depth: usize) -> (Vec<usize>, Vec<u32>) {
         let (mut cells, mut first) = (vec![], vec![]);
         match self.header[65] {
@@ -640,7 +640,7 @@ impl File {
         let elements = self.words(PLANES);
         let elements = elements.chunks_exact(2).map(|pair| [pair[0], pair[1]]);
         let entries: Vec<[u64; 2]> = elements.chain(bricks.iter().map(|brick| upper(brick))).collect();
-        // Where the levels end, by the branches.
+        // The ends of the levels, by the branches.
         let (mut e, mut end, mut children) = (0, 1, 0);
         for (n, [lower, upper]) in entries.into_iter().enumerate() {
             if n == end {
@@ -700,7 +700,7 @@ impl File {
                 let level = levels[record] + 1;
                 levels.extend([level; 8]);
             }
-            // Different ones of those that were used, or that may be next.
+            // Different surfaces, each already used or next in order.
             let mut own: Vec<usize> = vec![];
             while own.len() < count {
                 let drawn = drawn.next().map_or(0, |&id| id);
@@ -711,7 +711,7 @@ impl File {
             heads.push(head);
             record += 1;
         }
-        // Those that are left, with their doubles.
+        // The remaining records, with their doubles.
         let used = kept.groups[0].next;
         let mut records = self.bytes(SURFACES)[..16 * used].to_vec();
         let (old, mut doubles) = (self.bytes(NUMBERS).to_vec(), vec![]);
@@ -748,13 +748,13 @@ impl File {
         }
         self.set(CELL_SLABS, slabs);
         self.set(GROUPS, groups);
-        // Those of one solid.
+        // Moments of a single solid.
         if let Some(moments) = self.section(MOMENTS) {
             moments.bytes.truncate(8 * 23);
         }
     }
 
-    /// The table's order, the elements of the solid's sections, and the counts.
+    /// Repairs the table's order, the elements of the solid's sections, and the counts.
     fn repair_counts(&mut self) {
         let planes = self.brick_size() as u64 / 8;
         let has_cuts = number(&self.header, 10, 2) >= 4;
@@ -799,8 +799,8 @@ impl File {
         put(&mut self.header, 96, self.sections.len() as u64, 4);
     }
 
-    /// The records of the objects: the solid's says what the header says, the others nothing that must be
-    /// understood; and every section belongs to one of them.
+    /// Repairs the objects' records: the solid's record repeats the header, the others contain nothing that
+    /// readers must understand, and every section belongs to an object.
     fn repair_objects(&mut self) {
         let newer = number(&self.header, 10, 2) > 4;
         let mut records = self.bytes(OBJECTS).to_vec();
@@ -820,7 +820,7 @@ impl File {
             for (from, to, length) in MIRRORED {
                 record[to..to + length].copy_from_slice(&self.header[from..from + length]);
             }
-            // Values, which solids have not, and what is reserved.
+            // Values, which solids do not have, and reserved bytes.
             for (values, reserved) in [(19..21, 21..24), (64..76, 76..80), (104..112, 112..128)] {
                 record[values].fill(0);
                 if !newer {
@@ -836,7 +836,7 @@ impl File {
         }
     }
 
-    /// That sections share the bytes of others which say that they do, and can.
+    /// Repairs shared bytes: sections that claim to share the bytes of others, and can, do so.
     fn repair_sharing(&mut self) {
         for i in 0..self.sections.len() {
             let Some(of) = self.shared(i) else {
@@ -854,7 +854,7 @@ impl File {
         }
     }
 
-    /// The file. What is not repaired stands there as it stood.
+    /// Returns the file. Unrepaired parts stay as they are.
     pub fn assemble(mut self, repairs: &Repairs) -> Vec<u8> {
         if repairs.links {
             self.repair_links();
@@ -875,7 +875,7 @@ impl File {
             self.repair_counts();
         }
         if repairs.objects && repairs.counts {
-            // What was counted stands in the record of the solid, too.
+            // The solid's record repeats the counts.
             self.repair_objects();
         }
         if repairs.places {
@@ -893,7 +893,7 @@ impl File {
             if repairs.places {
                 put(entry, 16, shared.map_or(bytes.len() as u64, |of| number(&of, 16, 8)), 8);
                 put(entry, 24, length as u64, 8);
-                // How many elements there are in an encoding that nobody knows is the entry's word.
+                // In an unknown encoding, the entry's number of elements counts.
                 let count =
                     if raw && entry[8] < 7 { (length / size) as u64 } else { number(entry, 32, 8).max(1) };
                 put(entry, 32, shared.map_or(count, |of| number(&of, 32, 8)), 8);

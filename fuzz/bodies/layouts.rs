@@ -1,12 +1,12 @@
-//! Any bytes as a container, obstacles and items, some of which stand somewhere: no verdict of a check
-//! contradicts points of the solids, what a search places is proven once more, and the number of threads
-//! changes nothing.
+//! Any bytes as a container, obstacles and items, some already placed. No verdict of a check contradicts
+//! points of the solids, every placement of a search is proven once more, and the number of threads changes
+//! nothing.
 
 use leafless::layout::{Bay, Direction, Item, Layout, Objective, Orientations, Placed, SearchOptions};
 use leafless::query::GapVerdict;
 use leafless::{Affine, AnySolid, Control, Csg};
 
-/// The bytes that are left; 0 for each that is missing.
+/// The remaining bytes; 0 for each missing one.
 struct Bytes<'a>(&'a [u8]);
 
 impl Bytes<'_> {
@@ -21,18 +21,18 @@ impl Bytes<'_> {
     }
 }
 
-/// A solid in numbers that are exact.
+/// A solid with exact numbers.
 #[derive(Debug, Clone, Copy)]
 enum Figure {
     Ball(f64),
     Box([f64; 3]),
     /// Two arms of a width, of these lengths, along x and z.
     Hook([f64; 2], f64),
-    /// Around z, its radius and its height.
+    /// A cylinder around z, by its radius and height.
     Cylinder(f64, f64),
 }
 
-/// Points that are nearer to a surface than that count for neither side.
+/// Points closer than this to a surface count for neither side.
 const LITTLE: f64 = 1e-6;
 
 impl Figure {
@@ -60,7 +60,7 @@ impl Figure {
         AnySolid::new(solid.expect("a good figure"))
     }
 
-    /// The box around it.
+    /// Returns the bounding box.
     fn bounds(&self) -> [[f64; 3]; 2] {
         match *self {
             Figure::Ball(radius) => [[-radius; 3], [radius; 3]],
@@ -70,7 +70,7 @@ impl Figure {
         }
     }
 
-    /// Whether a point surely lies inside, and whether it may.
+    /// Returns whether a point surely lies inside, and whether it may.
     fn holds(&self, [x, y, z]: [f64; 3]) -> [bool; 2] {
         let in_box = |size: [f64; 3], slack: f64| {
             [x, y, z].iter().zip(size).all(|(c, size)| slack < *c && *c < size - slack)
@@ -87,7 +87,7 @@ impl Figure {
         })
     }
 
-    /// Points that surely lie inside.
+    /// Returns points that surely lie inside.
     fn points(&self) -> Vec<[f64; 3]> {
         const STEPS: usize = 5;
         let [low, high] = self.bounds();
@@ -114,7 +114,7 @@ struct Figures {
 }
 
 impl Figures {
-    /// Whether a point of something placed surely lies where it must not.
+    /// True if a point of a placed item surely lies where it must not.
     fn contradicts(&self, own: usize, placed: &[Placed]) -> bool {
         let Placed { item, placement } = &placed[own];
         self.items[*item].points().into_iter().any(|point| {
@@ -129,7 +129,7 @@ impl Figures {
     }
 }
 
-/// A turn by no good angle, and an offset.
+/// A rotation by an arbitrary angle, with an offset.
 fn anywhere(bytes: &mut Bytes<'_>, within: [[f64; 3]; 2]) -> Affine {
     let (s, c) = [(0.0, 1.0), (1.0, 0.0), (0.6, 0.8), 0.47f64.sin_cos()][bytes.below(4)];
     let at = [0, 1, 2].map(|k| within[0][k] + (within[1][k] - within[0][k]) * bytes.byte() as f64 / 255.0);
@@ -140,7 +140,7 @@ fn anywhere(bytes: &mut Bytes<'_>, within: [[f64; 3]; 2]) -> Affine {
     Affine::new(rows).expect("a good map")
 }
 
-/// What the fuzz target does.
+/// Runs the fuzz target.
 pub fn layouts(data: &[u8]) {
     let mut bytes = Bytes(data);
     let container = Figure::new(&mut bytes, 2.0);
@@ -202,7 +202,7 @@ pub fn layouts(data: &[u8]) {
     let placed = layout.placed().to_vec();
     assert!(placed.starts_with(&before) && report.placed as usize == placed.len() - before.len());
     assert!(report.tests <= 60 && report.splits <= 20_000);
-    // (A pair may take more splits alone than were left in the search.)
+    // (A single pair may take more splits than the search had left.)
     for k in before.len()..placed.len() {
         let found = layout.check(k, &Control::threads(1)).expect("an answer");
         assert_eq!(found.verdict, GapVerdict::Yes, "{k}: {found:?}");

@@ -1,5 +1,5 @@
-//! Measures of trees, whatever their bytes: no panic, bounded work, intervals that are some. In a sound tree
-//! they hold what a count of its cells says.
+//! Measures of trees with any bytes: no panic, bounded work, and valid intervals. In a sound tree the
+//! intervals contain the counts of its cells.
 
 use super::CONTROL;
 use leafless::octree::CellFilter;
@@ -8,10 +8,10 @@ use leafless::{
     Control, Csg, Interval, OctreeRef, Proof, Solid, Tag, bounding_box, clearance, interference, measure,
 };
 
-/// Splits of each question. A tree from a file of some kilobytes has fewer cells that can be split.
+/// Limits the splits of each query. A tree from a file of some kilobytes has fewer cells that can be split.
 const SOME: Control<'static> = Control { max_splits: Some(200), ..CONTROL };
 
-/// Asks what is measured of a tree, alone, against itself, against a ball, a box and a half-space.
+/// Queries the measures of a tree: alone, against itself, and against a ball, a box and a half-space.
 pub fn ask_measures(tree: &OctreeRef<'_>, points: &[[f64; 3]], verified: bool) {
     // As if the cells were the solid.
     let (solid, frame) = (tree.with_proof(Proof::CERTIFIED), tree.frame());
@@ -60,7 +60,7 @@ pub fn ask_measures(tree: &OctreeRef<'_>, points: &[[f64; 3]], verified: bool) {
     }
 }
 
-/// What two solids have in common, and how far apart they are.
+/// Queries the common volume and the distance of two solids.
 fn together<R: Solid>(solid: &OctreeRef<'_>, region: &R, tree: &OctreeRef<'_>, universe: f64) {
     let frame = tree.frame();
     let volume = volume_in(solid, region, frame, &SOME).expect("both are solids on the frame");
@@ -75,7 +75,7 @@ fn together<R: Solid>(solid: &OctreeRef<'_>, region: &R, tree: &OctreeRef<'_>, u
     assert!(found.verdict != Overlap::Disjoint || found.volume.lower == 0.0);
     let apart = clearance(solid, region, frame, 0.0, &SOME).expect("both are solids on the frame");
     assert!(apart.distance.lower <= apart.distance.upper);
-    // What overlaps is not apart.
+    // Overlapping solids have distance 0.
     assert!(found.verdict != Overlap::Overlapping || apart.distance.lower == 0.0);
     classify_in(solid, region, frame, &SOME).expect("both are solids on the frame");
 }

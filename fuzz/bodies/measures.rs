@@ -1,6 +1,5 @@
-//! Any bytes as solids of unit cells, made in all the ways in which solids are made, and as questions about
-//! them under changing budgets: whatever is answered must be true of the cells, counted in whole numbers
-//! (`dense.rs`).
+//! Any bytes as solids of unit cells, made in all ways that make solids, and as queries about them under
+//! changing budgets. Every answer must be true of the cells, counted in integers (`dense.rs`).
 
 mod dense;
 mod measures_ask;
@@ -15,7 +14,7 @@ use leafless::{
 };
 use std::sync::Arc;
 
-/// The bytes that are left; 0 for each that is missing.
+/// The remaining bytes; 0 for each missing one.
 pub struct Bytes<'a>(&'a [u8]);
 
 impl Bytes<'_> {
@@ -29,7 +28,7 @@ impl Bytes<'_> {
         self.byte() % end
     }
 
-    /// A budget: none, one, two, three …, a few dozen, many.
+    /// Returns a budget of splits: unlimited, one, two, three …, a few dozen, many.
     fn budget(&mut self) -> Option<u64> {
         match self.byte() {
             code @ 0..64 => Some(code as u64 % 8),
@@ -44,22 +43,22 @@ impl Bytes<'_> {
     }
 }
 
-/// One thread, and so many splits.
+/// Limits work to one thread and a number of splits.
 fn control(max_splits: Option<u64>) -> Control<'static> {
     Control { threads: 1, max_splits, ..Control::default() }
 }
 
-/// A solid, and the unit cells that it consists of.
+/// A solid, and its unit cells.
 #[derive(Clone)]
 pub struct Scene {
     solid: AnySolid,
     truth: Dense,
 }
 
-/// Most steps of a scene, and most questions.
+/// The most steps of a scene, and the most queries.
 const MOST: usize = 12;
 
-/// What the fuzz target does.
+/// Runs the fuzz target.
 pub fn measures(data: &[u8]) {
     let mut bytes = Bytes(data);
     let frame = frame(bytes.byte());
@@ -78,8 +77,8 @@ pub fn measures(data: &[u8]) {
     }
 }
 
-/// A universe: in whole, half and quarter coordinates, with cells that are coarser, finer and as large as the
-/// unit cells; some cut the world off.
+/// A universe with integer, half or quarter coordinates. Its cells are coarser or finer than the unit cells
+/// or of the same size. Some universes cut the world off.
 fn frame(code: usize) -> Frame {
     let (origin, edge, depth) = match code % 12 {
         0 | 1 => ([0.0; 3], 16.0, 4),
@@ -97,7 +96,7 @@ fn frame(code: usize) -> Frame {
     Frame::new(origin, edge, depth).expect("a good frame")
 }
 
-/// The corners of a frame.
+/// Returns the corners of a frame.
 fn universe(frame: &Frame) -> [[f64; 3]; 2] {
     [frame.origin(), frame.origin().map(|c| c + frame.edge())]
 }
@@ -117,7 +116,7 @@ fn cuboid(bytes: &mut Bytes<'_>) -> Scene {
     Scene { solid: AnySolid::new(solid), truth: Dense::cuboid(min, max) }
 }
 
-/// A primitive, or something that is made of what came before.
+/// Pushes a primitive, or a solid made from earlier ones.
 fn step(bytes: &mut Bytes<'_>, frame: &Frame, stack: &mut Vec<Scene>) {
     let code = bytes.byte();
     let scene = match code % 24 {
@@ -127,7 +126,7 @@ fn step(bytes: &mut Bytes<'_>, frame: &Frame, stack: &mut Vec<Scene>) {
             let (axis, at) = (bytes.below(3), bytes.below(17) as i32);
             let (mut normal, mut max) = ([0.0; 3], [LOW + N; 3]);
             (normal[axis], max[axis]) = (-1.0, at);
-            // A half-space has no end, but the world's outermost cells are as the space around it.
+            // A half-space is unbounded, but the world's outermost cells equal the space around it.
             let solid = Csg::half_space(normal, f64::from(at)).expect("a good plane");
             let wide = Csg::cuboid([f64::from(LOW + 1); 3], [f64::from(LOW + N - 1); 3]).expect("a good box");
             let solid = Csg::intersection_of([solid, wide]).expect("enough memory");
@@ -157,7 +156,7 @@ fn step(bytes: &mut Bytes<'_>, frame: &Frame, stack: &mut Vec<Scene>) {
     stack.extend(scene);
 }
 
-/// Two boxes in one mesh, which may overlap or have faces in common; the second may be inside out.
+/// Two boxes in one mesh. They may overlap or share faces, and the second may be inside out.
 fn boxes_as_a_mesh(bytes: &mut Bytes<'_>) -> Option<Scene> {
     let [first, second] = [corners(bytes), corners(bytes)];
     let code = bytes.byte();
@@ -186,7 +185,7 @@ fn boxes_as_a_mesh(bytes: &mut Bytes<'_>) -> Option<Scene> {
     Some(Scene { solid: AnySolid::new(MeshSolid::new(mesh, rule).ok()?), truth })
 }
 
-/// A set operation, of expressions or of stored octrees.
+/// A set operation on expressions or on stored octrees.
 fn joined(code: usize, frame: &Frame, a: &Scene, b: &Scene) -> Scene {
     type Join = fn(bool, bool) -> bool;
     let joins: [Join; 4] = [|a, b| a || b, |a, b| a && b, |a, b| a && !b, |a, b| a != b];
@@ -211,7 +210,7 @@ fn joined(code: usize, frame: &Frame, a: &Scene, b: &Scene) -> Scene {
     Scene { solid, truth }
 }
 
-/// A symmetry of the lattice, and a shift, in one of the ways in which solids are moved.
+/// Applies a symmetry of the lattice and a translation, in one of the ways to move solids.
 fn moved(bytes: &mut Bytes<'_>, frame: &Frame, scene: Scene) -> Scene {
     let (code, way) = (bytes.byte(), bytes.byte());
     let axes = [[0, 1, 2], [0, 2, 1], [1, 0, 2], [1, 2, 0], [2, 0, 1], [2, 1, 0]][code % 6];
@@ -228,13 +227,13 @@ fn moved(bytes: &mut Bytes<'_>, frame: &Frame, scene: Scene) -> Scene {
         0 => scene.solid.placed(&placement).expect("it can be moved"),
         1 => AnySolid::new(Csg::solid(scene.solid).placed(&placement).expect("it can be moved")),
         2 => AnySolid::new(Transform::of(scene.solid, &placement)),
-        // What is outside of its own frame is not known.
+        // Parts outside its own frame are unknown.
         _ => AnySolid::new(Transform::new(scene.solid, frame, &placement)),
     };
     Scene { solid, truth }
 }
 
-/// The same solid in another form.
+/// Returns the same solid in another form.
 fn made(code: usize, bytes: &mut Bytes<'_>, frame: &Frame, scene: Scene) -> Scene {
     let solid = match code {
         0 => {
@@ -263,7 +262,7 @@ fn made(code: usize, bytes: &mut Bytes<'_>, frame: &Frame, scene: Scene) -> Scen
     Scene { solid: solid.unwrap_or(scene.solid), truth: scene.truth }
 }
 
-/// A stored octree, whose volume is what its rule says.
+/// Builds a stored octree. Its volume is the one that its rule requires.
 fn stored(scene: &Scene, frame: &Frame, rule: Rule) -> Option<Octree> {
     let tree = match build(&scene.solid, frame, rule, &control(None)) {
         Err(Error::NotSampled) => return None,
@@ -278,7 +277,7 @@ fn stored(scene: &Scene, frame: &Frame, rule: Rule) -> Option<Octree> {
     Some(tree)
 }
 
-/// What a budget leaves of an octree that is refined on demand.
+/// Builds an octree that is refined on demand within budgets.
 fn refined(bytes: &mut Bytes<'_>, frame: &Frame, scene: &Scene) -> Octree {
     let mut lazy = LazyOctree::new(scene.solid.clone(), frame).expect("it can be had");
     for _ in 0..bytes.below(3) {
@@ -298,7 +297,7 @@ fn refined(bytes: &mut Bytes<'_>, frame: &Frame, scene: &Scene) -> Octree {
     tree
 }
 
-/// The unit cells as the voxels of a volume.
+/// Returns the unit cells as the voxels of a volume.
 fn as_an_array(bytes: &mut Bytes<'_>, truth: &Dense) -> Option<AnySolid> {
     if truth.outside {
         return None;
@@ -329,7 +328,7 @@ fn as_an_array(bytes: &mut Bytes<'_>, truth: &Dense) -> Option<AnySolid> {
     Some(AnySolid::new(volume))
 }
 
-/// The unit cells as a host program's function, which may be lazy.
+/// Returns the unit cells as a host program's function, which may be lazy.
 fn as_a_function(bytes: &mut Bytes<'_>, truth: &Dense) -> Option<AnySolid> {
     let (truth, lazy) = (Arc::new(truth.clone()), bytes.below(2) != 0);
     let classified = truth.clone();
@@ -347,7 +346,7 @@ fn as_a_function(bytes: &mut Bytes<'_>, truth: &Dense) -> Option<AnySolid> {
     })
 }
 
-/// What a list of voxels says of the octree that it was made of.
+/// Returns an octree by way of its voxel records, as a solid.
 fn as_records(frame: &Frame, scene: &Scene) -> Option<AnySolid> {
     let tree = build(&scene.solid, frame, Rule::Certified, &control(None)).expect("it can be built");
     let records = VoxelRecords::of(tree.view(), &VoxelOptions::new(), None, &control(None)).ok()?;
@@ -355,8 +354,7 @@ fn as_records(frame: &Frame, scene: &Scene) -> Option<AnySolid> {
     Some(AnySolid::new(octree))
 }
 
-/// The boundary as a mesh, with as many triangles as there are halves of faces; its edges may be of four of
-/// them.
+/// Returns the boundary as a mesh, with two triangles for each face. An edge may belong to four triangles.
 fn as_a_mesh(truth: &Dense) -> Option<AnySolid> {
     if truth.outside {
         return None;

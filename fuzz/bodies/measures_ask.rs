@@ -1,4 +1,4 @@
-//! The questions of the target `measures`. Each is asked under some budget; the answer must hold for the unit
+//! The queries of the target `measures`. Each runs under some budget, and the answer must hold for the unit
 //! cells.
 
 use super::dense::Dense;
@@ -13,7 +13,7 @@ use leafless::{
 };
 use std::fmt::Debug;
 
-/// One question about two solids.
+/// Runs one query about two solids.
 pub fn ask(bytes: &mut Bytes<'_>, frame: &Frame, a: &Scene, b: &Scene) {
     let code = bytes.byte();
     let budget = bytes.budget();
@@ -44,12 +44,11 @@ struct Asked<'a> {
     b: &'a Scene,
     budget: Option<u64>,
     tolerance: f64,
-    /// Whether two threads must say the same.
+    /// True if two threads must give the same answer.
     threads: bool,
 }
 
-/// A ray, and its pieces between places where it changes cells: from, to, and whether the piece is in the
-/// solid.
+/// A ray, and its pieces between changes of cells: start, end, and whether the piece is in the solid.
 struct Known {
     from: [f64; 3],
     direction: [f64; 3],
@@ -57,14 +56,14 @@ struct Known {
     pieces: Vec<(f64, f64, bool)>,
 }
 
-/// Whether an interval contains a number that was rounded.
+/// True if an interval contains a rounded number.
 fn holds(found: Interval, truth: f64) -> bool {
     let slack = if truth.is_finite() { 1e-12 * (1.0 + truth.abs()) } else { 0.0 };
     found.lower <= truth + slack && truth - slack <= found.upper
 }
 
 impl Asked<'_> {
-    /// What one thread answers, and two.
+    /// Returns the answer of one thread. If `threads`, two threads must give the same.
     fn by_threads<T: PartialEq + Debug>(&self, ask: impl Fn(&Control<'_>) -> Result<T, Error>) -> T {
         let one = control(self.budget);
         let found = ask(&one).expect("nothing is wrong with the question");
@@ -212,13 +211,13 @@ impl Asked<'_> {
         assert_eq!(found.witness.is_some(), found.verdict == Overlap::Overlapping);
         assert!(found.witness.is_none_or(|cell| common.in_cell(self.frame, cell).0), "{found:?}");
         if let Some(Ball { centre, radius }) = found.ball {
-            // A cube in the ball.
+            // A cube inside the ball.
             let reach = 0.57 * radius;
             let (min, max) = (centre.map(|c| c - reach), centre.map(|c| c + reach));
             assert!(reach > 0.0 && common.in_box(min, max).1, "{found:?}");
         }
         assert!(found.splits.iter().sum::<u64>() <= self.most(), "{found:?}");
-        // Nobody comes first.
+        // The order of the operands does not matter.
         let other = interference(&b.solid, &a.solid, self.frame, self.tolerance, &control(self.budget));
         let other = other.expect("nothing is wrong with the question").verdict;
         let both = [found.verdict, other];
@@ -240,7 +239,7 @@ impl Asked<'_> {
         }
     }
 
-    /// Points with coordinates in quarters, some outside of the universe, some on faces.
+    /// Points with coordinates in quarters. Some are outside the universe, some on faces.
     fn some_points(&self, bytes: &mut Bytes<'_>) -> Vec<[f64; 3]> {
         (0..1 + bytes.below(6)).map(|_| [0; 3].map(|_: i32| bytes.byte() as f64 / 8.0 - 8.0)).collect()
     }
@@ -309,14 +308,14 @@ impl Asked<'_> {
         assert!(found.upper_least <= within, "{found:?}, {within}");
     }
 
-    /// Rays whose direction is of small whole numbers, from points that are on no edge; the places where they
-    /// change cells, and whether they are in the solid between these.
+    /// A ray with a direction of small integers, from a point on no edge, with its changes of cells and
+    /// whether it is in the solid between them.
     fn some_ray(&self, bytes: &mut Bytes<'_>) -> Option<Known> {
         let from = [0.125, 0.375, 0.6875].map(|part| bytes.below(20) as f64 - 2.0 + part);
         let direction = [0; 3].map(|_: i32| bytes.below(5) as f64 - 2.0);
         let ray = Ray::new(from, direction).ok()?;
         let [min, max] = self.universe();
-        // Where the ray is in the universe.
+        // The time range of the ray in the universe.
         let (mut first, mut last) = (0f64, f64::INFINITY);
         let mut places = Vec::new();
         for axis in 0..3 {
@@ -353,7 +352,7 @@ impl Asked<'_> {
             for (known, hit) in asked.iter().zip(found) {
                 let ray = known.ray;
                 let first = known.pieces.iter().find(|piece| piece.2).map(|piece| piece.0);
-                // A ray may touch the solid in a face, an edge or a corner before.
+                // Before, a ray may touch the solid in a face, an edge or a corner.
                 match (hit, first) {
                     (Some(hit), Some(first)) => {
                         let slack = 1e-12 * (1.0 + first);
@@ -369,7 +368,7 @@ impl Asked<'_> {
         }
     }
 
-    /// Whether a point of a ray is in the closed solid, but for rounding.
+    /// True if a point of a ray is in the closed solid, up to rounding.
     fn touches(&self, known: &Known, t: f64) -> bool {
         let point = [0, 1, 2].map(|axis| known.from[axis] + t * known.direction[axis]);
         (0..27).any(|k: i32| {
@@ -400,7 +399,7 @@ impl Asked<'_> {
         let [from, to] = [(); 2].map(|()| [0; 3].map(|_: i32| bytes.below(80) as f64 / 4.0 - 2.0));
         let asked = line_of_sight(&self.a.solid, self.frame, from, to, &control(self.budget));
         let Ok(found) = asked else { return assert_eq!(from, to) };
-        // Samples of the segment: coordinates are quarters, so these are exact.
+        // Samples of the segment. Coordinates are quarters, so that these samples are exact.
         let points = (0..=64).map(|k| {
             let t = f64::from(k) / 64.0;
             [0, 1, 2].map(|axis| from[axis] + t * (to[axis] - from[axis]))
@@ -416,7 +415,7 @@ impl Asked<'_> {
                 );
             }
             Sight::Blocked => {
-                // Some point is in the closed solid, so the box of the segment meets it, or touches it.
+                // Some point is in the closed solid, so that the segment's box meets or touches it.
                 let low = [0, 1, 2].map(|axis| from[axis].min(to[axis]) - 0.125);
                 let high = [0, 1, 2].map(|axis| from[axis].max(to[axis]) + 0.125);
                 assert!(self.a.truth.in_box(low, high).0, "{from:?}, {to:?}");
@@ -465,7 +464,7 @@ impl Asked<'_> {
                         }
                     }
                 }
-                // Cells behind a FULL one are not looked at, so that both say the same.
+                // Cells behind a FULL cell are not examined, so that both give the same.
                 assert_eq!(
                     firsts,
                     [reach.full_plane(place), reach.upper_plane(place)],

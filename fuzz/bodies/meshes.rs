@@ -1,10 +1,11 @@
-//! Any bytes through every reader of meshes: none panics, and what is read comes back after it is written.
+//! Any bytes through every reader of meshes. No reader panics, and each mesh read comes back after it is
+//! written.
 
 use leafless::{Error, TriangleMesh, exchange};
 
 /// A function that reads a mesh.
 pub type Reader = fn(&[u8]) -> Result<TriangleMesh, Error>;
-/// A function that writes one.
+/// A function that writes a mesh.
 pub type Writer = fn(&TriangleMesh) -> Vec<u8>;
 
 /// All readers of single files.
@@ -15,7 +16,7 @@ pub const READERS: [(&str, Reader); 4] = [
     ("OFF", exchange::read_off),
 ];
 
-/// Writers of several dialects, and the reader of each.
+/// Writers of several dialects, each with its reader.
 pub const WRITERS: [(Writer, Reader); 8] = [
     (obj, exchange::read_obj),
     (obj_from_behind, exchange::read_obj),
@@ -34,7 +35,7 @@ pub fn meshes(data: &[u8]) {
         let (vertices, triangles) = (mesh.vertices(), mesh.triangles());
         assert!(vertices.len() <= data.len() && triangles.len() <= data.len(), "{name}");
         assert!(triangles.iter().flatten().all(|&v| (v as usize) < vertices.len()), "{name}");
-        // An OBJ must have something to be one.
+        // An OBJ needs some content to be recognised.
         for (write, read) in WRITERS.into_iter().filter(|_| !vertices.is_empty()) {
             let written = write(&mesh);
             let back = read(&written).unwrap_or_else(|e| panic!("{name}: {e}"));
@@ -101,7 +102,7 @@ fn obj(mesh: &TriangleMesh) -> Vec<u8> {
     text
 }
 
-/// Faces before vertices.
+/// Writes an OBJ with faces before vertices.
 fn obj_from_behind(mesh: &TriangleMesh) -> Vec<u8> {
     let mut text = b"# mesh\r\n".to_vec();
     for t in mesh.triangles() {

@@ -1,4 +1,5 @@
-//! What the fuzz targets do, and how they change their inputs. The test suite includes these files too.
+//! The bodies of the fuzz targets, and the mutations of their inputs. The test suite includes these files,
+//! too.
 #![allow(dead_code, unused_imports)]
 
 mod aligned;
@@ -25,11 +26,11 @@ pub use ways_in::{read_in_all_ways, ways_in};
 use leafless::octree::Cursor;
 use leafless::{Control, Tag};
 
-/// One thread, which is what most work of this size gets.
+/// One thread, as for most work of this size.
 pub const CONTROL: Control<'static> =
     Control { threads: 1, max_nodes: None, max_bytes: None, max_splits: None, cancel: None, progress: None };
 
-/// Numbers that only look random (splitmix64): the same for a seed everywhere.
+/// Pseudo-random numbers (splitmix64). A seed gives the same numbers everywhere.
 pub struct Random(pub u64);
 
 impl Random {
@@ -41,7 +42,7 @@ impl Random {
         x ^ x >> 31
     }
 
-    /// A number below `end`, 0 if that is 0.
+    /// Returns a number below `end`; 0 if `end` is 0.
     pub fn below(&mut self, end: usize) -> usize {
         if end == 0 { 0 } else { (self.next() % end as u64) as usize }
     }
@@ -52,22 +53,22 @@ impl Random {
     }
 }
 
-/// An input that consists of two parts: the length of the first in four bytes, the first, the second.
+/// Splits an input of two parts: the length of the first part in four bytes, the first, the second.
 pub fn halves(data: &[u8]) -> Option<(&[u8], &[u8])> {
     let (length, rest) = data.split_first_chunk::<4>()?;
     rest.split_at_checked(u32::from_le_bytes(*length) as usize)
 }
 
-/// The input whose [`halves`] these are.
+/// Returns the input with these [`halves`].
 pub fn joined(first: &[u8], second: &[u8]) -> Vec<u8> {
     [&(first.len() as u32).to_le_bytes()[..], first, second].concat()
 }
 
-/// What a walk over all cells meets.
+/// The findings of a walk over all cells.
 pub struct Walked {
-    /// Cells that the cursor stood on.
+    /// Number of cells that the cursor visited.
     pub steps: u64,
-    /// EMPTY, BRANCH, PARTIAL and FULL cells per level.
+    /// Numbers of EMPTY, BRANCH, PARTIAL and FULL cells per level.
     pub cells: [[u64; 4]; 21],
 }
 

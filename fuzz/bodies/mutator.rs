@@ -1,4 +1,4 @@
-//! Changes of files that know what a file is: without them hardly any input would get past the checksums.
+//! Mutations that know the file format. Without them, checksums would stop nearly every input.
 
 use super::layout::{
     BASE, CELL_SLABS, CUT_BLOCKS, CUT_FIRST, CUT_HEADS, CUT_IDS, CUTS, ENTRIES, ENTRY_FIELDS, File, GROUPS,
@@ -7,8 +7,8 @@ use super::layout::{
 };
 use super::{Random, halves, joined};
 
-/// Changes the first `size` of `data` without knowing anything, to at most `max` bytes; returns how many
-/// there are now. libFuzzer's own mutation, or what stands in for it in a test.
+/// A blind change of the first `size` bytes of `data` to at most `max` bytes; returns the new size. It is
+/// libFuzzer's own mutation, or its substitute in a test.
 pub type Blind<'b> = &'b mut dyn FnMut(&mut [u8], usize, usize) -> usize;
 
 /// Changes the file in the first `size` bytes of `data`, to at most `max` bytes.
@@ -20,7 +20,7 @@ pub fn mutate_file(data: &mut [u8], size: usize, max: usize, seed: u32, blind: B
     }
 }
 
-/// Changes an input of two parts: the first a file; the second a file, too, or anything.
+/// Changes an input of two parts. The first part is a file, the second a file or anything.
 pub fn mutate_pair(data: &mut [u8], size: usize, max: usize, seed: u32, blind: Blind<'_>) -> usize {
     let mut random = Random(seed.into());
     let Some((first, second)) = halves(&data[..size]).filter(|_| !random.one_in(32)) else {
@@ -55,7 +55,7 @@ fn replace(data: &mut [u8], bytes: &[u8], max: usize) -> Option<usize> {
     Some(bytes.len())
 }
 
-/// `bytes` after a blind change.
+/// Returns `bytes` after a blind change.
 fn grown(mut bytes: Vec<u8>, blind: Blind<'_>) -> Vec<u8> {
     let size = bytes.len();
     let most = size + 32;
@@ -65,7 +65,8 @@ fn grown(mut bytes: Vec<u8>, blind: Blind<'_>) -> Vec<u8> {
     bytes
 }
 
-/// Each repair with a high probability; the deeper ones less often, so that damage gets that far.
+/// Returns random repairs. Each has a high probability; deeper repairs are less frequent, so that damage gets
+/// that far.
 pub fn repairs(random: &mut Random) -> Repairs {
     let mut often = || !random.one_in(24);
     let mut repairs = Repairs {
@@ -88,7 +89,7 @@ pub fn repairs(random: &mut Random) -> Repairs {
     repairs
 }
 
-/// The file in `bytes` after a few changes, and repaired as far as `repairs` say; `None` if there is none.
+/// Returns the file in `bytes` after a few changes and the given repairs; `None` if `bytes` are no file.
 pub fn changed(bytes: &[u8], random: &mut Random, blind: Blind<'_>, repairs: &Repairs) -> Option<Vec<u8>> {
     let mut file = File::parse(bytes)?;
     for _ in 0..1 + random.below(3) {
@@ -97,8 +98,8 @@ pub fn changed(bytes: &[u8], random: &mut Random, blind: Blind<'_>, repairs: &Re
     Some(file.assemble(repairs))
 }
 
-/// The file in `bytes` after a few changes; `None` if there is none, it becomes too long, or a blind change
-/// is due.
+/// Returns the file in `bytes` after a few changes; `None` if `bytes` are no file, if the result is too long,
+/// or if a blind change is due.
 fn changed_or_blind(bytes: &[u8], max: usize, random: &mut Random, blind: Blind<'_>) -> Option<Vec<u8>> {
     if random.one_in(12) {
         return None;
@@ -119,7 +120,7 @@ fn changed_or_blind(bytes: &[u8], max: usize, random: &mut Random, blind: Blind<
     (bytes.len() <= max).then_some(bytes)
 }
 
-/// A number that is likely to be on one side of some border.
+/// Returns a number near some likely limit.
 fn number_near(old: u64, random: &mut Random) -> u64 {
     match random.below(12) {
         0 => 0,
@@ -143,7 +144,7 @@ fn change_field(bytes: &mut [u8], fields: &[(usize, usize)], random: &mut Random
     put(bytes, at, number_near(old, random), length);
 }
 
-/// Changes one of the numbers of `length` bytes that a section consists of.
+/// Changes one of the numbers of `length` bytes in a section.
 fn change_number(file: &mut File, kind: u32, length: usize, random: &mut Random) {
     if let Some(section) = file.section(kind)
         && section.bytes.len() >= length
@@ -171,7 +172,7 @@ fn change_tag(file: &mut File, random: &mut Random) {
         return;
     };
     let at = 8 * planes * random.below(section.bytes.len() / (8 * planes));
-    // Near the first cells more often: of an odd depth the root has eight.
+    // Near the first cells more often: the root of an odd depth has eight.
     let cell = if random.one_in(2) { random.below(8) } else { random.below(64) };
     for plane in 0..planes {
         if random.one_in(2) {
@@ -219,7 +220,7 @@ fn change_extent(file: &mut File, random: &mut Random) {
     }
 }
 
-/// Adds an object or a section to one, makes sections share bytes, or changes a record.
+/// Adds an object, adds a section to an object, makes sections share bytes, or changes a record.
 fn change_objects(file: &mut File, random: &mut Random) {
     let Some(objects) = file.section(OBJECTS) else { return };
     let count = objects.bytes.len() / RECORD;
@@ -244,7 +245,7 @@ fn change_objects(file: &mut File, random: &mut Random) {
             file.sections.push(section);
         }
         2 => {
-            // Of a section that comes before it, mostly.
+            // In most cases, the bytes of an earlier section.
             let at = random.below(file.sections.len());
             let of =
                 if random.one_in(4) { random.below(file.sections.len() + 2) } else { random.below(at + 1) };
@@ -259,7 +260,7 @@ fn change_objects(file: &mut File, random: &mut Random) {
     }
 }
 
-/// Adds facts, or changes the length of one.
+/// Adds metadata entries, or changes the length of one.
 fn change_metadata(file: &mut File, random: &mut Random) {
     match file.section(METADATA) {
         Some(section) if random.one_in(2) => {
@@ -277,7 +278,7 @@ fn change_metadata(file: &mut File, random: &mut Random) {
     }
 }
 
-/// A double that is likely to be on one side of some border.
+/// Returns a double near some likely limit.
 fn double_near(old: u64, random: &mut Random) -> u64 {
     let value = f64::from_bits(old);
     let new = match random.below(12) {
@@ -305,16 +306,16 @@ fn change_double(file: &mut File, kind: u32, random: &mut Random) {
     }
 }
 
-/// Changes something about cuts; adds some where there are none, or takes them away.
+/// Changes cuts; adds cuts if there are none, or removes them.
 fn change_cuts(file: &mut File, random: &mut Random) {
     if file.section(CUT_HEADS).is_none() {
-        // A plane, a quadric and a slab, and slabs of cells of two origins. How many cuts there must be is
-        // repaired.
+        // A plane, a quadric and a slab, and slabs of cells of two origins. The number of cuts is repaired
+        // later.
         put(&mut file.header, 10, 4, 2);
         file.header[67] = if random.one_in(8) { file.header[67] } else { 2 };
         let surfaces = [[0, 0o1111, 0, 0], [1, 0o1_001_000_111, 4, 0], [4, 0o11111, 9, 0]];
         let doubles = [1.0, -2.0, 0.5, 7.0, -1.0, -1.0, -1.0, 20.0, 100.0, 1.0, 1.0, -1.0, 3.0, 9.0];
-        // Of octants of the universe: about through the middle, and as thick as an eighth of the cell.
+        // Slabs of octants of the universe: about through the middle, an eighth of the cell thick.
         let planes = |bits: u64| bits & 3 << 61 | bits & 1 << 63 | 7 << 55 | 8 << 51 | bits & 0x3FFF_3FFF;
         let slabs: Vec<u64> = (0..3).flat_map(|k| [(8 + k) | k << 61, planes(random.next())]).collect();
         let heads = (0..40 + random.below(40)).map(|_| match random.below(4) {
@@ -366,11 +367,11 @@ fn change_cuts(file: &mut File, random: &mut Random) {
     }
 }
 
-/// One change.
+/// Makes one change.
 fn change(file: &mut File, random: &mut Random, blind: Blind<'_>) {
     match random.below(32) {
         0 => change_field(&mut file.header, &HEADER_FIELDS, random),
-        // Depth, tags, bricks and counts, which the rest hangs on.
+        // Depth, tags, bricks and counts, on which the rest depends.
         1 => change_field(&mut file.header, &HEADER_FIELDS[11..22], random),
         2 => file.header[64] = 1 + random.below(20) as u8,
         3 => {

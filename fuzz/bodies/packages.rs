@@ -1,5 +1,5 @@
-//! Any bytes as a 3MF package, and as the parts of one: the reader does not panic, and builds no more than it
-//! says.
+//! Any bytes as a 3MF package, and as the parts of a package. The reader does not panic, and builds no more
+//! than it reports.
 
 #[path = "../../tests/common/zip.rs"]
 pub mod zip;
@@ -7,8 +7,8 @@ pub mod zip;
 use leafless::exchange::{MeshFormat, MeshOptions, read_mesh};
 use zip::{CONTENT_TYPES, Entry, RELATIONSHIPS, model, tetrahedron};
 
-/// Reads `data` as a package; and its pieces, which zero bytes separate, as a model part, another one that
-/// the first may refer to as `/b.model`, relationships and content types.
+/// Reads `data` as a package. Also reads its pieces, separated by zero bytes, as a model part, another part
+/// that the first may refer to as `/b.model`, relationships and content types.
 pub fn packages(data: &[u8]) {
     read(data);
     let mut pieces = data.split(|&b| b == 0);
@@ -33,7 +33,7 @@ fn read(bytes: &[u8]) {
     }
 }
 
-/// Small inputs with all elements in them.
+/// Small inputs that contain all elements.
 pub fn seeds() -> Vec<Vec<u8>> {
     let components = "<object id=\"2\"><components><component objectid=\"1\"/><component objectid=\"1\" \
         p:path=\"/b.model\" transform=\"1 0 0 0 1 0 0 0 -1 0 0 3\"/></components></object>";

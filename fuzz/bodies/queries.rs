@@ -1,5 +1,4 @@
-//! Everything that a tree can be asked, whatever its bytes: no panic, bounded work, and where several ways
-//! lead to one answer it is the same.
+//! All queries of a tree with any bytes: no panic, bounded work, and the same answer from all ways to it.
 
 use super::{Aligned, CONTROL, Random, ask_measures, halves, walk};
 use leafless::octree::{CellFilter, Cursor, Direction, SurfaceKind, TaggedCell};
@@ -19,7 +18,7 @@ use leafless::{
     measure,
 };
 
-/// Asks the tree in the first half of `data` what the second half says.
+/// Queries the tree in the first half of `data`. The second half selects the queries.
 pub fn queries(data: &[u8]) {
     let Some((bytes, questions)) = halves(data) else { return };
     let aligned = Aligned::new(bytes);
@@ -28,13 +27,13 @@ pub fn queries(data: &[u8]) {
     }
 }
 
-/// Asks `tree` everything.
+/// Runs all queries on `tree`.
 pub fn ask(tree: &OctreeRef<'_>, questions: &[u8], verified: bool) {
     let points = points(tree.frame(), questions);
     if tree.cuts().is_some() {
         ask_cuts(tree, &points, verified);
     }
-    // What follows is about the cells.
+    // The checks below concern the cells.
     let tree = &tree.without_cuts();
     ask_points(tree, &points);
     ask_boxes(tree, &points);
@@ -59,10 +58,10 @@ pub fn ask(tree: &OctreeRef<'_>, questions: &[u8], verified: bool) {
     assert!(steps <= 1 + 72 * (tree.element_count() + tree.brick_count()), "{steps} steps");
 }
 
-/// Splits and nodes that a question to a tree with cuts may take: a cut can be split down to any depth.
+/// Limits the splits and nodes of a query to a tree with cuts, because a cut can be split down to any depth.
 const SOME: Control<'static> = Control { max_splits: Some(200), max_nodes: Some(2000), ..CONTROL };
 
-/// What cuts say never contradicts the cells. A verified tree is a solid; of another one nobody knows.
+/// Checks that cuts never contradict the cells. A verified tree is a solid; an unverified one may not be.
 fn ask_cuts(tree: &OctreeRef<'_>, points: &[[f64; 3]], verified: bool) {
     let (plain, frame) = (tree.without_cuts(), *tree.frame());
     // As if everything were proven.
@@ -82,15 +81,15 @@ fn ask_cuts(tree: &OctreeRef<'_>, points: &[[f64; 3]], verified: bool) {
     ask_cut_rays(tree, points, verified && is_solid.is_ok());
     match is_solid {
         Ok(()) => {}
-        // Placements within each other may be too long for exact numbers.
+        // Nested placements may be too long for exact numbers.
         Err(Error::Limit { .. }) => return,
         Err(error) => return assert!(!verified && matches!(error, Error::Damaged(_)), "{error}"),
     }
     let mut exact = vec![Membership::Inside; points.len()];
     contains(&solid, &frame, points, &mut exact, &CONTROL).expect("it is a solid");
-    // Slabs of a solid are wider by what is rounded on its universe, which may be far larger than they are.
-    // Of a tree that is not verified, such as one whose octants should be one PARTIAL universe, the solid may
-    // know less.
+    // A solid's slabs are wider by the rounding on its universe, which may be far larger than the slabs. For
+    // an unverified tree (for example one whose octants should be a single PARTIAL universe), the solid may
+    // decide less.
     let surfaces = tree.cuts().map_or(0, |cuts| cuts.surfaces as u32);
     let has_slabs =
         (0..surfaces).any(|id| tree.surface(id).is_none_or(|surface| surface.kind() == SurfaceKind::Slab));
@@ -132,7 +131,7 @@ fn ask_cuts(tree: &OctreeRef<'_>, points: &[[f64; 3]], verified: bool) {
         }
     }
     let measured = measure(&solid, &frame, 0.0, &SOME).expect("it is a solid").volume;
-    // (Far from the origin of space the universe may have no width in doubles.)
+    // (Far from the origin, the universe may have no width in doubles.)
     let (least, most) = plain.cells_in_box([0; 3], [frame.cells(); 3]).expect("the universe");
     let cell = (frame.edge() / f64::from(frame.cells())).powi(3);
     let slack = 1e-9 * frame.edge().powi(3);
@@ -172,8 +171,8 @@ fn ask_cuts(tree: &OctreeRef<'_>, points: &[[f64; 3]], verified: bool) {
     }
 }
 
-/// Rays in a tree with cuts end. In one that is known to be a solid, the cells and surfaces that are asked in
-/// place never contradict the solid.
+/// Checks that rays in a tree with cuts end. If the tree is a solid, the cells and surfaces queried in place
+/// never contradict the solid.
 fn ask_cut_rays(tree: &OctreeRef<'_>, points: &[[f64; 3]], is_solid: bool) {
     let rays: Vec<Ray> =
         points.windows(2).take(12).filter_map(|pair| Ray::between(pair[0], pair[1]).ok()).collect();
@@ -190,7 +189,7 @@ fn ask_cut_rays(tree: &OctreeRef<'_>, points: &[[f64; 3]], is_solid: bool) {
         let exact = |on| cast_rays(&solid, frame, &rays, on, &SOME).expect("it is a solid");
         let (exact_full, exact_upper) = (exact(Obstacle::Full), exact(Obstacle::Upper));
         for (i, ray) in rays.iter().enumerate() {
-            // What is hit for sure may be hit, and when it may be.
+            // A proven hit is a possible hit, at a possible time.
             for (sure, perhaps) in [(full[i], exact_upper[i]), (exact_full[i], upper[i])] {
                 let overlap = |a: RayHit, b: RayHit| a.t.lower <= b.t.upper && b.t.lower <= a.t.upper;
                 let agree = sure.is_none_or(|sure| perhaps.is_some_and(|perhaps| overlap(sure, perhaps)));
@@ -214,8 +213,8 @@ fn ask_cut_rays(tree: &OctreeRef<'_>, points: &[[f64; 3]], is_solid: bool) {
     }
 }
 
-/// Small pictures of the surface, of a slice and of the voxels, from anywhere. Where a surface is seen, a ray
-/// meets it.
+/// Renders small pictures of the surface, of a slice and of the voxels, from anywhere. Where a surface is
+/// visible, a ray meets it.
 fn ask_pictures(tree: &OctreeRef<'_>, points: &[[f64; 3]]) {
     let [Some(eye), Some(at)] = [points.first(), points.get(1)] else { return };
     let edge = tree.frame().edge();
@@ -234,7 +233,7 @@ fn ask_pictures(tree: &OctreeRef<'_>, points: &[[f64; 3]]) {
         for (seen, lined) in surface.depths().iter().zip(take(&OctreeLayer::new(tree, outlined)).depths()) {
             assert!(seen == lined || (seen - lined).abs() <= 1e-6 * seen.abs());
         }
-        // What the pixel in the middle shows is there, but for rounding.
+        // The middle pixel shows a part of the surface, up to rounding.
         let depth = f64::from(surface.depths()[17]);
         if depth.is_finite() {
             let (eye, along) = (camera.eye(), camera.forward());
@@ -254,7 +253,7 @@ fn ask_pictures(tree: &OctreeRef<'_>, points: &[[f64; 3]]) {
     }
 }
 
-/// All cells of a tree, as a cursor that takes them in order sees them.
+/// Returns all cells of a tree in a cursor's order.
 fn walked(tree: &OctreeRef<'_>) -> impl Iterator<Item = TaggedCell> {
     let mut cursor = Cursor::new(tree);
     let mut next = Vec::new();
@@ -276,8 +275,8 @@ fn walked(tree: &OctreeRef<'_>) -> impl Iterator<Item = TaggedCell> {
     })
 }
 
-/// Cells come one after another as a cursor meets them; of boundary faces there are not more than a sound
-/// tree of this size could have.
+/// Checks that the iterator returns the cells in a cursor's order, and that there are no more boundary faces
+/// than a sound tree of this size can have.
 fn ask_cells(tree: &OctreeRef<'_>) {
     let entries = (tree.element_count() + tree.brick_count()) as usize;
     let all = CellFilter::tags(&[Tag::Empty, Tag::Branch, Tag::Partial, Tag::Full]);
@@ -294,7 +293,8 @@ fn ask_cells(tree: &OctreeRef<'_>) {
     assert!(faces <= 96 * (1 + 73 * entries), "{faces} faces, {entries} entries");
 }
 
-/// The neighbours of some cells are leaves beside them; in a sound tree, those that a cursor finds.
+/// Checks that the neighbours of some cells are leaves beside them; in a sound tree, those that a cursor
+/// finds.
 fn ask_neighbours(tree: &OctreeRef<'_>, verified: bool) {
     let entries = (tree.element_count() + tree.brick_count()) as usize;
     let all = CellFilter::tags(&[Tag::Empty, Tag::Branch, Tag::Partial, Tag::Full]);
@@ -317,7 +317,7 @@ fn ask_neighbours(tree: &OctreeRef<'_>, verified: bool) {
     }
 }
 
-/// Rays between points end, one by one and together, and are inside only where they are not outside.
+/// Checks that rays between points end, one by one and together, and that inner spans lie within outer spans.
 fn ask_rays(tree: &OctreeRef<'_>, points: &[[f64; 3]]) {
     let mut rays: Vec<Ray> =
         points.windows(2).filter_map(|pair| Ray::between(pair[0], pair[1]).ok()).collect();
@@ -344,7 +344,7 @@ fn ask_rays(tree: &OctreeRef<'_>, points: &[[f64; 3]]) {
     }
 }
 
-/// Runs of cells in columns ascend; in a sound tree, they are its FULL cells.
+/// Checks that runs of cells in columns ascend; in a sound tree, they are its FULL cells.
 fn ask_columns(tree: &OctreeRef<'_>, verified: bool) {
     let (cells, depth) = (tree.frame().cells(), tree.frame().depth());
     for axis in 0..3 {
@@ -375,7 +375,7 @@ fn ask_columns(tree: &OctreeRef<'_>, verified: bool) {
     }
 }
 
-/// Distances end whatever the bytes; in a sound tree they agree with what points and cells are.
+/// Checks that distance queries end whatever the bytes. In a sound tree they agree with points and cells.
 fn ask_distances(tree: &OctreeRef<'_>, points: &[[f64; 3]], verified: bool) {
     for &point in points.iter().step_by(5) {
         let [solid, complement, boundary] = [DistanceTo::Solid, DistanceTo::Complement, DistanceTo::Boundary]
@@ -417,7 +417,8 @@ fn ask_distances(tree: &OctreeRef<'_>, points: &[[f64; 3]], verified: bool) {
     }
 }
 
-/// No more lies in a box than it has room for, and in the whole universe what the tree's statistics tell.
+/// Checks that the content of a box fits into the box, and that the whole universe has the content that the
+/// statistics report.
 fn ask_contents(tree: &OctreeRef<'_>, points: &[[f64; 3]], verified: bool) {
     let cells = tree.frame().cells();
     let (least, most) = tree.cells_in_box([0; 3], [cells; 3]).expect("the universe");
@@ -456,10 +457,10 @@ fn ask_contents(tree: &OctreeRef<'_>, points: &[[f64; 3]], verified: bool) {
     }
 }
 
-/// At most this many points are asked for.
+/// The most points of a query.
 const MOST_POINTS: usize = 48;
 
-/// Points in and around the universe, on lattice planes and next to them, and absurd ones.
+/// Points in and around the universe, on lattice planes and next to them, and absurd points.
 pub fn points(frame: &Frame, questions: &[u8]) -> Vec<[f64; 3]> {
     let mut random = Random(crc32fast::hash(questions).into());
     let mut coordinate = |axis: usize, code: u8, value: u16| {
@@ -524,7 +525,7 @@ fn ask_boxes(tree: &OctreeRef<'_>, points: &[[f64; 3]]) {
             continue;
         };
         for &point in points {
-            // The cell of a point strictly inside of the box has more in common with it than a face.
+            // The cell of a point strictly inside the box shares more than a face with the box.
             if (0..3).all(|axis| min[axis] < point[axis] && point[axis] < max[axis]) {
                 match tree.contains(point) {
                     Membership::Inside => assert_ne!(region, Region::Outside),
@@ -538,7 +539,7 @@ fn ask_boxes(tree: &OctreeRef<'_>, points: &[[f64; 3]]) {
     }
 }
 
-/// The tree as a solid: the splits from the root to a cell lead to its tag.
+/// Checks the tree as a solid: the splits from the root to a cell lead to the cell's tag.
 fn replay(tree: &OctreeRef<'_>, points: &[[f64; 3]]) {
     let solid = *tree;
     let frame = tree.frame();
@@ -567,7 +568,7 @@ fn replay(tree: &OctreeRef<'_>, points: &[[f64; 3]]) {
     }
 }
 
-/// The tree as a solid, asked without an octree: the answers are the tree's own, if its cells are taken for
+/// Queries the tree as a solid without an octree. The answers are the tree's own, if its cells are taken for
 /// the solid.
 fn ask_solid(tree: &OctreeRef<'_>, points: &[[f64; 3]]) {
     let (solid, frame) = (tree.with_proof(Proof::CERTIFIED), tree.frame());
@@ -587,7 +588,7 @@ fn ask_solid(tree: &OctreeRef<'_>, points: &[[f64; 3]]) {
     }
 }
 
-/// The tree as a solid that is split on demand: what comes out lies between nothing and the tree, and is
+/// Splits the tree on demand as a solid. The result lies between no knowledge and the tree, and is
 /// well-formed.
 fn on_demand(tree: &OctreeRef<'_>, points: &[[f64; 3]]) {
     let frame = tree.frame();
@@ -605,7 +606,7 @@ fn on_demand(tree: &OctreeRef<'_>, points: &[[f64; 3]]) {
             _ => Zone::Box { min: pair[0], max: pair[1] },
         };
         let max_splits = if k % 3 == 0 { Some(20) } else { None };
-        // Numbers that are none are refused.
+        // Invalid numbers are refused.
         let _ = lazy.refine(&zone, level, &Control { max_splits, ..CONTROL });
         let at = pair[0].map(|c| c.to_bits() as u32 >> (32 - level.clamp(1, 20)));
         let cell = Cell { level, at };
@@ -625,7 +626,7 @@ fn on_demand(tree: &OctreeRef<'_>, points: &[[f64; 3]]) {
     assert_eq!(lazy.statistics().volume(), frozen.statistics().volume());
     lazy.refine(&Zone::Whole, frame.depth(), &CONTROL).expect("enough memory");
     let whole = lazy.freeze(&CONTROL).expect("enough memory");
-    // Subtrees are copied as they are: whether what is in them is sound, only a check tells.
+    // Subtrees are copied unchanged. Only a check shows whether they are sound.
     let built = build(tree, frame, Rule::Certified, &CONTROL);
     assert!(tree.check().is_err() || whole == built.expect("it is sound"));
 }

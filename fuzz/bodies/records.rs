@@ -1,5 +1,5 @@
-//! Any bytes as the arrays of voxel records: what is refused is wrong, and of what is taken every answer is
-//! that of a search through all records.
+//! Any bytes as the arrays of voxel records. Refused arrays are wrong, and for accepted arrays every answer
+//! is that of a search through all records.
 
 use leafless::lattice::MAX_DEPTH;
 use leafless::voxel::{
@@ -7,7 +7,7 @@ use leafless::voxel::{
 };
 use leafless::{Affine, Cell, Control, Csg, Frame, Tag, TriangleMesh, measure};
 
-/// The bytes that are left; 0 for each that is missing.
+/// The remaining bytes; 0 for each missing one.
 struct Bytes<'a>(&'a [u8]);
 
 impl Bytes<'_> {
@@ -35,7 +35,7 @@ const CONTROL: Control<'static> = Control {
     progress: None,
 };
 
-/// Most records of an input.
+/// The most records of an input.
 const MOST: usize = 64;
 
 #[derive(Default, Clone)]
@@ -46,7 +46,7 @@ struct Arrays {
     values: Vec<f64>,
 }
 
-/// What the fuzz target does.
+/// Runs the fuzz target.
 pub fn records(data: &[u8]) {
     let mut bytes = Bytes(data);
     let bytes = &mut bytes;
@@ -86,7 +86,7 @@ pub fn records(data: &[u8]) {
     as_solids(bytes, &view);
 }
 
-/// Records of some of the cells below one, in order.
+/// Appends records of some of the cells below a cell, in order.
 fn descend(bytes: &mut Bytes<'_>, depth: u8, level: u8, code: u64, arrays: &mut Arrays) {
     if arrays.codes.len() >= MOST {
         return;
@@ -116,7 +116,7 @@ fn children(bytes: &mut Bytes<'_>, depth: u8, level: u8, code: u64, arrays: &mut
     }
 }
 
-/// A change at one place.
+/// Makes a change at one place.
 fn damage(bytes: &mut Bytes<'_>, arrays: &mut Arrays) {
     let count = arrays.codes.len();
     if count == 0 {
@@ -140,14 +140,14 @@ fn damage(bytes: &mut Bytes<'_>, arrays: &mut Arrays) {
     }
 }
 
-/// Whether arrays are what the documentation of records asks for, by all pairs.
+/// True if arrays satisfy the documentation of records, by a check of all pairs.
 fn is_good(arrays: &Arrays, depth: u8, components: usize) -> bool {
     let Arrays { codes, levels, kinds, values } = arrays;
     let count = codes.len();
     if components > 4 || [levels.len(), kinds.len()] != [count; 2] || values.len() != count * components {
         return false;
     }
-    // As wide as it takes for the largest.
+    // As wide as the largest value requires.
     let size = |k: usize| 1u128 << (3 * u32::from(depth - levels[k]));
     let each = (0..count).all(|k| {
         levels[k] <= depth
@@ -164,7 +164,7 @@ fn is_good(arrays: &Arrays, depth: u8, components: usize) -> bool {
     })
 }
 
-/// Some cells of every level, and some that are none.
+/// Some cells of every level, and some invalid ones.
 fn cells(bytes: &mut Bytes<'_>, view: &VoxelRecordsRef<'_>) -> Vec<Cell> {
     let depth = view.frame().depth();
     let mut cells: Vec<Cell> = view.iter().map(|record| record.cell).collect();
@@ -185,7 +185,7 @@ fn cells(bytes: &mut Bytes<'_>, view: &VoxelRecordsRef<'_>) -> Vec<Cell> {
     cells
 }
 
-/// Whether one cell lies in another.
+/// True if one cell lies in another.
 fn holds(outer: Cell, inner: Cell) -> bool {
     outer.level <= inner.level
         && (0..3).all(|axis| inner.at[axis] >> (inner.level - outer.level) == outer.at[axis])
@@ -223,13 +223,13 @@ fn found_in(bytes: &mut Bytes<'_>, view: &VoxelRecordsRef<'_>) {
     }
 }
 
-/// The numbers of all arrays, so that those that are none can be compared.
+/// Returns the numbers of all arrays as bits, so that NaNs can be compared.
 fn numbers(view: &VoxelRecordsRef<'_>) -> (Vec<u64>, Vec<u8>, Vec<u8>, Vec<u64>) {
     let values = view.values().iter().map(|value| value.to_bits()).collect();
     (view.codes().to_vec(), view.levels().to_vec(), view.kinds().to_vec(), values)
 }
 
-/// A symmetry as often as it takes to come back.
+/// Applies a symmetry until the records are the original ones again.
 fn turned(bytes: &mut Bytes<'_>, view: &VoxelRecordsRef<'_>) {
     let symmetry = Symmetry::all().nth(bytes.below(48)).expect("there are 48");
     let mut now = view.turned(symmetry, &CONTROL).expect("enough memory");
@@ -276,7 +276,7 @@ fn finest(frame: &Frame) -> impl Iterator<Item = Cell> + use<> {
     (0..n * n * n).map(move |k| Cell { level, at: [k % n, k / n % n, k / n / n] })
 }
 
-/// From front to back along an axis: each leaf once, and what is nearer first.
+/// Checks the order from front to back along an axis: each leaf once, nearer leaves first.
 fn ordered(bytes: &mut Bytes<'_>, view: &VoxelRecordsRef<'_>) {
     let (axis, depth) = (bytes.below(3), view.frame().depth());
     let mut direction = [0.0; 3];
@@ -299,7 +299,7 @@ fn ordered(bytes: &mut Bytes<'_>, view: &VoxelRecordsRef<'_>) {
             let meet = across
                 .iter()
                 .all(|&a| range(near, a).0 < range(far, a).1 && range(far, a).0 < range(near, a).1);
-            // Seen along the axis, what has the smaller coordinates is in front.
+            // Seen along the axis, records with smaller coordinates are in front.
             assert!(!meet || range(near, axis).0 < range(far, axis).1, "{near} before {far}");
             assert!(!meet || range(near, axis).1 <= range(far, axis).0, "{near} before {far}");
         }
@@ -309,7 +309,7 @@ fn ordered(bytes: &mut Bytes<'_>, view: &VoxelRecordsRef<'_>) {
     assert_eq!(order.len(), leaves.len());
 }
 
-/// As an octree, and as a solid.
+/// Checks the records as an octree, and as a solid.
 fn as_solids(bytes: &mut Bytes<'_>, view: &VoxelRecordsRef<'_>) {
     let boundary = [Tag::Empty, Tag::Partial, Tag::Full, Tag::Branch][bytes.below(4)];
     let found = view.to_octree(boundary, &CONTROL);

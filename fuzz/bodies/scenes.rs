@@ -1,4 +1,5 @@
-//! Any bytes as a scene: what is read has a solid, whose cells agree from depth to depth and with its bounds.
+//! Any bytes as a scene. A scene that is read has a solid, whose cells agree at two depths and with its
+//! bounds.
 
 use leafless::scene::read_scene;
 use leafless::{Control, Error, Frame, Membership, Octree, Rule, build};
@@ -12,7 +13,8 @@ const CONTROL: Control<'static> = Control {
     progress: None,
 };
 
-/// Reads `data` as a scene that names no files, and says whether it is one. Builds its solid, at two depths.
+/// Reads `data` as a scene that names no files, and builds its solid at two depths. Returns whether it is a
+/// scene.
 pub fn scenes(data: &[u8]) -> bool {
     let scene = match read_scene(data, None) {
         Ok(scene) => scene,
@@ -52,7 +54,7 @@ pub fn scenes(data: &[u8]) -> bool {
     true
 }
 
-/// Small scenes with all calls in them.
+/// Small scenes with all calls.
 pub const SEEDS: [&str; 9] = [
     "group() {\n\tcube(size = [1, 2, 3], center = true);\n\t%sphere($fn = 0, $fa = 12, $fs = 2, r = 5);\n}\n",
     "difference() { union() { sphere(r = 5); cylinder(h = 6, r1 = 4, r2 = 0, center = false); } #cube(2); }",

@@ -16,7 +16,7 @@ use leafless::{
 #[derive(Clone, Copy)]
 pub struct Noise(pub u64);
 
-/// The same on a frame: handle and worker.
+/// Classifier and worker on a frame.
 #[derive(Clone, Copy)]
 pub struct NoiseOnFrame {
     noise: Noise,
@@ -84,10 +84,10 @@ impl Worker for NoiseOnFrame {
     }
 }
 
-/// Bytes of the largest file: small ones are changed faster.
+/// Bytes of the largest file. Small files are mutated faster.
 const MOST: usize = 6000;
 
-/// The frame of all seeds but for its depth.
+/// Returns the frame of all seeds at a depth.
 pub fn frame(depth: u8) -> Frame {
     Frame::new([0.0; 3], 32.0, depth).expect("a legal frame")
 }
@@ -103,7 +103,7 @@ fn facts() -> Metadata {
     metadata
 }
 
-/// A channel of coarse and fine regions, with values and without.
+/// A channel of coarse and fine regions, with and without values.
 fn channel(name: &str, depth: u8, scalar: ScalarType, components: u8) -> Channel {
     let frame = frame(depth);
     let value = move |point: [f64; 3]| {
@@ -141,7 +141,7 @@ fn trees_with_channels() -> Vec<Octree> {
     ]
 }
 
-/// Trees with cuts: surfaces of all kinds, placed and not, in one cell and in many.
+/// Trees with cuts: surfaces of all kinds, placed and unplaced, in one cell and in many.
 fn trees_with_cuts() -> Vec<Octree> {
     let turn = Affine::new([[0.8, -0.6, 0.0, 9.0], [0.6, 0.8, 0.0, 3.0], [0.0, 0.0, 1.0, 16.0]]);
     let turn = turn.expect("a good map");
@@ -200,7 +200,7 @@ pub fn trees() -> Vec<Octree> {
     trees
 }
 
-/// Their files, and some that a later version might write.
+/// The trees' files, and some that a later version might write.
 pub fn files() -> Vec<Vec<u8>> {
     let mut files: Vec<_> = trees().iter().map(|tree| file::to_bytes(tree).expect("a good tree")).collect();
     let newer = |tree: usize, change: &dyn Fn(&mut File)| {
@@ -216,7 +216,7 @@ pub fn files() -> Vec<Vec<u8>> {
             file.header[115] = 9;
         }),
         newer(9, &|file| file.sections.push(Section::new(17, b"colours!".to_vec()))),
-        // Two objects that nobody knows: of one the bytes are the solid's.
+        // Two unknown objects. One has the solid's bytes.
         newer(10, &|file| {
             let of = file.sections.iter().position(|section| section.is(PLANES)).expect("planes");
             let objects = file.section(OBJECTS).expect("objects");
@@ -280,7 +280,7 @@ pub fn pairs() -> Vec<Vec<u8>> {
     pairs
 }
 
-/// Whether a file has a section or an object that nobody knows, or sections that share bytes.
+/// True if a file has an unknown section or object, or sections that share bytes.
 pub fn has_unknown_parts(bytes: &[u8]) -> bool {
     let mut file = File::parse(bytes).expect("a file");
     let objects = file.section(OBJECTS).map_or(0, |objects| objects.bytes.len() / RECORD);

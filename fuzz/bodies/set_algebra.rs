@@ -1,5 +1,5 @@
-//! The set algebra of trees that nobody has verified: no panic, bounded work and results, and of verified
-//! operands the right ones.
+//! The set algebra of unverified trees: no panic, bounded work and results. For verified operands, the
+//! results are right.
 
 use super::{Aligned, CONTROL, halves, queries};
 use leafless::op::{intersection_of, join, resolve, shard, union_of, xor_of};
@@ -16,12 +16,12 @@ pub fn set_algebra(data: &[u8]) {
     let Ok(a) = file::view(first.bytes()) else { return };
     let sure = file::verify(first.bytes()).is_ok();
     in_shards(&a, sure);
-    // The laws are those of the cells.
+    // The laws hold for the cells.
     let plain = a.without_cuts();
     alone(&plain, sure);
     match file::view(second.bytes()) {
         Ok(b) => {
-            // What is not of one solid is refused, and nothing worse.
+            // Trees of different solids are refused without harm.
             match join(&[a, b], &BUDGET) {
                 Err(Error::Argument { name: "trees", .. } | Error::FrameMismatch { .. }) => {}
                 result => drop(sharp(result, false)),
@@ -37,10 +37,10 @@ pub fn set_algebra(data: &[u8]) {
     }
 }
 
-/// Surfaces may cross so many cells that no memory would do.
+/// Limits memory, because surfaces may cross more cells than any memory holds.
 const BUDGET: Control<'static> = Control { max_bytes: Some(1 << 19), ..CONTROL };
 
-/// What holds of every result where an operand keeps surfaces; nothing if there is none.
+/// Checks a result where an operand keeps surfaces; returns `None` for an error.
 fn sharp(result: Result<Octree, Error>, sure: bool) -> Option<Octree> {
     match result {
         Ok(tree) => {
@@ -49,20 +49,20 @@ fn sharp(result: Result<Octree, Error>, sure: bool) -> Option<Octree> {
             Some(tree)
         }
         Err(Error::Damaged(_)) if !sure => None,
-        // Of the budget, and of exact numbers.
+        // The limit of the budget, or of exact numbers.
         Err(Error::Limit { .. }) => None,
         Err(refused) => panic!("{refused}"),
     }
 }
 
-/// A tree in shards, joined, is the tree.
+/// Checks that a tree in shards, joined, is the tree.
 fn in_shards(a: &OctreeRef<'_>, sure: bool) {
     let Some((top, shards, joined)) = cut_and_joined(a, sure) else { return };
     if sure && a.cuts().is_none() {
         assert!(join(&[*a], &BUDGET).is_ok_and(|same| same == joined));
     } else if sure && let Some((.., again)) = cut_and_joined(joined.view(), sure) {
-        // (A file may hold functions that say more than they need to. Of what was joined once nothing
-        // changes.)
+        // (A file may contain functions that are longer than necessary. After one join nothing changes any
+        // more.)
         assert!(again == joined);
     }
     let is_split =
@@ -80,7 +80,7 @@ fn in_shards(a: &OctreeRef<'_>, sure: bool) {
     }
 }
 
-/// The top, the shards of its open cells, and what they are together.
+/// The top, the shards of its open cells, and the tree that they form together.
 type CutAndJoined = (Octree, Vec<(Cell, Octree)>, Octree);
 
 fn cut_and_joined(a: &OctreeRef<'_>, sure: bool) -> Option<CutAndJoined> {
@@ -96,7 +96,7 @@ fn cut_and_joined(a: &OctreeRef<'_>, sure: bool) -> Option<CutAndJoined> {
     Some((top, shards, joined))
 }
 
-/// Operations of trees of which one keeps surfaces at least.
+/// Checks operations on trees of which at least one keeps surfaces.
 fn with_surfaces(a: &OctreeRef<'_>, b: &OctreeRef<'_>, sure: bool) {
     if a.cuts().is_none() && b.cuts().is_none() {
         return;
@@ -109,8 +109,8 @@ fn with_surfaces(a: &OctreeRef<'_>, b: &OctreeRef<'_>, sure: bool) {
     let inverse = sharp(complement(a, &BUDGET), sure);
     let same = sharp(union(a, a, &BUDGET), sure);
     if let (true, Some(inverse), Some(same)) = (sure, inverse, same) {
-        // (A file may hold functions that say more than they need to, in more cells than they need. Of
-        // results nothing does.)
+        // (A file may contain functions that are longer than necessary, in more cells than necessary. Results
+        // do not.)
         let back = not(&inverse);
         let twice = back.as_ref().and_then(|back| not(&not(back)?));
         assert!(twice.is_none() || twice == back);
@@ -132,7 +132,8 @@ fn with_surfaces(a: &OctreeRef<'_>, b: &OctreeRef<'_>, sure: bool) {
     what_is_certain_stays_so(a, b, sure);
 }
 
-/// Results are decided where the operands' cells are, and are what their cells and surfaces say.
+/// Checks that results are decided where the operands' cells are, and agree with the operands' cells and
+/// surfaces.
 fn what_is_certain_stays_so(a: &OctreeRef<'_>, b: &OctreeRef<'_>, sure: bool) {
     let seed = [a.element_count(), b.brick_count()].map(u64::to_le_bytes).concat().repeat(27);
     let points = queries::points(a.frame(), &seed);
@@ -151,14 +152,15 @@ fn what_is_certain_stays_so(a: &OctreeRef<'_>, b: &OctreeRef<'_>, sure: bool) {
         for at in cells(a) {
             let expected = logic(decided(a.tag_at(at)), decided(b.tag_at(at)));
             let found = decided(result.view().tag_at(at));
-            // (Cells that are decided may be parts of one that has a function.)
+            // (Decided cells may be parts of a cell that has a function.)
             let agrees = found.is_none() || expected.is_none() || found == expected;
             assert!(agrees, "{at:?}: {found:?}, {expected:?}");
         }
     }
 }
 
-/// The same result by several threads. Not for the fuzzer: threads that are still ending look like a leak.
+/// Checks that several threads give the same result. It is not for the fuzzer: threads that are still ending
+/// look like a leak.
 pub fn threads(bytes: &[u8]) {
     let aligned = Aligned::new(bytes);
     let Ok(tree) = file::view(aligned.bytes()) else { return };
@@ -172,7 +174,7 @@ pub fn threads(bytes: &[u8]) {
     }
 }
 
-/// Elements and bricks.
+/// Returns the number of elements and bricks.
 fn size(tree: &OctreeRef<'_>) -> u64 {
     tree.element_count() + tree.brick_count()
 }
@@ -202,7 +204,7 @@ fn decided(tag: Tag) -> Option<bool> {
 
 type Binary = fn(&OctreeRef<'_>, &OctreeRef<'_>, &Control<'_>) -> Result<Octree, Error>;
 
-/// The operations of two trees, and what they are.
+/// The operations on two trees, each with its logic.
 const OPERATIONS: [(Binary, Logic); 4] = [
     (union, |a, b| not(and(not(a), not(b)))),
     (intersection, and),
@@ -210,7 +212,7 @@ const OPERATIONS: [(Binary, Logic); 4] = [
     (xor, |a, b| a.zip(b).map(|(a, b)| a ^ b)),
 ];
 
-/// What holds of every result, `most` being the elements and bricks that it may have.
+/// Checks a result. `most` is the allowed number of elements and bricks.
 fn sound(result: Result<Octree, Error>, most: u64, sure: bool) -> Option<Octree> {
     let tree = match result {
         Ok(tree) => tree,
@@ -221,14 +223,14 @@ fn sound(result: Result<Octree, Error>, most: u64, sure: bool) -> Option<Octree>
     if sure {
         tree.view().check().expect("of good operands comes a good result");
     }
-    // Its links are its own, whatever the operands' were.
+    // Its links are its own, whatever the operands' links are.
     let links = tree.view().on(tree.frame(), &CONTROL);
     assert!(!matches!(links, Err(Error::Damaged(_))));
     let _ = (tree.statistics(), tree.view().check());
     Some(tree)
 }
 
-/// What is done with one tree.
+/// Runs all operations on one tree.
 fn alone(a: &OctreeRef<'_>, sure: bool) {
     let n = size(a);
     let inverse = sound(complement(a, &CONTROL), n, sure);
@@ -241,7 +243,7 @@ fn alone(a: &OctreeRef<'_>, sure: bool) {
     let frame = a.frame();
     for depth in [frame.depth().saturating_sub(1).max(1), (frame.depth() + 1).min(20)] {
         let other = frame.with_depth(depth).expect("a legal depth");
-        // Of the other parity, an element is spread over up to nine.
+        // With the other parity of depth, an element is spread over up to nine.
         sound(build(&a, &other, Rule::Certified, &CONTROL), 9 * n + 9, sure);
     }
     if !sure {
@@ -263,7 +265,7 @@ fn alone(a: &OctreeRef<'_>, sure: bool) {
     }
 }
 
-/// Some finest cells.
+/// Returns some finest cells.
 fn cells(tree: &OctreeRef<'_>) -> Vec<[u32; 3]> {
     let frame = tree.frame();
     let seed = [tree.element_count(), tree.brick_count()].map(u64::to_le_bytes).concat().repeat(27);
@@ -271,7 +273,7 @@ fn cells(tree: &OctreeRef<'_>) -> Vec<[u32; 3]> {
     points.into_iter().filter_map(|point| frame.cell_of(point)).chain([[0; 3]]).collect()
 }
 
-/// What is done with two trees.
+/// Runs all operations on two trees.
 fn together(a: &OctreeRef<'_>, b: &OctreeRef<'_>, sure: bool) {
     if a.frame() != b.frame() {
         assert!(matches!(union(a, b, &CONTROL), Err(Error::FrameMismatch { .. })));
@@ -282,7 +284,7 @@ fn together(a: &OctreeRef<'_>, b: &OctreeRef<'_>, sure: bool) {
         let result = sound(operation(a, b, &CONTROL), most, sure);
         let turned = sound(operation(b, a, &CONTROL), most, sure);
         let alike = sound(operation(a, a, &CONTROL), 2 * size(a), false);
-        // What comes of damaged operands is as good as any other operand.
+        // Results of damaged operands are operands like any other.
         if let (Some(result), Some(turned)) = (&result, &turned) {
             let most = size(result.view()) + size(turned.view());
             sound(operation(result.view(), turned.view(), &CONTROL), most, sure);

@@ -1,5 +1,5 @@
-//! Any bytes as a solid, and as what its surface is asked for: meshes are closed and manifold, and what is
-//! proven of their distance from the solid contradicts neither points of the mesh nor rays.
+//! Any bytes as a solid, and as options of its surface. Meshes are closed and manifold, and their proven
+//! distance from the solid contradicts neither points of the mesh nor rays.
 
 use leafless::exchange::{MeshOptions, read_mesh};
 use leafless::query::{DistanceTo, Obstacle, distances};
@@ -11,7 +11,7 @@ use leafless::{
 };
 use std::collections::HashMap;
 
-/// The bytes that are left; 0 for each that is missing.
+/// The remaining bytes; 0 for each missing one.
 struct Bytes<'a>(&'a [u8]);
 
 impl Bytes<'_> {
@@ -25,18 +25,18 @@ impl Bytes<'_> {
         self.byte() % end
     }
 
-    /// A whole number between −`end` and `end`.
+    /// Returns an integer between −`end` and `end`.
     fn around(&mut self, end: usize) -> f64 {
         self.below(2 * end + 1) as f64 - end as f64
     }
 
-    /// A half of a small number.
+    /// Returns half of a small integer.
     fn size(&mut self) -> f64 {
         0.5 * (1 + self.below(8)) as f64
     }
 }
 
-/// A part of an expression, on whole numbers, so that faces meet and touch.
+/// A part of an expression, in integers, so that faces meet and touch.
 fn figure(bytes: &mut Bytes<'_>) -> Csg {
     let kind = bytes.below(8);
     let at = [0; 3].map(|_: i32| bytes.around(4));
@@ -83,8 +83,8 @@ fn expression(bytes: &mut Bytes<'_>) -> Csg {
     solid.placed(&Affine::new(rows).expect("a good map")).expect("it can be moved")
 }
 
-/// Each edge has two triangles in opposite directions, and the triangles around each vertex are one fan, if
-/// that is asked for.
+/// Asserts that each edge has two triangles in opposite directions and, if `has_fans`, that the triangles
+/// around each vertex form one fan.
 fn check_closed(mesh: &TriangleMesh, has_fans: bool) {
     let mut next: HashMap<(u32, u32), u32> = HashMap::new();
     let mut fans: HashMap<u32, (u32, u32)> = HashMap::new();
@@ -115,8 +115,8 @@ fn dot(a: [f64; 3], b: [f64; 3]) -> f64 {
     a[0] * b[0] + a[1] * b[1] + a[2] * b[2]
 }
 
-/// How far a point is from a triangle, by the regions of its corners and sides (Ericson, *Real-time collision
-/// detection*, 2005, 5.1.5).
+/// Returns the distance of a point from a triangle, by the regions of its corners and sides (Ericson,
+/// *Real-time collision detection*, 2005, 5.1.5).
 fn away(point: [f64; 3], [a, b, c]: [[f64; 3]; 3]) -> f64 {
     let toward = |from: [f64; 3], to: [f64; 3]| {
         let side = minus(to, from);
@@ -137,10 +137,10 @@ fn away(point: [f64; 3], [a, b, c]: [[f64; 3]; 3]) -> f64 {
     least.sqrt()
 }
 
-/// What rounding in this file makes at the most.
+/// A bound of all rounding errors in this file.
 const LITTLE: f64 = 1e-7;
 
-/// Compares what is proven with points of the mesh and with rays.
+/// Compares the proven deviation with points of the mesh and with rays.
 fn check_deviation(solid: &AnySolid, mesh: &TriangleMesh, deviation: f64, told: &str) {
     assert!(deviation >= 0.0, "{told}: {deviation}");
     if deviation == f64::INFINITY {
@@ -184,7 +184,7 @@ fn check_deviation(solid: &AnySolid, mesh: &TriangleMesh, deviation: f64, told: 
     }
 }
 
-/// What the fuzz target `boundaries` does.
+/// Runs the fuzz target `boundaries`.
 pub fn boundaries(data: &[u8]) {
     let mut bytes = Bytes(data);
     let tolerance = [1.0, 0.25, 0.06][bytes.below(3)];
@@ -208,17 +208,17 @@ pub fn boundaries(data: &[u8]) {
             let told = format!("tolerance {tolerance} depth {depth} stored {is_stored}");
             check_deviation(&solid, found.mesh(), found.report().deviation, &told);
         }
-        // An octree without a cell that keeps surfaces knows none.
+        // An octree without a cell that keeps surfaces provides none.
         Err(Error::Limit { .. } | Error::Argument { name: "solid", .. }) => {}
         Err(error) => panic!("{error}"),
     }
 }
 
-/// A solid of a kind, and whether it is honest and known to be certified.
+/// A solid of a random kind, and whether it is honest and known to be certified.
 fn any_solid(bytes: &mut Bytes<'_>) -> (AnySolid, bool) {
     match bytes.below(6) {
         0 => (AnySolid::new(expression(bytes)), true),
-        // A mesh of a few triangles, as it is: closed, open, or with triangles that intersect.
+        // A mesh of a few triangles: closed, open, or with intersecting triangles.
         1 => (facets(bytes), true),
         2 => {
             let mesh = Csg::solid(facets(bytes));
@@ -246,7 +246,7 @@ fn any_solid(bytes: &mut Bytes<'_>) -> (AnySolid, bool) {
             }
             (AnySolid::new(octree), rule == Rule::Certified)
         }
-        // A host's functions that contradict themselves.
+        // A host's functions that contradict each other.
         _ => {
             let seed = bytes.byte() as u64 | (bytes.byte() as u64) << 8;
             let hash = move |point: [f64; 3]| {
@@ -287,7 +287,7 @@ fn facets(bytes: &mut Bytes<'_>) -> AnySolid {
     let vertices: Vec<[f64; 3]> = (0..count).map(|_| [0; 3].map(|_: i32| bytes.around(6))).collect();
     let mut faces = vec![[0, 2, 1], [0, 1, 3], [1, 2, 3], [2, 0, 3]];
     for vertex in 4..count {
-        // A vertex on a face that is there, or a face that is missing.
+        // Move a vertex onto an existing face, or remove a face.
         let at = bytes.below(faces.len());
         let [a, b, c] = faces.swap_remove(at);
         if bytes.below(16) != 0 {
@@ -304,7 +304,7 @@ fn facets(bytes: &mut Bytes<'_>) -> AnySolid {
     AnySolid::new(MeshSolid::new(mesh, FillRule::NonZero).expect("a good mesh"))
 }
 
-/// What the fuzz target `contours` does.
+/// Runs the fuzz target `contours`.
 pub fn contours(data: &[u8]) {
     let mut bytes = Bytes(data);
     let tolerance = [4.0, 2.0, 1.0][bytes.below(3)];
@@ -320,7 +320,7 @@ pub fn contours(data: &[u8]) {
                 check_deviation(&solid, found.mesh(), found.report().deviation, &told);
             }
         }
-        // A mesh with holes has no end, and that of no triangle at all no inside.
+        // A mesh with holes is unbounded, and a mesh without triangles has no inside.
         Err(Error::Limit { .. } | Error::Argument { name: "frame", .. }) => {}
         Err(error) => panic!("{error}"),
     }

@@ -1,4 +1,4 @@
-//! Any bytes as the file of a volume: the readers do not panic, allocate no more than they say, and what is
+//! Any bytes as a volume's file. The readers do not panic, allocate no more than they report, and each volume
 //! read can be written, read again and built.
 
 use leafless::exchange::{
@@ -8,8 +8,8 @@ use leafless::exchange::{
 use leafless::solid::{Band, Samples, VoxelGrid};
 use leafless::{Control, Frame, Rule, Solid, Volume, build};
 
-/// Reads `data` as a file; and the part before the first zero byte as a header, the rest as the file of its
-/// samples, and as an array of small extents.
+/// Reads `data` as a file; as a header, up to the first zero byte, and the file of its samples; and as an
+/// array of small extents.
 pub fn volumes(data: &[u8]) {
     read(data, None);
     let zero = data.iter().position(|&byte| byte == 0).unwrap_or(data.len());
@@ -49,13 +49,13 @@ fn read(bytes: &[u8], data: Option<&[u8]>) {
     let Ok(VolumeFile { samples, grid, .. }) = read_volume(bytes, data) else { return };
     let length = (bytes.len() + data.map_or(0, <[u8]>::len)) as u64;
     assert!(grid.count() <= 1032 * length);
-    // What is long is only worth to be read.
+    // Long volumes are only read.
     if grid.count() < 1 << 16 {
         check(&samples, &grid);
     }
 }
 
-/// What is read is a volume as any other.
+/// Checks that the volume behaves like any other.
 fn check(samples: &Samples<'static>, grid: &VoxelGrid) {
     let raw = write_raw_volume(samples, grid).unwrap();
     let encoding = if raw.len().is_multiple_of(2) { NrrdEncoding::Raw } else { NrrdEncoding::Gzip };

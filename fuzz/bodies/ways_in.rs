@@ -1,4 +1,4 @@
-//! Any bytes through every way in: none panics, and all agree.
+//! Any bytes through every way in. No way panics, and all agree.
 
 use super::{Aligned, channels, dexels_in_all_ways, walk};
 use leafless::error::FormatError;
@@ -6,18 +6,19 @@ use leafless::octree::Cursor;
 use leafless::{Error, Octree, Tag, file};
 use std::path::PathBuf;
 
-/// What became of an attempt, as a text that can be compared.
+/// Returns the outcome of an attempt as a comparable text.
 fn outcome<T>(result: &Result<T, Error>) -> Result<(), String> {
     result.as_ref().map(|_| ()).map_err(|error| error.cause().to_string())
 }
 
-/// Reads `data` in every way. A real file costs more than all the others, so only some inputs become one.
+/// Reads `data` in every way. A real file costs more than all other ways, so that only some inputs become
+/// one.
 pub fn ways_in(data: &[u8]) {
     read_in_all_ways(data, crc32fast::hash(data).is_multiple_of(8));
 }
 
-/// Reads `data` in every way, also by the ways in that need a file if `as_a_file`; whether it is verified as
-/// good.
+/// Reads `data` in every way, including the ways that need a file if `as_a_file`. Returns whether it is
+/// verified as good.
 pub fn read_in_all_ways(data: &[u8], as_a_file: bool) -> bool {
     let aligned = Aligned::new(data);
     let bytes = aligned.bytes();
@@ -37,7 +38,7 @@ pub fn read_in_all_ways(data: &[u8], as_a_file: bool) -> bool {
         (Err(a), Err(b)) => assert_eq!(a.to_string(), b.to_string()),
         (a, b) => panic!("{a:?} and {b:?}"),
     }
-    // Each way in demands what the one before it does, and then more.
+    // Each way in requires what the previous one requires, and more.
     assert_eq!(outcome(&copied), verified);
     if let Err(refused) = outcome(&viewed) {
         assert_eq!(verified, Err(refused));
@@ -65,16 +66,16 @@ pub fn read_in_all_ways(data: &[u8], as_a_file: bool) -> bool {
     verified.is_ok()
 }
 
-/// The bytes as ones that live for ever: whatever is read from them must be gone before they are.
+/// Returns the bytes with a static lifetime. Callers must drop all data read from them before the bytes.
 fn lasting(bytes: &[u8]) -> &'static [u8] {
-    // SAFETY: see above; all callers drop what they read before they return.
+    // SAFETY: see above; all callers drop the data read before they return.
     #[allow(unsafe_code)]
     unsafe {
         std::slice::from_raw_parts(bytes.as_ptr(), bytes.len())
     }
 }
 
-/// The same read where it lies, unverified, and with its channels.
+/// Reads the bytes in place, unverified, with their channels.
 fn in_place(bytes: &[u8], copied: &Result<Octree, Error>) {
     let bytes = lasting(bytes);
     match (file::from_static(bytes), copied) {
@@ -87,7 +88,7 @@ fn in_place(bytes: &[u8], copied: &Result<Octree, Error>) {
     }
 }
 
-/// What holds of every verified tree.
+/// Checks the laws of every verified tree.
 fn good(tree: &Octree) {
     let written = file::to_bytes(tree).expect("a verified tree can be written");
     let back = file::from_bytes(&written).expect("what was written can be read");
@@ -96,7 +97,7 @@ fn good(tree: &Octree) {
     let metadata = |tree: &Octree| tree.channels().iter().map(|c| c.metadata().clone()).collect::<Vec<_>>();
     assert_eq!(metadata(&back), metadata(tree));
     assert_eq!(file::to_bytes(&back).expect("a verified tree can be written"), written);
-    // What the statistics say is what a walk over all cells meets.
+    // The statistics agree with a walk over all cells.
     let walked = walk(Cursor::new(tree.view()));
     let statistics = tree.statistics();
     let depth = tree.frame().depth();
@@ -112,7 +113,7 @@ fn good(tree: &Octree) {
     assert_eq!(statistics.volume_cells(), (lower, upper));
 }
 
-/// A file for this process alone, in memory where there is such a place.
+/// Returns a path for this process alone, in memory where there is such a file system.
 pub fn scratch_file() -> PathBuf {
     let memory = PathBuf::from("/dev/shm");
     let directory = if memory.is_dir() { memory } else { std::env::temp_dir() };
@@ -120,7 +121,7 @@ pub fn scratch_file() -> PathBuf {
     directory.join(format!("leafless-fuzz-{}-{thread:?}.lfl", std::process::id()))
 }
 
-/// The same by the ways in that need a file.
+/// Checks the ways in that need a file.
 fn through_a_file(
     data: &[u8],
     probed: &Result<(), String>,
@@ -130,11 +131,11 @@ fn through_a_file(
     let path = scratch_file();
     std::fs::write(&path, data).expect("a place for a file");
     let found = outcome(&file::probe(&path));
-    // Of a path the length is known, too.
+    // For a path, the length is known, too.
     assert!(&found == probed || (probed.is_ok() && viewed.is_err()), "{found:?}, {probed:?}");
     assert_eq!(&outcome(&file::open(&path)), verified);
     {
-        // SAFETY: nobody else knows the file, and it is removed only when the trees are gone.
+        // SAFETY: no other process uses the file, and it is removed only when the trees are gone.
         #[allow(unsafe_code)]
         let (mapped, scanned) = unsafe { (file::map(&path), file::map_verified(&path)) };
         assert_eq!(&outcome(&scanned), verified);
@@ -142,7 +143,7 @@ fn through_a_file(
             assert_eq!(&outcome(&mapped), viewed);
         }
         if let Ok(tree) = &mapped {
-            // Whatever a level table says, statistics are made of it without a panic.
+            // Statistics do not panic, whatever the level table contains.
             let statistics = tree.statistics();
             let _ = (statistics.volume(), statistics.nodes(), statistics.cells(Tag::Full));
             assert_eq!(tree, &tree.clone());

@@ -1,4 +1,4 @@
-//! Any bytes as attributes, honest and not, and what is made of them, against dense arrays.
+//! Any bytes as attributes, honest or not, and their uses, against dense arrays.
 #![no_main]
 
 #[path = "../bodies/attributes.rs"]

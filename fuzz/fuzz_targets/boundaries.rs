@@ -1,4 +1,4 @@
-//! Any bytes as a solid: its boundaries are closed, and what is proven of them is not contradicted.
+//! Any bytes as a solid. Its boundaries are closed, and nothing contradicts their proven deviation.
 #![no_main]
 
 #[path = "../bodies/surfaces.rs"]

@@ -1,4 +1,4 @@
-//! Any bytes as two solids that touch or nearly do: no answer contradicts another one.
+//! Any bytes as two solids that touch or nearly do. No answer contradicts another one.
 #![no_main]
 
 #[path = "../bodies/contacts.rs"]

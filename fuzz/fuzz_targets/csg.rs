@@ -13,7 +13,7 @@ mod exact;
 #[path = "../../tests/solids/csg/model.rs"]
 mod model;
 
-/// Where the test suite has it.
+/// The module of the test suite.
 mod common {
     pub(crate) use crate::{cubes, exact};
 }

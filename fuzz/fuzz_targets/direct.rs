@@ -1,4 +1,4 @@
-//! Any bytes as a closed mesh that answers rays, points and distances without cells.
+//! Any bytes as a mesh that answers rays, points and distances without cells.
 #![no_main]
 
 #[allow(dead_code)]

@@ -1,4 +1,4 @@
-//! Any bytes as a container and items: what is placed is proven, and no verdict contradicts points of the
+//! Any bytes as a container and items. Placements are proven, and no verdict contradicts points of the
 //! solids.
 #![no_main]
 

@@ -1,4 +1,4 @@
-//! Any bytes as scenes of unit cells and questions, against whole numbers.
+//! Any bytes as scenes of unit cells and queries, against integer counts.
 #![no_main]
 
 #[path = "../bodies/measures.rs"]

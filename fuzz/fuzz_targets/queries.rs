@@ -1,4 +1,4 @@
-//! Every question to a tree that nobody has verified.
+//! All queries of an unverified tree.
 #![no_main]
 
 #[path = "../bodies/mod.rs"]

@@ -1,4 +1,4 @@
-//! The set algebra of trees that nobody has verified.
+//! The set algebra of unverified trees.
 #![no_main]
 
 #[path = "../bodies/mod.rs"]

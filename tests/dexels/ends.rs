@@ -1,5 +1,5 @@
-//! Ends of intervals beside centres of cells, against exact rationals: on all ways into tri-dexel models and
-//! out of them.
+//! Checks of interval ends beside cell centres against exact rationals, on every way into and out of
+//! tri-dexel models.
 
 use crate::common::exact::Exact;
 use leafless::dexel::{Dexel, DexelEditor, DexelEnd, DexelEnds, DexelFormat, DexelNormals, TriDexelRef};
@@ -21,12 +21,12 @@ impl Random {
         self.next() % n
     }
 
-    /// From 0 to 1.
+    /// Returns a random number from 0 to 1.
     fn unit(&mut self) -> f64 {
         self.next() as f64 / (1u64 << 31) as f64 + self.next() as f64 / (1u64 << 62) as f64
     }
 
-    /// A frame that is not dyadic, at most so many powers of two of its edge away from the origin.
+    /// Returns a frame that is not dyadic. Its origin lies at most 2^far of its edge away from zero.
     fn frame(&mut self, depths: std::ops::RangeInclusive<u8>, far: i32) -> Frame {
         let depth = depths.start() + self.below(u64::from(depths.end() - depths.start()) + 1) as u8;
         let edge = (0.5 + self.unit()) * 10.0f64.powi(self.below(13) as i32 - 6);
@@ -42,27 +42,27 @@ fn centre(frame: &Frame, axis: usize, k: u32) -> Exact {
     Exact::half_plane(frame, axis, 2 * k + 1)
 }
 
-/// The sign of a coordinate minus the centre of cell k.
+/// Returns the sign of a coordinate minus the centre of cell k.
 fn side(frame: &Frame, axis: usize, at: f64, k: u32) -> i32 {
     Exact::from(at).minus(&centre(frame, axis, k)).sign()
 }
 
-/// The first cell whose centre does not lie below a coordinate.
+/// Returns the first cell whose centre does not lie below a coordinate.
 fn gap(frame: &Frame, axis: usize, at: f64) -> u32 {
     (0..frame.cells()).find(|&k| side(frame, axis, at, k) <= 0).unwrap_or(frame.cells())
 }
 
-/// Some steps from one double to the next.
+/// Moves a double by this number of steps to its neighbours.
 fn stepped(x: f64, steps: i64) -> f64 {
     (0..steps.abs()).fold(x, |x, _| if steps > 0 { x.next_up() } else { x.next_down() })
 }
 
-/// Near the centre of cell k, in doubles.
+/// Returns the centre of cell k, rounded.
 fn near(frame: &Frame, axis: usize, k: u32) -> f64 {
     frame.origin()[axis] + (f64::from(k) + 0.5) * frame.cell_size()
 }
 
-/// Whether doubles lie in a gap of the frame, up to the universe's faces.
+/// True if a gap between centres contains a double. The first and the last gap reach to the universe's faces.
 fn has_double(frame: &Frame, axis: usize, gap: u32) -> bool {
     let from = near(frame, axis, gap);
     gap == 0
@@ -74,7 +74,7 @@ fn has_double(frame: &Frame, axis: usize, gap: u32) -> bool {
         })
 }
 
-/// All intervals of a model, handed in again.
+/// Rebuilds a model from all its intervals, each changed by `change`.
 fn again(model: &TriDexelRef<'_>, change: impl Fn(usize, Dexel) -> Dexel) -> Result<TriDexel, Error> {
     let list = |axis: usize, ray: [u32; 2], list: &mut Vec<Dexel>| {
         list.extend(model.rays(axis).unwrap().dexels(ray).map(|dexel| change(axis, dexel)));
@@ -83,7 +83,7 @@ fn again(model: &TriDexelRef<'_>, change: impl Fn(usize, Dexel) -> Dexel) -> Res
     TriDexel::from_rays(model.frame(), model.format(), model.directions(), list, &Control::default())
 }
 
-/// Whether what is handed out lies on the side that is stored, and makes the same model again.
+/// Checks that returned ends lie on the stored side of their centres, and that they rebuild the same model.
 fn check(model: &TriDexel, name: &str) {
     let (view, frame) = (model.view(), model.frame());
     view.check().unwrap();
@@ -117,7 +117,8 @@ fn check(model: &TriDexel, name: &str) {
         }
         assert_eq!(met, extent, "{name}");
     }
-    // Exactly there and back; by coordinates alone as far as these can tell.
+    // The round trip is exact. With coordinates alone, it is exact as far as coordinates can distinguish
+    // ends.
     assert_eq!(&again(view, |_, dexel| dexel).unwrap(), model, "{name}: there and back, {frame:?}");
     let bare = |_: usize, Dexel { start, end, material }: Dexel| Dexel {
         start: DexelEnd { cells: None, ..start },
@@ -157,7 +158,7 @@ const FORMATS: [DexelFormat; 3] = {
     ]
 };
 
-/// A model of rays along one axis of which one has intervals.
+/// Builds a model with rays along one axis; only one of these rays has intervals.
 fn one_ray(frame: &Frame, format: DexelFormat, axis: usize, list: &[Dexel]) -> Result<TriDexel, Error> {
     let directions = [0, 1, 2].map(|a| a == axis);
     let rays = |_: usize, ray: [u32; 2], all: &mut Vec<Dexel>| {
@@ -214,7 +215,7 @@ fn ends_from_a_host_keep_their_side_of_every_centre() {
                 wrong += u32::from(model.view().contains_cell(cell) != expected);
             }
             check(&model, "host");
-            // From file to file, and to the other form and back.
+            // Between files, to the other form, and back.
             let bytes = file::dexels::to_bytes(&model).unwrap();
             let read = file::dexels::from_bytes(&bytes).unwrap();
             assert_eq!(read, model);
@@ -229,7 +230,7 @@ fn ends_from_a_host_keep_their_side_of_every_centre() {
     assert_eq!(wrong, 0);
 }
 
-/// Ends in cells, as far apart as doubles are, on frames that doubles cannot tell from a point.
+/// Ends given in cells are exact, however close, also on frames that doubles cannot tell from a point.
 #[test]
 fn ends_in_cells_are_exact_anywhere() {
     let mut random = Random(9);
@@ -266,7 +267,7 @@ fn ends_in_cells_are_exact_anywhere() {
     assert_eq!(DexelEnd::in_cells(&frame, 3, 1.0), None);
 }
 
-/// An end whose coordinate was changed, or that goes to another frame, lies where the coordinate says.
+/// An end with a changed coordinate, or an end taken to another frame, lies where its coordinate says.
 #[test]
 fn a_place_counts_with_its_own_coordinate_alone() {
     let frame = Frame::new([0.1; 3], 0.7, 3).unwrap();
@@ -304,8 +305,8 @@ fn cube_mesh(low: [f64; 3], high: [f64; 3]) -> TriangleMesh {
     TriangleMesh::new((0..8).map(corner).collect(), triangles.to_vec()).unwrap()
 }
 
-/// Solids with faces within a few ulps of centres hold the centres that exact arithmetic says, and so do all
-/// operations.
+/// Solids with faces within a few ulps of centres contain exactly the centres that exact arithmetic says. All
+/// operations keep this.
 #[test]
 fn solids_operations_and_edits_keep_sides() {
     let (mut random, control) = (Random(77), Control::default());
@@ -338,7 +339,7 @@ fn solids_operations_and_edits_keep_sides() {
                 let model = dexelize(solid, &frame, &options, &control).unwrap();
                 check(&model, name);
                 for cell in (0..all.pow(3)).map(|i| [i % all, i / all % all, i / all / all]) {
-                    // (A centre on a face may be either side of it, by the shifted rays.)
+                    // (For a centre on a face, the shifted rays choose the side.)
                     let sides = [0, 1, 2].map(|axis| {
                         [
                             side(&frame, axis, low[axis], cell[axis]),

@@ -1,4 +1,4 @@
-//! Where intervals of mixed solids begin and end: at the faces of the universe, and between centres.
+//! Where intervals of mixed solids begin and end: at the universe's faces, and between centres.
 
 use leafless::dexel::{DexelEnds, DexelFormat};
 use leafless::op::DexelOptions;
@@ -56,8 +56,8 @@ fn cuboid([low, high]: [[f64; 3]; 2]) -> AnySolid {
     AnySolid::new(MeshSolid::new(mesh, FillRule::NonZero).unwrap())
 }
 
-/// Every end is an end of the truth, or lies at a face of the universe that lies inside; every centre is as
-/// in truth.
+/// Checks that each end is an end of the truth or lies at a face of the universe inside the solid, and that
+/// every centre has its true state.
 fn check(solid: &AnySolid, truth: &Truth, axis: usize, depth: u8, name: &str) -> usize {
     let (frame, control) = (Frame::new([0.0; 3], EDGE, depth).unwrap(), Control::default());
     let (mut walls, n) = (0, frame.cells());
@@ -94,7 +94,7 @@ fn ends_at_the_faces_of_the_universe_are_where_walls_are() {
         let (axis, depth) = (round % 3, 1 + random.below(4) as u8);
         let count = 1 + random.below(3) as usize;
         let mut ends: Vec<f64> = (0..2 * count).map(|_| -0.1 + 2.2 * random.unit()).collect();
-        // Often near the faces: before the first centre and behind the last one.
+        // Often near the faces: before the first centre and after the last one.
         let half = 0.5 * EDGE / f64::from(1u32 << depth);
         if random.below(2) == 0 {
             ends[0] = half * random.unit();

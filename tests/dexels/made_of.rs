@@ -1,4 +1,4 @@
-//! Octrees of tri-dexel models: what ends decide, and what materials become.
+//! Octrees of tri-dexel models: how ends decide cells, and how materials are carried over.
 
 use crate::common::Random;
 use leafless::attribute::dexel_materials;
@@ -17,7 +17,7 @@ fn frame(depth: u8) -> Frame {
     Frame::new([0.0; 3], 16.0, depth).unwrap()
 }
 
-/// What the rays through a finest cell say, interval by interval: the tag of the cell.
+/// Derives the tag of a finest cell from the rays through the cell, interval by interval.
 fn told(model: &TriDexelRef<'_>, cell: [u32; 3]) -> Tag {
     let mut tags = Vec::new();
     for axis in 0..3 {
@@ -93,7 +93,7 @@ fn random_rays_that_disagree_leave_cells_open() {
             let to = (at + random.between(0.1, 6.0)).min(16.0);
             let material = random.below(3) as u32;
             list.push(Dexel { start: DexelEnd::new(at), end: DexelEnd::new(to), material });
-            // Some touch the next one, which is of another material then.
+            // Some bodies touch the next one, which then has another material.
             at = if random.below(3) == 0 { to } else { to + random.between(0.2, 4.0) };
         }
         list.dedup_by(|b, a| {
@@ -137,7 +137,7 @@ fn materials_become_a_channel() {
         }
     }
     assert!(seen.iter().all(|&seen| seen > 40_000), "{seen:?}");
-    // All of one material is one cell.
+    // A region of one material is one cell.
     let one = octree_from_dexels(steel.view(), &CONTROL).unwrap();
     let channel = dexel_materials(steel.view(), one.view(), &CONTROL).unwrap().unwrap();
     assert!(channel.bytes() < 200, "{}", channel.bytes());
@@ -153,8 +153,8 @@ fn materials_become_a_channel() {
     ));
 }
 
-/// The library's way to an octree with surfaces: the surface that ends and normals make is a mesh, and that
-/// is a solid.
+/// The library's way to an octree with surfaces: ends and normals make a surface, the surface is a mesh, and
+/// the mesh makes a solid.
 #[test]
 fn a_model_with_normals_becomes_an_octree_with_surfaces() {
     let (centre, radius) = ([8.1, 7.9, 8.2], 5.3);
@@ -169,7 +169,7 @@ fn a_model_with_normals_becomes_an_octree_with_surfaces() {
     assert!(tree.view().cuts().is_some() && tree.proof().full && tree.proof().empty);
     let exact = 4.0 / 3.0 * std::f64::consts::PI * f64::powi(radius, 3);
     let found = measure(&tree, tree.frame(), 1e-3 * exact, &CONTROL).unwrap().volume;
-    // It is that of the reconstructed surface, which is near the ball's and not on it.
+    // The volume is that of the reconstructed surface, which is near the ball's surface and not on it.
     let middle = 0.5 * found.lower + 0.5 * found.upper;
     assert!((middle / exact - 1.0).abs() < 5e-3, "{found:?} {exact}");
 }

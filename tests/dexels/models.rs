@@ -32,7 +32,7 @@ fn inside(tree: &Octree, cell: [u32; 3]) -> bool {
     tree.contains(point) == leafless::Membership::Inside
 }
 
-/// Each direction, in both forms of ends, holds just the centres that are sampled inside.
+/// Checks that each direction, in both forms of ends, contains exactly the centres that are sampled inside.
 fn check_samples<S: Solid>(solid: &S, frame: &Frame, name: &str) {
     let control = Control::default();
     let tree = build(solid, frame, Rule::Sampled, &control).unwrap();
@@ -69,7 +69,7 @@ fn box_mesh(min: [f64; 3], max: [f64; 3]) -> TriangleMesh {
     TriangleMesh::new((0..8).map(corner).collect(), triangles).unwrap()
 }
 
-/// A rotation whose numbers are no short doubles.
+/// A rotation whose matrix entries are not short doubles.
 fn turn() -> Affine {
     let (c, s) = (0.3f64.cos(), 0.3f64.sin());
     let (d, t) = (1.1f64.cos(), 1.1f64.sin());
@@ -94,7 +94,7 @@ fn octahedron(radius: f64) -> TriangleMesh {
     TriangleMesh::new(vertices, triangles).unwrap()
 }
 
-/// A ball of which only values and ranges are known.
+/// A ball that provides only values and ranges.
 fn host_ball(c: [f64; 3], radius: f64) -> HalfSpace {
     let square = |x: f64, low: f64, high: f64| {
         let far = (x - low).abs().max((high - x).abs());
@@ -121,7 +121,7 @@ fn half_spaces_are_sampled_as_octrees_are() {
     let shapes: [(&str, Csg); 13] = [
         ("ball", Csg::ball([0.0; 3], 0.75).unwrap()),
         ("ball off centre", Csg::ball([0.11, -0.07, 0.031], 0.613).unwrap()),
-        // Tangent to rays and touching centres: radius 11 eighths of sixteenths.
+        // Tangent to rays and touching centres: the radius is 11 eighths of sixteenths.
         ("ball through centres", Csg::ball([1.0 / 32.0; 3], 0.5).unwrap()),
         ("box on centres", Csg::cuboid([-0.53125; 3], [0.46875; 3]).unwrap()),
         ("box on planes", Csg::cuboid([-0.5; 3], [0.75, 0.5, 0.25]).unwrap()),
@@ -166,7 +166,7 @@ fn expressions_are_sampled_as_octrees_are() {
     let part = ball.difference(&Csg::union_of(bars.clone()).unwrap()).unwrap();
     check_samples(&part, &frame(5), "ball less bars");
     check_samples(&Csg::xor_of([ball.clone(), bars[0].clone()]).unwrap(), &frame(4), "xor");
-    // More half-spaces than a ray of a large cell is asked of, in groups.
+    // More half-spaces, in groups, than a ray of a large cell evaluates.
     let many = (0..60).map(|i| {
         let at = |k: u32| f64::from(i * k % 17) / 10.0 - 0.8;
         Csg::ball([at(3), at(5), at(7)], 0.12).unwrap()
@@ -213,7 +213,7 @@ fn meshes_are_sampled_as_octrees_are() {
     }
 }
 
-/// Faces of convex polygons, as a boundary representation has them.
+/// Faces of convex polygons, as in a boundary representation, are sampled like half-spaces.
 #[test]
 fn polygonal_faces_are_sampled_as_half_spaces_are() {
     // A hexagon with two edges that lie on rays along y.
@@ -336,7 +336,7 @@ fn ends_lie_where_the_surface_is() {
             assert!(found > 1000);
         }
     }
-    // Of solids without rays of their own, to a cell of depth 20.
+    // Solids without rays of their own, up to a cell of depth 20.
     let moved = Csg::from(host_ball(c, 0.75));
     let (model, expected) = (
         dexelize(&moved, &frame, &doubles(), &control).unwrap(),
@@ -353,7 +353,7 @@ fn ends_lie_where_the_surface_is() {
 fn triangles_tell_their_numbers_and_normals() {
     let (frame, control) = (frame(5), Control::default());
     let mesh = octahedron(0.8).placed(&turn()).unwrap();
-    // Inside out it is the same solid, with the same outward normals.
+    // Inside out, it is the same solid with the same outward normals.
     let turned = TriangleMesh::new(
         mesh.vertices().to_vec(),
         mesh.triangles().iter().map(|&[a, b, c]| [a, c, b]).collect(),
@@ -395,7 +395,7 @@ fn triangles_tell_their_numbers_and_normals() {
     }
 }
 
-/// A part of many intervals: balls and boxes at random places, of several materials.
+/// A part with many intervals: balls and boxes of several materials at random places.
 fn random_part(seed: u64, frame: &Frame, options: &DexelOptions) -> TriDexel {
     let mut random = common::Random(seed);
     let control = Control::default();
@@ -403,7 +403,7 @@ fn random_part(seed: u64, frame: &Frame, options: &DexelOptions) -> TriDexel {
     for material in 1..5 {
         let shapes = (0..3).map(|_| {
             let c = [0; 3].map(|_| random.between(-0.9, 0.9));
-            // Places on the lattice make ends that lie at the same place.
+            // Places on the lattice make ends that coincide.
             let c = if random.below(2) == 0 { c } else { c.map(|x| (x * 8.0).round() / 8.0) };
             let r = random.between(0.05, 0.5);
             if random.below(2) == 0 {
@@ -425,7 +425,7 @@ fn random_part(seed: u64, frame: &Frame, options: &DexelOptions) -> TriDexel {
     TriDexel::union_of(&views, &control).unwrap()
 }
 
-/// What a ray is made of at a place.
+/// Returns the material of a ray at a place, or `None` outside.
 fn matter(model: &TriDexel, axis: usize, ray: [u32; 2], at: f64) -> Option<u32> {
     let mut dexels = model.view().rays(axis).unwrap().dexels(ray);
     dexels.find(|dexel| dexel.start.at <= at && at < dexel.end.at).map(|dexel| dexel.material)
@@ -511,7 +511,7 @@ fn laws_of_sets_hold_exactly() {
             let control = Control::threads(threads);
             assert_eq!(a.view().union(b.view(), &control).unwrap(), or(&a, &b));
         }
-        // A set operation of models is the model of the set operation, but for the last unit.
+        // A set operation on models equals the model of the set operation, up to the last unit.
         assert!(matches!(TriDexel::union_of(&[], &control), Err(Error::Argument { .. })));
     }
 }
@@ -532,7 +532,7 @@ fn operands_must_fit() {
         dexelize(&ball, &frame(4), &none, &control),
         Err(Error::Argument { name: "directions", .. })
     ));
-    // Fixed-point ends and doubles meet in doubles; what one operand does not carry is unknown.
+    // Fixed-point ends and doubles combine to doubles. Attributes that one operand lacks are unknown.
     let (fine, marked) = (model(4, &doubles()), model(4, &all_marks(DexelEnds::Fixed)));
     let mixed = fine.view().difference(marked.view(), &control).unwrap();
     assert_eq!(mixed.view().format(), DexelFormat { ends: DexelEnds::Double, ..marked.view().format() });
@@ -551,11 +551,12 @@ fn a_subtraction_shows_the_other_side() {
     let dexels: Vec<_> = part.view().rays(2).unwrap().dexels([16, 16]).collect();
     assert_eq!(dexels.len(), 2);
     let z = |end: leafless::dexel::DexelEnd| end.normal.unwrap()[2];
-    // Into the hole the outward normal leads up, though the ball's own led down there.
+    // The outward normal points up into the hole, although the ball's own normal there points down.
     assert!(z(dexels[0].start) < -0.99 && z(dexels[0].end) > 0.99);
     assert!(z(dexels[1].start) < -0.99 && z(dexels[1].end) > 0.99);
     assert_eq!((dexels[0].end.surface, dexels[1].start.surface), (Some(0), Some(0)));
-    // Intervals of one material that touch are one; of two they are two, with a face between.
+    // Touching intervals of one material are merged. Intervals of two materials stay two, with a face
+    // between.
     let half = |min: f64, max: f64, material| {
         let half = Csg::cuboid([-0.7, -0.7, min], [0.7, 0.7, max]).unwrap();
         dexelize(&half, &frame, &marks, &control).unwrap().view().with_material(material, &control).unwrap()
@@ -572,7 +573,7 @@ fn a_subtraction_shows_the_other_side() {
     );
 }
 
-/// The finest cells that the intervals of models run through.
+/// Returns the box of finest cells that the intervals of the models run through.
 fn box_of_differences(parts: &[TriDexel; 2]) -> Option<[[u32; 3]; 2]> {
     let mut found: Option<[[u32; 3]; 2]> = None;
     for model in parts {
@@ -643,7 +644,7 @@ fn changes_in_place_are_set_operations() {
             whole = made;
             let [change, other] = changes;
             assert_eq!(change, other, "step {step}");
-            // What the change says is what the models before and after it differ by.
+            // The reported change is the difference of the models before and after it.
             let difference = |a: &TriDexel, b: &TriDexel| a.view().difference(b.view(), &control).unwrap();
             let parts = [difference(&before, &whole), difference(&whole, &before)];
             for (told, part) in [change.removed, change.added].iter().zip(&parts) {
@@ -674,7 +675,7 @@ fn what_the_fuzzer_found_interesting() {
     let mut random = common::Random(23);
     for _ in 0..300 {
         let mut data: Vec<u8> = (0..random.below(500)).map(|_| random.next() as u8).collect();
-        // As often triangles as rays.
+        // The numbers of triangles equal those of rays.
         if let Some(form) = data.get_mut(1) {
             *form = *form & 127 | (random.below(2) as u8) << 7;
         }

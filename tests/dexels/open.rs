@@ -12,8 +12,8 @@ fn only(axis: usize, ends: DexelEnds) -> DexelOptions {
     DexelOptions { directions: [0, 1, 2].map(|a| a == axis), format, ..DexelOptions::default() }
 }
 
-/// A bent tube or ball around (16.1, 15.8, 16.3), `at(s, t)` for s and t from 0 to 1, without the triangles
-/// that `is_hole` takes.
+/// A bent tube or ball around (16.1, 15.8, 16.3), `at(s, t)` for s and t from 0 to 1. Triangles that
+/// `is_hole` selects are missing.
 fn patch(
     [m, n]: [u32; 2],
     at: impl Fn(f64, f64) -> [f64; 3],
@@ -41,7 +41,8 @@ fn ball(holes: impl Fn(u32, u32) -> bool) -> TriangleMesh {
 }
 
 fn meshes() -> Vec<(&'static str, TriangleMesh)> {
-    // Its lid is missing: vertices on centres, so that rays run along the edges of whatever closes the hole.
+    // The box has no lid. Its vertices lie on centres, so that rays run along the edges of any membrane over
+    // the hole.
     let box_of = |low: f64, high: f64| {
         let vertices: Vec<_> =
             (0..8).map(|k| [0, 1, 2].map(|axis| if k >> axis & 1 != 0 { high } else { low })).collect();
@@ -82,8 +83,8 @@ fn excess(fill: FillRule, winding: f64) -> f64 {
     if fill == FillRule::Positive { winding - 0.5 } else { winding.abs() - 0.5 }
 }
 
-/// Holds every end and the middle of every interval against the winding number: an end that no triangle makes
-/// lies where it passes one half.
+/// Checks every end and the middle of every interval against the winding number. Where no triangle makes an
+/// end, the winding number passes one half there.
 fn check_ends(name: &str, mesh: &TriangleMesh, fill: FillRule, model: &TriDexel, axis: usize) -> [usize; 2] {
     let frame = model.frame();
     let scale = frame.edge();
@@ -110,12 +111,12 @@ fn check_ends(name: &str, mesh: &TriangleMesh, fill: FillRule, model: &TriDexel,
                     pierced += 1;
                     continue;
                 }
-                // Ends in the universe's faces and in planes of the lattice may be where triangles lie.
+                // Ends in the universe's faces and in planes of the lattice may coincide with triangles.
                 if cells[side] == cells[side].round() {
                     continue;
                 }
                 free += 1;
-                // 2^-36 of the edge, and what is rounded in the sums over what they change along the ray.
+                // 2^-36 of the edge, plus the rounding of the sums divided by their change along the ray.
                 let step = scale * 1e-6;
                 let inward = if side == 0 { step } else { -step };
                 let [here, there] =

@@ -1,5 +1,5 @@
-//! Tri-dexel models of real meshes: samples, surfaces there and back, edges; and what one, two and three
-//! directions lose.
+//! Tri-dexel models of real meshes: samples, surfaces there and back, edges, and the losses of one, two and
+//! three directions.
 
 use crate::common;
 use crate::common::model;
@@ -55,8 +55,7 @@ fn all_directions_have_the_samples_of_closed_meshes() {
         let solid = MeshSolid::new(mesh, FillRule::NonZero).unwrap();
         let tree = build(&solid, &frame, Rule::Sampled, &control).unwrap();
         for axis in 0..3 {
-            // An odd number of crossings would be a runaway interval, and samples along its ray that are
-            // wrong.
+            // An odd number of crossings would give a runaway interval, and wrong samples along its ray.
             let directions = [0, 1, 2].map(|a| a == axis);
             let model = dexelize(&solid, &frame, &DexelOptions { directions, ..marked() }, &control).unwrap();
             model.view().check().unwrap();
@@ -73,7 +72,7 @@ fn all_directions_have_the_samples_of_closed_meshes() {
     }
 }
 
-/// Distances to a mesh, by all triangles in boxes around a point.
+/// Distances to a mesh. Only triangles in grid boxes near the point are examined.
 struct Nearest {
     triangles: Vec<[DVec3; 3]>,
     size: f64,
@@ -105,7 +104,7 @@ impl Nearest {
         (point / self.size).floor().to_array().map(|c| c as i64)
     }
 
-    /// The distance, if it is at most the size of a box; else infinity.
+    /// Returns the distance if it is at most the size of a box, else infinity.
     fn distance(&self, point: DVec3) -> f64 {
         let at = self.place(point);
         let mut least = f64::INFINITY;
@@ -119,7 +118,7 @@ impl Nearest {
     }
 }
 
-/// The distance of a point from a triangle (Ericson 2005).
+/// Returns the distance of a point from a triangle (Ericson 2005).
 fn to_triangle(p: DVec3, [a, b, c]: [DVec3; 3]) -> f64 {
     let to_segment = |a: DVec3, b: DVec3| {
         let t = (p - a).dot(b - a) / (b - a).length_squared();
@@ -133,7 +132,7 @@ fn to_triangle(p: DVec3, [a, b, c]: [DVec3; 3]) -> f64 {
     to_segment(a, b).min(to_segment(b, c)).min(to_segment(c, a))
 }
 
-/// Points of a mesh, no more than `most`: vertices and inner points of triangles.
+/// Returns at most `most` points of a mesh: vertices and inner points of triangles.
 fn points(mesh: &TriangleMesh, most: usize) -> Vec<(DVec3, DVec3)> {
     let mut random = common::Random(17);
     (0..most)
@@ -177,9 +176,9 @@ fn surfaces_lead_back_to_closed_meshes() {
             assert!(surface.volume() > 0.0);
             let far = points(&surface, 4000).iter().map(|&(p, _)| source.distance(p)).fold(0.0, f64::max);
             assert!(far <= most, "{name}, {way}: {} cells from the source", far / cell);
-            // Where walls and gaps are at least two cells, nothing of the source is far from the surface. Of
-            // marching cubes that holds where balls of this size touch from both sides: it cuts corners off
-            // by up to 1.15 cells.
+            // Where walls and gaps are at least two cells wide, all of the source is near the surface. For
+            // marching cubes this holds where balls of this size touch from both sides: marching cubes cuts
+            // corners off by up to 1.15 cells.
             let back = Nearest::new(&surface, 2.0 * cell);
             let contains = |p: DVec3| fine.contains(p.to_array()) == Membership::Inside;
             let is_wide = |&(p, n): &(DVec3, DVec3)| {
@@ -229,8 +228,8 @@ fn dual_contouring_keeps_the_edges_of_a_part() {
             let [a, b] = [*a, *b].map(|v| DVec3::from(mesh.vertices()[v as usize]));
             for k in 1..8 {
                 let p = a.lerp(b, f64::from(k) / 8.0);
-                // In a cube between eight centres on one side there is no vertex; the edge is cut off there
-                // by what its neighbours have, since no vertex leaves its own cube.
+                // A cube between eight centres on one side has no vertex. The edge is cut off there as far as
+                // the neighbours' vertices, since no vertex leaves its own cube.
                 let has_vertex = |p: DVec3| {
                     let corner = ((p - DVec3::from(frame.origin())) / cell - 0.5).floor();
                     let inside = |k: i32| {
@@ -297,7 +296,7 @@ fn set_operations_agree_with_those_of_octrees() {
     }
 }
 
-/// The volume of a ball of radius 1 between planes.
+/// Returns the volume of the unit ball between two planes.
 fn ball_between([low, high]: [f64; 2]) -> f64 {
     let below = |x: f64| {
         let x = x.clamp(-1.0, 1.0);
@@ -306,8 +305,8 @@ fn ball_between([low, high]: [f64; 2]) -> f64 {
     below(high) - below(low)
 }
 
-/// The part of the unit ball that lies beyond what the rays of some directions cross. (The caps do not
-/// overlap.)
+/// Returns the share of the unit ball outside the extent that the rays of some directions cross. (The caps do
+/// not overlap.)
 fn lost(model: &TriDexel) -> f64 {
     let ball = 4.0 / 3.0 * std::f64::consts::PI;
     let mut lost = 0.0;
@@ -339,7 +338,7 @@ fn what_directions_lose_of_a_sphere() {
             let options = DexelOptions { directions, format, ..DexelOptions::default() };
             lost(&dexelize(&ball, &frame, &options, &control).unwrap())
         });
-        // Four caps, two, and none but what lies behind the rays nearest to the poles.
+        // Four caps, two caps, and none except the parts behind the rays nearest to the poles.
         let h = frame.cell_size();
         let cap = |height: f64| height * height * (3.0 - height) / 4.0;
         let pole = 1.0 - (1.0 - h * h / 2.0).sqrt();
@@ -352,7 +351,7 @@ fn what_directions_lose_of_a_sphere() {
         }
         assert!(found[0] > found[1] && found[1] > found[2]);
         let ratios = [0, 1, 2].map(|i| before[i] / found[i]);
-        // With half the step a quarter is lost of caps, and a sixteenth behind the poles.
+        // With half the step, caps lose a quarter as much, and the parts behind the poles a sixteenth.
         assert!(depth == 3 || ratios[0] > 3.7 && ratios[1] > 3.7 && ratios[2] > 15.0, "{ratios:?}");
         before = found;
         let percent = found.map(|part| format!("{:.6} %", 100.0 * part));
@@ -378,7 +377,8 @@ fn parts_of_the_paper_have_their_volumes() {
         println!("{}: {off:e}", part.name);
         assert!(off.abs() < 1e-3, "{}: {} for {}", part.name, mesh.volume(), part.volume);
         for (material, volume) in (1..).zip(&part.materials) {
-            // Rays along z cross each ply from end to end; how many there are is off by those at the rim.
+            // Rays along z cross each ply from end to end. The error comes from the number of rays at the
+            // rim.
             let found = part.volume_of(material, 2);
             assert!((found / volume - 1.0).abs() < 0.01, "material {material}: {found} for {volume}");
         }

@@ -1,4 +1,4 @@
-//! What is made of tri-dexel models: octrees, surfaces, solids and voxels, against dense arrays and formulas.
+//! Octrees, surfaces, solids and voxels made from tri-dexel models, against dense arrays and formulas.
 
 use leafless::dexel::{Dexel, DexelEnd, DexelEnds, DexelFormat, DexelNormals};
 use leafless::error::MeshError;
@@ -13,7 +13,7 @@ use leafless::{
 use std::collections::{BTreeMap, BTreeSet};
 use std::f64::consts::PI;
 
-/// What is stored in most tests.
+/// The format of most tests.
 const FORMAT: DexelFormat =
     DexelFormat { ends: DexelEnds::Double, normals: DexelNormals::Bits32, surfaces: false, materials: false };
 
@@ -39,7 +39,7 @@ fn plain_end(at: f64) -> DexelEnd {
     DexelEnd::new(at)
 }
 
-/// Intervals of random length, and every ray as it likes: the directions agree about nothing.
+/// A model with intervals of random length on every ray, so that the directions contradict each other.
 fn soup(frame: &Frame, format: DexelFormat, directions: [bool; 3], seed: u64) -> TriDexel {
     let mut random = Random(seed);
     let (low, cell) = (frame.origin(), frame.cell_size());
@@ -68,7 +68,7 @@ fn soup(frame: &Frame, format: DexelFormat, directions: [bool; 3], seed: u64) ->
     TriDexel::from_rays(frame, format, directions, rays, &Control::default()).unwrap()
 }
 
-/// Whether the rays along an axis hold the centre of a cell.
+/// True if the rays along an axis contain the centre of a cell.
 fn holds(model: &TriDexel, axis: usize, cell: [u32; 3]) -> bool {
     let frame = model.frame();
     let centre = frame.origin()[axis] + (f64::from(cell[axis]) + 0.5) * frame.cell_size();
@@ -94,7 +94,7 @@ const SOME_DIRECTIONS: [[bool; 3]; 7] = [
 #[test]
 fn octrees_hold_the_centres() -> Result<(), Error> {
     for depth in [1, 2, 5, 6, 7] {
-        // A frame of which doubles are exact.
+        // A frame that is exact in doubles.
         let frame = Frame::new([-1.0, 0.5, 2.0], 4.0, depth)?;
         for (seed, directions) in (1u64..).zip(SOME_DIRECTIONS) {
             let ends = if seed % 2 == 0 { DexelEnds::Double } else { DexelEnds::Fixed };
@@ -120,7 +120,7 @@ fn octrees_hold_the_centres() -> Result<(), Error> {
     Ok(())
 }
 
-/// A model of all points with f < 0, by steps of an eighth of a cell and bisection.
+/// A model of all points with f < 0, found by steps of an eighth of a cell and bisection.
 fn implicit(frame: &Frame, directions: [bool; 3], f: &dyn Fn([f64; 3]) -> f64) -> TriDexel {
     let cell = frame.cell_size();
     let centre = |axis: usize, k: u32| frame.origin()[axis] + (f64::from(k) + 0.5) * cell;
@@ -169,7 +169,7 @@ fn implicit(frame: &Frame, directions: [bool; 3], f: &dyn Fn([f64; 3]) -> f64) -
     TriDexel::from_rays(frame, FORMAT, directions, rays, &Control::default()).unwrap()
 }
 
-/// A model of half-open boxes from one corner to the other, which do not overlap.
+/// A model of half-open boxes that do not overlap, each given by two corners.
 fn boxes(frame: &Frame, format: DexelFormat, directions: [bool; 3], boxes: &[[[f64; 3]; 2]]) -> TriDexel {
     let rays = |axis: usize, ray: [u32; 2], list: &mut Vec<Dexel>| {
         for (material, [low, high]) in (1u32..).zip(boxes) {
@@ -202,8 +202,8 @@ fn dual(model: &TriDexel, control: &Control<'_>) -> Result<(TriangleMesh, DexelS
     dual_contouring_dexels(model.view(), control)
 }
 
-/// The surface by any method, which is balanced, the same for any number of threads, and says how many edges
-/// are cut.
+/// Extracts the surface by a method. Checks that the surface is balanced, is the same for any number of
+/// threads, and reports the number of cut edges.
 fn surface(method: Method, model: &TriDexel) -> (TriangleMesh, DexelSurfaceReport) {
     let (mesh, report) = method(model, &Control::threads(1)).unwrap();
     let (again, report_again) = method(model, &Control::threads(2)).unwrap();
@@ -222,7 +222,7 @@ fn surface(method: Method, model: &TriDexel) -> (TriangleMesh, DexelSurfaceRepor
     (mesh, report)
 }
 
-/// On how many edges not exactly two triangles meet, in opposite directions.
+/// Counts the edges where not exactly two triangles meet in opposite directions.
 fn uneven_edges(mesh: &TriangleMesh) -> usize {
     let mut edges: BTreeMap<[u32; 2], u32> = BTreeMap::new();
     for &[a, b, c] in mesh.triangles() {
@@ -233,7 +233,7 @@ fn uneven_edges(mesh: &TriangleMesh) -> usize {
     edges.iter().filter(|&(&[a, b], &count)| count != 1 || edges.get(&[b, a]) != Some(&1)).count()
 }
 
-/// Each vertex lies at an end of an interval, on a line between centres.
+/// Checks that each vertex lies at an end of an interval, on a line between centres.
 fn check_on_crossings(model: &TriDexel, mesh: &TriangleMesh) {
     let frame = model.frame();
     let cell = frame.cell_size();
@@ -262,7 +262,7 @@ fn check_on_crossings(model: &TriDexel, mesh: &TriangleMesh) {
     }
 }
 
-/// Each vertex lies in a cube between eight centres, of which some lie inside and some do not.
+/// Checks that each vertex lies in a cube between eight centres, some inside and some outside.
 fn check_in_cubes(model: &TriDexel, mesh: &TriangleMesh) {
     let frame = model.frame();
     let inside = |at: [i64; 3]| {
@@ -271,7 +271,7 @@ fn check_in_cubes(model: &TriDexel, mesh: &TriangleMesh) {
     };
     for vertex in mesh.vertices() {
         let place = [0, 1, 2].map(|axis| (vertex[axis] - frame.origin()[axis]) / frame.cell_size() - 0.5);
-        // On the common faces of cubes it may be that of any.
+        // On common faces of cubes, the tag may be that of any of the cubes.
         let choices = place.map(|c| [(c - 1e-9).floor() as i64, (c + 1e-9).floor() as i64]);
         let found = (0..8).any(|choice| {
             let cube = [0, 1, 2].map(|axis| choices[axis][choice >> axis & 1]);
@@ -286,7 +286,7 @@ fn length(v: [f64; 3]) -> f64 {
     v.iter().map(|c| c * c).sum::<f64>().sqrt()
 }
 
-/// Negative inside.
+/// A shape function, negative inside.
 type Shape = fn([f64; 3]) -> f64;
 
 fn ball([x, y, z]: [f64; 3]) -> f64 {
@@ -297,7 +297,7 @@ fn torus([x, y, z]: [f64; 3]) -> f64 {
     length([length([x, y, 0.0]) - 0.55, z - 0.013, 0.0]) - 0.27
 }
 
-/// A sloping wall of a thickness of somewhat more than a cell.
+/// A sloping wall, slightly thicker than a cell.
 fn wall([x, y, z]: [f64; 3]) -> f64 {
     let across = (0.6 * x + 0.64 * y + 0.48 * z - 0.05).abs() - 0.055;
     let ends = [x, y, z].iter().fold(0.0, |most: f64, c| most.max(c.abs())) - 0.7;
@@ -314,7 +314,7 @@ fn smooth_shapes_have_their_volume() {
         (torus, 2.0 * PI * PI * 0.55 * 0.27 * 0.27, 4.0 * PI * PI * 0.55 * 0.27, 0.27),
     ];
     for (shape, volume, area, radius) in shapes {
-        // How high an arc stands above a chord of the length of a cell.
+        // The height of an arc above a chord as long as a cell.
         let height = cell * cell / (8.0 * radius);
         let model = implicit(&frame, ALL, &shape);
         for method in [cubes as Method, dual] {
@@ -351,7 +351,7 @@ fn thin_walls_are_closed() {
     check_in_cubes(&model, &surface(dual, &model).0);
 }
 
-/// Faces anywhere, at centres, in planes of cells, and at the universe's own faces.
+/// Faces at arbitrary places, at centres, in planes of cells, and at the universe's own faces.
 #[test]
 fn dual_contouring_keeps_edges_and_corners() {
     let frame = Frame::new([-1.0, 2.0, 0.0], 2.0, 4).unwrap();
@@ -396,7 +396,7 @@ fn dual_contouring_keeps_edges_and_corners() {
     }
 }
 
-/// Edges that do not run along axes, as exactly as normals are stored.
+/// Edges that do not run along axes are as exact as the stored normals.
 #[test]
 fn dual_contouring_keeps_turned_edges() {
     let frame = Frame::new([-1.0; 3], 2.0, 5).unwrap();
@@ -446,7 +446,7 @@ fn dual_contouring_keeps_turned_edges() {
         met += u32::from(seen.len() == 3);
     }
     assert!(met > 0);
-    // What is cut off of edges, elsewhere, is far less than marching cubes cuts off.
+    // The volume cut off of edges elsewhere is far less than with marching cubes.
     let volume = 8.0 * half[0] * half[1] * half[2];
     let rough = volume - surface(cubes, &model).0.volume();
     assert!((mesh.volume() - volume).abs() < 0.125 * rough, "{} {volume} {rough}", mesh.volume());
@@ -471,7 +471,7 @@ fn whatever_rays_say_surfaces_are_closed() {
             check_in_cubes(&model, &surface(dual, &model).0);
         }
     }
-    // Nothing, and everything.
+    // The empty set, and everything.
     let frame = Frame::new([0.0; 3], 4.0, 2).unwrap();
     let nothing = boxes(&frame, FORMAT, ALL, &[]);
     let none =
@@ -484,7 +484,7 @@ fn whatever_rays_say_surfaces_are_closed() {
     }
 }
 
-/// Random samples, so that all configurations and all neighbours of them occur.
+/// Random samples exercise all configurations and all pairs of neighbouring configurations.
 #[test]
 fn two_triangles_meet_on_every_edge() {
     let frame = Frame::new([0.0; 3], 16.0, 4).unwrap();
@@ -524,8 +524,8 @@ fn of_several_crossings_the_nearest_to_the_inside_counts() {
     let frame = Frame::new([0.0; 3], 8.0, 3).unwrap();
     let rays = |_: usize, ray: [u32; 2], list: &mut Vec<Dexel>| {
         if ray == [4, 4] {
-            // From the centre at 2.5 to that at 3.5: in at 2.7, out at 2.9, in at 3.25. Out at 5.6, in at
-            // 5.7, out at 6.1.
+            // From the centre at 2.5 to the centre at 3.5, the ray enters at 2.7, leaves at 2.9 and enters at
+            // 3.25. It leaves at 5.6, enters at 5.7 and leaves at 6.1.
             for (start, end) in [(2.7, 2.9), (3.25, 5.6), (5.7, 6.1)] {
                 list.push(Dexel { start: plain_end(start), end: plain_end(end), material: 0 });
             }
@@ -558,7 +558,7 @@ fn where_materials_touch_there_is_no_surface() {
     }
 }
 
-/// Models of solids have their samples, and their surfaces come near them.
+/// Models of solids contain the solids' samples, and their surfaces lie near the solids.
 #[test]
 fn surfaces_of_dexelised_solids() -> Result<(), Error> {
     let (frame, control) = (Frame::new([-1.0; 3], 2.0, 6)?, Control::default());
@@ -584,7 +584,7 @@ fn surfaces_of_dexelised_solids() -> Result<(), Error> {
                 let (mesh, report) = surface(method, &model);
                 assert_eq!([report.disagreeing, report.without_rays], [0; 2]);
                 assert_eq!(report.means, 0);
-                // A cell's second-order error everywhere; edges are far less than all of it.
+                // A cell's second-order error everywhere. Edges are a small part of the surface.
                 assert!((mesh.volume() - truth.lower).abs() < 0.5 * area * cell * cell / 0.55);
                 mesh
             });
@@ -621,7 +621,7 @@ fn models_are_solids() -> Result<(), Error> {
     let volume = 4.0 / 3.0 * PI * 0.512;
     let truth = measure(&solid.as_truth(), &other, 1e-9, &control)?;
     assert!(truth.exact && (truth.volume.lower / volume - 1.0).abs() < 0.01);
-    // Of the ball the rays prove nothing.
+    // Rays prove nothing about the ball.
     let unproven = measure(&solid, &Frame::new([-1.5; 3], 3.0, 3)?, 1e-3, &control)?;
     assert!(unproven.volume.lower <= 0.0 && unproven.volume.upper >= 27.0, "{:?}", unproven.volume);
     let nothing = boxes(&frame, FORMAT, ALL, &[]);
@@ -629,7 +629,7 @@ fn models_are_solids() -> Result<(), Error> {
     Ok(())
 }
 
-/// Of some of the materials.
+/// Colours of some of the materials.
 const COLOURS: [[u8; 4]; 2] = [[10, 20, 30, 40], [250, 0, 0, 255]];
 
 #[test]
@@ -645,7 +645,7 @@ fn voxels_lie_between_centres() -> Result<(), Error> {
             let voxels = dexel_voxels(model.view(), &COLOURS, &Control::default())?;
             let n = frame.cells();
             let deciding = directions.iter().rposition(|&has| has).unwrap();
-            // Dense: which centres lie inside, and of what they are made.
+            // A dense array: the centres that lie inside, and their materials.
             let centre = |k: u32| frame.origin()[deciding] + (f64::from(k) + 0.5) * frame.cell_size();
             let rays = model.view().rays(deciding).unwrap();
             let made_of = |cell: [u32; 3]| {
@@ -704,7 +704,7 @@ fn voxels_lie_between_centres() -> Result<(), Error> {
     Ok(())
 }
 
-/// Time for the largest usual lattice: `--ignored --nocapture`.
+/// Measures the time for the largest usual lattice: `--ignored --nocapture`.
 #[test]
 #[ignore = "takes long"]
 fn time_of_1024() -> Result<(), Error> {
@@ -738,8 +738,8 @@ fn time_of_1024() -> Result<(), Error> {
     Ok(())
 }
 
-/// A model of inside centres, which the rays of all directions hold; how far intervals go beyond their
-/// outermost centres each ray knows.
+/// A model of inside centres that the rays of all directions contain. `beyond` returns how far a ray's
+/// intervals reach beyond their outermost centres.
 fn around(
     frame: &Frame,
     inside: &BTreeSet<[u32; 3]>,
@@ -794,7 +794,7 @@ fn a_body_of_one_centre_is_a_closed_mesh() {
             let extent = mesh.bounds();
             assert!((0..3).all(|axis| (extent.1[axis] - extent.0[axis] - size).abs() < 1e-9));
         }
-        // That of dual contouring is the cuboid itself.
+        // The surface by dual contouring is the cuboid itself.
         let [_, (mesh, _)] = both_surfaces(&model);
         assert_eq!((mesh.vertices().len(), mesh.triangles().len()), (8, 12));
     }
@@ -805,10 +805,10 @@ fn bodies_that_doubles_cannot_tell_from_their_centres_are_counted() {
     let mut random = Random(31);
     let (mut gone, mut there) = (0, 0);
     for round in 0..60 {
-        // Near the origin ends are told apart to 2^-50, far from it to a millionth of a cell.
+        // Near the origin, ends are distinguished to 2^-50; far from it, to a millionth of a cell.
         let origin = if round % 2 == 0 { 1e9 } else { 0.0 };
         let frame = Frame::new([origin; 3], 8.0, 3).unwrap();
-        // One body in each octant: they do not touch.
+        // One body in each octant, so that they do not touch.
         let mut bodies = Vec::new();
         for octant in 0..8u32 {
             let thin = random.below(4) != 0;
@@ -854,7 +854,7 @@ fn bodies_that_doubles_cannot_tell_from_their_centres_are_counted() {
 fn intervals_that_hold_no_centre_are_counted() {
     let frame = Frame::new([0.0; 3], 8.0, 3).unwrap();
     let control = Control::default();
-    // A plate between centres: rays of one direction meet it, and none of them has a centre.
+    // A plate between centres. Rays of one direction meet it, and it contains no centre.
     let plate = Csg::cuboid([1.0, 1.0, 2.6], [7.0, 7.0, 3.4]).unwrap();
     let model = dexelize(&plate, &frame, &DexelOptions::default(), &control).unwrap();
     assert_eq!(model.view().without_centres(), 36);
@@ -862,7 +862,7 @@ fn intervals_that_hold_no_centre_are_counted() {
         assert!(mesh.triangles().is_empty());
         assert_eq!((report.crossings, report.vanished, report.without_centres), (0, 0, 36));
     }
-    // Two materials in one gap and beyond it are one interval.
+    // Two materials in one gap and beyond are one interval.
     let format = DexelFormat { materials: true, ..FORMAT };
     let rays = |_: usize, ray: [u32; 2], list: &mut Vec<Dexel>| {
         let end = plain_end;
@@ -878,7 +878,8 @@ fn intervals_that_hold_no_centre_are_counted() {
     assert_eq!(model.view().without_centres(), 1);
 }
 
-/// What a model of a few intervals becomes at a depth where nothing can be looked at cell by cell.
+/// At a depth where no cell-by-cell work is possible, the work on a few intervals depends only on their
+/// number.
 #[test]
 fn at_the_greatest_depth_work_is_that_of_what_is_stored() {
     let start = std::time::Instant::now();
@@ -908,7 +909,7 @@ fn at_the_greatest_depth_work_is_that_of_what_is_stored() {
             octree_from_dexels(wire.view(), &limited).unwrap().statistics().volume().lower,
             f64::from(cells)
         );
-        // Another one far away: between them there are too many rays.
+        // Another body far away, with too many rays between the two.
         if axis < 2 {
             let other = block([900_000.0; 3], [900_001.0; 3], [0, 1, 2].map(|a| a == axis));
             let joined = wire.view().union(other.view(), &Control::default());

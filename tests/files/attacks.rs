@@ -1,5 +1,5 @@
-//! Attacks that are fuzz targets, too: any bytes as scenes of unit cells and as attributes, against dense
-//! arrays.
+//! Attacks that are fuzz targets, too: arbitrary bytes as scenes of unit cells and as attributes, against
+//! dense arrays.
 
 use crate::common::repeated;
 use crate::{attributes, contacts, direct, layouts, measures, records, surfaces};
@@ -12,7 +12,7 @@ use leafless::voxel::VoxelRecords;
 use leafless::{Affine, Bounds, Cell, Control, Csg, Error, Frame, Interval, clearance};
 use std::path::Path;
 
-/// Numbers that only look random (splitmix64): the same for a seed everywhere.
+/// Pseudo-random numbers (splitmix64). A seed gives the same numbers everywhere.
 struct Random(u64);
 
 impl Random {
@@ -25,19 +25,19 @@ impl Random {
     }
 }
 
-/// What a fuzz target does, on inputs that are the same every time.
+/// Runs a fuzz target's body on inputs that are the same every time.
 fn any_bytes(body: fn(&[u8]), seeds: std::ops::Range<u64>, most: u64) {
     for seed in seeds {
         let mut random = Random(seed);
         let length = 1 + random.next() % most;
         let data: Vec<u8> = (0..length).map(|_| random.next() as u8).collect();
-        // A test that fails says what it was given.
+        // A failing test prints its input.
         let result = std::panic::catch_unwind(|| body(&data));
         assert!(result.is_ok(), "input {seed}: {data:?}");
     }
 }
 
-/// What the fuzzer found interesting.
+/// Runs a fuzz target's body on its corpus.
 fn corpus(target: &str, body: fn(&[u8])) {
     let corpus = Path::new(env!("CARGO_MANIFEST_DIR")).join("fuzz/corpus").join(target);
     let mut count = 0;
@@ -51,9 +51,9 @@ fn corpus(target: &str, body: fn(&[u8])) {
     assert!(count > 100, "{target}: {count} inputs");
 }
 
-// ---- what was found ------------------------------------------------------------------------------------
+// ---- findings ------------------------------------------------------------------------------------------
 
-/// The points of a box, and their coordinates: what an affine map makes of a box is the range of its image.
+/// An attribute of the points' coordinates. Its range over a box is the box itself.
 struct Places;
 
 impl Attribute for Places {
@@ -74,7 +74,7 @@ impl Attribute for Places {
 
 #[test]
 fn the_range_of_a_moved_attribute_holds_values_whose_summands_cancel() {
-    // 2^20 x + (1 + 2^-40) y - 2^20, of which the sum of the first two loses the small bit.
+    // 2^20 x + (1 + 2^-40) y - 2^20. The sum of the first two terms loses the small bit.
     let (large, bit) = (2f64.powi(20), 2f64.powi(-40));
     let rows = [[large, 1.0 + bit, 0.0, -large], [1.0, 0.0, 0.0, 0.0], [0.0, 0.0, 1.0, 0.0]];
     let moved = MovedAttribute::new(Places, Affine::new(rows).unwrap());
@@ -97,7 +97,7 @@ fn a_clearance_of_what_goes_on_outside_does_not_claim_its_tolerance() {
     assert_eq!(ask(2.0).stop_reason, StopReason::Tolerance);
 }
 
-/// One where x is at least 0, and no value elsewhere; nothing is known of ranges.
+/// An attribute with the value 1 where x is at least 0, and no value elsewhere. It provides no ranges.
 struct HalfSpace;
 
 impl Attribute for HalfSpace {

@@ -1,4 +1,4 @@
-//! Files of tri-dexel models: the vectors, round trips, damage, and the two kinds of files beside each other.
+//! Files of tri-dexel models: the vectors, round trips, damage, and tri-dexel files beside octree files.
 
 #![cfg(feature = "std")]
 
@@ -20,7 +20,7 @@ fn vector(of: &str, name: &str) -> PathBuf {
     Path::new(env!("CARGO_MANIFEST_DIR")).join("format_spec/vectors").join(of).join(format!("{name}.lfl"))
 }
 
-/// The format that the byte in a header says.
+/// Returns the format that a header's byte encodes.
 fn format(form: u8) -> DexelFormat {
     DexelFormat {
         ends: if form & 1 != 0 { DexelEnds::Double } else { DexelEnds::Fixed },
@@ -30,7 +30,7 @@ fn format(form: u8) -> DexelFormat {
     }
 }
 
-/// All bytes that say what a file stores.
+/// All bytes that encode a format.
 fn forms() -> impl Iterator<Item = u8> {
     (0x20..=0xFFu8).filter(|form| form & 6 != 6)
 }
@@ -43,7 +43,7 @@ fn refused<T>(result: Result<T, Error>) -> String {
     }
 }
 
-/// What must be read of a model.
+/// Checks a view of a read model against the expected model.
 fn agrees(view: &TriDexelRef<'_>, model: &Dexels) {
     assert_eq!(view.frame(), &Frame::new(model.origin, model.edge, model.depth).unwrap());
     assert_eq!(view.format(), format(model.form()));
@@ -59,14 +59,14 @@ fn agrees(view: &TriDexelRef<'_>, model: &Dexels) {
         let [us, vs] = rays.window();
         let size = us.len() * vs.len();
         let mut met = 0;
-        // A universe of many rays is asked for those of the window alone.
+        // In a universe with many rays, only the rays of the window are queried.
         for (v, u) in vs.flat_map(|v| us.clone().map(move |u| (v, u))) {
             let list = expected.get(&[v, u]).map_or(&[][..], |list| list);
             assert_eq!(rays.dexels([u, v]).count(), list.len());
             met += usize::from(!list.is_empty());
             for (found, one) in rays.dexels([u, v]).zip(list) {
                 for (k, end) in [found.start, found.end].into_iter().enumerate() {
-                    // The place exactly, and its coordinate rounded once (`dexel_ends` has it against exact
+                    // The exact place, and its coordinate rounded once (`dexel_ends` compares it with exact
                     // numbers).
                     assert_eq!(end.cells, Some(one.ends[k]));
                     let (rounded, along) = (origin[axis] + one.ends[k] * cell, one.ends[k] * cell);
@@ -181,7 +181,7 @@ fn invalid_vectors_are_refused_where_they_say_and_for_the_reason_that_they_say()
             Way::Probing => assert_eq!(refused(file::probe_bytes(bytes)), error),
             _ => drop(file::probe(&path).unwrap()),
         }
-        // One of the vectors is an octree's.
+        // One of the vectors is a file of an octree.
         if made.name == "section-unknown-windows" {
             assert_eq!(refused(file::from_bytes(bytes)), error);
             continue;
@@ -241,7 +241,7 @@ fn every_format_in_every_direction_comes_back() {
     assert!(intervals > 5_000, "{intervals}");
 }
 
-/// What operations make is written and comes back, whatever they were given.
+/// Results of operations are written and read back, whatever the operands' formats.
 #[test]
 fn results_of_operations_come_back() {
     for form in [0xE0, 0xE1, 0xFC, 0xFD, 0x7B, 0x2A] {
@@ -271,7 +271,7 @@ fn results_of_operations_come_back() {
     }
 }
 
-/// What is made of solids, too: also where an interval begins at the universe's face.
+/// Dexelised solids come back, also where an interval begins at the universe's face.
 #[test]
 fn dexelized_solids_come_back() {
     let ball = Csg::ball([0.25, -0.5, 0.0], 0.9).unwrap();
@@ -322,7 +322,7 @@ fn files_that_end_early_or_late_are_refused() {
         std::fs::write(&path, &bytes[..length]).unwrap();
         assert!(matches!(dexels::open(&path), Err(Error::File { .. })));
         #[cfg(feature = "mmap")]
-        // SAFETY: nobody else knows the file.
+        // SAFETY: no other process uses the file.
         assert!(unsafe { dexels::map(&path) }.is_err());
     }
 }
@@ -368,7 +368,7 @@ fn each_kind_of_file_is_refused_where_the_other_is_wanted() {
     }
     let error = dexels::open(&octree).unwrap_err().to_string();
     assert!(error.contains("example.lfl") && error.contains("holds an octree"), "{error}");
-    // It is said of the header alone, before the rest is read.
+    // The header alone is enough for the refusal, before the rest is read.
     let path = scratch.path().join("beginning.lfl");
     std::fs::write(&path, &models[..128]).unwrap();
     assert_eq!(refused(file::open(&path)), wrong(1));
@@ -378,7 +378,7 @@ fn each_kind_of_file_is_refused_where_the_other_is_wanted() {
     }
 }
 
-/// All that can be asked of a model whose arrays nobody has checked.
+/// Runs all queries on a model with unchecked arrays.
 fn asked(model: &TriDexel) {
     let view = model.view();
     let sound = view.check().is_ok();
@@ -472,7 +472,7 @@ fn whatever_the_arrays_say_reading_is_safe_and_operations_refuse() {
     assert!(sound > 100 && let_in - sound > 300, "{let_in} {sound}");
 }
 
-/// Rays that all claim all intervals would make operations quadratic: they are not begun.
+/// Operations refuse rays that all claim all intervals, because their cost would be quadratic.
 #[test]
 fn rays_with_common_intervals_cost_nothing() {
     let depth = 10;

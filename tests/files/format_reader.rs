@@ -1,7 +1,7 @@
-//! The reader in C that was written from the specification alone (`format_spec/reader.c`) and the library say
-//! the same of every file: of the test vectors, of what the library writes, and of damaged files.
+//! The C reader, written from the specification alone (`format_spec/reader.c`), and the library agree on
+//! every file: on the test vectors, on files that the library writes, and on damaged files.
 //!
-//! Needs a C compiler: `cc`, or what the environment variable `CC` names.
+//! Needs a C compiler: `cc`, or the compiler that the environment variable `CC` names.
 
 #![cfg(all(unix, feature = "std"))]
 
@@ -19,7 +19,7 @@ fn folder() -> PathBuf {
     Path::new(env!("CARGO_MANIFEST_DIR")).join("format_spec")
 }
 
-/// The reader, compiled.
+/// Compiles the reader and returns its command.
 fn reader() -> Command {
     static READER: OnceLock<PathBuf> = OnceLock::new();
     let path = READER.get_or_init(|| {
@@ -46,7 +46,7 @@ fn reader() -> Command {
     Command::new(path)
 }
 
-/// What the reader prints, with its exit code.
+/// Runs the reader; returns its output and exit code.
 fn run(arguments: &[&str], file: &Path, input: &str) -> (i32, String) {
     let mut child = reader()
         .args(arguments)
@@ -62,7 +62,8 @@ fn run(arguments: &[&str], file: &Path, input: &str) -> (i32, String) {
     (output.status.code().expect("the reader ends by itself"), String::from_utf8(output.stdout).unwrap())
 }
 
-/// How much is checked, from little to all: the names in the vectors' texts, and the reader's options.
+/// The levels of checking, from the weakest to the strictest: the names in the vectors' texts, and the
+/// reader's options.
 const LEVELS: [(&str, &[&str]); 4] = [
     ("probing", &["--probe"]),
     ("plain", &["--plain"]),
@@ -70,7 +71,7 @@ const LEVELS: [(&str, &[&str]); 4] = [
     ("verification", &[]),
 ];
 
-/// The texts beside the vectors of a folder, with the vectors' paths.
+/// Returns the texts beside a folder's vectors, with the vectors' paths.
 fn vectors(kind: &str) -> Vec<(PathBuf, String)> {
     let mut found = Vec::new();
     for entry in std::fs::read_dir(folder().join("vectors").join(kind)).unwrap() {
@@ -87,7 +88,7 @@ fn vectors(kind: &str) -> Vec<(PathBuf, String)> {
 #[test]
 fn it_gives_the_facts_of_every_valid_vector() {
     for (path, text) in vectors("valid") {
-        // What no reader can know, or need not print.
+        // Facts that a reader cannot know, or need not print.
         let apart =
             ["about", "canonical", "origin-decimal", "edge-decimal", "point", "cut-point", "value", "cell"];
         let facts = text.lines().filter(|line| !apart.contains(&line.split(':').next().unwrap()));
@@ -116,7 +117,7 @@ fn it_gives_the_facts_of_every_valid_vector() {
             let expected: Vec<&str> = points.iter().map(|(_, answer)| *answer).collect();
             assert_eq!(answers.split_whitespace().collect::<Vec<_>>(), expected, "{}", path.display());
         }
-        // Every point of a channel is asked of all channels.
+        // Every point of a channel is queried in all channels.
         let channels = text.lines().filter(|line| line.starts_with("channel: ")).count();
         let values: Vec<Vec<&str>> = text
             .lines()
@@ -139,7 +140,7 @@ fn it_refuses_every_invalid_vector_for_the_stated_reason() {
         let weakest = LEVELS.iter().position(|(name, _)| fact("refused-by") == Some(name)).unwrap();
         for (level, (_, options)) in LEVELS.iter().enumerate() {
             let (code, printed) = run(options, &path, "");
-            // From the second level on the length of the file is looked at first.
+            // From the second level on, the length of the file is checked first.
             let rule = match fact("error-of-length") {
                 Some(_) if level > 0 => "file-length",
                 _ => fact("rule").unwrap(),
@@ -153,7 +154,7 @@ fn it_refuses_every_invalid_vector_for_the_stated_reason() {
     }
 }
 
-/// Coordinates on and beside lattice planes, inside of the universe and out.
+/// Coordinates on and beside lattice planes, inside and outside of the universe.
 fn points(tree: &Octree, random: &mut Random) -> Vec<[f64; 3]> {
     let frame = tree.frame();
     let mut coordinate = |axis: usize| {
@@ -218,7 +219,7 @@ fn it_agrees_with_the_library_on_what_the_library_writes() {
         let expected = points.iter().map(|&point| word(tags.contains(point)));
         assert_eq!(answers.split_whitespace().collect::<Vec<_>>(), expected.collect::<Vec<_>>());
 
-        // With the cuts intervals leave open what exact signs decide, and only that.
+        // With cuts, intervals leave points undecided that exact signs decide, and only those.
         let (_, answers) = run(&["--cut-points"], &path, &questions);
         let mut expected = vec![Membership::Undecided; points.len()];
         let certified = tree.view().with_proof(Proof::CERTIFIED);
@@ -319,7 +320,8 @@ fn it_agrees_with_the_library_on_tri_dexel_models() {
     }
 }
 
-/// Whether the library accepts a file at each of the four levels. The bytes stay until the test ends.
+/// Returns whether the library accepts a file at each of the four levels. The bytes stay alive until the test
+/// ends.
 fn accepted(bytes: &[u8]) -> [bool; 4] {
     let bytes = Box::leak(Box::new(bodies::Aligned::new(bytes))).bytes();
     [

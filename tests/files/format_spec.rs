@@ -50,7 +50,7 @@ fn the_vectors_are_what_the_program_makes() {
 
 // ---- valid files ----------------------------------------------------------------------------------------
 
-/// The lines of a text.
+/// The lines of a vector's text, as pairs of key and value.
 struct Facts<'t>(Vec<(&'t str, &'t str)>);
 
 impl<'t> Facts<'t> {
@@ -78,7 +78,7 @@ fn numbers(line: &str) -> Vec<u64> {
     line.split(' ').map(|number| number.parse().unwrap()).collect()
 }
 
-/// Reads what `hex` writes.
+/// Parses a double as `hex` formats it.
 fn double(text: &str) -> f64 {
     if !text.contains("0x") {
         return text.parse().unwrap();
@@ -134,7 +134,7 @@ fn valid_vectors_are_read_by_every_way_in() {
     }
 }
 
-/// A reader of an older version takes the sections of cuts for unknown ones, and reads the same tree.
+/// A reader of an older version ignores the sections of cuts as unknown ones, and reads the same tree.
 #[test]
 fn without_its_sections_of_cuts_a_file_is_that_of_the_tree() {
     let mut count = 0;
@@ -145,7 +145,7 @@ fn without_its_sections_of_cuts_a_file_is_that_of_the_tree() {
         }
         let mut older = made.bytes.clone();
         make_vectors::put(&mut older, 10, 3, 2);
-        // (What only a newer version may say: flags and reserved bytes of sections.)
+        // (Only newer versions may use these flags and reserved bytes of sections.)
         let sections = number(&older, 96, 4) as usize;
         for at in (0..sections).map(|i| 128 + make_vectors::ENTRY * i) {
             older[at + 11] = 0;
@@ -208,7 +208,7 @@ fn viewed(tree: &OctreeRef<'_>, facts: &Facts<'_>) {
         (facts.number("elements"), facts.number("bricks"))
     );
     assert_eq!(tree.is_binary(), facts.one("planes") == "1");
-    // The cuts answer in place: the points keep a distance from all surfaces.
+    // The cuts answer in place. These points keep a distance from all surfaces.
     answered(tree, facts.all("cut-point").map(answer).collect());
     // The other points are answered without the cuts.
     let points: Vec<_> = facts.all("point").map(answer).collect();
@@ -216,7 +216,7 @@ fn viewed(tree: &OctreeRef<'_>, facts: &Facts<'_>) {
     answered(&tree.without_cuts(), points);
 }
 
-/// Every way to ask a tree gives these answers.
+/// Checks that every way to query a tree gives these answers.
 fn answered(tree: &OctreeRef<'_>, expected: Vec<([f64; 3], Membership)>) {
     let mut cursor = PointCursor::new(tree);
     let table = PointTable::new(tree, 4).unwrap();
@@ -230,7 +230,7 @@ fn answered(tree: &OctreeRef<'_>, expected: Vec<([f64; 3], Membership)>) {
     assert_eq!(answers, expected);
 }
 
-/// A point, and the answer for it.
+/// Parses a point and the answer for it.
 fn answer(line: &str) -> ([f64; 3], Membership) {
     let words: Vec<&str> = line.split(' ').collect();
     let answer = match words[3] {
@@ -242,7 +242,7 @@ fn answer(line: &str) -> ([f64; 3], Membership) {
     ([words[0], words[1], words[2]].map(double), answer)
 }
 
-/// What the lines about surfaces say.
+/// Checks a tree's surfaces against the text's lines about surfaces.
 fn surfaces(tree: &Octree, facts: &Facts<'_>, count: u64) {
     let (records, slabs) = (facts.all("surface").count() as u64, facts.all("cell-slab").count() as u64);
     assert_eq!(records + slabs, count);
@@ -287,7 +287,7 @@ fn surfaces(tree: &Octree, facts: &Facts<'_>, count: u64) {
     }
 }
 
-/// What the line about moments says, and what is measured of the solid.
+/// Checks a tree's moments, and the measures of the solid, against the text's line about moments.
 fn moments(tree: &Octree, facts: &Facts<'_>) {
     let Some(line) = facts.all("moments").next() else { return assert_eq!(tree.view().moments(), None) };
     let expected: Vec<f64> = line.split(' ').map(double).collect();
@@ -317,7 +317,7 @@ fn moments(tree: &Octree, facts: &Facts<'_>) {
     }
 }
 
-/// What the lines about cuts say, and what a solid with them says of points.
+/// Checks a tree's cuts, and the point answers of a solid with cuts, against the text's lines about cuts.
 fn cuts(tree: &Octree, facts: &Facts<'_>) {
     let Some(counts) = tree.view().cuts() else {
         assert_eq!(facts.all("cuts").count() + facts.all("cut-point").count(), 0);
@@ -349,11 +349,12 @@ fn owned(tree: &Octree, facts: &Facts<'_>, bytes: &[u8]) {
     assert_eq!(tree.metadata().iter().collect::<Vec<_>>(), metadata);
     channels(tree, facts);
     cuts(tree, facts);
-    // What the writer makes of it is this file, unless it is one that the writer would not make.
+    // The writer makes this file of the tree, unless the file is not canonical.
     assert_eq!(file::to_bytes(tree).unwrap() == bytes, facts.one("canonical") == "yes");
 }
 
-/// What the lines about channels say; the first word of each is the number of the channel's object.
+/// Checks a tree's channels against the text's lines about channels. The first word of each line is the
+/// number of the channel's object.
 fn channels(tree: &Octree, facts: &Facts<'_>) {
     let heads: Vec<Vec<&str>> = facts.all("channel").map(|line| line.split(' ').collect()).collect();
     assert_eq!(tree.channels().len(), heads.len());
@@ -461,7 +462,7 @@ fn rules() -> Vec<String> {
     rows.map(|(name, _)| name.to_owned()).collect()
 }
 
-/// Those of tri-dexel models, too.
+/// All invalid vectors, including those of tri-dexel models.
 fn all_invalid() -> Vec<make_vectors::Invalid> {
     let mut vectors = make_vectors::invalid();
     vectors.extend(make_vectors::dexel_vectors::invalid());
@@ -479,7 +480,7 @@ fn each_rule_for_readers_has_a_vector() {
     assert_eq!(used, named);
 }
 
-/// What of the library lays down the format.
+/// The library's sources that define the format.
 const SOURCES: [&str; 10] = [
     include_str!("../../src/file/header.rs"),
     include_str!("../../src/file/counts.rs"),
@@ -493,7 +494,7 @@ const SOURCES: [&str; 10] = [
     include_str!("../../src/file/cuts.rs"),
 ];
 
-/// Every name that the reader's source can put into an error stands in the error of a vector, and so does
+/// Every name that the reader's source can put into an error occurs in the error of some vector. So does
 /// every variant that bytes can cause.
 #[test]
 fn each_reason_of_the_library_has_a_vector() {
@@ -517,7 +518,7 @@ fn each_reason_of_the_library_has_a_vector() {
     }
     assert_eq!((names[0], names[9], names[12]), ("objects", "dictionary segments", "value base"));
     assert_eq!((names[13], names[23]), ("cut heads", "moments"));
-    // (Those of channels are sections of other objects.)
+    // (The sections of channels belong to other objects.)
     let of_solid = names.iter().take(10).chain(&names[13..]);
     of_solid.for_each(|name| seen(&format!("Checksum {{ name: {name:?}")));
     for name in ["the header", "the section table", "an unknown section", "a section of another object"] {
@@ -535,8 +536,8 @@ fn each_reason_of_the_library_has_a_vector() {
         let (body, _) = body.split_once("\n}").unwrap();
         for line in body.lines().filter_map(|line| line.strip_prefix("    ")) {
             let variant: String = line.chars().take_while(|c| c.is_alphanumeric()).collect();
-            // The memory's alignment, the machine's byte order and the kind of a file are no matter of the
-            // bytes. Which kind of file is wanted is no matter of the bytes either.
+            // The memory's alignment, the machine's byte order and the kind of a file are not errors of the
+            // bytes. Neither is the kind of file that the caller expects.
             let elsewhere = ["", "Alignment", "Endianness", "NotRegular", "OtherModel"];
             if !elsewhere.contains(&&*variant) {
                 let kind = if of == "Damage" { "Damaged" } else { "Format" };
@@ -548,18 +549,18 @@ fn each_reason_of_the_library_has_a_vector() {
     assert_eq!(count, 10 + 18);
 }
 
-// ---- what the reader accepts ----------------------------------------------------------------------------
+// ---- accepted files -------------------------------------------------------------------------------------
 
-/// Each single byte of small files is given every eighth value, with right checksums, and with a record of
-/// the solid that says what the header says and without: what is then verified must be what the writer would
-/// have written, or stand in `permissive.md`.
+/// Sets each single byte of small files to every eighth value, with right checksums, once with a solid's
+/// record that repeats the header and once with the old record. A file that is then verified must be
+/// canonical (the bytes that the writer would write) or be listed in `permissive.md`.
 #[test]
 fn what_is_accepted_is_canonical_or_listed() {
     let accepted = accept(8);
     assert!(accepted > 1_000, "{accepted}");
 }
 
-/// Minutes: `--test files format_spec -- --ignored`.
+/// The same for all values. Takes minutes: `--test files format_spec -- --ignored`.
 #[test]
 #[ignore = "minutes"]
 fn whatever_is_accepted_is_canonical_or_listed() {
@@ -567,7 +568,7 @@ fn whatever_is_accepted_is_canonical_or_listed() {
     assert!(accepted > 10_000, "{accepted}");
 }
 
-/// Sets each byte of each vector to one value in so many; tells how many files are accepted.
+/// Sets each byte of each vector to one value in `every`; returns the number of accepted files.
 fn accept(every: usize) -> usize {
     let mut accepted = 0;
     for (place, vector) in make_vectors::valid().into_iter().enumerate() {
@@ -582,12 +583,12 @@ fn accept(every: usize) -> usize {
             continue;
         }
         let name = vector.name;
-        // (Another share of the values for each byte.)
+        // (A different part of the values for each byte.)
         let values = |at: usize| (0..=255u8).skip((at + place) % every).step_by(every);
         let changes = (0..vector.bytes.len()).flat_map(|at| values(at).map(move |value| (at, value)));
         for ((at, value), mirrored) in changes.flat_map(|change| [(change, false), (change, true)]) {
             let mut bytes = vector.bytes.clone();
-            // Behind the header there is nothing that the record repeats.
+            // The solid's record repeats only header fields.
             if bytes[at] == value || mirrored && at >= 128 {
                 continue;
             }
@@ -599,14 +600,14 @@ fn accept(every: usize) -> usize {
             let Ok(tree) = file::from_bytes(&bytes) else { continue };
             accepted += 1;
             if tree.view().cuts().is_some() {
-                // What was verified is a solid.
+                // A verified tree is a solid.
                 let frame = tree.frame();
                 let points = [0.3, 0.6].map(|t| frame.origin().map(|c| c + t * frame.edge()));
                 let mut answers = [Membership::Undecided; 2];
                 contains(&tree, frame, &points, &mut answers, &Control::threads(1)).unwrap();
             }
             let written = file::to_bytes(&tree).unwrap();
-            // The oldest version that knows the objects is the one that the writer names.
+            // The writer states the oldest version that supports the objects.
             let other = number(&bytes, 10, 2) != number(&written, 10, 2);
             let unknown = make_vectors::has_unknown_parts(&bytes);
             assert!(
@@ -620,7 +621,7 @@ fn accept(every: usize) -> usize {
 
 // ---- the specification ----------------------------------------------------------------------------------
 
-/// The rows of the table that follows `title`, as trimmed cells.
+/// Returns the rows of the table that follows `title`, as trimmed cells.
 fn table(text: &str, title: &str) -> Vec<Vec<String>> {
     let (_, text) = text.split_once(title).unwrap_or_else(|| panic!("{title}"));
     let rows = text.lines().skip_while(|line| !line.starts_with("|---")).skip(1);
@@ -663,8 +664,8 @@ fn the_tables_fit_the_constants() {
             end += size(&row[1]);
         }
         assert_eq!(end, length);
-        // Some lines of the tables are one field of the structure: the origin, extents; others none by their
-        // name.
+        // Some lines of the tables are one field of the structure (the origin, the extents). Other lines have
+        // no field of their name.
         let offsets = offsets(of);
         assert!(offsets.is_subset(&found), "{offsets:?}, {found:?}");
         let apart: Vec<_> = found.difference(&offsets).copied().collect();
@@ -764,7 +765,7 @@ fn the_example_is_the_vector() {
     }
 }
 
-/// Links between the pages lead somewhere.
+/// Links between the pages lead to existing files.
 #[test]
 fn links_lead_to_files() {
     let mut count = 0;
@@ -780,7 +781,7 @@ fn links_lead_to_files() {
     assert!(count > 10);
 }
 
-/// What needs several dictionary segments, hence too many bricks for a vector.
+/// Several dictionary segments need too many bricks for a vector in a file.
 #[test]
 fn dictionaries_of_several_segments() {
     // 64³ bricks of 25 000 kinds in every block of 2^16: too many for one dictionary, few enough for several.
@@ -798,7 +799,7 @@ fn dictionaries_of_several_segments() {
         make_vectors::put(&mut bytes, at, value, length);
         make_vectors::seal(&mut bytes);
         let aligned = Aligned::new(&bytes);
-        // Whatever the dictionary says, reading in place may begin.
+        // Reading in place may begin, whatever the dictionary contains.
         if let Ok(view) = file::view(aligned.bytes()) {
             assert!(view.check().is_err());
             view.contains([0.0; 3]);
@@ -819,10 +820,10 @@ fn dictionaries_of_several_segments() {
     assert_eq!(unused, format!("Damaged(DictionaryOrder {{ entry: {second} }})"));
     assert!(verdict(start + 8, second - 1, 8).starts_with("Damaged(Dictionary { brick: "));
     assert_eq!(verdict(start + 8, 0, 8), brick(0));
-    // An index that leads to an entry of the next segment: there is one, but it is not the brick's.
+    // An index leads to an entry of the next segment. This entry exists, but it is not the brick's.
     assert!(second < 65_536);
     assert_eq!(verdict(sections[indices].offset as usize, second, 2), brick(0));
-    // Other shifts need another number of segments.
+    // Other segment shifts need another number of segments.
     assert_eq!(verdict(69, 16, 1), "Format(Section { name: \"dictionary segments\" })");
     assert_eq!(verdict(69, 63, 1), "Format(Section { name: \"dictionary segments\" })");
     assert_eq!(verdict(69, 18, 1), "Format(Field { name: \"segment shift\", value: 18 })");
@@ -834,7 +835,7 @@ fn dictionaries_of_several_segments() {
     assert!(back == tree && file::to_bytes(&back).unwrap() == bytes);
 }
 
-/// A reader's refusals of the memory that it is given, which are not the bytes' fault.
+/// A reader may refuse misaligned memory. This refusal says nothing about the bytes.
 #[test]
 fn alignment_is_no_matter_of_the_file() {
     let bytes = fs::read(vector("valid", "example", "lfl")).unwrap();

@@ -1,4 +1,5 @@
-//! Hostile bytes: what the fuzz targets do, on inputs that are the same every time. See `fuzz/README.md`.
+//! Hostile bytes: the bodies of the fuzz targets, on inputs that are the same every time. See
+//! `fuzz/README.md`.
 
 #![cfg(all(feature = "mmap", target_endian = "little"))]
 
@@ -16,7 +17,7 @@ use std::path::Path;
 
 // ---- inputs ---------------------------------------------------------------------------------------------
 
-/// What stands in for libFuzzer's own mutations.
+/// A substitute for libFuzzer's own mutations.
 fn blind(random: &mut Random, data: &mut [u8], size: usize, max: usize) -> usize {
     let mut bytes = data[..size].to_vec();
     for _ in 0..1 + random.below(3) {
@@ -35,10 +36,10 @@ fn blind(random: &mut Random, data: &mut [u8], size: usize, max: usize) -> usize
     bytes.len()
 }
 
-/// Bytes that a changed file may have.
+/// The most bytes of a changed file.
 const MOST: usize = 1 << 14;
 
-/// A file after one of the fuzzer's mutations.
+/// Returns a file after one of the fuzzer's mutations.
 fn mutated(bytes: &[u8], random: &mut Random) -> Vec<u8> {
     let mut data = bytes.to_vec();
     data.resize(MOST.max(bytes.len()), 0);
@@ -51,7 +52,8 @@ fn mutated(bytes: &[u8], random: &mut Random) -> Vec<u8> {
     data
 }
 
-/// The checksums made right again, and nothing else but the records of objects, of one of the two.
+/// Returns two repaired copies of a file: one with right checksums only, one with right checksums and object
+/// records.
 fn resealed(bytes: &[u8]) -> Vec<Vec<u8>> {
     let only_checksums = Repairs { checksums: [true; 3], ..Repairs::NONE };
     let repairs = [only_checksums, Repairs { objects: true, ..only_checksums }];
@@ -66,9 +68,9 @@ fn small_files() -> Vec<Vec<u8>> {
         let file = File::parse(bytes).unwrap();
         file.sections.iter().any(|section| section.kind() == kind)
     };
-    // Without an element, with raw bricks, with elements, with a dictionary, with metadata, with a section
-    // that nobody knows, with one of an application, with other objects, of a later version, with channels,
-    // with cuts of one cell and with splits.
+    // A file without elements, and files with raw bricks, with elements, with a dictionary, with metadata,
+    // with an unknown section, with an application's section, with other objects, of a later version, with
+    // channels, with cuts of one cell, and with splits.
     let mut chosen = vec![files[0].clone()];
     for kind in [BRICKS, PLANES, bodies::layout::ENTRIES, bodies::layout::METADATA, 17, 1 << 31] {
         chosen.extend(files.iter().find(|bytes| has(bytes, kind)).cloned());
@@ -87,7 +89,7 @@ fn small_files() -> Vec<Vec<u8>> {
     chosen
 }
 
-/// Everything that can be asked of a tree and done with it, if there is one.
+/// Runs all queries and set operations on the tree, if the bytes contain one.
 fn exercise(bytes: &[u8]) {
     bodies::queries(&joined(bytes, &bytes[bytes.len() / 2..]));
     bodies::set_algebra(&joined(bytes, bytes));
@@ -95,7 +97,7 @@ fn exercise(bytes: &[u8]) {
 
 // ---- the seeds and corpora ------------------------------------------------------------------------------
 
-/// Where [`write_seeds`] puts them.
+/// The environment variable with the output folder of [`write_seeds`].
 const SEEDS: &str = "LEAFLESS_SEEDS";
 
 #[test]
@@ -122,7 +124,7 @@ fn write_seeds() {
 fn the_seeds_are_good() {
     for bytes in seeds::files() {
         assert!(read_in_all_ways(&bytes, true));
-        // Taken apart and put together, it is the same.
+        // Split and assembled again, it is the same file.
         let parts = File::parse(&bytes).unwrap();
         assert_eq!(parts.clone().assemble(&Repairs::NONE), bytes);
         assert_eq!(parts.assemble(&Repairs::ALL), bytes);
@@ -190,7 +192,7 @@ fn files_cut_at_every_length() {
         for length in 0..bytes.len() {
             let cut = &bytes[..length];
             assert!(!read_in_all_ways(cut, true), "{length}");
-            // As someone would cut it who knows where the length stands, and the checksums.
+            // An attacker who knows the length field and the checksums cuts the file like this.
             let mut shorter = cut.to_vec();
             if length >= 128 {
                 put(&mut shorter, 24, length as u64, 8);
@@ -198,14 +200,14 @@ fn files_cut_at_every_length() {
                 put(&mut shorter, 124, crc.into(), 4);
                 assert!(!read_in_all_ways(&shorter, false), "{length}");
             }
-            // And with its last section cut, too.
+            // Also with its last section cut.
             if let Some(file) = File::parse(cut).filter(|file| length > 128 + 48 * file.sections.len()) {
                 let bytes = file.assemble(&Repairs::FRAME);
                 read_in_all_ways(&bytes, length % 8 == 0);
                 exercise(&bytes);
             }
         }
-        // Nor may anything follow.
+        // Nothing may follow, either.
         for more in [1, 8, 64] {
             assert!(!read_in_all_ways(&[&bytes[..], &vec![0; more]].concat(), true));
         }
@@ -232,8 +234,8 @@ fn every_byte_and_the_first_bits_flipped() {
                     viewed += 1;
                     exercise(&sealed);
                 }
-                // What is good with right checksums is another tree's file, to the byte: there is no field
-                // that does not matter, but for those that a later version may have given a meaning.
+                // A good file with right checksums is the file of another tree, to the byte. Every field
+                // matters, except those reserved for later versions.
                 if good {
                     verified += 1;
                     let written = file::to_bytes(&file::from_bytes(&sealed).unwrap()).unwrap();
@@ -265,7 +267,7 @@ fn mesh_files_cut_and_changed() {
             let (at, from) = (random.below(data.len()), random.below(data.len()));
             match random.below(4) {
                 _ if data.is_empty() => {}
-                // A word becomes another one, a line is lost or comes again.
+                // A word is replaced, or a line is lost or repeated.
                 0 | 1 if data[at].is_ascii_digit() => data[at] = b"0123456789-. \n/"[random.below(15)],
                 2 => {
                     let line = data.split_inclusive(|&b| b == b'\n').nth(from % 16).unwrap_or(&[]).to_vec();
@@ -289,8 +291,9 @@ fn mesh_files_cut_and_changed() {
 
 // ---- links ----------------------------------------------------------------------------------------------
 
-/// A file of depth 20 with a level of one element above eight of `width`, all of which have the same `width`
-/// children: followed without a memory, the links lead to width^9 bricks.
+/// A file of depth 20. One element is above eight levels of `width` elements each, and all elements of a
+/// level have the same `width` children. Without a memory of visited elements, following the links leads to
+/// width^9 bricks.
 fn shared_children(width: usize) -> Vec<u8> {
     let uniform = seeds::trees().into_iter().find(|tree| tree.frame().depth() == 20).unwrap();
     let mut file = File::parse(&file::to_bytes(&uniform).unwrap()).unwrap();
@@ -351,7 +354,7 @@ fn of_a_sound_tree_a_cursor_sees_all_in_any_order() {
     }
 }
 
-/// Parts of one tree, which a caller may mistake for those of another.
+/// A caller may mistake parts of one tree for parts of another. Such parts lead nowhere.
 #[test]
 fn parts_of_another_tree_lead_nowhere() {
     use leafless::{Cell, Classifier, Verdict, Worker};
@@ -360,7 +363,7 @@ fn parts_of_another_tree_lead_nowhere() {
     let mut workers: Vec<_> = on_frames.map(|classifier| classifier.worker().unwrap()).collect();
     let mut parts = vec![];
     for worker in &mut workers {
-        // Some on each level.
+        // Some parts on each level.
         let mut open = vec![(Cell::ROOT, worker.root().unwrap())];
         for _ in 0..40 {
             let Some((cell, verdict)) = open.pop() else { break };
@@ -378,13 +381,13 @@ fn parts_of_another_tree_lead_nowhere() {
             assert_eq!(planes.branch(), 0);
             nowhere += children.iter().all(|child| matches!(child, Verdict::Undecided)) as usize;
         }
-        // A tree without elements and cuts has no place where a part could lie.
+        // A tree without elements and cuts has no place for a part.
         let has_places = tree.view().element_count() + tree.view().brick_count() > 0;
         assert!(has_places || tree.view().cuts().is_some() || nowhere == parts.len());
     }
 }
 
-/// Found by fuzzing: a link that is right modulo 2^64 was followed by the point queries, and by nobody else.
+/// Found by fuzzing: point queries, and no other readers, followed a link that is right modulo 2^64.
 #[test]
 fn links_whose_sums_wrap_lead_to_the_same_for_all() {
     let bytes = seeds::files().into_iter().find(|bytes| bytes[64] == 3 && bytes[65] == 1).unwrap();
@@ -402,7 +405,7 @@ fn links_whose_sums_wrap_lead_to_the_same_for_all() {
 
 // ---- many changes ---------------------------------------------------------------------------------------
 
-/// How far changed files get.
+/// Numbers of changed files by the furthest step that they pass.
 #[derive(Default, Debug)]
 struct Reached {
     inputs: usize,
@@ -410,7 +413,7 @@ struct Reached {
     verified: usize,
 }
 
-/// Makes `count` files by the fuzzer's moves, one from another, and does everything with them.
+/// Makes `count` files by the fuzzer's mutations, one from another, and runs every operation on them.
 fn change_files(count: usize, seed: u64) -> Reached {
     let mut reached = Reached::default();
     let mut files = seeds::files();
@@ -442,8 +445,7 @@ fn change_files(count: usize, seed: u64) -> Reached {
     reached
 }
 
-/// Makes `count` files by the same moves without repairing anything: none of them is good unless nothing was
-/// changed.
+/// Makes `count` files by the same mutations without repairs. A file is accepted only if nothing was changed.
 fn damage_files(count: usize, seed: u64) {
     let files = seeds::files();
     let mut random = Random(seed);
@@ -473,7 +475,7 @@ fn hundred_thousand() {
     println!("{:?}", change_files(100_000, 8));
 }
 
-/// Bytes that live as long as the program are read where they lie, and their metadata, too.
+/// Bytes with the program's lifetime are read in place, and their metadata, too.
 #[test]
 fn bytes_that_live_for_ever() {
     let files = seeds::files();
@@ -520,7 +522,7 @@ fn pairs_stay_pairs_when_they_are_changed() {
     assert!(inputs > 2900 && on_one_lattice > inputs / 3, "{on_one_lattice} of {inputs}");
 }
 
-/// A mark of any other kind of file is refused before anything else is looked at.
+/// The magic bytes of another kind of file are refused before anything else is examined.
 #[test]
 fn other_kinds_of_files_are_refused_at_once() {
     for bytes in [&b""[..], b"\x89", b"\x89PNG\r\n\x1a\n", &[0; 4096], b"solid x\nendsolid x\n"] {
@@ -532,13 +534,14 @@ fn other_kinds_of_files_are_refused_at_once() {
 
 // ---- cuts -----------------------------------------------------------------------------------------------
 
-/// The file of a PARTIAL universe whose cut is the side of a plane.
+/// Returns the file of a PARTIAL universe whose cut is a half-space.
 fn a_plane() -> File {
     let is_it = |bytes: &&Vec<u8>| bytes[65] == 2 && bytes[10] == 4;
     File::parse(seeds::files().iter().find(is_it).unwrap()).unwrap()
 }
 
-/// Surfaces that are moved by long chains of maps would cost work and memory for each pair of the two.
+/// Surfaces with long chains of maps are refused: comparing such surfaces would cost work and memory for each
+/// pair.
 #[test]
 fn long_chains_of_maps_are_refused() {
     for (maps, is_good) in [(1u64, true), (64, true), (65, false), (20_000, false)] {
@@ -558,7 +561,7 @@ fn long_chains_of_maps_are_refused() {
     }
 }
 
-/// Found by changing bytes: a mapped tree was another one than its clone if a number of a surface was none.
+/// Found by changing bytes: if a surface's number was not finite, a mapped tree differed from its clone.
 #[test]
 fn numbers_that_are_none_do_not_make_a_tree_unlike_itself() {
     for bits in [f64::NAN.to_bits(), f64::INFINITY.to_bits(), (-0.0f64).to_bits(), 1] {
@@ -570,14 +573,13 @@ fn numbers_that_are_none_do_not_make_a_tree_unlike_itself() {
     }
 }
 
-/// Trees without surfaces but slabs of cells have no records, and the slabs of two of them were taken for the
-/// same.
+/// Trees with only cell slabs have no surface records. The slabs of two such trees were once taken for equal.
 #[test]
 fn tables_without_records_are_not_taken_for_one() {
     let vectors = Path::new(env!("CARGO_MANIFEST_DIR")).join("format_spec/vectors/valid");
     let bytes = std::fs::read(vectors.join("cut-cell-slabs-alone.lfl")).unwrap();
     let mut file = File::parse(&bytes).unwrap();
-    // As many slabs that face the other way, of other origins.
+    // As many slabs of other origins that face the other way.
     for slab in file.section(CELL_SLABS).unwrap().bytes.chunks_exact_mut(16) {
         slab[15] ^= 0x80;
     }
@@ -592,7 +594,7 @@ fn tables_without_records_are_not_taken_for_one() {
     both.view().check().unwrap();
 }
 
-/// Moments that are legal need not be those of any solid.
+/// Legal moments need not be the moments of any solid.
 #[test]
 fn moments_of_nothing_that_is() {
     let vectors = Path::new(env!("CARGO_MANIFEST_DIR")).join("format_spec/vectors/valid");
@@ -627,7 +629,7 @@ fn moments_of_nothing_that_is() {
     }
 }
 
-/// Every head, every count and every id of the cuts of small files, with right checksums.
+/// Changes every head, every count and every id of the cuts of small files, with right checksums.
 #[test]
 fn every_byte_of_cuts() {
     let with_cuts = |bytes: &Vec<u8>| bytes[10] == 4 && bytes.len() < 2500;

@@ -5,7 +5,7 @@ use leafless::TriangleMesh;
 use leafless::exchange::{MeshFormat, MeshOptions, WriteOptions, read_mesh, write_mesh};
 use leafless::mesh::{AttributeDomain, MeshAttribute};
 
-/// A strip of so many triangles.
+/// A strip of `count` triangles.
 fn strip(count: usize) -> TriangleMesh {
     let vertices = (0..count + 2).map(|i| [i as f64, (i % 2) as f64, 0.25 * i as f64]).collect();
     TriangleMesh::new(vertices, (0..count as u32).map(|i| [i, i + 1, i + 2]).collect()).unwrap()
@@ -24,7 +24,7 @@ fn values(mesh: &TriangleMesh, name: &str) -> Vec<[Option<[f64; 4]>; 3]> {
     (0..attribute.len()).map(|t| [0, 1, 2].map(|corner| attribute.value(t, corner))).collect()
 }
 
-/// The name of each triangle's material.
+/// Returns the name of each triangle's material.
 fn materials(mesh: &TriangleMesh) -> Vec<Option<String>> {
     let attribute = mesh.attribute("material").unwrap();
     let name = |t| attribute.value(t, 0).map(|value: [f64; 4]| attribute.names()[value[0] as usize].clone());
@@ -56,7 +56,7 @@ fn materials_come_back_by_name() {
         #[cfg(feature = "threemf")]
         {
             assert_eq!(materials(&back(&mesh, MeshFormat::ThreeMf, false)), expected);
-            // Each material has a colour, that of its first triangle.
+            // Each material has the colour of its first triangle.
             let colours: Vec<f64> =
                 labels.iter().flat_map(|&l| [f64::from(l % 7), 2.0, 255.0, 7.0]).collect();
             mesh.add_attribute(MeshAttribute::per_triangle("colour", 4, &colours).unwrap()).unwrap();
@@ -67,13 +67,13 @@ fn materials_come_back_by_name() {
             }
         }
     }
-    // What has no name, or none on one line, gets one.
+    // A material without a name, or without a name on one line, gets a name.
     let mut mesh = strip(3);
     let names = vec!["two\nlines".to_owned(), String::new()];
     mesh.add_attribute(MeshAttribute::labels("material", vec![0, 1, 2]).unwrap().named(names)).unwrap();
     let names = ["two lines", "material_1", "material_2"].map(|name| Some(name.to_owned()));
     assert_eq!(materials(&back(&mesh, MeshFormat::Obj, true)), names);
-    // Groups are as long as they can be.
+    // Groups have the greatest possible length.
     let mesh = &mut strip(4);
     mesh.add_attribute(MeshAttribute::labels("material", vec![1, 1, 0, u32::MAX]).unwrap()).unwrap();
     let bytes = write_mesh(mesh, MeshFormat::Obj, &WriteOptions::default()).unwrap();
@@ -90,7 +90,7 @@ fn colours_come_back() {
     let mut colours =
         |count: usize| -> Vec<f64> { (0..4 * count).map(|_| random.below(256) as f64).collect() };
     for count in [1, 3, 30] {
-        // Of triangles.
+        // Colours of triangles.
         for name in ["colour", "face_colour"] {
             let mut mesh = strip(count);
             mesh.add_attribute(MeshAttribute::per_triangle(name, 4, &colours(count)).unwrap()).unwrap();
@@ -103,7 +103,7 @@ fn colours_come_back() {
                 assert_eq!(found.attribute("colour").unwrap().domain(), AttributeDomain::Triangle);
             }
         }
-        // Of vertices, and of triangles besides.
+        // Colours of vertices, and of triangles in addition.
         let mut mesh = strip(count);
         let of_vertices = colours(count + 2);
         let rows = mesh.triangles().to_vec();
@@ -115,7 +115,7 @@ fn colours_come_back() {
                 assert_eq!(values(&found, name), values(&mesh, name));
             }
         }
-        // Of corners.
+        // Colours of corners.
         let mut mesh = strip(count);
         mesh.add_attribute(MeshAttribute::per_corner("colour", 4, &colours(3 * count)).unwrap()).unwrap();
         if cfg!(feature = "threemf") {
@@ -124,7 +124,8 @@ fn colours_come_back() {
         let found = back(&mesh, MeshFormat::Ply, false);
         assert_eq!(values(&found, "colour")[0], values(&mesh, "colour")[0], "the first corner's counts");
     }
-    // Three numbers are opaque, others are rounded, and what has none is not seen.
+    // Three numbers are an opaque colour, other values are rounded, and triangles without a value are
+    // transparent.
     let mut mesh = strip(3);
     let numbers = [0.4, 254.6, 300.0, f64::NAN, 0.0, 0.0, -7.0, 1.0, 2.0];
     mesh.add_attribute(MeshAttribute::per_triangle("colour", 3, &numbers).unwrap()).unwrap();
@@ -145,7 +146,7 @@ fn numbers_are_properties_of_faces() {
     }
     let labels = (0..20).map(|i| if i == 3 { u32::MAX } else { i % 3 }).collect();
     mesh.add_attribute(MeshAttribute::labels("part", labels).unwrap()).unwrap();
-    // These have no place.
+    // PLY cannot store these attributes.
     mesh.add_attribute(MeshAttribute::per_triangle("two words", 1, &[0.0; 20]).unwrap()).unwrap();
     mesh.add_attribute(MeshAttribute::per_triangle("red", 1, &[0.0; 20]).unwrap()).unwrap();
     mesh.add_attribute(MeshAttribute::per_corner("corner", 1, &[0.0; 60]).unwrap()).unwrap();
@@ -160,7 +161,7 @@ fn numbers_are_properties_of_faces() {
     }
 }
 
-/// Comments that announce nonsense announce nothing.
+/// Comments that announce malformed attributes announce nothing.
 #[test]
 fn what_is_announced_badly_is_no_attribute() {
     let head = |comments: &str, properties: &str| {

@@ -1,5 +1,5 @@
-//! Colours and materials of PLY and 3MF files, as attributes of their meshes; and files that say them badly,
-//! whose meshes are read all the same.
+//! Colours and materials of PLY and 3MF files as mesh attributes. The mesh is read even if the file states
+//! its colours badly.
 
 use crate::packages::zip;
 
@@ -14,12 +14,12 @@ fn read(bytes: &[u8]) -> MeshFile {
     read_mesh(bytes, &MeshOptions::default()).unwrap_or_else(|error| panic!("{error}"))
 }
 
-/// The values at the corners of each triangle.
+/// Returns the values at the corners of each triangle.
 fn values(attribute: &MeshAttribute) -> Vec<[Option<[f64; 4]>; 3]> {
     (0..attribute.len()).map(|t| [0, 1, 2].map(|corner| attribute.value(t, corner))).collect()
 }
 
-/// The first number of each triangle's value, which is that of all its corners.
+/// Returns the first number of each triangle's value. All corners of the triangle have the same value.
 fn numbers(mesh: &TriangleMesh, name: &str) -> Vec<Option<f64>> {
     let attribute = mesh.attribute(name).unwrap_or_else(|| panic!("no {name}"));
     assert_eq!(attribute.domain(), AttributeDomain::Triangle);
@@ -64,8 +64,8 @@ mod ply {
         bytes.extend(number);
     }
 
-    /// Elements of one kind: name, properties as type and name, rows. A face's list stands where a property
-    /// is called `list`, and has its first three numbers.
+    /// Elements of one kind: name, properties as (type, name), rows. A property called `list` is a face's
+    /// list; the list has the row's first three numbers.
     type Element<'a> = (&'a str, &'a [(&'a str, &'a str)], Vec<Vec<f64>>);
 
     fn file(format: &str, elements: &[Element]) -> Vec<u8> {
@@ -104,7 +104,7 @@ mod ply {
     const XYZ: [(&str, &str); 3] = [("float", "x"), ("float", "y"), ("float", "z")];
     const LIST: [(&str, &str); 1] = [("int", "list")];
 
-    /// A square of two triangles, its vertices with these colours behind their places.
+    /// A square of two triangles. Each vertex has its colour after its coordinates.
     fn square(format: &str, channels: &[(&str, &str)], colours: [Vec<f64>; 4]) -> Vec<u8> {
         let places = [[0., 0., 0.], [1., 0., 0.], [1., 1., 0.], [0., 1., 0.]];
         let rows = places.iter().zip(colours).map(|(place, colour)| [place.to_vec(), colour].concat());
@@ -162,7 +162,7 @@ mod ply {
                 let file = super::read(&square(format, channels, rows));
                 assert_eq!((file.mesh.attributes().len(), file.warnings.len()), (0, 0));
             }
-            // One colour of four is beyond the range.
+            // One of four colours is out of range.
             for (kind, wrong) in
                 [("int", 256.0), ("int", -1.0), ("char", -1.0), ("float", 1.01), ("double", f64::NAN)]
             {
@@ -206,7 +206,7 @@ mod ply {
 
     #[test]
     fn colours_of_faces() {
-        // An L of six corners, cut into four triangles; a triangle; and a face that is degenerate.
+        // An L of six corners, cut into four triangles; a triangle; and a degenerate face.
         let text = |vertex_channels: &str, vertex_colour: &str, header: &str, strips: &str| {
             let places = ["2 0 0", "2 1 0", "1 1 0", "1 2 0", "0 2 0", "0 0 0"];
             let vertices: String = places.iter().map(|place| format!("{place} {vertex_colour}\n")).collect();
@@ -227,7 +227,7 @@ mod ply {
         assert_eq!(numbers(&both.mesh, "face_colour"), expected);
         let colour = both.mesh.attribute("colour").unwrap();
         assert_eq!(values(colour), [[Some([9.0, 8.0, 7.0, 255.0]); 3]; 5]);
-        // Strips, before the faces, have no colour.
+        // Strips before the faces have no colour.
         let header = "element tristrips 1\nproperty list int int vertex_indices\n";
         let strips = super::read(text("", "", header, "4 0 1 2 3\n").as_bytes());
         let expected = [[None; 2].to_vec(), expected.to_vec()].concat();
@@ -236,8 +236,7 @@ mod ply {
 
     #[test]
     fn vertices_that_are_welded_keep_their_colours() {
-        // Two triangles, each with vertices of its own, and a third one that is degenerate once they are
-        // welded.
+        // Two triangles with vertices of their own, and a third triangle that is degenerate after welding.
         let row = |place: [f64; 3], red: f64| [place.to_vec(), vec![red, 0.0, 0.0]].concat();
         let [a, b, c, d] = [[0., 0., 0.], [1., 0., 0.], [1., 1., 0.], [0., 1., 0.]];
         let vertices = [(a, 1.), (b, 2.), (c, 3.), (a, 4.), (c, 5.), (d, 6.)];
@@ -264,7 +263,7 @@ mod ply {
     }
 
     proptest! {
-        /// What can be read without its colours can be read with them.
+        /// A file that is readable without its colours is readable with them.
         #[test]
         fn colours_change_no_mesh(
             header in "(property (uchar|int|float|double|ushort) (red|green|blue|alpha|diffuse_red)\n){0,5}",
@@ -310,7 +309,7 @@ mod threemf {
         )
     }
 
-    /// A tetrahedron of which the four triangles have these attributes.
+    /// A tetrahedron whose four triangles have these attributes.
     fn object(id: u32, attributes: &str, triangles: [&str; 4]) -> String {
         let [a, b, c, d] = triangles;
         format!(
@@ -357,7 +356,7 @@ mod threemf {
         let file = read_model(&(COLOURS.to_owned() + &object(1, r#"pid="6" pindex="0""#, triangles)), ITEM);
         assert_eq!((file.warnings.len(), file.mesh.attributes().len()), (0, 1));
         assert_eq!(file.mesh.attribute("colour").unwrap().domain(), AttributeDomain::Corner);
-        // If one of the others is left out, the first counts for all corners.
+        // If one of the other references is missing, the first counts for all corners.
         assert_eq!(colours(&file.mesh), [[RED, GREEN, BLUE], [BLUE; 3], [GREEN; 3], [RED; 3]]);
     }
 
@@ -369,10 +368,10 @@ mod threemf {
         assert_eq!(file.warnings, []);
         assert_eq!(colours(&file.mesh), [None, GREEN, BRASS, None].map(|colour| [colour; 3]));
         assert_eq!(numbers(&file.mesh, "material"), [None, None, Some(1.0), None]);
-        // Groups that nobody refers to are no attributes.
+        // Groups without references are no attributes.
         let file = read_model(&[BASES, COLOURS, &object(1, "", [""; 4])].concat(), ITEM);
         assert_eq!((file.mesh.attributes().len(), file.warnings.len()), (0, 0));
-        // Groups may stand behind the objects that refer to them, as no mesh was refused for that before.
+        // Groups may follow the objects that refer to them: such meshes were never refused.
         let behind = [&object(1, r#"pid="5" pindex="1""#, [""; 4]), BASES].concat();
         assert_eq!(colours(&read_model(&behind, ITEM).mesh), [[BRASS; 3]; 4]);
     }
@@ -393,7 +392,7 @@ mod threemf {
         let mesh = read_model(&resources, items).mesh;
         assert_eq!(mesh.triangles().len(), 12);
         let found = colours(&mesh);
-        // Turned round, the triangle has its colours at the same vertices.
+        // Reversed, the triangle keeps the colours of its vertices.
         assert_eq!(found[2], [RED, BLUE, GREEN]);
         assert_eq!(found[10], [RED, GREEN, BLUE]);
         assert_eq!((found[0], found[4], found[7], found[11]), ([RED; 3], [GREEN; 3], [GREEN; 3], [RED; 3]));
@@ -433,7 +432,7 @@ mod threemf {
         assert_eq!(numbers(&file.mesh, "object")[3..5], [Some(0.0), Some(1.0)]);
     }
 
-    /// A reference to something that is not there costs the triangle its colour, and is told of.
+    /// A triangle that refers to a missing object has no colour, and the reader reports it.
     #[test]
     fn what_is_missing() {
         for (object_has, wrong) in [
@@ -493,7 +492,7 @@ mod threemf {
         assert_eq!(file.warnings, [MeshWarning::Colours { colours: 2 }]);
         assert_eq!(numbers(&file.mesh, "material"), [Some(1.0); 4]);
         assert_eq!(file.mesh.attribute("material").unwrap().names(), ["a", ""]);
-        // A name that is too long to be looked at.
+        // A name that is too long to be examined.
         let bases = format!(
             r##"<basematerials id="6"><base name="{}" displaycolor="#102030"/></basematerials>"##,
             "x".repeat(5000)
@@ -516,7 +515,7 @@ mod threemf {
     }
 
     proptest! {
-        /// Any references: the mesh is the same, and what has a colour has one of the group.
+        /// Arbitrary references leave the mesh the same, and every colour is one of the group.
         #[test]
         fn references_change_no_mesh(
             own in "(pid=\"[5-7x]\" )?(pindex=\"[0-4]\" )?",

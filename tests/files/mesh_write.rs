@@ -1,4 +1,4 @@
-//! Written mesh files come back as they were, through the readers of this library and through foreign ones.
+//! Written mesh files are unchanged when read back, by this library's readers and by foreign readers.
 
 use crate::common::{Random, cases};
 use leafless::exchange::{
@@ -8,7 +8,7 @@ use leafless::{Error, TriangleMesh};
 use ply_rs_bw::{parser::Parser, ply::DefaultElement, ply::Property};
 use proptest::prelude::*;
 
-/// Coordinates with few and with all digits, tiny, huge, and zeros of both signs.
+/// Coordinates with few or all digits, tiny and huge ones, and zeros of both signs.
 fn coordinate(random: &mut Random) -> f64 {
     let sign = if random.below(2) == 0 { -1.0 } else { 1.0 };
     sign * match random.below(6) {
@@ -21,7 +21,7 @@ fn coordinate(random: &mut Random) -> f64 {
     }
 }
 
-/// Triangles of three different vertices, all of which some triangle has.
+/// A mesh whose triangles have three different vertices each. Some triangle uses each vertex.
 fn mesh(seed: u64) -> TriangleMesh {
     let mut random = Random(seed);
     let vertices: Vec<[f64; 3]> =
@@ -34,8 +34,8 @@ fn mesh(seed: u64) -> TriangleMesh {
     TriangleMesh::new(vertices, triangles.filter(|[a, b, c]| a != b && b != c && c != a).collect()).unwrap()
 }
 
-/// A box with a small one beside it and a vertex that no triangle uses, so far away that single precision
-/// keeps all, some or nothing of it.
+/// A box, a smaller box beside it, and a vertex that no triangle uses. Single precision keeps all, some or
+/// nothing of the mesh at this distance from the origin.
 fn far_away(seed: u64, far: i32) -> TriangleMesh {
     let mut random = Random(seed);
     let at = [0; 3].map(|_| random.between(1.0, 2.0) * 2f64.powi(far));
@@ -87,7 +87,8 @@ proptest! {
         }
     }
 
-    /// What is told before is what is read back, for meshes of which single precision keeps much or little.
+    /// The writer's forecast is the mesh that is read back, whether single precision keeps much or little of
+    /// it.
     #[test]
     fn what_comes_back_is_told_before(seed: u64, far in 0..30i32, seen: bool) {
         let mesh = if seen { mesh(seed) } else { far_away(seed, far) };
@@ -107,17 +108,17 @@ proptest! {
                 prop_assert_eq!(told.merged, used.len() as u64 - report.vertices);
                 let coordinates = || used.iter().flat_map(|&v| mesh.vertices()[v as usize]);
                 let moved = coordinates().map(|x| (x - f64::from(x as f32)).abs()).fold(0.0, f64::max);
-                // Decimal digits of a 32-bit number tell it, and not more.
+                // Decimal digits identify a 32-bit number, and no more.
                 let half = coordinates().map(|x| x.abs() as f32).map(|x| x.next_up() - x).fold(0.0, f32::max) / 2.0;
                 let slack = if text { f64::from(half) } else { 0.0 };
                 prop_assert!((told.rounding - moved).abs() <= slack, "{} {moved}", told.rounding);
-                // Vertices are put together, and none apart.
+                // Vertices are merged, and never separated.
                 prop_assert!(!mesh.report().unwrap().is_closed() || report.is_closed());
             }
         }
     }
 
-    /// Normals stand beside vertices, for this library's readers and for foreign ones.
+    /// Normals are written beside vertices, for this library's readers and for foreign readers.
     #[test]
     fn normals_are_written(seed: u64) {
         let mesh = mesh(seed);
@@ -209,7 +210,7 @@ proptest! {
     }
 }
 
-/// Objects with names, each in several places, come back as one mesh with the volume of all.
+/// Named objects, each at several places, come back as one mesh with the total volume.
 #[cfg(feature = "threemf")]
 #[test]
 fn placed_meshes_come_back() {
@@ -240,7 +241,7 @@ fn placed_meshes_come_back() {
     for (own, expected) in back.mesh.vertices().iter().zip(&expected) {
         assert!((0..3).all(|k| (own[k] - expected[k]).abs() < 1e-14), "{own:?} {expected:?}");
     }
-    // What is mirrored is not inside out.
+    // A mirrored mesh is not inside out.
     let volume = 2.0 * small.volume() + 2.0 * large.volume();
     assert!((back.mesh.volume() - volume).abs() < 1e-12, "{} {volume}", back.mesh.volume());
     let objects_of = back.mesh.attributes().iter().find(|attribute| attribute.name() == "object").unwrap();
@@ -294,7 +295,7 @@ fn a_far_cube_is_told_to_be_flat() {
         let report = kept.mesh.report().unwrap();
         assert_eq!((report.triangles, report.vertices, kept.mesh.volume()), (4, 4, 0.0));
         assert_eq!(kept.mesh.area(), 18.0);
-        // All of it becomes one place, or less than a number.
+        // All of it collapses to one point, or is below any number.
         let huge = cube.transformed(|[_, y, z]| [1e30, 1e30 + y, 1e30 + z]).unwrap();
         assert!(huge.triangles().is_empty());
         let tiny = cube.transformed(|[x, y, z]| [x - 1e9, y, z].map(|c| c * 1e-60)).unwrap();
@@ -319,7 +320,8 @@ fn a_mesh_of_nothing_has_no_area() {
     }
 }
 
-/// What is known of a mesh's distance from the true boundary stands in the file, and is told, not believed.
+/// A mesh's known distance from the true boundary is written to the file. Readers report it and do not rely
+/// on it.
 #[test]
 fn deviations_are_written_and_told() {
     let mesh = mesh(7);
@@ -335,7 +337,7 @@ fn deviations_are_written_and_told() {
             }
             assert_eq!((back.format, back.deviation), (format, Some(deviation)));
             assert_eq!((back.mesh.deviation(), back.mesh.vertices()), (0.0, mesh.vertices()));
-            // It is as long as before.
+            // The file is as long as before.
             let unit = Some(LengthUnit::Inch);
             let inches = MeshOptions { unit, target: Some(LengthUnit::Millimetre), ..MeshOptions::default() };
             let back = read_mesh(&bytes, &inches).unwrap().deviation.unwrap();
@@ -348,7 +350,7 @@ fn deviations_are_written_and_told() {
             assert!(matches!(error, Error::Argument { name: "deviation", .. }), "{error}");
         }
     }
-    // What is no number is no word.
+    // A word that is not a number is no deviation.
     for word in ["-1", "nan", "inf", "", "0.5 mm", "1e999"] {
         let text = format!("# leafless deviation {word}\nv 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n");
         assert_eq!(read_mesh(text.as_bytes(), &MeshOptions::default()).unwrap().deviation, None, "{word}");

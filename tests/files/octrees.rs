@@ -1,5 +1,5 @@
-//! The file format from outside: what goes in comes out, what is damaged is refused, and a file on disk is
-//! the old one or the new one.
+//! The file format from outside: files round-trip, damaged files are refused, and a file on disk is always
+//! either the old one or the new one.
 
 #![cfg(feature = "std")]
 
@@ -133,11 +133,11 @@ fn number(bytes: &[u8], at: usize, length: usize) -> u64 {
     u64::from_le_bytes(raw)
 }
 
-/// Length of an entry of the section table.
+/// Length of an entry of the section table, in bytes.
 const ENTRY: usize = 48;
 
-/// Where the record of the solid is, and the fields of the header that it repeats: offset, offset in the
-/// record, length.
+/// Returns the offset of the solid's record and the header fields that the record repeats, as (offset, offset
+/// in the record, length).
 fn mirrored(bytes: &[u8]) -> (usize, [(usize, usize, usize); 8]) {
     let start = number(bytes, 128 + 16, 8) as usize;
     (
@@ -155,7 +155,7 @@ fn mirrored(bytes: &[u8]) -> (usize, [(usize, usize, usize); 8]) {
     )
 }
 
-/// Makes the record of the solid say what the header says.
+/// Copies the header's fields into the solid's record.
 fn mirror(bytes: &mut [u8]) {
     let (start, fields) = mirrored(bytes);
     for (from, to, length) in fields {
@@ -163,7 +163,7 @@ fn mirror(bytes: &mut [u8]) {
     }
 }
 
-/// Makes all checksums right again, as far as the fields that say where things are allow.
+/// Repairs all checksums, as far as the offset fields allow.
 fn seal(bytes: &mut [u8]) {
     let count = number(bytes, 96, 4) as usize;
     for i in 0..count.min(64) {
@@ -189,7 +189,7 @@ fn seal_head(bytes: &mut [u8]) {
     bytes[124..128].copy_from_slice(&crc);
 }
 
-/// `bytes` after a change, with the checksums of header and table (or all of them) made right.
+/// Returns `bytes` after a change, with repaired checksums of header and table, or of all sections.
 fn changed(bytes: &[u8], sections_too: bool, change: impl FnOnce(&mut Vec<u8>)) -> Vec<u8> {
     let mut bytes = bytes.to_vec();
     change(&mut bytes);
@@ -216,7 +216,7 @@ fn format_error<T>(result: Result<T, Error>) -> FormatError {
     }
 }
 
-/// Everything that reads and makes trees, on one that may be damaged: all of it must return.
+/// Runs everything that reads and makes trees on a tree that may be damaged. All calls must return.
 fn exercise(tree: &OctreeRef<'_>) {
     read_all(tree);
     let control = Control::threads(1);
@@ -234,7 +234,7 @@ fn exercise(tree: &OctreeRef<'_>) {
     }
 }
 
-/// Queries and checks, on a tree that may be damaged.
+/// Runs queries and checks on a tree that may be damaged.
 fn read_all(tree: &OctreeRef<'_>) {
     let frame = tree.frame();
     let (origin, edge) = (frame.origin(), frame.edge());
@@ -255,7 +255,7 @@ fn read_all(tree: &OctreeRef<'_>) {
         assert_eq!(cursor.contains(point), answer);
     }
     for level in [0, 3, 6] {
-        // Of a damaged tree less may be known by way of a table, and nothing else.
+        // For a damaged tree, a table may decide fewer points, and nothing else may differ.
         let table = PointTable::new(tree, level).unwrap();
         let known = points.iter().map(|&point| table.contains(point));
         known.zip(&answers).for_each(|(known, &answer)| {
@@ -279,12 +279,12 @@ fn read_all(tree: &OctreeRef<'_>) {
 }
 
 fn write(path: &Path, bytes: &[u8]) {
-    // Some file systems flush a file to disk that is cut to nothing and written again.
+    // Some file systems flush a file to disk if it is truncated and written again.
     let _ = std::fs::remove_file(path);
     std::fs::write(path, bytes).unwrap();
 }
 
-// ---- what goes in comes out -----------------------------------------------------------------------------
+// ---- round trips ----------------------------------------------------------------------------------------
 
 #[test]
 fn every_way_in_gives_the_tree_back() {
@@ -303,14 +303,14 @@ fn every_way_in_gives_the_tree_back() {
             assert_eq!(back.metadata(), tree.metadata());
             assert_eq!(back.statistics(), tree.statistics());
             back.view().check().unwrap();
-            // However its bricks are coded and wherever they lie, it is the same file.
+            // However its bricks are coded and wherever they lie, the tree is written as the same file.
             assert_eq!(file::to_bytes(back).unwrap(), bytes);
         };
         same(&file::from_bytes(&bytes).unwrap());
         same(&file::open(&path).unwrap());
         #[cfg(feature = "mmap")]
         {
-            // SAFETY: nobody else knows the file.
+            // SAFETY: no other process uses the file.
             same(&unsafe { file::map(&path) }.unwrap());
             same(&unsafe { file::map_verified(&path) }.unwrap());
         }
@@ -321,7 +321,7 @@ fn every_way_in_gives_the_tree_back() {
         same(&compact(&view).unwrap().with_metadata(tree.metadata().clone()));
         file::verify(aligned.bytes()).unwrap();
         file::verify_path(&path).unwrap();
-        // What lives as long as the program needs no copy.
+        // Bytes with the program's lifetime need no copy.
         same(&file::from_static(Box::leak(Box::new(Aligned::new(&bytes))).bytes()).unwrap());
 
         let probe = file::probe(&path).unwrap();
@@ -353,12 +353,12 @@ fn bricks_are_coded_as_the_rule_says() {
     assert_eq!(names(&dictionary_coded()), [&elements[..], &coded].concat());
     let many = file::to_bytes(&many_bricks()).unwrap();
     let sections = file::probe_bytes(&many).unwrap().sections;
-    // Two halves of 50 000 distinct bricks each: the largest segments that do.
+    // Two halves of 50 000 distinct bricks each: the largest segments for which this works.
     assert_eq!((many[68], many[69], sections[7].count), (1, 17, 2));
     assert_eq!(names(&Octree::uniform(frame(3), Tag::Full, Tag::Full).unwrap()), ["objects", "level table"]);
 }
 
-/// The numbers in a file are where its documentation says; a change of this test is a change of the format.
+/// The numbers in a file are at their documented places. A change of this test is a change of the format.
 #[test]
 fn a_file_byte_by_byte() {
     // The lower x half of the universe, at depth 1: one brick.
@@ -393,7 +393,7 @@ fn a_file_byte_by_byte() {
             put(&mut expected, 128 + ENTRY * i + at, value, length);
         }
     }
-    // The object: a solid without a parent, which must be known; then what the header says of it.
+    // The object: a solid without a parent, which readers must understand, followed by the header's fields.
     put(&mut expected, 320, 1, 4);
     put(&mut expected, 324, u32::MAX.into(), 4);
     put(&mut expected, 328, 1, 4);
@@ -433,7 +433,7 @@ fn metadata_have_a_limit() {
     let largest = with(1 << 20);
     let back = file::from_bytes(&file::to_bytes(&largest).unwrap()).unwrap();
     assert_eq!(back.metadata(), largest.metadata());
-    // One byte more in a file, and all that follows further on.
+    // One more byte in a file shifts everything after it.
     let mut bytes = file::to_bytes(&largest).unwrap();
     let probe = file::probe_bytes(&bytes).unwrap();
     let (entry, at) = (128 + ENTRY, probe.sections[1].offset as usize);
@@ -456,7 +456,7 @@ fn metadata_have_a_limit() {
     assert!(matches!(refused, Err(Error::Argument { name: "metadata", .. })));
 }
 
-// ---- what is damaged is refused -------------------------------------------------------------------------
+// ---- damaged files are refused --------------------------------------------------------------------------
 
 #[test]
 fn a_shorter_or_longer_file_is_refused() {
@@ -478,11 +478,11 @@ fn a_shorter_or_longer_file_is_refused() {
         is_length(format_error(file::probe(&path)));
         #[cfg(feature = "mmap")]
         {
-            // SAFETY: nobody else knows the file.
+            // SAFETY: no other process uses the file.
             is_length(format_error(unsafe { file::map(&path) }));
             is_length(format_error(unsafe { file::map_verified(&path) }));
         }
-        // Of bytes the first ones are enough.
+        // Probing needs only the first bytes.
         assert_eq!(file::probe_bytes(cut).is_ok(), length >= head);
         assert_eq!(file::probe_from(cut).is_ok(), length >= head);
     }
@@ -501,7 +501,7 @@ fn every_flipped_byte_is_found() {
                 assert!(file::from_bytes(damaged.bytes()).is_err(), "byte {at}");
                 write(&path, damaged.bytes());
                 assert!(file::open(&path).is_err(), "byte {at}");
-                // SAFETY: nobody else knows the file.
+                // SAFETY: no other process uses the file.
                 #[cfg(feature = "mmap")]
                 assert!(unsafe { file::map_verified(&path) }.is_err(), "byte {at}");
                 if let Ok(tree) = file::view(damaged.bytes()) {
@@ -514,8 +514,8 @@ fn every_flipped_byte_is_found() {
     }
 }
 
-/// As an attacker would do it: with right checksums. Whatever is let in must be readable without a panic, and
-/// whatever is written of it must be a good file.
+/// Changes as an attacker makes them, with right checksums. An accepted file must be readable without a
+/// panic, and anything written from it must be a good file.
 #[test]
 fn changes_with_right_checksums_never_panic() {
     let directory = tempfile::tempdir().unwrap();
@@ -531,7 +531,7 @@ fn changes_with_right_checksums_never_panic() {
             let mut hostile = Aligned::new(&bytes);
             let all = hostile.bytes_mut();
             for _ in 0..1 + round % 3 {
-                // Half of the time in header and table; small numbers are the most dangerous.
+                // Half of the changes are in header and table. Small numbers are the most dangerous.
                 let end = if round % 2 == 0 { 128 + ENTRY * 5 } else { all.len() };
                 let at = random(end as u64) as usize;
                 all[at] = match random(4) {
@@ -541,7 +541,7 @@ fn changes_with_right_checksums_never_panic() {
                     _ => random(256) as u8,
                 };
             }
-            // Mostly, what was changed in the header stands in the record of the solid, too.
+            // In most rounds, the solid's record repeats the changed header.
             if round % 8 != 0 && number(all, 128 + 16, 8) == number(&bytes, 128 + 16, 8) {
                 mirror(all);
             }
@@ -558,11 +558,11 @@ fn changes_with_right_checksums_never_panic() {
                 exercise(&tree);
             }
             write(&path, hostile.bytes());
-            // SAFETY: nobody else knows the file.
+            // SAFETY: no other process uses the file.
             #[cfg(feature = "mmap")]
             if let Ok(tree) = unsafe { file::map(&path) } {
                 tree.statistics();
-                // The one thing that readers in place never look at, and that writing sets right.
+                // The only part that readers in place never examine, and that writing corrects.
                 let padding =
                     matches!(verdict, Err(Error::Format(FormatError::Field { name: "padding", .. })));
                 match file::to_bytes(&tree) {
@@ -578,8 +578,8 @@ fn changes_with_right_checksums_never_panic() {
     assert!(let_in[0] > 1000 && let_in[1] > 100, "{let_in:?}");
 }
 
-/// A file of depth 20 in which all 64 elements of a level have the same 64 children: followed without a
-/// memory, its links would lead to 64^9 bricks.
+/// A file of depth 20 in which all 64 elements of a level have the same 64 children. Without a memory of
+/// visited elements, its links lead to 64^9 bricks.
 fn shared_children() -> Vec<u8> {
     let (elements, bricks) = (1 + 64 * 8, 64);
     let mut bytes = file::to_bytes(&Octree::uniform(frame(20), Tag::Empty, Tag::Empty).unwrap()).unwrap();
@@ -738,11 +738,11 @@ fn each_field_is_checked() {
         assert_eq!(name(&coded, at, value, 1), expected);
     }
     assert_eq!(name(&coded, 88, number(&coded, 80, 8) + 1, 8), "dictionary entries");
-    // Another count in the header than in the sections.
+    // A count in the header that differs from the sections.
     assert_eq!(field(&bytes, 72, 1 << 40, 8), FormatError::Section { name: "planes" });
     assert_eq!(field(&bytes, 80, 1, 8), FormatError::Section { name: "bricks" });
     assert_eq!(field(&bytes, 67, 1, 1), FormatError::Section { name: "bricks" });
-    // A section that is unknown or missing, and objects that are not there.
+    // Unknown and missing sections, and owners that do not exist.
     let last = 128 + ENTRY * (file::probe_bytes(&bytes).unwrap().sections.len() - 1);
     assert_eq!(field(&bytes, last, 20, 4), FormatError::Required { name: "section", value: 20 });
     let missing = changed(&bytes, false, |bytes| {
@@ -751,13 +751,13 @@ fn each_field_is_checked() {
     });
     assert_eq!(format_error(view(missing)), FormatError::Section { name: "bricks" });
     assert_eq!(field(&bytes, 128, 2, 4), FormatError::Section { name: "objects" });
-    // Each byte of the solid's record says what the header says, or is 0.
+    // Each byte of the solid's record repeats the header, or is 0.
     let (record, _) = mirrored(&bytes);
     for at in 0..128 {
         let other = changed(&bytes, true, |bytes| bytes[record + at] ^= 1);
         assert_eq!(format_error(view(other)), FormatError::Object, "byte {at}");
     }
-    // Levels whose elements are not the stored ones.
+    // Levels whose elements are not the stored elements.
     let levels = file::probe_bytes(&bytes).unwrap().sections[2].offset as usize;
     for level in [0, 2] {
         for nodes in [0, 2, u64::MAX] {
@@ -765,7 +765,7 @@ fn each_field_is_checked() {
             assert!(matches!(view(bytes), Err(Error::Damaged(_))), "{nodes} nodes on level {level}");
         }
     }
-    // Also where the sums are right: depth 5, elements on the levels 0 and 1, bricks on level 3.
+    // Wrong levels with right sums: depth 5, elements on the levels 0 and 1, bricks on level 3.
     let sections = file::probe_bytes(&coded).unwrap().sections;
     let levels = sections.iter().find(|section| section.name == Some("level table")).unwrap().offset as usize;
     for (from, to, wrong) in [(1, 0, 0), (1, 3, 5), (3, 1, 5)] {
@@ -845,7 +845,7 @@ fn what_later_versions_may_add_is_skipped() {
     assert_eq!((section.kind, section.name, section.count), (17, None, 4));
     let refused = format_error(file::from_bytes(&with_flags(1)));
     assert_eq!(refused, FormatError::Required { name: "section", value: 17 });
-    // Its checksum counts although nobody reads it.
+    // Its checksum counts although no reader uses the section.
     let mut damaged = with_flags(0);
     damaged[offset] ^= 1;
     let refused = format_error(file::from_bytes(&damaged));
@@ -867,7 +867,7 @@ fn metadata_that_cannot_be_read_are_refused_by_all_who_read_them() {
     {
         let file = tempfile::NamedTempFile::new().unwrap();
         write(file.path(), &damaged);
-        // SAFETY: nobody else knows the file.
+        // SAFETY: no other process uses the file.
         assert_eq!(format_error(unsafe { file::map(file.path()) }), FormatError::Metadata);
     }
 }
@@ -932,7 +932,7 @@ mod save {
         fs::create_dir(at("other")).unwrap();
         symlink("other/tree.lfl", at("link")).unwrap();
         symlink("link", at("second")).unwrap();
-        // First to a file that does not exist, then to one that does.
+        // First to a new file, then to an existing file.
         for tree in [small(), dictionary_coded()] {
             file::save(&tree, at("second")).unwrap();
             assert_eq!(file::open(at("other/tree.lfl")).unwrap(), tree);
@@ -975,7 +975,7 @@ mod save {
         let verifier = std::thread::spawn(move || file::verify_path(path));
         file::save(&tree, &pipe).unwrap();
         verifier.join().unwrap().unwrap();
-        // What is piped in may be cut or go on, too.
+        // Piped input may be cut short or continue, too.
         let bytes = file::to_bytes(&tree).unwrap();
         for sent in [bytes[..bytes.len() - 1].to_vec(), [&bytes[..], b"x"].concat()] {
             let (path, same) = (pipe.clone(), pipe.clone());
@@ -1032,13 +1032,13 @@ mod save {
             }
         });
         assert_eq!(mapped, old);
-        // Also by itself.
+        // Also without the others.
         file::save(&mapped, &path).unwrap();
         assert_eq!((&mapped, file::open(&path).unwrap()), (&old, old.clone()));
         assert_eq!(names(directory.path()), ["tree.lfl"]);
     }
 
-    /// Whether the file system has files without names.
+    /// True if the file system supports files without names.
     #[cfg(target_os = "linux")]
     fn has_unnamed_files(directory: &Path) -> bool {
         use rustix::fs::{Mode, OFlags, open};
@@ -1055,7 +1055,7 @@ mod save {
             file::replace(&path, |file| {
                 file.write_all(text.as_bytes())?;
                 assert_eq!(fs::read(&path).ok(), old);
-                // A process that is killed now leaves nothing.
+                // A process killed at this moment leaves nothing behind.
                 #[cfg(target_os = "linux")]
                 if has_unnamed_files(directory.path()) {
                     assert_eq!(names(directory.path()).len(), usize::from(old.is_some()));
@@ -1076,7 +1076,7 @@ mod save {
         );
     }
 
-    // The rest needs a process of its own: one with limits, another user, or another working directory.
+    // The other cases need a process of their own, with limits, another user, or another working directory.
 
     const TASK: &str = "LEAFLESS_TEST_SAVE";
 
@@ -1094,7 +1094,7 @@ mod save {
         assert!(output.status.success() && text.contains("the child was here"), "{text}");
     }
 
-    /// What the other tests start; nothing by itself.
+    /// The process that other tests start. By itself it does nothing.
     #[test]
     fn child() {
         let Ok(task) = std::env::var(TASK) else { return };
@@ -1174,19 +1174,19 @@ mod save {
         assert_eq!(file::open(&path).unwrap(), small());
     }
 
-    /// A command for the test program as a user whom permissions bind.
+    /// Returns a command that runs the test program as a user whom permissions bind.
     fn unprivileged(directory: &Path, program: &Path) -> Command {
         use std::os::unix::process::CommandExt;
         let mut command = Command::new(program);
         if fs::write(directory.join("probe"), "").is_ok() {
-            // Nothing binds this one.
+            // Permissions do not bind this user.
             fs::remove_file(directory.join("probe")).unwrap();
             command.uid(65534).gid(65534);
         }
         command
     }
 
-    /// A directory and a copy of the test program that every user can reach.
+    /// Returns a directory and a copy of the test program in it. Every user can reach both.
     fn open_directory() -> (tempfile::TempDir, PathBuf, PathBuf) {
         let outer = tempfile::tempdir().unwrap();
         set_mode(outer.path(), 0o755);
@@ -1240,7 +1240,7 @@ mod save {
     }
 }
 
-/// Each refusal of a path begins with the path as it was given, and tells no other name and no number.
+/// Each refusal of a path begins with the path as given, and contains no other name and no number.
 #[test]
 fn errors_name_the_file() {
     fn text<T>(result: Result<T, Error>) -> String {
@@ -1270,7 +1270,7 @@ fn errors_name_the_file() {
             assert_eq!(text(file::map(&missing)), expected);
             assert_eq!(text(file::map_verified(&missing)), expected);
         }
-        // The temporary file beside it is nobody's business.
+        // The error does not mention the temporary file beside it.
         let tree = small();
         let path = directory.path().join("no/part.lfl");
         assert_eq!(text(file::save(&tree, &path)), format!("{}: No such file or directory", path.display()));
@@ -1290,7 +1290,7 @@ fn errors_name_the_file() {
     }
 }
 
-/// Frames that differ are both told.
+/// An error about different frames names both frames.
 #[test]
 fn frames_that_differ_are_told() {
     let tree = |x: f64, depth| {

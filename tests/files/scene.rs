@@ -1,4 +1,4 @@
-//! Scenes: every call of the language, every error with its place, and texts that mean harm.
+//! Scenes: every call of the language, every error with its place, and hostile texts.
 
 #![cfg(feature = "scene")]
 
@@ -16,7 +16,7 @@ fn tree(text: &str, frame: &Frame) -> Octree {
     build(&solid, frame, Rule::Certified, &Control::default()).unwrap()
 }
 
-/// The solid in [-8, 8]³ at depth 6.
+/// Builds the scene's solid in [-8, 8]³ at depth 6.
 fn in_cube(text: &str) -> Octree {
     tree(text, &Frame::new([-8.0; 3], 16.0, 6).unwrap())
 }
@@ -25,8 +25,8 @@ fn volume(text: &str) -> Interval {
     in_cube(text).statistics().volume()
 }
 
-/// The volume's interval holds the truth and is no wider than a layer of so many cells around the solid's
-/// `area`.
+/// Checks that the volume's interval contains the truth. Its width is at most a layer of several cells around
+/// the solid's `area`.
 fn check(text: &str, truth: f64, area: f64) {
     let tree = in_cube(text);
     let volume = tree.statistics().volume();
@@ -39,7 +39,7 @@ fn check(text: &str, truth: f64, area: f64) {
     assert!(!tree.view().is_clipped(), "{text}");
 }
 
-/// The same set of points, as far as the finest cells tell.
+/// Checks that two texts describe the same set of points, as far as the finest cells show.
 fn same(a: &str, b: &str) {
     let (a_tree, b_tree) = (in_cube(a), in_cube(b));
     let (p, q) = (a_tree.statistics().volume(), b_tree.statistics().volume());
@@ -52,7 +52,7 @@ fn is_nothing(text: &str) {
     assert_eq!(volume.upper, 0.0, "{text}");
 }
 
-/// The error's line and column, and its words.
+/// Returns an error's line, column and words.
 fn refusal(text: &str) -> (u64, u64, String) {
     match read_scene(text, None) {
         Err(Error::Scene(error)) => (error.line(), error.column(), error.problem().to_owned()),
@@ -61,7 +61,7 @@ fn refusal(text: &str) -> (u64, u64, String) {
     }
 }
 
-// ---- what the calls mean
+// ---- the meaning of the calls
 // ------------------------------------------------------------------------------------
 
 #[test]
@@ -125,7 +125,7 @@ fn operations() {
     check(&format!("difference() {pair}"), 4.0, 0.0);
     check("cube(2); multmatrix([[1,0,0,2],[0,1,0,0],[0,0,1,0],[0,0,0,1]]) cube(2);", 16.0, 0.0);
     check("difference() { cube(4); cube(2); cube([4, 1, 1]); }", 64.0 - 8.0 - 2.0, 0.0);
-    // Without braces, and what does not count.
+    // Without braces, and calls that have no effect.
     check("color(\"red\") render() cube(2);", 8.0, 0.0);
     check("group() { cube(2); %cube(4); *cube(4); #cube(1); group(); group() {} ; ; }", 8.0, 0.0);
     check("difference() { %sphere(7); cube(4); cube(2); }", 56.0, 0.0);
@@ -137,7 +137,7 @@ fn operations() {
     check(&format!("{turned} {turned} cube([4, 2, 4]);"), 32.0, 64.0);
 }
 
-/// What OpenSCAD's own language says instead of a matrix.
+/// The calls of OpenSCAD's own language that stand for matrices.
 #[test]
 fn moves() {
     let turned = |rows: &str, what: &str| format!("multmatrix([{rows}, [0, 0, 0, 1]]) {what}");
@@ -232,7 +232,7 @@ fn prisms() {
     check("linear_extrude(height = 2) intersection() { square(6); circle(4); }", PI * 8.0, PI * 16.0);
     let star = "polygon(points = [[0, 6], [-1, 1], [-6, 0], [-1, -1], [0, -6], [1, -1], [6, 0], [1, 1]], paths = undef);";
     check(&format!("linear_extrude(height = 2, center = true) {star}"), 48.0, 160.0);
-    // An ellipse that is turned.
+    // A rotated ellipse.
     let ellipse = "multmatrix([[1.6, -0.6, 0, 0], [1.2, 0.8, 0, 0], [0, 0, 1, 0], [0, 0, 0, 1]]) circle(2);";
     check(&format!("linear_extrude(height = 2) {ellipse}"), PI * 16.0, PI * 30.0);
     // A skew prism: the direction has any length.
@@ -255,10 +255,10 @@ fn tapered_prisms() {
         PI * 50.0,
     );
     same("linear_extrude(height = 4, scale = 0.5) circle(4);", "cylinder(h = 4, r1 = 4, r2 = 2);");
-    // Oblique, as the circle is not in the middle: Cavalieri.
+    // An oblique extrusion, because the circle is not in the middle: Cavalieri.
     let beside = "multmatrix([[1,0,0,1.5],[0,1,0,0],[0,0,1,0],[0,0,0,1]]) circle(2);";
     check(&format!("linear_extrude(height = 3, scale = 2) {beside}"), PI * (4.0 + 8.0 + 16.0), PI * 50.0);
-    // ∫ (1 + (a − 1) t) (1 + (b − 1) t) dt · A · h, here for a = 2, b = 0: 2/3, whatever the figure of lines.
+    // ∫ (1 + (a − 1) t) (1 + (b − 1) t) dt · A · h, here for a = 2, b = 0: 2/3, for any figure of lines.
     check("linear_extrude(height = 3, scale = [2, 0]) square(4, true);", 16.0 * 3.0 * 2.0 / 3.0, 100.0);
     let triangle = "polygon(points = [[1, 0], [3, 1], [0, 3]]);";
     check(&format!("linear_extrude(height = 3, scale = [2, 0]) {triangle}"), 2.5 * 3.0 * 2.0 / 3.0, 40.0);
@@ -290,7 +290,7 @@ fn bodies_of_revolution() {
     check(&format!("{whole} {half}"), PI * 256.0 / 3.0, PI * 64.0);
     let half = format!("intersection() {{ circle(4); {} }}", at(0.0, -5.0, "square([5, 10]);"));
     check(&format!("{whole} {half}"), PI * 256.0 / 3.0, PI * 64.0);
-    // Rings: circles that are moved, turned, scaled.
+    // Rings: circles that are moved, rotated or scaled.
     same(&format!("{whole} {}", at(5.0, 0.0, "circle(2);")), "torus(5, 2);");
     same(&format!("{whole} {}", at(-5.0, 0.0, "circle(2);")), "torus(5, 2);");
     let raised = "multmatrix([[1,0,0,0],[0,1,0,0],[0,0,1,1.5],[0,0,0,1]])";
@@ -301,7 +301,7 @@ fn bodies_of_revolution() {
     check(&turned, 2.0 * PI * PI * (4.1 * 0.7 + 0.3) * 1.96, 4.0 * PI * PI * 4.0);
     let ring = format!("difference() {{ {} {} }}", at(2.0, -2.0, "square(4);"), at(4.0, 0.0, "circle(1.5);"));
     check(&format!("{whole} {ring}"), 2.0 * PI * 4.0 * (16.0 - PI * 2.25), 300.0);
-    // Parts of a turn.
+    // Partial revolutions.
     let block = at(2.0, -1.0, "square([3, 2]);");
     for (angle, start) in [(90, 0), (180, 30), (270, 45), (37, 11), (-37, 11), (-200, 5), (359, 1), (1, -720)]
     {
@@ -343,8 +343,8 @@ fn bounds() {
     }
 }
 
-/// Links within each other's matrices, as OpenSCAD dumps an arm: each is moved up by 5 along the one before,
-/// and turned.
+/// The links of an arm with nested matrices, as OpenSCAD dumps them: each link is moved up by 5 along the
+/// previous one and rotated.
 fn arm(links: usize) -> String {
     let link = "cylinder(h = 5, r1 = 1.66, r2 = 1.66, center = false); \
                 multmatrix([[1, 0, 0, -1], [0, 1, 0, -2], [0, 0, 1, 2], [0, 0, 0, 1]]) cube([2, 4, 1]);";
@@ -370,7 +370,7 @@ fn bounds_of_an_arm_of_turned_links_are_hardly_larger_than_the_arm() {
     assert!(!tree.view().is_clipped());
     let volume = tree.statistics().volume();
     assert!(250.0 <= volume.lower && volume.contains(346.3) && volume.upper <= 480.0, "{volume:?}");
-    // As long as exact numbers may be nested: 60 links reach 300 far at most.
+    // As long as exact numbers may be nested. 60 links reach at most 300.
     let (min, max) = read_scene(arm(60), None).unwrap().bounds().unwrap().unwrap();
     assert!((0..3).all(|axis| max[axis] - min[axis] < 700.0), "{min:?} {max:?}");
 }
@@ -389,7 +389,7 @@ fn bounds_of_deep_and_shared_nestings_cost_little() {
     assert!(start.elapsed().as_secs_f64() < 5.0, "{:?}", start.elapsed());
 }
 
-/// Every limit says what it is of, and none is called a shortage of memory.
+/// Every limit's message names its subject, and no limit is reported as a shortage of memory.
 #[test]
 fn limits_say_what_they_are_of() {
     let turn = "multmatrix([[0.8,-0.6,0,0],[0.48,0.64,-0.6,0],[0.36,0.48,0.8,0],[0,0,0,1]]) ";
@@ -414,8 +414,8 @@ fn limits_say_what_they_are_of() {
     }
 }
 
-/// A tetrahedron with a facet turned over and one missing encloses points below its lowest corner, as the
-/// fill rule has it.
+/// A tetrahedron with one inverted facet and one missing facet encloses points below its lowest corner under
+/// the fill rule.
 #[test]
 fn bounds_hold_what_a_polyhedron_with_a_turned_facet_encloses() {
     let text = "polyhedron([[0, 0, 0], [4, 0, 0], [0, 4, 0], [0, 0, 4]], [[0, 1, 2], [0, 3, 1], [0, 2, 3]]);";
@@ -491,7 +491,7 @@ impl Shape {
         }
     }
 
-    /// Whether a point is inside, in rounded arithmetic.
+    /// True if a point is inside, in rounded arithmetic.
     fn holds(&self, p: [f64; 3]) -> bool {
         let [x, y, z] = p;
         match self {
@@ -538,7 +538,7 @@ impl Shape {
         }
     }
 
-    /// Numbers with one decimal, hardly any of them a double.
+    /// Numbers with one decimal. Hardly any of them is a double.
     fn number(random: &mut Random, low: f64, high: f64) -> f64 {
         let tenths = ((high - low) * 10.0) as usize + 1;
         ((low * 10.0).round() + random.below(tenths) as f64) / 10.0
@@ -549,7 +549,7 @@ impl Shape {
         Shape::Joined(name, (0..1 + random.below(3)).map(|_| part(random, depth - 1)).collect())
     }
 
-    /// A placement whose dump has six digits, as OpenSCAD writes it.
+    /// A placement with six digits, as in OpenSCAD's dumps.
     fn placed(random: &mut Random, is_flat: bool, of: Shape) -> Shape {
         let number = |random: &mut Random, low, high| Self::number(random, low, high);
         let (sin, cos) = number(random, -3.1, 3.1).sin_cos();
@@ -569,7 +569,7 @@ impl Shape {
         match random.below(if depth == 0 { 4 } else { 8 }) {
             0 => Shape::Square([number(random, 1.0, 6.0), number(random, 1.0, 6.0)]),
             1 => Shape::Disc(number(random, 0.5, 4.0)),
-            // Around the origin, and so simple.
+            // Around the origin, in the simplest form.
             2 | 3 => {
                 let n = 3 + random.below(8);
                 let corner = |i: usize| {
@@ -651,7 +651,7 @@ fn points_never_contradict_cells() {
             }
         }
     }
-    // It tries something.
+    // The test decides enough points, inside and outside.
     assert!(decided > asked * 3 / 4 && inside > asked / 50, "{decided} and {inside} of {asked}");
 }
 
@@ -686,7 +686,7 @@ fn files_beside_the_scene() {
         assert!(volume.upper - volume.lower <= width, "{text}: {volume:?}");
     };
     check("mesh(\"block.stl\");", 2.0, 0.0);
-    // Hair cracks are closed, as they are wherever a file is read.
+    // Hair cracks are closed, as for every file that is read.
     let mut cracked = String::new();
     for (at, triangle) in block().triangles().iter().enumerate() {
         for vertex in triangle.map(|vertex| block().vertices()[vertex as usize]) {
@@ -707,7 +707,7 @@ fn files_beside_the_scene() {
     );
     check("octree(\"part.lfl\");", 56.0, 0.0);
     check("difference() { octree(file = \"part.lfl\"); mesh(file = \"block.stl\"); }", 56.0, 0.0);
-    // Placements: exact ones, one that has to be rounded, and several around operations.
+    // Placements: exact ones, one that is rounded, and several around operations.
     let moved = "multmatrix([[0, -1, 0, 2.5], [1, 0, 0, 0.25], [0, 0, 2, 0], [0, 0, 0, 1]])";
     check(&format!("{moved} mesh(\"block.stl\");"), 4.0, 0.0);
     check(&format!("{moved} {moved} mesh(\"block.stl\");"), 8.0, 16.0);
@@ -743,7 +743,7 @@ fn files_beside_the_scene() {
     std::fs::write(folder.path().join("latin.csg"), b"cube(1);\n// gr\xFC\xDFe").unwrap();
     let error = leafless::scene::open_scene(folder.path().join("latin.csg")).err().unwrap();
     assert_eq!(error.cause().to_string(), "line 2, column 6: the text is not UTF-8");
-    // Without a folder there are no files.
+    // Without a folder, no files can be read.
     let (line, column, problem) = refusal("mesh(\"block.stl\");");
     assert!((line, column) == (1, 6) && problem.contains("folder"), "{problem}");
     assert!(read_scene("mesh(\"block.stl\");", Some(Path::new(folder.path()))).is_ok());
@@ -865,7 +865,7 @@ fn errors_say_where() {
     }
 }
 
-// ---- texts that mean harm
+// ---- hostile texts
 // -----------------------------------------------------------------------------------
 
 #[test]
@@ -885,7 +885,7 @@ fn nesting() {
     let (_, _, problem) = refusal(&format!("cube({}1{});", "[".repeat(n), "]".repeat(n)));
     assert!(problem.contains("expected 3 items"), "{problem}");
     refusal(&format!("cube({}", "[".repeat(n)));
-    // Turns around turns end at a limit.
+    // Nested revolutions end at a limit.
     let turned = "multmatrix([[0.8,-0.6,0,0.1],[0.6,0.8,0,0],[0,0,1,0],[0,0,0,1]]) ";
     let scene = read_scene(&(turned.repeat(2000) + "cube(2);"), None).unwrap();
     let solid = scene.solid(&frame).unwrap();
@@ -959,7 +959,7 @@ fn write_seeds() {
     }
 }
 
-/// Numbers that only look random (splitmix64).
+/// Pseudo-random numbers (splitmix64).
 struct Random(u64);
 
 impl Random {

@@ -1,5 +1,5 @@
-//! Scenes beside OpenSCAD: volumes of the STL files that OpenSCAD 2021.01 exports, whose coordinates have six
-//! digits, and the dumps that it exports of the same models.
+//! Scenes against OpenSCAD: the volumes of STL files that OpenSCAD 2021.01 exports, with coordinates of six
+//! digits, and its dumps of the same models.
 
 #![cfg(feature = "scene")]
 
@@ -7,7 +7,7 @@ use leafless::scene::{Facets, Scene, SceneOptions, read_scene};
 use leafless::{Control, Error, Frame, Interval, measure};
 use std::f64::consts::PI;
 
-/// The volume, to two hundredths.
+/// Measures the volume to two hundredths.
 fn volume(scene: &Scene) -> Interval {
     let (min, max) = scene.bounds().unwrap().unwrap();
     let frame = Frame::around(min, max, 20).unwrap();
@@ -16,7 +16,7 @@ fn volume(scene: &Scene) -> Interval {
     measures.volume
 }
 
-/// That the volume is the one that OpenSCAD tells, up to the digits of its files.
+/// Checks that the volume is OpenSCAD's, up to the digits of its files.
 fn check(scene: &Scene, truth: f64) {
     let found = volume(scene);
     let slack = truth * 1e-5;
@@ -29,7 +29,7 @@ fn drawn(text: &str, facets: Facets) -> Scene {
 
 const SHIFT: &str = "multmatrix([[1, 0, 0, 5], [0, 1, 0, 1], [0, 0, 1, 0], [0, 0, 0, 1]])";
 
-/// Dumps with small `$fn`, their volumes by OpenSCAD 2021.01, and how many calls are polygons.
+/// Dumps with small `$fn`, their volumes by OpenSCAD 2021.01, and the numbers of calls that are polygons.
 fn models() -> Vec<(String, f64, u64)> {
     let fine = "$fa = 12, $fs = 2";
     vec![
@@ -94,7 +94,7 @@ fn small_numbers_of_fragments_are_prisms_and_pyramids() {
         check(&scene, truth);
         assert_eq!((scene.report().polygons, scene.report().exact), (polygons, 0), "{text}");
         check(&drawn(&text, Facets::Polygon), truth);
-        // Round, they are larger.
+        // With exact curves, they are larger.
         let round = drawn(&text, Facets::Exact);
         assert_eq!((round.report().polygons, round.report().exact), (0, polygons), "{text}");
         if !text.contains("difference") {
@@ -103,7 +103,7 @@ fn small_numbers_of_fragments_are_prisms_and_pyramids() {
     }
 }
 
-/// The extents of polygons say where their corners are: OpenSCAD's, to six digits.
+/// The extents of polygons show their corners' places. The corners are OpenSCAD's, to six digits.
 #[test]
 fn corners_are_where_openscad_has_them() {
     let boxes = [
@@ -126,7 +126,8 @@ fn corners_are_where_openscad_has_them() {
     }
 }
 
-/// `$fn = 0`: exact, unless all is to be polygons; then with as many sides as `$fa` and `$fs` say.
+/// With `$fn = 0`, curves are exact, unless all curves are to become polygons. Then `$fa` and `$fs` give the
+/// number of sides.
 #[test]
 fn all_curves_as_polygons_have_the_volumes_of_openscad() {
     let fine = "$fn = 0, $fa = 12, $fs = 2";
@@ -144,7 +145,7 @@ fn all_curves_as_polygons_have_the_volumes_of_openscad() {
     let auto = read_scene(&text, None).unwrap();
     assert_eq!((auto.report().polygons, auto.report().exact), (0, 5));
     assert!(volume(&auto).lower > 250.0);
-    // A figure with a circle in it is turned exactly, and none of a polygon's sides is counted.
+    // A figure with a circle in it is revolved exactly, and no side of a polygon is counted.
     let mixed =
         "rotate_extrude($fn = 6) multmatrix([[1,0,0,5],[0,1,0,0],[0,0,1,0],[0,0,0,1]]) circle(r = 2);";
     let mixed = read_scene(mixed, None).unwrap();
@@ -152,9 +153,9 @@ fn all_curves_as_polygons_have_the_volumes_of_openscad() {
     check(&mixed, 2.0 * PI * PI * 20.0);
 }
 
-/// Scales that differ need sides without curves. OpenSCAD splits each side into two triangles: 225.1666 for
-/// this solid, 228.4142 with 64 slices. Ours is what more and more slices come to: by its formula, A h (1 −
-/// 1/12).
+/// Different scales need sides without curves. OpenSCAD splits each side into two triangles: 225.1666 for
+/// this solid, 228.4142 with 64 slices. This library gives the limit of more and more slices, A h (1 − 1/12)
+/// by its formula.
 #[test]
 fn tapers_of_polygons_may_have_two_scales() {
     let taper = |slices: &str| {
@@ -189,7 +190,8 @@ fn polygons_have_a_limit() {
     }
 }
 
-/// OpenSCAD exports a solid of 10.6667 that is inside out; here it is a solid like others, and told of.
+/// OpenSCAD exports an inside-out solid of volume 10.6667. This library reads it as an ordinary solid and
+/// reports it.
 #[test]
 fn a_polyhedron_that_is_inside_out_is_a_solid_and_is_told_of() {
     let points = "points = [[0, 0, 0], [4, 0, 0], [0, 4, 0], [0, 0, 4]]";
@@ -206,7 +208,7 @@ fn a_polyhedron_that_is_inside_out_is_a_solid_and_is_told_of() {
         .replace("[0, 2, 1], [0, 1, 3], [0, 3, 2], [1, 2, 3]", "[0, 1, 2], [0, 3, 1], [0, 2, 3], [1, 3, 2]");
     assert_eq!(read_scene(&other, None).unwrap().report().meshes[0].report.inside_out_bodies, 1);
     check(&read_scene(&other, None).unwrap(), 10.666_666_7);
-    // One facet turned over, and one missing.
+    // One facet is inverted, and one is missing.
     let turned = text.replace("[1, 2, 3]", "[1, 3, 2]");
     let report = &read_scene(&turned, None).unwrap().report().meshes[0].clone();
     assert_eq!((report.turned, report.report.misoriented_edges, report.report.boundary_edges), (1, 3, 0));

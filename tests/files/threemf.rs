@@ -1,4 +1,4 @@
-//! 3MF packages: what is read from them, and every way in which they are refused.
+//! 3MF packages: what is read from packages, and every way in which packages are refused.
 
 use crate::packages;
 use crate::packages::zip::{CONTENT_TYPES, Entry, RELATIONSHIPS, model, package, tetrahedron, zip};
@@ -25,7 +25,7 @@ fn refused(bytes: &[u8]) -> PackageError {
     }
 }
 
-/// The model part is refused in this line, with these words.
+/// Asserts that the model part is refused in this line, with these words.
 #[track_caller]
 fn assert_refused(text: &str, line: u64, words: &str) {
     let error = refused(&zip(&package(text)));
@@ -55,10 +55,10 @@ fn one_object() {
     assert_eq!(file.mesh.vertices(), expected);
     assert_eq!(file.mesh.triangles(), [[0, 2, 1], [0, 1, 3], [1, 2, 3], [2, 0, 3]]);
     file.mesh.check_closed(FillRule::NonZero).unwrap();
-    // Numbers are those nearest to what is written.
+    // Numbers are the doubles nearest to the text.
     let text = model("", &tetrahedron(1, "").replace("x=\"1\"", "x=\" 0.1\n\""), ITEM);
     assert_eq!(read_model(text).mesh.vertices()[1][0], 0.1);
-    // What is not placed is not built, and an empty build is no error here.
+    // An object that is not placed is not built. An empty build is no error here.
     assert_eq!(read_model(model("", &tetrahedron(1, ""), "")).mesh.triangles().len(), 0);
 }
 
@@ -79,7 +79,7 @@ fn units() {
         let converted = read_mesh(&bytes, &options).unwrap();
         assert_eq!(converted.unit, Some(LengthUnit::Inch));
         assert!((converted.mesh.bounds().1[0] / inches - 1.0).abs() < 1e-15);
-        // What the caller says counts.
+        // The caller's unit takes precedence.
         let options = MeshOptions { unit: Some(LengthUnit::Inch), ..options };
         assert_eq!(read_mesh(&bytes, &options).unwrap().mesh.bounds().1, [1.0; 3]);
     }
@@ -89,7 +89,7 @@ fn units() {
 #[test]
 fn items_and_components_are_placed() {
     let move_x = |x: f64| format!("transform=\"1 0 0 0 1 0 0 0 1 {x} 0 0\"");
-    // 2 is two tetrahedra, 3 two of those, the second scaled by 2.
+    // Object 2 is two tetrahedra. Object 3 is two of object 2, the second scaled by 2.
     let resources = format!(
         "{}
         <object id=\"2\"><components>
@@ -239,7 +239,7 @@ fn parts_of_the_production_extension() {
     assert_broken(&with(4, bad), "3D/Objects/c.model", "root");
     let bad = Entry::stored("3D/Objects/c.model", "no XML");
     assert_broken(&with(4, bad), "3D/Objects/c.model", "text outside");
-    // A path to the root itself is no way to a circle.
+    // A path to the root itself cannot make a circle.
     let own = "<object id=\"1\"><components><component objectid=\"1\" p:path=\"/3D/3dmodel.model\"/></components></object>";
     assert_refused(&model("", own, ITEM), 6, "not defined before");
 }
@@ -306,7 +306,7 @@ fn models_that_are_refused() {
         line(&model("", &two_shapes, ITEM), "<components/>"),
         "second shape",
     );
-    // An object of something that is unknown here.
+    // An object of an unknown kind.
     let text = model("", "<object id=\"1\"><b:booleanshape xmlns:b=\"urn:b\"/></object>", ITEM);
     assert_refused(&text, line(&text, "<item"), "neither a mesh");
     assert_eq!(read_model(text.replace("<object id", "<object type=\"support\" id")).skipped, 1);
@@ -346,14 +346,14 @@ fn extensions_that_are_required() {
     ] {
         let attributes = format!("requiredextensions=\"p x\" xmlns:x=\"{uri}\"");
         assert_refused(&model(&attributes, &tetrahedron(1, ""), ITEM), 2, name);
-        // Otherwise they may be ignored.
+        // Otherwise the reader may ignore them.
         let attributes = attributes.replace("required", "recommended");
         assert_eq!(read_model(model(&attributes, &tetrahedron(1, ""), ITEM)).mesh.triangles().len(), 4);
     }
     assert_refused(&model("requiredextensions=\"unbound\"", "", ""), 2, "stands for nothing");
 }
 
-/// An attribute that stands twice in one element is no well-formed XML, wherever it is.
+/// An attribute that stands twice in one element is not well-formed XML, wherever the element is.
 #[test]
 fn attributes_that_stand_twice() {
     let turn = "transform=\"1 0 0 0 1 0 0 0 1 0 0 0\"";
@@ -383,7 +383,7 @@ fn attributes_that_stand_twice() {
         let error = refused(&zip(&package(&text)));
         assert!(error.problem().contains("second time") && error.line() > 0, "{attribute}: {error}");
     }
-    // Another prefix for the same namespace makes no other attribute; other namespaces do.
+    // Another prefix for the same namespace gives the same attribute; another namespace gives another one.
     let both = |uri: &str| good.replace("p:path", &format!("xmlns:q=\"{uri}\" q:path=\"/nowhere\" p:path"));
     let error =
         refused(&zip(&package(both("http://schemas.microsoft.com/3dmanufacturing/production/2015/06"))));
@@ -407,7 +407,7 @@ fn attributes_that_stand_twice() {
     }
 }
 
-/// Neither many attributes nor many prefixes take more than linear time.
+/// Many attributes or many prefixes take linear time.
 #[test]
 fn many_attributes_and_prefixes() {
     let good = model("", &tetrahedron(1, ""), ITEM);
@@ -442,14 +442,14 @@ fn utf_16() {
         let mut lone = encoded(&good, big, true);
         lone.extend(if big { [0xD8, 0] } else { [0, 0xD8] });
         assert_broken(&zip(&package(lone)), part, "no UTF-16 text from character");
-        // What the declaration says must be so.
+        // The declared encoding must be the real one.
         let wrong = encoded(&good.replace("UTF-8", "ISO-8859-1"), big, true);
         assert_broken(&zip(&package(wrong)), part, "encoding is not UTF-16");
     }
     assert_refused(&good.replace("UTF-8", "UTF-16"), 1, "encoding is not UTF-8");
 }
 
-/// Files from before the first standard, as programs of 2013 and 2014 wrote them.
+/// Files from before the first standard, as programs of 2013 and 2014 write them.
 #[test]
 fn the_draft() {
     let colours = "<color id=\"0\" value=\"#FFFFFF\"/><material id=\"3\" colorid=\"0\"/>";
@@ -459,7 +459,7 @@ fn the_draft() {
     assert_ne!(draft, text);
     let [new, old] = [text, draft].map(read_model);
     assert_eq!((old.mesh.vertices(), old.mesh.triangles()), (new.mesh.vertices(), new.mesh.triangles()));
-    // One triangle refers to properties that are not there. In the draft that has no meaning.
+    // One triangle refers to missing properties. In the draft, the reference has no meaning.
     assert_eq!(new.warnings, [MeshWarning::Properties { triangles: 1 }]);
     assert_eq!(old.warnings, [MeshWarning::Draft]);
     assert_eq!(old.warnings[0].to_string(), "this is 3MF of the draft 0.93; it was read as 1.0");
@@ -565,7 +565,7 @@ fn bombs() {
     }
     let text = model("", &resources, "<item objectid=\"61\"/>");
     assert_broken(&zip(&package(&text)), "3D/3dmodel.model", "2^25");
-    // Nothing, 2^60 times, is nothing.
+    // An empty object, 2^60 times, is empty.
     assert_eq!(read_model(text.replace("<triangle ", "<nothing ")).mesh.triangles().len(), 0);
     let supports = text.replace("<object id=\"1\"", "<object type=\"support\" id=\"1\"");
     assert_eq!(read_model(supports).skipped, 1 << 60);
@@ -615,7 +615,7 @@ fn truncated_and_changed() {
     }
 }
 
-/// What the fuzzer begins with is read, and has all that there is to be changed.
+/// The fuzzer's initial inputs are read, and contain every part that the fuzzer can change.
 #[test]
 fn what_the_fuzzer_found_interesting() {
     let corpus = std::path::Path::new(env!("CARGO_MANIFEST_DIR")).join("fuzz/corpus/packages");
@@ -699,7 +699,8 @@ proptest! {
         let _ = read_mesh(&zip(&package(text)), &MeshOptions::default());
     }
 
-    /// A sound model and its relationships with pieces of themselves in other places: an answer or an error.
+    /// A sound model and its relationships, with their own pieces moved to other places, give an answer or an
+    /// error.
     #[test]
     fn shuffled_pieces(
         cuts in prop::collection::vec((0..1800usize, 0..1800usize, 0..40usize), 1..6),
@@ -723,7 +724,7 @@ proptest! {
         }
     }
 
-    /// Meshes as they are written come back.
+    /// Written meshes come back unchanged.
     #[test]
     fn written_meshes(
         vertices in prop::collection::vec(prop::array::uniform3(-1e9..1e9f64), 3..40),

@@ -1,4 +1,4 @@
-//! Files of volumes: what is read from them, every way in which they are refused, and the corpus of the fuzz
+//! Volume files: what is read from them, every way in which they are refused, and the corpus of the fuzz
 //! target `volumes`.
 
 use crate::common::Random;
@@ -12,7 +12,7 @@ use leafless::exchange::{
 use leafless::solid::{Band, Samples, VoxelGrid};
 use leafless::{Control, Error, Frame, Rule, Solid, build, measure};
 
-/// The samples as numbers.
+/// Returns the samples as numbers.
 fn numbers(samples: &Samples<'_>, grid: &VoxelGrid) -> Vec<f64> {
     match samples {
         Samples::Bits(_) => write_raw_volume(samples, grid).unwrap().into_iter().map(f64::from).collect(),
@@ -68,7 +68,8 @@ fn what_is_written_comes_back() {
         let (again, rounded) = read_raw_volume(&bytes, &layout).unwrap();
         assert!(same(&numbers(&again, &grid), &sampled.values) && rounded == 0);
     }
-    // Any other grid moves by less than two last places, and only if no origin tells its corner.
+    // Any other grid moves by less than two last places, and only if its corner cannot be computed from any
+    // origin.
     for _ in 0..100 {
         let grid = grid(&mut random, [2, 1, 1], false);
         let file = read(&write_nrrd(&vec![0u8; 2].into(), &grid, NrrdEncoding::Raw).unwrap());
@@ -85,10 +86,10 @@ fn what_is_written_comes_back() {
     }
 }
 
-/// A type, its names, the bytes of three numbers, what they become, and how many are rounded.
+/// A type: its names, the bytes of three numbers, the resulting samples, and the number of rounded samples.
 type Type = (SampleKind, &'static str, &'static str, Vec<Vec<u8>>, [f64; 3], u64);
 
-/// Each type in both orders, with what it becomes.
+/// Each type in both byte orders, with its samples.
 #[test]
 fn types_and_orders() {
     let grid = VoxelGrid::new([3, 1, 1], [0.0; 3], [1.0; 3]).unwrap();
@@ -232,7 +233,7 @@ fn places_of_nrrd() {
     let half = [-0.5; 3];
     assert_eq!(lies(&nrrd("")), (half, [1.0; 3], None));
     assert_eq!(lies(&nrrd("spacings: 1 2 0.5\n")), ([-0.5, -1.0, -0.25], [1.0, 2.0, 0.5], None));
-    // From the first to the last sample, or from end to end.
+    // From the first to the last sample, or over the full extent.
     assert_eq!(
         lies(&nrrd("axis mins: 0 1 2\naxis maxs: 1 2 3\n")),
         ([-0.5, 0.75, 1.5], [1.0, 0.5, 1.0], None)
@@ -248,7 +249,7 @@ fn places_of_nrrd() {
     let oblique = "space directions: (3,4,0) (-4,3,0) (0,1e-30,2)\n";
     let rows = [[0.6, -0.8, 0.0, 0.0], [0.8, 0.6, 0.0, 0.0], [0.0, 0.0, 1.0, 0.0]];
     assert_eq!(lies(&nrrd(oblique)), ([-2.5, -2.5, -1.0], [5.0, 5.0, 2.0], Some(rows)));
-    // The first sample lies where the file says.
+    // The first sample lies at the place stated in the file.
     let file = read(&nrrd(turned));
     assert_eq!(file.placement.unwrap().apply(file.grid.centre([0; 3])), [1.0, 2.0, 3.0]);
     assert_eq!(file.placement.unwrap().apply(file.grid.centre([1, 2, 1])), [-5.0, 4.0, 2.0]);
@@ -292,12 +293,12 @@ fn encodings() {
         format!("CompressedData = True\nCompressedDataSize = {}\nElementDataFile = LOCAL\n", zlib.len());
     let file = [META.as_bytes(), fields.as_bytes(), &zlib].concat();
     assert_eq!(values(&read(&file))[11], 12.0);
-    // With bytes before, and none said of the length.
+    // With bytes before the data, and no stated length.
     let fields = "CompressedData = True\nHeaderSize = 3\nElementDataFile = LOCAL\nabc";
     let file = [META.as_bytes(), fields.as_bytes(), &zlib].concat();
     assert_eq!(values(&read(&file))[11], 12.0);
 
-    // Two members of gzip, the first with a name, of which the first byte and a line are skipped.
+    // Two gzip members, the first with a name. Its first byte and one line are skipped.
     let member = |data: &[u8], name: bool| {
         let flags = if name { 8 } else { 0 };
         let mut bytes = vec![0x1F, 0x8B, 8, flags, 0, 0, 0, 0, 0, 3];
@@ -312,7 +313,7 @@ fn encodings() {
     let file = [header.as_bytes(), &first, &second].concat();
     assert_eq!(values(&read(&file)), (1..=12).map(f64::from).collect::<Vec<_>>());
     for at in header.len()..file.len() {
-        // The header of a member has bytes that say nothing.
+        // A member's header has bytes without meaning.
         let mut wrong = file.clone();
         wrong[at] ^= 1 << (at % 8);
         if let Ok(found) = read_volume(&wrong, None) {
@@ -341,7 +342,7 @@ fn samples_in_another_file() {
     assert_eq!(volume_data_file(&nrrd("")).unwrap(), None);
     assert_eq!(values(&read_volume(&header, Some(DATA)).unwrap())[11], 12.0);
     assert!(matches!(refused(&header), VolumeFileError::Missing { .. }));
-    // Errors name the file that they are about.
+    // Errors name the file with the problem.
     for (name, data, about) in [
         ("b.mhd", "b.raw", "b.raw"),
         ("c.mhd", "../c.raw", "c.mhd"),
@@ -354,7 +355,7 @@ fn samples_in_another_file() {
     }
 }
 
-/// What a link leads to counts, and not where the link lies.
+/// The target of a link counts, not the link's own place.
 #[cfg(unix)]
 #[test]
 fn links_do_not_lead_out_of_the_folder() {
@@ -418,7 +419,7 @@ fn links_do_not_lead_out_of_the_folder() {
         assert!(open_volume(&link).is_err());
         std::fs::remove_file(place("other/a.raw")).unwrap();
     }
-    // What is not there is named as the header names it.
+    // A missing file is named as in the header.
     symlink("nowhere.raw", place("in/dangling.raw")).unwrap();
     for data in ["none.raw", "dangling.raw"] {
         for header in headers("in", "missing", data) {
@@ -444,7 +445,7 @@ fn files_become_solids() {
         let frame = Frame::aligned(bounds.min, bounds.max, 7).unwrap();
         let found = measure(&solid, &frame, 1e-3, &control).unwrap();
         assert!(found.volume.contains(6.0 * volume) && found.volume.width() < 1e-2, "{found:?}");
-        // Half of the range, which none reaches.
+        // Half of the range, which no sample reaches.
         let none = file.solid(None, &control).unwrap();
         assert_eq!(build(&none, &frame, Rule::Outer, &control).unwrap().statistics().volume().upper, 0.0);
     }
@@ -554,7 +555,7 @@ fn what_is_refused() {
     for space in ["RAS", "left-posterior-superior", "3D-right-handed", "ScannerXYZ"] {
         assert_eq!(values(&read(&nrrd(&format!("space: {space}\n"))))[11], 12.0);
     }
-    // Axes with directions may be said to have nothing else.
+    // Axes with directions may state that they have no spacings.
     let nans = "space directions: (1,0,0) (0,1,0) (0,0,1)\nspacings: nan nan nan\n";
     assert_eq!(lies(&nrrd(nans)), ([-0.5; 3], [1.0; 3], None));
     for (field, wrong) in [
@@ -591,7 +592,7 @@ fn what_is_refused() {
     assert_eq!(refused(text.as_bytes()), Sample { index: 12 });
 }
 
-/// Headers that ask for more than there is, or than memory has.
+/// Headers that announce more than the file contains, or more than memory holds.
 #[test]
 fn bombs() {
     for encoding in ["raw", "gzip", "ascii"] {
@@ -608,14 +609,14 @@ fn bombs() {
     assert!(matches!(result, Err(Error::OutOfMemory | Error::VolumeFile(_))), "{result:?}");
     let header = NRRD.to_string() + "line skip: 18446744073709551615\n\n";
     assert!(matches!(refused(&[header.as_bytes(), DATA].concat()), VolumeFileError::Missing { .. }));
-    // What is compressed is longer than was said.
+    // The compressed data are longer than stated.
     let zlib = miniz_oxide::deflate::compress_to_vec_zlib(&[7; 1000], 9);
     let header = META.to_string() + "CompressedData = True\nElementDataFile = LOCAL\n";
     let error = refused(&[header.as_bytes(), &zlib].concat());
     assert!(matches!(error, VolumeFileError::Damaged { .. }), "{error}");
 }
 
-/// Cut at every length, and every byte changed: clear errors, no panic.
+/// A file cut at every length, and with every byte changed, gives a clear error and no panic.
 #[test]
 fn damaged_files() {
     let mut random = Random(32);
@@ -629,7 +630,8 @@ fn damaged_files() {
     }
 }
 
-/// What a fuzzer does: pieces left out, put in twice, taken from another file, and bytes changed.
+/// Mutates seeds as a fuzzer does: leaves pieces out, repeats them, takes them from another file, and changes
+/// bytes.
 fn mutated(random: &mut Random, seeds: &[Vec<u8>]) -> Vec<u8> {
     let pick = |random: &mut Random| &seeds[random.below(seeds.len() as u64) as usize];
     let mut bytes = pick(random).clone();
@@ -701,7 +703,7 @@ fn write_seeds() {
     }
 }
 
-/// Files that ITK 5 and pynrrd 1.1 wrote of samples x + 10 y + 100 z, and what they say of the place.
+/// Files that ITK 5 and pynrrd 1.1 write for samples x + 10 y + 100 z, and the placement that they state.
 #[test]
 fn files_of_other_programs() {
     let folder = std::path::Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/files/foreign");
@@ -737,7 +739,7 @@ fn files_of_other_programs() {
     assert_eq!(count, 25);
 }
 
-/// What goes on for ever is read no further than a gigabyte.
+/// Endless devices are read no further than a gigabyte.
 #[test]
 #[cfg(target_os = "linux")]
 fn devices_without_an_end_are_refused() {

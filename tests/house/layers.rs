@@ -1,5 +1,5 @@
-//! The order of the layers: a module uses only modules below it, and no two files of a folder use each other,
-//! be it by way of others.
+//! The order of the layers. A module uses only modules below it, and no two files of a folder use each other,
+//! even through other files.
 //!
 //! The sources are read as text. Comments and literals are taken out, every path that begins with `crate`,
 //! `super` or `self` is resolved to a module of the crate, and its layer is compared with that of the file.
@@ -7,7 +7,7 @@
 use std::collections::{BTreeMap, BTreeSet};
 use std::path::Path;
 
-/// From the bottom up; modules of one row may use each other.
+/// The layers from the bottom up. Modules of one row may use each other.
 const LAYERS: [&[&str]; 18] = [
     &["error", "memory", "lock", "parallel", "control", "dispatch"],
     &["lattice"],
@@ -29,7 +29,8 @@ const LAYERS: [&[&str]; 18] = [
     &["scene"],
 ];
 
-/// Modules of `solid` that its producers share. Every other one is a producer, which no other may use.
+/// Modules of `solid` that its producers share. Every other module is a producer, and no other producer may
+/// use it.
 const SHARED: [&str; 14] = [
     "any",
     "batch",
@@ -47,7 +48,7 @@ const SHARED: [&str; 14] = [
     "verdict",
 ];
 
-/// Folders in which some files still use each other. Strike out those that have become clean.
+/// Folders in which some files still use each other. Remove a folder when it becomes clean.
 const WITH_CIRCLES: [&str; 0] = [];
 
 fn layer(module: &str) -> Option<usize> {
@@ -60,7 +61,8 @@ enum Token {
     Mark(char),
 }
 
-/// Words and marks of Rust source, without comments, strings and characters. `::` is the mark ':'.
+/// Returns the words and marks of Rust source, without comments, strings and characters. `::` is the mark
+/// ':'.
 fn tokens(source: &str) -> Vec<Token> {
     let text: Vec<char> = source.chars().collect();
     let at = |i: usize| text.get(i).copied().unwrap_or('\0');
@@ -151,16 +153,16 @@ fn after_string(text: &[char], quote: usize) -> usize {
     i + 1
 }
 
-/// A path in a source, and the inline modules that it stands in.
+/// A path in a source, and the inline modules that contain it.
 #[derive(Debug, PartialEq)]
 struct Mention {
     inside: Vec<String>,
     path: Vec<String>,
-    /// Whether it is part of a `use` declaration, and the name that this gives it.
+    /// For a path in a `use` declaration, the name that the declaration gives it.
     import: Option<String>,
 }
 
-/// All paths of two or more segments, and all that are imported; `use` trees are spelled out.
+/// Returns all paths of two or more segments, and all imported paths, with `use` trees expanded.
 fn mentions(source: &str) -> Vec<Mention> {
     let tokens = tokens(source);
     let mut found = Vec::new();
@@ -204,7 +206,7 @@ fn mentions(source: &str) -> Vec<Mention> {
                     }
                     i += 1;
                 }
-                // A single word, as in `pub(crate)`, leads nowhere.
+                // A single word, as in `pub(crate)`, is no path to a module.
                 if path.len() > 1 {
                     found.push(Mention { inside: names(), path, import: None });
                 }
@@ -217,7 +219,7 @@ fn mentions(source: &str) -> Vec<Mention> {
     found
 }
 
-/// Reads the use tree at `i`, all of it below `prefix`; returns what follows.
+/// Reads the use tree at `i`, all of it below `prefix`; returns the index after it.
 fn use_tree(
     tokens: &[Token],
     mut i: usize,
@@ -265,7 +267,7 @@ fn use_tree(
                 if !prefix.is_empty() {
                     push(prefix, None, out);
                 }
-                // The comma or brace belongs to the group, the semicolon to nobody.
+                // The comma or brace belongs to the group; the semicolon ends the declaration.
                 return i + (tokens.get(i) == Some(&Token::Mark(';'))) as usize;
             }
         }
@@ -275,7 +277,7 @@ fn use_tree(
 /// The crate's sources by module path.
 type Sources = BTreeMap<Vec<String>, String>;
 
-/// The absolute path of what a mention names, if that lies in this crate.
+/// Returns the absolute path that a mention refers to, if the path lies in this crate.
 fn resolve(module: &[String], mention: &Mention) -> Option<Vec<String>> {
     let mut at: Vec<String> = module.iter().chain(&mention.inside).cloned().collect();
     let mut rest = mention.path.iter().peekable();
@@ -298,7 +300,7 @@ fn resolve(module: &[String], mention: &Mention) -> Option<Vec<String>> {
     Some(at)
 }
 
-/// Names that a folder's `mod.rs` re-exports, with the file or folder that each comes from.
+/// Returns the names that a folder's `mod.rs` re-exports, with the file or folder of each name.
 fn origins(sources: &Sources, folder: &[String]) -> BTreeMap<String, String> {
     let Some(source) = sources.get(folder) else { return BTreeMap::new() };
     let imports = mentions(source).into_iter().filter_map(|mention| {
@@ -315,8 +317,8 @@ fn origins(sources: &Sources, folder: &[String]) -> BTreeMap<String, String> {
     imports.collect()
 }
 
-/// For each folder, which of its files and subfolders use which others. What a `mod.rs` defines itself
-/// belongs to none of them, and tests may use everything.
+/// Returns the uses between the files and subfolders of each folder. A definition in a `mod.rs` belongs to
+/// none of them, and tests may use everything.
 fn uses(sources: &Sources) -> BTreeMap<Vec<String>, BTreeMap<String, BTreeSet<String>>> {
     let folders: BTreeSet<&[String]> = sources.keys().map(|module| &module[..module.len() - 1]).collect();
     let origins: BTreeMap<_, _> = folders.iter().map(|&folder| (folder, origins(sources, folder))).collect();
@@ -342,7 +344,7 @@ fn is_test(module: &[String]) -> bool {
     module.last().is_some_and(|name| name == "tests")
 }
 
-/// Each folder with the uses between files that lie on a circle.
+/// Returns each folder with the uses between files that lie on a circle.
 fn circles(sources: &Sources) -> Vec<(String, Vec<String>)> {
     let mut found = Vec::new();
     for (folder, uses) in uses(sources) {
@@ -363,7 +365,7 @@ fn circles(sources: &Sources) -> Vec<(String, Vec<String>)> {
     found
 }
 
-/// Everything in `sources` that goes against the order.
+/// Returns everything in `sources` that breaks the order.
 fn violations(sources: &Sources) -> Vec<String> {
     let origins = origins(sources, &path(&["solid"]));
     let mut found = Vec::new();
@@ -389,7 +391,7 @@ fn violations(sources: &Sources) -> Vec<String> {
                     found.push(format!("{name}: {said} goes through the crate's root"));
                 }
             }
-            // One producer must not know another, by whatever name.
+            // A producer must not use another producer, by any name.
             if first == "solid" && target.first() == Some(first) {
                 let producer =
                     |name: &str| !SHARED.contains(&name) && sources.contains_key(&path(&["solid", name]));
@@ -411,7 +413,7 @@ fn path(segments: &[&str]) -> Vec<String> {
     segments.iter().map(|segment| segment.to_string()).collect()
 }
 
-/// The library's sources; the program and the crate's root are not part of the order.
+/// Returns the library's sources. The program and the crate's root are not part of the order.
 fn library() -> Sources {
     fn read(folder: &Path, module: &[String], sources: &mut Sources) {
         for entry in std::fs::read_dir(folder).unwrap() {
@@ -441,7 +443,7 @@ fn the_order_is_kept() {
     for module in [&["octree", "view"][..], &["solid", "callback"], &["op"], &["control"]] {
         assert!(sources.contains_key(&path(module)), "{module:?} was not read");
     }
-    // The checker sees what the sources are known to use.
+    // The checker finds uses that are known to exist.
     let build = mentions(&sources[&path(&["op", "build"])]);
     assert!(build.iter().any(|mention| mention.path == path(&["crate", "solid", "Subtree"])));
     assert!(origins(&sources, &path(&["solid"])).contains_key("Callback"));
@@ -560,7 +562,7 @@ mod checker {
             let expected = ["ball uses slab", "slab uses ball"].map(String::from).to_vec();
             assert_eq!(found, [("solid".to_string(), expected)], "{ball} {slab}");
         }
-        // Over three files, of which one lies in a folder of its own.
+        // A circle over three files, one of them in its own folder.
         let found = circles_with(&[
             top,
             (&["solid", "ball"], "use super::slab::Slab;"),
@@ -569,7 +571,7 @@ mod checker {
             (&["solid", "mesh", "scan"], "use crate::solid::Ball;"),
         ]);
         assert_eq!(found[0].1, ["ball uses slab", "mesh uses ball", "slab uses mesh"]);
-        // Parents and children, tests, and what leads one way.
+        // Parents and children, tests, and uses in one direction.
         let found = circles_with(&[
             top,
             (&["solid", "ball"], "use super::Solid; mod tests { use super::super::slab::Slab; }"),

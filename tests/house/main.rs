@@ -1,4 +1,4 @@
-//! The order of the house: layers of modules, a build without the standard library.
+//! Rules of the sources: layers of modules, and a build without the standard library.
 
 mod layers;
 mod no_std;

@@ -1,5 +1,5 @@
-//! Without its features the crate needs no standard library: a program that has none is built, linked and
-//! run.
+//! Without its features the crate needs no standard library: a program without the standard library is built,
+//! linked and run.
 
 // The program takes its memory from the C library as Unix has it.
 #![cfg(unix)]
@@ -11,7 +11,8 @@ use std::process::Command;
 fn a_program_without_the_standard_library_builds_links_and_runs() {
     let root = Path::new(env!("CARGO_MANIFEST_DIR"));
     let template = root.join("tests/no_std");
-    // A copy, so that nothing is written beside the sources; with the versions that the crate is tested with.
+    // A copy, so that nothing is written beside the sources. It has the versions with which the crate is
+    // tested.
     let copy = Path::new(env!("CARGO_TARGET_TMPDIR")).join("no_std");
     std::fs::create_dir_all(copy.join("src")).unwrap();
     let manifest = std::fs::read_to_string(template.join("Cargo.toml")).unwrap();
@@ -27,9 +28,9 @@ fn a_program_without_the_standard_library_builds_links_and_runs() {
         .arg(copy.join("Cargo.toml"))
         .arg("--target-dir")
         .arg(&target)
-        // Configuration is looked for where this crate's is.
+        // Cargo finds its configuration in the same places as for this crate.
         .current_dir(root)
-        // What was set for building these tests is not meant for a program of its own.
+        // Settings for the build of these tests must not apply to a separate program.
         .env_remove("CARGO_BUILD_TARGET")
         .output()
         .unwrap();
@@ -39,11 +40,11 @@ fn a_program_without_the_standard_library_builds_links_and_runs() {
     let run = Command::new(&program).output().unwrap();
     assert_eq!(run.status.code(), Some(42), "{run:?}");
 
-    // The linker leaves out what the program does not use: meshes need no feature of their own.
+    // The linker leaves out unused code, so that meshes need no feature of their own.
     #[cfg(target_os = "linux")]
     {
         let bytes = std::fs::read(&program).unwrap();
-        // As mangled names begin.
+        // The usual beginning of mangled names.
         let has = |module: &str| {
             let name = format!("8leafless{}{module}", module.len());
             bytes.windows(name.len()).any(|window| window == name.as_bytes())

@@ -1,19 +1,19 @@
-//! The system's allocator, which counts what a thread holds, and can be told to refuse the n-th request of a
-//! thread.
+//! An allocator over the system's. It counts the bytes that a thread holds, and can refuse the n-th request
+//! of a thread.
 
 use std::alloc::{GlobalAlloc, Layout, System};
 use std::cell::Cell;
 
 thread_local! {
-    /// Requests of this thread until one is refused; 0 when none is to be.
+    /// Requests of this thread until a request is refused; 0 if no request is to be refused.
     static LEFT: Cell<u64> = const { Cell::new(0) };
-    /// Whether all requests behind that one are refused, too.
+    /// Whether all later requests are refused, too.
     static FOR_GOOD: Cell<bool> = const { Cell::new(false) };
-    /// Bytes up to which a request is always granted.
+    /// Size in bytes up to which a request is always granted.
     static SPARED: Cell<usize> = const { Cell::new(0) };
-    /// Requests refused.
+    /// Number of refused requests.
     static REFUSED: Cell<u64> = const { Cell::new(0) };
-    /// Bytes held by what this thread asked for since it was last set to zero, and the most of it.
+    /// Bytes that this thread has held since the last reset: at present, and at most.
     static HELD: Cell<[i64; 2]> = const { Cell::new([0; 2]) };
 }
 
@@ -69,11 +69,11 @@ unsafe impl GlobalAlloc for Failing {
     }
 
     unsafe fn realloc(&self, pointer: *mut u8, layout: Layout, size: usize) -> *mut u8 {
-        // No allocator fails to give memory back.
+        // Freeing memory never fails.
         if size > layout.size() && refuses(size) {
             return std::ptr::null_mut();
         }
-        // Both at once, as if it were copied.
+        // Both blocks at once, as in a copy.
         hold(size as i64);
         hold(-(layout.size() as i64));
         // SAFETY: as the caller promises.
@@ -84,8 +84,8 @@ unsafe impl GlobalAlloc for Failing {
 #[global_allocator]
 static ALLOCATOR: Failing = Failing;
 
-/// Runs `work` with its n-th request of more than `spared` bytes refused, and all behind it if `for_good`;
-/// tells how many were.
+/// Runs `work` and refuses its n-th request of more than `spared` bytes; if `for_good`, refuses all later
+/// ones as well. Returns the number of refused requests, too.
 pub fn refusing<R>(n: u64, spared: usize, for_good: bool, work: impl FnOnce() -> R) -> (R, u64) {
     FOR_GOOD.set(for_good);
     SPARED.set(spared);
@@ -96,14 +96,14 @@ pub fn refusing<R>(n: u64, spared: usize, for_good: bool, work: impl FnOnce() ->
     (result, REFUSED.get())
 }
 
-/// The bytes that `work` leaves behind in this thread.
+/// Returns the bytes that `work` leaves allocated in this thread, with its result.
 pub fn left<R>(work: impl FnOnce() -> R) -> (R, usize) {
     HELD.set([0; 2]);
     let result = work();
     (result, HELD.get()[0] as usize)
 }
 
-/// The most bytes that `work` held at once, beyond what there was before.
+/// Returns the most bytes that `work` held at once beyond the bytes held before, with its result.
 pub fn most_held<R>(work: impl FnOnce() -> R) -> (R, usize) {
     HELD.set([0; 2]);
     let result = work();

@@ -1,9 +1,9 @@
-//! What happens when an allocation or a write fails, each of them in turn: an error, no abort, the old file
-//! as it was, and no other file left.
+//! Failing allocations and writes, each of them in turn. A failure is an error, never an abort; the old file
+//! stays as it was, and no other file is left behind.
 //!
-//! The allocator of this test program refuses the n-th request of a thread. Where that ends the process,
-//! because the request was one of those small ones that cannot be refused (see `Error::OutOfMemory`), it is
-//! a child process, and how much was asked for is read from its last words.
+//! This test program's allocator refuses the n-th request of a thread. Small requests cannot be refused
+//! without ending the process (see `Error::OutOfMemory`). Such requests are refused in a child process, and
+//! the size of the request is read from the child's last words.
 
 #![cfg(all(feature = "mmap", unix))]
 
@@ -43,7 +43,7 @@ use std::path::Path;
 use std::process::Command;
 use std::sync::Arc;
 
-// ---- what is tried --------------------------------------------------------------------------------------
+// ---- tried operations -----------------------------------------------------------------------------------
 
 const CONTROL: Control<'static> =
     Control { threads: 1, max_nodes: None, max_bytes: None, max_splits: None, cancel: None, progress: None };
@@ -63,7 +63,7 @@ fn facts() -> Metadata {
     metadata
 }
 
-/// A closed surface: a cube whose faces are cut into squares. Facets that share corners only by position.
+/// A closed surface: a cube whose faces are cut into squares. Facets share corners only by position.
 fn facets() -> Vec<[[f64; 3]; 3]> {
     const N: i32 = 6;
     let mut facets = vec![];
@@ -93,7 +93,7 @@ fn facets() -> Vec<[[f64; 3]; 3]> {
     facets
 }
 
-/// An OBJ of faces with many corners, some of them not convex, before their vertices.
+/// An OBJ of faces with many corners, some faces not convex. The faces stand before their vertices.
 fn polygons() -> String {
     const FACES: u32 = 60;
     // Few corners: the crate that triangulates faces cannot be refused memory.
@@ -124,7 +124,7 @@ fn cracked() -> TriangleMesh {
     TriangleMesh::from_facets(facets).unwrap()
 }
 
-/// A prism over a zigzag band of `corners` corners, an even number, which is nowhere a fan.
+/// A prism over a zigzag band of `corners` corners, an even number. The band is nowhere a fan.
 fn band(corners: u32) -> (Vec<[f64; 3]>, [Vec<u32>; 5]) {
     let half = corners / 2;
     let along = |k: u32| [f64::from(k), f64::from(k % 2) * 0.75];
@@ -146,7 +146,7 @@ fn polyhedron((vertices, lists): &(Vec<[f64; 3]>, [Vec<u32>; 5])) -> Result<Poly
     Polyhedron::new(&PolyhedronArrays { vertices, corners, loops, faces, shells, solids })
 }
 
-/// Everything that allocates, by name. It may fail, and nothing but memory may be a reason.
+/// An operation that allocates. It may fail only for lack of memory.
 type Operation = Box<dyn Fn() -> Result<(), Error>>;
 
 fn operations(directory: &Path) -> Vec<(&'static str, Operation)> {
@@ -189,7 +189,7 @@ fn operations(directory: &Path) -> Vec<(&'static str, Operation)> {
         });
         build(&slab, &frame(), Rule::Certified, &CONTROL)
     });
-    // A comb of 400 teeth, a torus, and a power that is turned.
+    // A comb of 400 teeth, a torus, and a rotated power.
     let tooth = |i: u32| [[i as f64 / 40.0, 1.0], [(i as f64 + 0.5) / 40.0, 1.5 + (i % 7) as f64]];
     let comb =
         [&[[0.0, 0.0]][..], (0..400).flat_map(tooth).collect::<Vec<_>>().as_slice(), &[[11.0, 0.0]]].concat();
@@ -198,7 +198,7 @@ fn operations(directory: &Path) -> Vec<(&'static str, Operation)> {
         let rounded = Csg::from(HalfSpace::power([(-1.0, 0.0, 6); 3], 1.0)?).placed(&turned)?;
         let all =
             Csg::union_of([Csg::prism(&comb, 2.0, 20.0)?, rounded])?.difference(&Csg::torus(9.0, 4.0)?)?;
-        // A refusal of memory means that there is none, too.
+        // If memory is refused, there is no fingerprint.
         let _ = leafless::Solid::fingerprint(&all);
         build(&all, &frame(), Rule::Certified, &CONTROL)
     });
@@ -311,7 +311,7 @@ fn operations(directory: &Path) -> Vec<(&'static str, Operation)> {
         let mut lazy = LazyOctree::new(solid()?, &frame())?;
         let found = lazy.refine(&Zone::Whole, 5, &CONTROL).and_then(|_| lazy.freeze(&CONTROL));
         if found.is_err() {
-            // What it was before the refusal is an octree, too, and goes on.
+            // The octree that remains after the refusal can be refined further.
             lazy.refine(&Zone::Point([12.0; 3]), 6, &CONTROL)?;
             lazy.freeze(&CONTROL)?.view().check()?;
         }
@@ -577,7 +577,7 @@ fn operations(directory: &Path) -> Vec<(&'static str, Operation)> {
     operation!("compact again", [coded], compact(coded.view()));
     operation!("check", [coded], coded.view().check());
     operation!("statistics", [a], complement(a.view(), &CONTROL).map(|tree| tree.statistics()));
-    // (To the finest cells it takes as many requests, and a hundred times as long.)
+    // (Down to the finest cells it needs as many requests, and takes a hundred times as long.)
     operation!("measure", [], measure(&Csg::ball([15.0; 3], 9.0)?, &frame(), 1e-3, &CONTROL));
     operation!("measure a mesh", [closed], {
         let solid = MeshSolid::new(closed.clone(), FillRule::NonZero)?;
@@ -602,7 +602,7 @@ fn operations(directory: &Path) -> Vec<(&'static str, Operation)> {
         ray_spans(&solid, &frame(), &rays[0], &CONTROL)?;
         cast_rays(&solid, &frame(), &rays, Obstacle::Upper, &CONTROL)
     });
-    // Each time a mesh without a tree, so that all requests of one come again.
+    // Each run has a mesh without a tree, so that all requests for the tree recur.
     operation!("rays on a new mesh", [facets], {
         let solid = MeshSolid::new(TriangleMesh::from_facets(&facets)?, FillRule::NonZero)?;
         // The second runs along edges and touches the solid, the third passes through vertices.
@@ -693,7 +693,7 @@ fn operations(directory: &Path) -> Vec<(&'static str, Operation)> {
     operation!("from bytes", [bytes], file::from_bytes(&bytes));
     operation!("probe", [path], file::probe(&path));
     operation!("open", [path], file::open(&path));
-    // SAFETY: nobody else knows the file, and saving replaces it.
+    // SAFETY: no other process uses the file, and saving replaces it.
     operation!("map", [path], unsafe { file::map(&path) });
     // SAFETY: as before.
     operation!("map verified", [path], unsafe { file::map_verified(&path) });
@@ -703,8 +703,8 @@ fn operations(directory: &Path) -> Vec<(&'static str, Operation)> {
 /// Bytes of the largest request that may end the process.
 const SMALL: u64 = 2048;
 
-/// What the children are told: which operation, from which request on, how large a request must be to count,
-/// and whether all behind it fail too.
+/// The environment variable with a child's task: the operation, the first request to refuse, the size from
+/// which requests count, and whether all later requests fail too.
 const TASK: &str = "LEAFLESS_TEST_FAILING";
 
 fn names(directory: &Path) -> Vec<String> {
@@ -714,17 +714,17 @@ fn names(directory: &Path) -> Vec<String> {
     names
 }
 
-/// The file that is there before anything is tried.
+/// The file that exists before an operation is tried.
 fn old_file() -> Vec<u8> {
     file::to_bytes(&compact(ball(14.0, Rule::Certified).view()).unwrap().with_metadata(facts())).unwrap()
 }
 
-/// How many requests further on the next one is refused: each of the first twenty, and then ever fewer.
+/// Returns the distance to the next request to refuse: each of the first twenty, and then ever fewer.
 fn step(n: u64) -> u64 {
     repeated(1 + n / 20, 1)
 }
 
-/// What the other tests start in a directory of its own; nothing by itself.
+/// The process that other tests start in a directory of its own. By itself it does nothing.
 #[test]
 fn child() {
     let Ok(task) = std::env::var(TASK) else { return };
@@ -764,9 +764,9 @@ fn child() {
     }
 }
 
-/// Runs an operation until no request of more than `spared` bytes is left that could be refused. Returns how
-/// many came back as an error, and how many ended the process. After the first of these, requests are left
-/// out.
+/// Runs an operation until no more request of over `spared` bytes can be refused. Returns the number of
+/// refusals that became errors, and the number that ended the process. After the first ended process,
+/// requests are skipped.
 fn try_all(name: &str, spared: u64, for_good: bool) -> (u64, u64) {
     let directory = tempfile::tempdir().unwrap();
     let (mut first, mut errors) = (1, 0);
@@ -774,7 +774,7 @@ fn try_all(name: &str, spared: u64, for_good: bool) -> (u64, u64) {
     loop {
         let mut command = Command::new(std::env::current_exe().unwrap());
         command.args(["--exact", "failures::child", "--nocapture"]).current_dir(directory.path());
-        // What a process says before it ends needs memory for a backtrace.
+        // A backtrace would need memory before the process ends.
         command.env("RUST_BACKTRACE", "0");
         let output = command.env(TASK, format!("{name},{first},{spared},{for_good}")).output().unwrap();
         let text = String::from_utf8_lossy(&output.stderr);
@@ -785,7 +785,7 @@ fn try_all(name: &str, spared: u64, for_good: bool) -> (u64, u64) {
             let survived = number(text.lines().rfind(|line| line.starts_with("survived ")), "survived ");
             return (errors + survived.unwrap_or_else(|| panic!("{name}: {text}")), fatal);
         }
-        // The first complaint counts; where all requests are refused it may be followed by others.
+        // The first message counts. Where all requests are refused, others may follow.
         let request = text.lines().rfind(|line| line.starts_with("request "));
         let refused = text.lines().find(|line| line.starts_with("memory allocation of "));
         let (Some(n), Some(size)) = (number(request, "request "), number(refused, "memory allocation of "))
@@ -796,7 +796,7 @@ fn try_all(name: &str, spared: u64, for_good: bool) -> (u64, u64) {
         errors += text.lines().filter(|line| line.starts_with("request ")).count() as u64 - 1;
         fatal += 1;
         first = if fatal < 3 { n + 1 } else { 2 * n + 1 };
-        // What a process leaves behind that was ended.
+        // Files that an ended process left behind.
         for name in names(directory.path()) {
             assert!(name == "tree.lfl" || name.starts_with(".leafless-"));
             std::fs::remove_file(directory.path().join(name)).unwrap();
@@ -804,9 +804,9 @@ fn try_all(name: &str, spared: u64, for_good: bool) -> (u64, u64) {
     }
 }
 
-/// Runs all operations; tells how many requests came back as an error, and how many ended a process. Where
-/// small requests end it, which takes many processes, memory comes back after a refusal in every other
-/// operation and stays away in the rest.
+/// Runs all operations. Returns the number of refusals that became errors, and the number that ended a
+/// process. Where small requests end the process, many processes are needed. There, memory returns after a
+/// refusal in every other operation and stays refused in the rest.
 fn try_every_operation(spared: u64) -> (u64, u64) {
     let directory = tempfile::tempdir().unwrap();
     std::fs::write(directory.path().join("tree.lfl"), old_file()).unwrap();
@@ -837,19 +837,19 @@ fn small_requests_that_are_fatal_are_small() {
     assert!(errors > 500, "{errors} errors");
 }
 
-// ---- no more memory than an input is worth ---------------------------------------------------------------
+// ---- memory in proportion to the input -------------------------------------------------------------------
 
-/// Bytes that reading, and making a tree, may need whatever the input.
+/// Bytes that reading (and, below, making a tree) may need, whatever the input.
 const READING: usize = 4 << 10;
 const MAKING: usize = 128 << 10;
 
-/// Notes in `worst` how many times its input `work` held beyond what is `fixed`.
+/// Raises `worst` to the bytes that `work` held beyond `fixed`, divided by the size of its input.
 fn weigh<R>(worst: &mut f64, fixed: usize, input: usize, work: impl FnOnce() -> R) {
     let (_, held) = most_held(work);
     *worst = worst.max(held.saturating_sub(fixed) as f64 / input as f64);
 }
 
-/// What `file` and `OctreeRef` promise for bytes that nobody has checked.
+/// Checks the promise of `file` and `OctreeRef` for unchecked bytes.
 #[test]
 fn memory_is_a_small_multiple_of_the_input() {
     let mut inputs = bodies::seeds::files();
@@ -894,7 +894,7 @@ fn memory_is_a_small_multiple_of_the_input() {
     }
 }
 
-/// What `TriangleMesh` promises.
+/// Checks the promise of `TriangleMesh`.
 #[test]
 fn memory_of_reports_is_that_of_the_edges() {
     let grid: u32 = 200;
@@ -917,21 +917,22 @@ fn memory_of_reports_is_that_of_the_edges() {
     }
 }
 
-/// What `Polyhedron` promises. The part of the triangulation is asked for before it begins.
+/// Checks the promise of `Polyhedron`. The triangulation's memory is reserved before the triangulation
+/// begins.
 #[test]
 fn memory_of_polyhedra_is_a_small_multiple_of_their_corners() {
     for corners in [2_000, 50_000] {
         let arrays = band(corners);
         let (made, held) = most_held(|| polyhedron(&arrays));
         assert_eq!(made.unwrap().mesh().triangles().len() as u32, 4 * corners - 4);
-        // The prism has six times as many corners.
+        // The prism has six times as many corners as the band.
         let allowed = (MAKING as u32 + 320 * corners + 100 * 6 * corners) as usize;
         assert!(held <= allowed, "{held} bytes, not {allowed}");
         println!("{} bytes a corner of the face", held / corners as usize);
     }
 }
 
-/// What the reader of 3MF promises of parts whose instances come to nothing.
+/// Checks the promise of the 3MF reader for parts whose instances amount to nothing.
 #[cfg(feature = "threemf")]
 #[test]
 fn packages_take_twenty_times_their_parts() {
@@ -967,7 +968,7 @@ fn packages_take_twenty_times_their_parts() {
     assert!(worst > 1.0, "{worst}");
 }
 
-/// What the readers of meshes promise.
+/// Checks the promise of the mesh readers.
 #[test]
 fn meshes_take_a_small_multiple_of_their_files() {
     let mesh = TriangleMesh::from_facets(facets()).unwrap();
@@ -994,7 +995,8 @@ fn meshes_take_a_small_multiple_of_their_files() {
         header.bytes().chain(corners.iter().flatten().copied()).chain(face).collect(),
         exchange::read_ply,
     ));
-    // What takes the least text for each vertex, face and corner; and claims of what is not there.
+    // Files with the least text for each vertex, face and corner, and files that announce more than they
+    // contain.
     files.push(("v 0 0 0\n".repeat(5000).into_bytes(), exchange::read_obj));
     let vertices: String = (0..9999).map(|i| format!("v 0 0 {i}\n")).collect();
     files.push((vertices.into_bytes(), exchange::read_obj));
@@ -1027,7 +1029,7 @@ fn meshes_take_a_small_multiple_of_their_files() {
     assert!(worst <= 128.0 && worst > 64.0, "{worst} times the file");
 }
 
-/// A tree of many bricks of few kinds: nothing is shorter in a file, and nothing grows more when it is
+/// A tree with many bricks of few kinds. No other tree is shorter in a file, and no other grows more when
 /// copied.
 fn dictionary() -> Octree {
     let frame = frame().with_depth(8).unwrap();
@@ -1037,7 +1039,8 @@ fn dictionary() -> Octree {
 
 // ---- writes that fail ------------------------------------------------------------------------------------
 
-/// Takes `left` calls, each of at most `most` bytes, every second one interrupted; then fails.
+/// A writer that takes `left` calls of at most `most` bytes each, interrupts every second call, and then
+/// fails.
 struct Unreliable {
     left: usize,
     most: usize,
@@ -1093,7 +1096,7 @@ fn each_write_may_fail_or_be_short_or_interrupted() {
             }
         }
     }
-    // Every piece may be the last one that is taken, and flushing may fail, too.
+    // Every piece may be the last one accepted, and flushing may fail, too.
     let failing = |left| {
         let failure: fn() -> io::Result<usize> = || Err(io::ErrorKind::StorageFull.into());
         let mut out = Unreliable { left, most: usize::MAX, interrupted: false, taken: vec![], failure };
@@ -1103,8 +1106,8 @@ fn each_write_may_fail_or_be_short_or_interrupted() {
     assert!(pieces > 3 && failing(pieces).0 && !failing(pieces + 1).0);
 }
 
-/// A file-size limit by which the system ends the process: nobody can clean up then, but the old file stays.
-/// Where files need no names, nothing else does.
+/// A file-size limit makes the system end the process. No cleanup is possible then, but the old file stays.
+/// Where files need no names, no other file stays.
 #[test]
 fn a_process_that_is_ended_while_it_saves_leaves_the_old_file() {
     use std::os::unix::process::ExitStatusExt;
@@ -1130,7 +1133,7 @@ fn a_process_that_is_ended_while_it_saves_leaves_the_old_file() {
     }
 }
 
-/// What that test starts; nothing by itself.
+/// The process that the test above starts. By itself it does nothing.
 #[test]
 fn limited_child() {
     if std::env::var(TASK).is_ok_and(|task| task == "limited") {

@@ -1,5 +1,4 @@
-//! Memory that is counted, and memory that is refused. The allocator of this program does both, thread by
-//! thread.
+//! Counted memory and refused memory. The allocator of this program does both, for each thread.
 
 #[path = "../../fuzz/bodies/mod.rs"]
 mod bodies;

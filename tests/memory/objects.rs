@@ -1,4 +1,4 @@
-//! What objects say of the bytes that they keep, against what the allocator gave out.
+//! The bytes that objects report as kept, against the bytes that the allocator handed out.
 
 use crate::allocator::left;
 use leafless::attribute::{
@@ -14,7 +14,7 @@ use leafless::{
 };
 use std::sync::Arc;
 
-/// All that an object keeps but a few small structs, and no more than it keeps.
+/// Checks that an object reports all bytes that it keeps but for a few small structs, and no more.
 fn is_told(told: u64, kept: usize) {
     let kept = kept as u64;
     assert!(told <= kept && kept - told <= 1024 + kept / 20, "{told} of {kept}");
@@ -40,7 +40,7 @@ fn meshes_tell_their_bytes() {
     };
     let (mut mesh, kept) = left(|| TriangleMesh::from_facets((0..20_000).map(facets)).unwrap());
     is_told(mesh.bytes(), kept);
-    // What is found out about edges is kept, too.
+    // The edges found for the report are kept, too.
     let ((), found) = left(|| drop(mesh.report()));
     is_told(mesh.bytes(), kept + found);
     assert!(found > 100_000, "{found}");
@@ -78,7 +78,7 @@ fn ball(i: u32) -> Csg {
     Csg::ball([at(0), at(1), at(2)], 0.05 + f64::from(i) * 1e-5).unwrap()
 }
 
-/// As [`is_told`] for expressions, whose exact numbers have room to spare that nobody knows.
+/// As [`is_told`] for expressions. The spare capacity of their exact numbers is unknown.
 fn is_about(told: u64, kept: usize) {
     let kept = kept as u64;
     assert!(told <= kept && kept - told <= kept / 4, "{told} of {kept}");
@@ -91,7 +91,7 @@ fn solids_tell_their_bytes() {
     let mesh = Arc::new(sheet());
     let bytes = mesh.bytes();
     let (solid, kept) = left(|| MeshSolid::new(mesh.clone(), FillRule::NonZero).unwrap());
-    // The mesh is shared; what was found out about its edges lies there.
+    // The mesh is shared. The edges found for it are kept there.
     is_told(solid.kept_bytes() - bytes, kept);
     let solid = Prepared::new(AnySolid::new(solid));
     let before = solid.kept_bytes();
@@ -122,7 +122,7 @@ fn lazy_octrees_and_channels_tell_their_bytes() {
     let before = lazy.bytes();
     let everywhere = Zone::Box { min: [-1.0; 3], max: [1.0; 3] };
     let (_, kept) = left(|| lazy.refine(&everywhere, 7, &control).unwrap());
-    // The array of the cells that are split may have as much room again to spare.
+    // The array of split cells may have spare capacity for as many cells again.
     let told = lazy.bytes() - before;
     assert!(told > 100_000 && (told..=2 * told + 4096).contains(&(kept as u64)), "{told} of {kept}");
 

@@ -1,4 +1,4 @@
-//! How much memory the extraction of a surface takes beside the mesh.
+//! The memory that the extraction of a surface takes in addition to the mesh.
 
 use crate::allocator::most_held;
 use crate::common::alone;

@@ -1,5 +1,5 @@
-//! Data on meshes: through everything that meshes go through, on polyhedra, and as attributes of space,
-//! against a look at all triangles.
+//! Data on meshes: carried through all mesh operations, on polyhedra, and as attributes of space, against a
+//! search of all triangles.
 
 use crate::common::{Random, alone};
 use leafless::attribute::{
@@ -13,7 +13,7 @@ use std::array::from_fn as array;
 
 type Point = [f64; 3];
 
-/// A label for each triangle, which is its number, and for each corner its place.
+/// Returns two attributes: each triangle's number as its label, and each corner's place.
 fn told(vertices: &[Point], triangles: &[[u32; 3]]) -> Vec<MeshAttribute> {
     let places: Vec<f64> = triangles.iter().flatten().flat_map(|&v| vertices[v as usize]).collect();
     vec![
@@ -26,8 +26,8 @@ fn one(value: Option<[f64; 4]>) -> f64 {
     value.unwrap()[0]
 }
 
-/// Checks that each triangle has the label of one that was given, in their order, and at each corner the
-/// value that `expected` makes of the corner's place; up to `tolerance`.
+/// Checks that each triangle has the label of a triangle that was handed in, in their order. Each corner must
+/// lie at `expected` of its stored place, up to `tolerance`.
 #[track_caller]
 fn check(mesh: &TriangleMesh, given: usize, tolerance: f64, expected: impl Fn(Point) -> Point) {
     let (source, place) = (mesh.attribute("source").unwrap(), mesh.attribute("place").unwrap());
@@ -43,7 +43,7 @@ fn check(mesh: &TriangleMesh, given: usize, tolerance: f64, expected: impl Fn(Po
     }
 }
 
-/// Triangles on a small lattice, many of which are degenerate.
+/// Triangles on a small lattice. Many are degenerate.
 fn lattice_soup(random: &mut Random, count: u32) -> (Vec<Point>, Vec<[u32; 3]>) {
     let vertices = (0..3 * count).map(|_| array(|_| random.between(0.0, 3.0).floor())).collect();
     (vertices, (0..count).map(|t| [3 * t, 3 * t + 1, 3 * t + 2]).collect())
@@ -60,14 +60,14 @@ fn attributes_follow_their_triangles() {
         assert_eq!((mesh.vertices(), mesh.triangles()), (plain.vertices(), plain.triangles()));
         assert_eq!(mesh.report().unwrap().facets_read, u64::from(count));
         check(&mesh, count as usize, 0.0, |p| p);
-        // What is flattened loses triangles, and corners of several places become one vertex.
+        // Flattening loses triangles, and corners at several places become one vertex.
         let flat = mesh.transformed(|[x, y, _]| [x, y, 0.0]).unwrap();
         assert!(count < 300 || flat.triangles().len() < mesh.triangles().len());
         check(&flat, count as usize, 0.0, |[x, y, _]| [x, y, 0.0]);
         check(&mesh.translated([1.0, -2.0, 0.5]).unwrap(), count as usize, 0.0, |[x, y, z]| {
             [x + 1.0, y - 2.0, z + 0.5]
         });
-        // A reflection turns triangles round: corners keep their values.
+        // A reflection reverses triangles. Corners keep their values.
         let mirror =
             Affine::new([[0.0, 2.0, 0.0, 0.5], [1.0, 0.0, 0.0, -3.0], [0.0, 0.0, 1.0, 0.0]]).unwrap();
         check(&mesh.placed(&mirror).unwrap(), count as usize, 0.0, |[x, y, z]| [2.0 * y + 0.5, x - 3.0, z]);
@@ -77,8 +77,8 @@ fn attributes_follow_their_triangles() {
 
 #[test]
 fn attributes_follow_sewing() {
-    // A tetrahedron whose faces do not share vertices, one of which is off a little, a sliver that the sewing
-    // makes degenerate, and a triangle that is degenerate as it is given.
+    // A tetrahedron whose faces do not share vertices, with one vertex slightly off, a sliver that becomes
+    // degenerate by sewing, and a triangle that is degenerate from the start.
     let corners = [[0.0, 0.0, 0.0], [1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]];
     let mut vertices: Vec<Point> = Vec::new();
     let mut triangles: Vec<[u32; 3]> = Vec::new();
@@ -127,7 +127,7 @@ fn attributes_that_do_not_fit_are_refused() {
     assert_eq!(mesh.attributes(), []);
 }
 
-/// A tetrahedron of this size at a place, its triangles from outside counter-clockwise.
+/// A tetrahedron of this size at a place. Seen from outside, its triangles are counter-clockwise.
 fn tetrahedron(at: Point, size: f64) -> [[Point; 3]; 4] {
     let corners: [Point; 4] = [
         at,
@@ -160,7 +160,7 @@ fn bodies_are_numbered_by_their_first_triangles() {
     assert!(TriangleMesh::new(vec![], vec![]).unwrap().bodies().unwrap().is_empty());
 }
 
-/// Two cubes, the first with a void. The vertices of the second are those of the first, moved.
+/// Two cubes, the first with a void. The second cube's vertices are those of the first, translated.
 fn polyhedron() -> Polyhedron {
     let cube = |low: f64, high: f64, x: f64| {
         (0..8usize).map(move |k| {
@@ -251,7 +251,7 @@ fn faces_of_triangles_that_are_dropped() {
         shells: &[0, 8],
         solids: &[0, 1],
     });
-    // It may be refused, for a loop that touches itself; if it is not, each triangle lies in its face.
+    // The loop may touch itself, so that the polyhedron is refused. Otherwise each triangle lies in its face.
     let Ok(polyhedron) = polyhedron else { return };
     let parts = polyhedron.parts(PolyhedronPart::Face).unwrap();
     assert_eq!(parts.len(), polyhedron.mesh().triangles().len());
@@ -271,8 +271,8 @@ fn dot(a: Point, b: Point) -> f64 {
     a[0] * b[0] + a[1] * b[1] + a[2] * b[2]
 }
 
-/// The distance of a point from a triangle, and the weights of the nearest point: by Ericson's regions,
-/// unlike the library.
+/// Returns the distance of a point from a triangle, and the barycentric weights of the nearest point. It uses
+/// Ericson's regions, unlike the library.
 pub fn distance(p: Point, [a, b, c]: [Point; 3]) -> (f64, Point) {
     let (ab, ac) = (sub(b, a), sub(c, a));
     let at = |weights: Point| {
@@ -309,7 +309,7 @@ pub fn distance(p: Point, [a, b, c]: [Point; 3]) -> (f64, Point) {
     at([va / sum, vb / sum, vc / sum])
 }
 
-/// A torus of 2·n² triangles, or an open piece of it, its vertices a little off.
+/// A torus of 2·n² triangles, or an open piece of it, with slightly moved vertices.
 fn torus(random: &mut Random, n: u32, is_open: bool) -> TriangleMesh {
     let angle = |i: u32| f64::from(i % n) / f64::from(n) * std::f64::consts::TAU;
     let vertices: Vec<Point> = (0..n * n)
@@ -356,7 +356,8 @@ fn the_nearest_triangle_decides() {
             let size = 1.0 + least;
             let found = one(*number) as usize;
             assert!(of(found) <= least + 1e-13 * size);
-            // If no other one is as near it is the only right answer; where they touch, the first one is.
+            // If no other triangle is equally near, the answer is unique. Where triangles touch, the first
+            // one is the answer.
             let first = (0..count).find(|&t| of(t) <= least + 1e-12 * size).unwrap();
             let alone = (0..count).filter(|&t| of(t) <= least + 1e-12 * size).count() == 1;
             assert!(!alone || found == first);
@@ -390,7 +391,7 @@ fn points_and_triangles_without_values() {
     assert_eq!(range([0.4, 0.4, 0.0], [0.6, 0.6, 0.1]), ValueRange::Unknown);
     assert_eq!(range([-9.0; 3], [9.0; 3]), ValueRange::Unknown);
     assert_eq!(range([0.0; 3], [1e300, 1.0, 1.0]), ValueRange::Unknown);
-    // Of a corner without a value the whole triangle has none.
+    // If a corner has no value, the whole triangle has none.
     let shade = MeshAttribute::per_corner("shade", 1, &[1.0, 2.0, f64::NAN, 1., 2., 3., 1., 1., 1.]).unwrap();
     let shade = heat.with(shade).unwrap();
     assert_eq!(shade.value([0.8, 0.2, 1.0]).unwrap(), None);
@@ -469,7 +470,8 @@ fn ranges_hold_all_values() {
     }
 }
 
-/// A box near a patch of one value, far from others, has exactly that value; near a border it has both.
+/// A box near a patch of one value, far from others, has exactly that value. A box near a border has both
+/// values.
 #[test]
 fn ranges_are_no_wider_than_needed() {
     // A square of 100 × 100 cells, its left half of value 1, its right half of value 2.
@@ -496,13 +498,13 @@ fn ranges_are_no_wider_than_needed() {
     assert_eq!(range(20.0, 0.0, 1.0), (1.0, 1.0));
     assert_eq!(range(70.0, 0.0, 1.0), (2.0, 2.0));
     assert_eq!(range(49.5, 0.0, 1.0), (1.0, 2.0));
-    // At the height z a box of size s sees about (2 z s)^½ aside.
+    // At height z, a box of size s is nearest to points up to (2 z s)^½ away.
     assert_eq!(range(40.0, 16.0, 1.0), (1.0, 1.0));
     assert_eq!(range(47.0, 16.0, 1.0), (1.0, 2.0));
     assert_eq!(range(0.0, -200.0, 400.0), (1.0, 2.0));
 }
 
-/// What a million questions cost on a mesh of a hundred thousand triangles.
+/// Measures the time of a million queries on a mesh of a hundred thousand triangles.
 #[test]
 #[ignore = "a measurement"]
 fn a_million_questions() {
@@ -550,7 +552,7 @@ fn a_million_questions() {
             }
         }
     }
-    // Points in order, as those of a row of voxels.
+    // Points in order, like a row of voxels.
     let row: Vec<Point> = (0..1_000_000)
         .map(|k| [f64::from(k % 1000) / 333.0 - 1.5, f64::from(k / 1000) / 333.0 - 1.5, 0.1])
         .collect();
@@ -558,7 +560,7 @@ fn a_million_questions() {
     timed("values in order", row.len(), &mut || place.values(&row, &mut values).unwrap());
 }
 
-/// A surface bears what is just inside of it.
+/// A surface has the values just inside of it.
 #[test]
 fn values_just_inside_of_a_surface() {
     // Two materials side by side, which end at the ball.
@@ -574,7 +576,7 @@ fn values_just_inside_of_a_surface() {
     let found = sample_triangles(&mesh, &sides, "material", depth, &alone()).unwrap();
     for (t, triangle) in mesh.triangles().iter().enumerate() {
         let x = triangle.iter().map(|&v| mesh.vertices()[v as usize][0]).sum::<f64>() / 3.0;
-        // The point behind the centroid lies aside by the depth at the most.
+        // The point behind the centroid is displaced by at most the depth.
         let expected = if x < 0.1 { 3.0 } else { 5.0 };
         let value = found.value(t, 0).unwrap_or_else(|| panic!("{t} at {x} has none"));
         assert!((x - 0.1).abs() <= depth || value == [expected, 0.0, 0.0, 0.0], "{value:?} at {x}");
@@ -582,7 +584,7 @@ fn values_just_inside_of_a_surface() {
     // Values that many have are stored once, and threads do not matter.
     assert!(found.bytes() < 4 * mesh.triangles().len() as u64 + 512);
     assert_eq!(sample_triangles(&mesh, &sides, "material", depth, &Control::threads(4)).unwrap(), found);
-    // Of an octree's channel it is the same.
+    // The same for an octree's channel.
     let value_type = ValueType::new(ScalarType::U8, 1).unwrap();
     let options = FillOptions { value_type, frame, solid: None, detail: None };
     let channel = fill_channel(&sides, &options, &alone()).unwrap();
@@ -591,7 +593,7 @@ fn values_just_inside_of_a_surface() {
     assert!(others * 10 < mesh.triangles().len(), "{others}");
     assert!((0..mesh.triangles().len()).all(|t| of_cells.value(t, 0).is_some()));
 
-    // Where it is thin, and where nothing is.
+    // An attribute in a thin layer, and an attribute without values.
     let sheet = block([0.0; 3], [1.0, 1.0, 0.01]);
     let thin =
         FunctionAttribute::new(2, |p: Point| (0.0..0.01).contains(&p[2]).then_some([p[2], 1.0, 0.0, 0.0]));

@@ -1,4 +1,4 @@
-//! Slabs that were made for one cell each: most surfaces of extended octrees of smooth meshes are such ones.
+//! Slabs made for one cell each. Most surfaces in extended octrees of smooth meshes are such slabs.
 
 use crate::common::{Random, alone};
 use crate::oracle::{Oracle, PointOracle};
@@ -44,7 +44,7 @@ fn two() -> [Smooth; 2] {
     [Smooth::new([0.0; 3], 0.9), Smooth::new([0.3, -0.2, 0.1], 0.8)]
 }
 
-/// How many surfaces of a tree are slabs of cells.
+/// Returns the number of a tree's surfaces that are slabs of cells.
 fn cell_slabs(tree: &Octree) -> u64 {
     let surfaces = tree.view().cuts().unwrap().surfaces as u32;
     let is_one = |id: &u32| {
@@ -54,7 +54,7 @@ fn cell_slabs(tree: &Octree) -> u64 {
     (0..surfaces).filter(is_one).count() as u64
 }
 
-/// The bytes of a tree, which comes back from them.
+/// Returns a tree's bytes, and checks that the tree is read back from them.
 fn bytes(tree: &Octree) -> Vec<u8> {
     tree.view().check().unwrap();
     let bytes = file::to_bytes(tree).unwrap();
@@ -74,7 +74,7 @@ fn answers(tree: &Octree, points: &[[f64; 3]]) -> Vec<Membership> {
     answers
 }
 
-/// Whether nothing is known in the finest cell of a point.
+/// True if the finest cell that contains a point has no function.
 fn is_given_up(tree: &Octree, p: [f64; 3]) -> bool {
     let at = tree.frame().cell_of(p).unwrap();
     tree.view().cell_function(Cell { level: tree.frame().depth(), at }).is_none()
@@ -113,14 +113,15 @@ fn they_come_back_from_disk() {
     }
 }
 
-/// In place and as a solid, points are told what the winding number says, and told wherever no slab is near.
+/// Both in place and as a solid, the answers for points agree with the winding number. Points away from all
+/// slabs are decided.
 #[test]
 fn points_outside_of_slabs_are_told_right() {
     let Smooth { mesh, tree, .. } = Smooth::new([0.0; 3], 0.9);
     let oracle = PointOracle::new(&mesh);
     let mut random = Random(0x51AB);
     let mut points = points(&mut random, 2_000);
-    // Next to the surface, too.
+    // Also points next to the surface.
     for triangle in mesh.triangles().iter().step_by(3) {
         let corners = triangle.map(|v| mesh.vertices()[v as usize]);
         let off = 10f64.powf(random.between(-6.0, -2.0));
@@ -144,7 +145,7 @@ fn points_outside_of_slabs_are_told_right() {
     assert!(known > 2_000 && near > 10);
 }
 
-/// Cells in which several meshes have layers have more of them than any cell keeps.
+/// Where several meshes have layers in a cell, the cell has more layers than it can keep.
 #[test]
 fn several_meshes_in_each_cell() {
     let nearly = |k: usize| {
@@ -183,7 +184,7 @@ fn set_algebra_of_two_origins() {
     for tree in [&a, &b, &joint, &less] {
         assert!(cell_slabs(tree) > 1000);
         assert!(bytes(&not(&not(tree))) == bytes(tree));
-        // With itself: the same, and nothing is left to simplify the next time.
+        // An operation with itself gives the same, and the next one has nothing to simplify.
         for of in [union as Operation, intersection] {
             let once = of(tree.view(), tree.view(), control).unwrap();
             assert!(bytes(&of(once.view(), tree.view(), control).unwrap()) == bytes(&once));
@@ -212,14 +213,14 @@ fn set_algebra_of_two_origins() {
     }
 }
 
-/// A set less itself is empty, also within the slabs that bound it: both sides of the difference have the
-/// same ones.
+/// The difference of a set and itself is empty, even within the slabs that bound the set: both operands have
+/// the same slabs.
 #[test]
 fn a_set_less_itself_is_empty_outside_of_cells_that_were_given_up() {
     let [a, b] = two().map(|smooth| smooth.tree);
     let joint = union(a.view(), b.view(), &alone()).unwrap();
     for tree in [a, joint] {
-        // One that was read has other arrays, and the same slabs.
+        // A tree read from a file has other arrays, and the same slabs.
         let read = file::from_bytes(&file::to_bytes(&tree).unwrap()).unwrap();
         for none in [
             difference(tree.view(), tree.view(), &alone()).unwrap(),
@@ -238,7 +239,7 @@ fn a_set_less_itself_is_empty_outside_of_cells_that_were_given_up() {
     }
 }
 
-/// On a frame that is less deep the homes of some slabs are no cells any more.
+/// On a shallower frame, the home cells of some slabs no longer exist.
 #[test]
 fn on_less_deep_frames() {
     let [a, b] = two().map(|smooth| smooth.tree);

@@ -1,4 +1,4 @@
-//! What meshes know of cells without splitting them: moments and areas, against exact clipping of tetrahedra.
+//! The moments and areas that meshes provide for cells without splits, against exact clipping of tetrahedra.
 
 use crate::common::{Random, Way, alone, lattice_frame};
 use leafless::lattice::{CellMoments, CubeMoments, MAX_DEPTH};
@@ -11,18 +11,18 @@ use num_traits::{Signed, ToPrimitive};
 const RULES: [FillRule; 3] = [FillRule::NonZero, FillRule::EvenOdd, FillRule::Positive];
 const PAIRS: [(usize, usize); 6] = [(0, 0), (1, 1), (2, 2), (0, 1), (0, 2), (1, 2)];
 
-/// Bits behind the point of coordinates, and of sums.
+/// Binary digits after the point in coordinates, and in sums.
 const GRAIN: u32 = 40;
 const POINT: usize = 160;
 
-/// Whole numbers of a 2^-[`GRAIN`].
+/// A point in multiples of 2^-[`GRAIN`].
 type Point = [i64; 3];
-/// x, y and z times w, and w > 0.
+/// Homogeneous coordinates: x, y and z times w, and w > 0.
 type Corner = [BigInt; 4];
-/// a x + b y + c z ≤ d.
+/// The half-space a x + b y + c z ≤ d.
 type Plane = [BigInt; 4];
 
-/// A tetrahedron, and whether it is inside out.
+/// A tetrahedron, with a flag for an inside-out one.
 #[derive(Debug, Clone)]
 struct Body {
     corners: [Point; 4],
@@ -44,7 +44,7 @@ impl Body {
         (turn != BigInt::from(0)).then_some(Body { corners, inside_out })
     }
 
-    /// Seen from outside, corners turn counter-clockwise.
+    /// The faces. Seen from outside, corners are counter-clockwise.
     fn faces(&self) -> [[Point; 3]; 4] {
         let [a, b, c, d] = self.corners;
         [[a, c, b], [a, b, d], [b, c, d], [c, a, d]]
@@ -104,18 +104,18 @@ fn clip(plane: &Plane, corners: &[Corner; 4], out: &mut Vec<[Corner; 4]>) {
     }
 }
 
-/// Moments in a cell's coordinates, in 2^-[`POINT`]: volume, first, second.
+/// Moments in a cell's coordinates, in 2^-[`POINT`]: volume, first and second moments.
 #[derive(Debug, Clone, Default)]
 struct Exactly([BigInt; 10]);
 
-/// The cell's centre and half its edge, in the grain.
+/// Returns the cell's centre and half its edge, in units of the grain.
 fn centre(cell: Cell, depth: u8) -> (Point, i64) {
     let half = 1i64 << (u32::from(depth - cell.level) + GRAIN - 1);
     (cell.at.map(|a| (2 * i64::from(a) + 1) * half), half)
 }
 
 impl Exactly {
-    /// Of what bodies have in common in a cell; of the whole cell if there are none.
+    /// Returns the moments of the bodies' intersection with a cell; without bodies, those of the whole cell.
     fn common(bodies: &[&Body], cell: Cell, depth: u8) -> Exactly {
         let (centre, half) = centre(cell, depth);
         let mut pieces = Vec::new();
@@ -156,7 +156,8 @@ impl Exactly {
         Exactly(sums)
     }
 
-    /// Of what bodies enclose by a rule. The indicator is a polynomial in those of the bodies.
+    /// Returns the moments of the points in a cell that the bodies enclose by a rule. The indicator function
+    /// is a polynomial in the bodies' indicator functions.
     fn enclosed(bodies: &[Body], rule: FillRule, cell: Cell, depth: u8) -> Exactly {
         let is_inside = |set: u32| {
             let winding: i32 = (0..bodies.len())
@@ -189,7 +190,7 @@ impl Exactly {
         sums
     }
 
-    /// The greatest difference to what was computed.
+    /// Returns the greatest difference from the computed moments.
     fn error(&self, moments: &CubeMoments) -> f64 {
         let [x, y, z] = moments.first;
         let [xx, yy, zz, xy, xz, yz] = moments.second;
@@ -202,7 +203,7 @@ impl Exactly {
     }
 }
 
-/// A random point of the universe, or of a coarse lattice in it, or one that others have.
+/// A random point of the universe or of a coarse lattice in it, or a vertex of another body.
 fn point(random: &mut Random, depth: u8, grain: u32, others: &[Body]) -> Point {
     if !others.is_empty() && random.below(3) == 0 {
         let body = &others[random.below(others.len() as u64) as usize];
@@ -237,20 +238,20 @@ fn bodies(random: &mut Random, depth: u8) -> Vec<Body> {
 struct Found {
     cells: u64,
     known: u64,
-    /// Of these, how many were neither full nor empty.
+    /// Number of known cells that are neither full nor empty.
     cut: u64,
-    /// Of bodies that overlap or touch.
+    /// Number of known cells with bodies that overlap or touch.
     several: u64,
     greatest: f64,
-    /// The greatest error, of what was said of it.
+    /// Greatest ratio of an error to its stated bound.
     share: f64,
 }
 
-/// Walks to a finest cell and holds what every cell on the way tells against exact clipping.
+/// Walks to a finest cell. Checks the moments of every cell on the way against exact clipping.
 fn walk(bodies: &[Body], rule: FillRule, frame: &Frame, stray: bool, random: &mut Random, found: &mut Found) {
     let mut facets: Vec<_> = bodies.iter().flat_map(Body::facets).collect();
     if stray {
-        // A triangle that is far away, and so small that it decides nothing: but the surface is open.
+        // A triangle far away, too small to decide anything. It makes the surface open.
         let far = 64.0 * frame.edge();
         facets.push([
             [far, 0.0, 0.0],
@@ -299,7 +300,8 @@ fn soups(count: u64, first: u64) {
     }
 }
 
-/// The area of the boundary below a cell: of cells where it is known to 1e-9, and what may come to that.
+/// Returns the area of the boundary in a cell: the sum of its bounds over descendants with an area known to
+/// 1e-9.
 fn area(
     worker: &mut <<MeshSolid as Solid>::Classifier as Classifier>::Worker,
     cell: Cell,
@@ -325,7 +327,7 @@ fn area(
 
 type Part = <<<MeshSolid as Solid>::Classifier as Classifier>::Worker as Parts>::Part;
 
-/// Two tetrahedra with right angles at corners, of edges 0.6 and 0.3, in the universe of edge 1.
+/// Two tetrahedra with right angles at a corner, of edges 0.6 and 0.3, in the universe of edge 1.
 #[test]
 fn areas_are_those_of_triangles() {
     let unit = (1i64 << GRAIN) / 10;
@@ -351,7 +353,7 @@ fn areas_are_those_of_triangles() {
         (within(false), FillRule::NonZero, area_of(0.6)),
         (within(false), FillRule::EvenOdd, area_of(0.6) + area_of(0.1)),
         (across.clone(), FillRule::EvenOdd, area_of(0.6) + area_of(0.1)),
-        // What of either lies in the other one is no boundary.
+        // The part of either boundary inside the other body is no boundary.
         (across, FillRule::NonZero, area_of(0.6) + area_of(0.1) - hidden - section),
     ] {
         let facets: Vec<_> = [&large, &second].into_iter().flat_map(Body::facets).collect();
@@ -376,7 +378,7 @@ fn moments_of_soups_are_exact() {
     soups(60, 0);
 }
 
-/// As above, but more of them.
+/// As above, with more soups.
 #[test]
 #[ignore = "takes minutes"]
 fn moments_of_many_soups_are_exact() {

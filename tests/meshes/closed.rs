@@ -1,4 +1,4 @@
-//! Closed triangle meshes as solids, against oracles in exact integers that share nothing with the library.
+//! Closed triangle meshes as solids, against oracles in exact integers that share no code with the library.
 
 use crate::common::{Random, alone, cases, lattice_frame, model, repeated};
 use crate::descended::Descended;
@@ -15,8 +15,8 @@ use proptest::prelude::*;
 const FILLS: [FillRule; 2] = [FillRule::NonZero, FillRule::EvenOdd];
 const RULES: [Rule; 4] = [Rule::Certified, Rule::Sampled, Rule::Inner, Rule::Outer];
 
-/// All four trees of a mesh, shown to be the same by scanning blocks and by descent, and for any number of
-/// threads.
+/// Builds all four trees of a mesh. Checks that block-wise scanning and descent give the same trees, for any
+/// number of threads.
 fn trees(what: &str, mesh: &TriangleMesh, frame: &Frame, fill: FillRule) -> [Octree; 4] {
     let solid = MeshSolid::new(mesh.clone(), fill).unwrap();
     RULES.map(|rule| {
@@ -33,16 +33,16 @@ fn trees(what: &str, mesh: &TriangleMesh, frame: &Frame, fill: FillRule) -> [Oct
     })
 }
 
-/// How far from a triangle a cell may at most be PARTIAL, in cells.
+/// The greatest distance of a PARTIAL cell from a triangle, in cells.
 const TOLERANCE: f64 = 1e-6;
 
-/// Everything that is claimed of a mesh on a frame, cell by cell.
+/// Checks all claims about a mesh on a frame, cell by cell.
 fn verify_with(what: &str, mesh: &TriangleMesh, frame: &Frame, fills: &[FillRule]) {
     let oracle = Oracle::new(mesh, frame);
     let windings = oracle.windings();
     let displacement = mesh.displacement() / frame.cell_size();
     let contacts = oracle.contacts(TOLERANCE + 2.0 * displacement);
-    // What is documented of lattice-aligned parts: contact is not overlap.
+    // The documentation of lattice-aligned parts says that contact is not overlap.
     let grain = (1u64 << (15 - frame.depth().min(15))) as f64;
     let cells = frame.cells() as f64;
     let is_aligned = |axis: usize, x: f64| {
@@ -56,7 +56,7 @@ fn verify_with(what: &str, mesh: &TriangleMesh, frame: &Frame, fills: &[FillRule
         && frame.depth() <= 14
         && displacement == 0.0
         && mesh.vertices().iter().all(|vertex| (0..3).all(|axis| is_aligned(axis, vertex[axis])));
-    // Far outside of the universe a double is coarser than the tolerance.
+    // Far outside the universe, a double is coarser than the tolerance.
     let tight = mesh.vertices().iter().all(|vertex| {
         (0..3).all(|axis| ((vertex[axis] - frame.origin()[axis]) / frame.cell_size()).abs() < 1e6)
     });
@@ -88,12 +88,12 @@ fn verify_with(what: &str, mesh: &TriangleMesh, frame: &Frame, fills: &[FillRule
     }
 }
 
-/// The same for both fill rules.
+/// Checks them for both fill rules.
 fn verify(what: &str, soup: &Soup, frame: &Frame) {
     verify_with(what, &mesh(soup), frame, &FILLS);
 }
 
-/// The exterior is EMPTY if and only if no vertex is beyond the universe.
+/// Returns the expected exterior: EMPTY if and only if no vertex is outside the universe.
 fn exterior(soup: &Soup, frame: &Frame) -> Tag {
     let mesh = mesh(soup);
     let solid = MeshSolid::new(mesh.clone(), FillRule::NonZero).unwrap();
@@ -130,8 +130,8 @@ fn blocks_on_the_lattice_leave_nothing_undecided() {
 
 #[test]
 fn faces_between_the_first_centres_of_scanned_blocks() {
-    // Every offset of a face within a block of 64³, on every axis, seen from a block whose lowest layer is
-    // cut by it: what the lowest centre's line passes first must not be lost.
+    // Every offset of a face within a block of 64³, on every axis. The face cuts the lowest layer of a block.
+    // The first crossing of the lowest centre's line must not be lost.
     let frame = lattice_frame(7);
     for offset in [0.25, 0.5, 0.75, 1.0, 1.25, 1.5, 2.0, 62.75, 63.0, 63.5, 63.75, 64.0, 64.25, 64.5, 65.0] {
         for axis in 0..3 {
@@ -141,7 +141,7 @@ fn faces_between_the_first_centres_of_scanned_blocks() {
             let mesh = mesh(&soup);
             let tree = &trees("offset", &mesh, &frame, FillRule::NonZero)[1];
             let count = |low: f64, high: f64| (high - 0.5).floor() - (low - 0.5).ceil() + 1.0;
-            // A face through centres: the shifted ones lie above it.
+            // For a face through centres, the shifted centres lie above it.
             let closed = |low: f64, high: f64| count(low, high) - ((high - 0.5).fract() == 0.0) as i32 as f64;
             let expected: f64 = (0..3).map(|axis| closed(low[axis], [100.0, 101.25, 102.5][axis])).product();
             assert_eq!(tree.statistics().volume_cells().0, expected as u64, "offset {offset} axis {axis}");
@@ -161,7 +161,7 @@ fn deep_and_aligned() {
         assert_eq!(certified.statistics().volume_cells(), (60, 60));
         assert_eq!(sampled.statistics().volume_cells(), (60, 60));
         assert_eq!(certified.statistics().cells(Tag::Partial), 0);
-        // Not aligned: the truth lies between, and every cell is where it should be.
+        // Not aligned: the truth lies between the trees, and every cell has the right tag.
         let soup = block([at + 0.25; 3], [at + 3.75, at + 4.75, at + 2.75]);
         let mesh = shapes::mesh(&soup);
         let [certified, sampled, ..] = trees("deep block", &mesh, &frame, FillRule::NonZero);
@@ -210,7 +210,7 @@ fn touching_nested_and_repeated_bodies() {
         verify("body in a void", &join(&[a.clone(), inside_out(b.clone()), c.clone()]), &frame);
         verify("nested", &join(&[a.clone(), b.clone(), c.clone()]), &frame);
         verify("inside out", &inside_out(a.clone()), &frame);
-        // Copies: winding numbers beyond what the bitmaps hold, and back to nothing.
+        // Copies, with winding numbers beyond the bitmaps' range, and back to zero.
         for copies in [2usize, 4, 5].into_iter().skip(if depth < 6 { 0 } else { repeated(2, 0) }) {
             let many: Soup = (0..copies).flat_map(|_| b.clone()).collect();
             verify("copies", &many, &frame);
@@ -246,8 +246,7 @@ fn triangles_without_area_do_nothing() {
         };
         verify("aligned crack", &cracked(0.5, [1.0; 3], [5.0, n - 1.0, 4.0]), &frame);
         verify("crack", &cracked(0.25, [1.5, 1.25, 0.75], [n - 0.5, n - 1.0, 4.125]), &frame);
-        // Whole bodies without area or volume: alone on the lattice's diagonal, within one cell, and flat
-        // ones.
+        // Whole bodies without area or volume: on the lattice's diagonal, within one cell, and flat bodies.
         let body = block([n / 2.0; 3], [n - 1.0; 3]);
         let segment = |p: [f64; 3], d: [f64; 3]| {
             let at = |t: f64| [0, 1, 2].map(|axis| p[axis] + d[axis] * t);
@@ -304,7 +303,7 @@ fn beyond_the_universe() {
                 let soup = block(low, high);
                 verify("sticking out", &soup, &frame);
                 assert_eq!(exterior(&soup, &frame), Tag::Partial);
-                // Exactly up to the end, and a hair beyond.
+                // Exactly up to the end, and slightly beyond.
                 (low[axis], high[axis]) = if side { (1.25, n) } else { (0.0, n - 1.75) };
                 assert_eq!(exterior(&block(low, high), &frame), Tag::Empty);
                 (low[axis], high[axis]) = if side { (1.25, n.next_up()) } else { (-1e-70, n - 1.75) };
@@ -401,7 +400,8 @@ fn coordinates_that_overflow() {
 
 #[test]
 fn tiny_coordinates() {
-    // A needle around the origin, which is a centre, thinner than any product of doubles can tell.
+    // A needle around the origin, which is a centre. The needle is thinner than any product of doubles
+    // resolves.
     for depth in [3u8, 6] {
         let n = (1u32 << depth) as f64;
         let frame = Frame::new([-2.5; 3], n, depth).unwrap();
@@ -410,7 +410,7 @@ fn tiny_coordinates() {
                 let mut low = [-width; 3];
                 let mut high = [width; 3];
                 (low[axis], high[axis]) = (-1.25, 1.75);
-                // Coordinates below 2^-256 count as zero: what is left of the needle has no volume then.
+                // Coordinates below 2^-256 count as zero. Then the rest of the needle has no volume.
                 let soup = block(low, high);
                 let mesh = mesh(&soup);
                 match mesh.triangles() {
@@ -477,7 +477,7 @@ proptest! {
     }
 }
 
-/// A model as the library reads it, hair cracks closed.
+/// Reads a model and closes its hair cracks.
 fn read(name: &str) -> Option<TriangleMesh> {
     let path = model(name)?;
     let bytes = std::fs::read(path).unwrap();
@@ -489,7 +489,7 @@ fn around(mesh: &TriangleMesh, depth: u8) -> Frame {
     Frame::around(min, max, depth).unwrap()
 }
 
-/// The rules that a mesh allows: one of the models' bodies is not consistently oriented.
+/// Returns the rules that a mesh allows: one of the models' bodies is not consistently oriented.
 fn fills(mesh: &TriangleMesh) -> &'static [FillRule] {
     match mesh.check_closed(FillRule::NonZero) {
         Ok(()) => &FILLS,
@@ -498,7 +498,7 @@ fn fills(mesh: &TriangleMesh) -> &'static [FillRule] {
     }
 }
 
-/// Cell for cell by the oracle, where it is too slow for everything.
+/// Compares sampled trees with the oracle, cell by cell. It serves meshes that are too large for all checks.
 fn assert_sampled(what: &str, mesh: &TriangleMesh, depth: u8) {
     let frame = around(mesh, depth);
     let windings = Oracle::new(mesh, &frame).windings();
@@ -543,7 +543,7 @@ fn parts_are_certified_and_converge() {
             assert_eq!(certified.view().exterior(), Tag::Empty);
         }
         assert_sampled(name, &mesh, 7);
-        // Every claim at once where that is affordable.
+        // All claims at once, where affordable.
         verify_with(name, &mesh, &around(&mesh, 5), &FILLS);
         verify_with(name, &mesh, &around(&mesh, 6), &[FillRule::NonZero]);
     }
@@ -573,7 +573,7 @@ fn models_by_scan_and_by_descent_are_the_same() {
 
 #[test]
 fn the_erased_solid_is_the_same() {
-    // AnySolid wants what it holds to live as long as the program.
+    // AnySolid requires content with the program's lifetime.
     let soup = join(&[torus([0.1, 0.2, 0.3], 2.0, 0.7, 40, 24), octahedron([2.0, 0.0, 0.3], 1.1)]);
     let mesh: &'static TriangleMesh = Box::leak(Box::new(mesh(&soup)));
     for depth in [5, 6, 8] {
@@ -591,7 +591,7 @@ fn the_erased_solid_is_the_same() {
     }
 }
 
-/// A mesh of overlapping closed pieces when no model is at hand.
+/// A mesh of overlapping closed pieces, used when no model is at hand.
 fn generated() -> TriangleMesh {
     mesh(&join(&[
         torus([0.013, 0.021, 0.034], 2.0, 0.7, 60, 36),
@@ -678,7 +678,7 @@ fn hair_cracks_keep_every_variant_inside() {
                 let solid = MeshSolid::new(sewn.clone(), FillRule::NonZero).unwrap();
                 let tree = |rule| build(&solid, &frame, rule, &alone()).unwrap();
                 let (inner, outer) = (tree(Rule::Inner), tree(Rule::Outer));
-                // Both ways to close the cracks: every noisy coordinate as it is, and none.
+                // Two ways to close the cracks: keep every noisy coordinate, or none.
                 for closed in [base.clone(), moved(&base, |p| p.map(|x| if x == 0.0 { noise } else { x }))] {
                     let closed = mesh(&closed);
                     let solid = MeshSolid::new(closed.clone(), FillRule::NonZero).unwrap();
@@ -687,7 +687,7 @@ fn hair_cracks_keep_every_variant_inside() {
                         let left = difference(a.view(), b.view(), &alone()).unwrap();
                         left.view().root_tag() == Tag::Empty
                     };
-                    // Nothing that one of them proves may be contradicted.
+                    // The closed meshes must not contradict the proofs.
                     assert!(within(&inner, &tree(Rule::Sampled)), "{noise} {depth}");
                     assert!(within(&tree(Rule::Sampled), &outer), "{noise} {depth}");
                     assert!(within(&inner, &tree(Rule::Inner)), "{noise} {depth}");
@@ -698,7 +698,7 @@ fn hair_cracks_keep_every_variant_inside() {
     }
 }
 
-/// Every third facet with its coordinates changed.
+/// Changes the coordinates of every third facet.
 fn moved_some(soup: &Soup, random: &mut Random, f: impl Fn(f64) -> f64) -> Soup {
     let pick = random.below(3) as usize;
     let change = |(i, facet): (usize, &[[f64; 3]; 3])| {

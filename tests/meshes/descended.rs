@@ -1,16 +1,16 @@
-//! A way to switch block-wise scanning off.
+//! A wrapper that switches block-wise scanning off.
 
 use leafless::solid::{OneByOne, Parts, Question, WholeQuestion};
 use leafless::{Cell, Classifier, Control, Error, Frame, MeshSolid, Proof, Solid, Tag, Verdict, Worker};
 
-/// A mesh that is only ever split, never scanned in blocks.
+/// A mesh that is only split and never scanned in blocks.
 pub struct Descended<'a>(pub &'a MeshSolid);
 
 type Inner = <MeshSolid as Solid>::Classifier;
 type InnerWorker = <Inner as Classifier>::Worker;
 type Part = <InnerWorker as Parts>::Part;
 
-/// On a frame.
+/// The wrapper's classifier on a frame.
 #[derive(Clone)]
 pub struct DescendedOnFrame(Inner);
 

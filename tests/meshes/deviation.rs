@@ -1,4 +1,4 @@
-//! Meshes that lie beside the true boundary, compared with true solids whose formulas are known.
+//! Meshes that deviate from the true boundary, compared with true solids of known formulas.
 
 use crate::common::{Random, alone, repeated};
 use crate::shapes::{Soup, block, mesh, prism};
@@ -24,7 +24,7 @@ fn minus(p: Point, q: Point) -> Point {
     [0, 1, 2].map(|k| p[k] - q[k])
 }
 
-/// A ball of radius 1 around the origin: corners lie on it, chords below it.
+/// A ball of radius 1 around the origin. The corners lie on the ball, the chords inside it.
 fn ball_soup(around: usize, down: usize) -> Soup {
     let at = |i: usize, j: usize| {
         let (u, v) = (2.0 * PI * (i % around) as f64 / around as f64, PI * j as f64 / down as f64);
@@ -48,7 +48,7 @@ fn ball_soup(around: usize, down: usize) -> Soup {
     soup
 }
 
-/// How far a ball of radius 1 reaches beyond the triangles, and a little more.
+/// Returns the distance that a ball of radius 1 reaches beyond the triangles, with a small margin.
 fn deflection(soup: &Soup) -> f64 {
     let depth = soup.iter().map(|&[a, b, c]| {
         let (u, v) = (minus(b, a), minus(c, a));
@@ -58,7 +58,7 @@ fn deflection(soup: &Soup) -> f64 {
     (1.0 - depth.fold(1.0, f64::min)) * (1.0 + 1e-9)
 }
 
-/// A cylinder of radius 20 and height 30 in as few segments as a deflection of one half allows.
+/// A cylinder of radius 20 and height 30, in the fewest segments that a deflection of one half allows.
 fn cylinder() -> TriangleMesh {
     let segments = (PI / (1.0 - 0.5 / 20.0f64).acos()).ceil() as usize;
     let polygon: Vec<[f64; 2]> = (0..segments)
@@ -94,7 +94,7 @@ fn what_is_stated() {
     assert_eq!(stated.try_clone().unwrap().sewn().unwrap().deviation(), 0.25);
     assert_eq!(stated.transformed(|p| p).unwrap().deviation(), 0.0);
     assert_eq!(stated.try_clone().unwrap().with_deviation(0.0).unwrap().displacement(), 0.0);
-    // A turn changes no lengths, and a map along the axes stretches as much as its longest one.
+    // A rotation keeps lengths. A map along the axes stretches by its greatest factor.
     let turn = Affine::new([[0.6, -0.8, 0.0, 0.1], [0.8, 0.6, 0.0, 0.2], [0.0, 0.0, 1.0, 0.3]]).unwrap();
     let turned = stated.placed(&turn).unwrap();
     assert!((0.25..0.2500001).contains(&turned.deviation()) && turned.displacement() > turned.deviation());
@@ -106,7 +106,7 @@ fn what_is_stated() {
         let scaled = stated.placed(&Affine::new(scale).unwrap()).unwrap().deviation();
         assert!(scaled >= 0.25 * factor && scaled < 0.2500001 * factor, "{scaled}");
     }
-    // Solids that differ in it are not taken for each other.
+    // Solids with different deviations are distinguished.
     let print = |mesh: TriangleMesh| solid(mesh).fingerprint().unwrap();
     assert_ne!(print(block()), print(block().with_deviation(0.25).unwrap()));
     assert_eq!(print(block()), print(block().with_deviation(0.0).unwrap()));
@@ -143,7 +143,7 @@ fn open_meshes_are_refused() {
     assert!(matches!(refused, Some(Error::Mesh(MeshError::Open { edges: 3 }))), "{refused:?}");
 }
 
-/// The volume of the true cylinder is 12000 π. The mesh has less.
+/// The volume of the true cylinder is 12000 π. The mesh has a smaller volume.
 #[test]
 fn a_cylinder_in_chords() {
     let truth = PI * 400.0 * 30.0;
@@ -183,7 +183,7 @@ fn a_cylinder_in_chords() {
         for tree in [&certified, &extended, &exact] {
             assert_eq!(tree.proof().displacement(), deviation);
             let volume = measure(tree, &frame, 1e-4, &alone()).unwrap().volume;
-            // (What is known of the mesh itself may hold the truth by chance where cells are large.)
+            // (Where cells are large, the bounds of the mesh itself may contain the truth by chance.)
             assert!(deviation == 0.0 || volume.contains(truth), "{volume:?}");
             check_points(tree, &frame, deviation > 0.0);
         }
@@ -192,8 +192,7 @@ fn a_cylinder_in_chords() {
     }
 }
 
-/// Faces of two solids that lie in one plane as far as their meshes tell may lie on either side of each
-/// other.
+/// Faces of two solids lie in one plane as far as their meshes show. Either solid may reach beyond the other.
 #[test]
 fn contacts_are_not_decided() {
     let stated = |low: f64, deviation: f64| {
@@ -223,7 +222,7 @@ fn contacts_are_not_decided() {
         assert!(volume.contains(0.0) && volume.contains(common * side * side), "{volume:?}");
         let whole = union(kept_a.view(), kept_b.view(), &alone()).unwrap();
         let volume = measure(&whole, &frame, 1e-3, &alone()).unwrap().volume;
-        // They may leave a gap, too.
+        // The solids may have a gap, too.
         let small = 1.0 - common;
         assert!(
             volume.contains(2.0 * small.powi(3))
@@ -232,7 +231,7 @@ fn contacts_are_not_decided() {
         let point = [0.5, 0.5, 1.0];
         let inside = is_inside(&whole, &frame, &[point])[0];
         assert!(deviation == 0.0 || inside == Membership::Undecided, "{inside:?}");
-        // Nor is a boundary that of another solid of the same mesh.
+        // The boundary of another solid of the same mesh may also lie elsewhere.
         let apart = deviation_between(&a, &stated(0.0, deviation), &frame);
         assert!(apart.lower == 0.0 && apart.upper >= common, "{apart:?}");
     }
@@ -243,7 +242,7 @@ fn deviation_between(a: &MeshSolid, b: &MeshSolid, frame: &Frame) -> Interval {
     found.a_to_b.distance.joined(found.b_to_a.distance)
 }
 
-/// No point of the cylinder is outside, and none beside it inside.
+/// Checks that no point of the cylinder is reported outside, and no point beside it inside.
 fn check_points(tree: &Octree, frame: &Frame, is_stated: bool) {
     let mut random = Random(8);
     let points: Vec<Point> = (0..2000)
@@ -259,7 +258,7 @@ fn check_points(tree: &Octree, frame: &Frame, is_stated: bool) {
     }
 }
 
-/// A ball in chords under a placement that keeps it a ball.
+/// A faceted ball under a placement that keeps it a ball.
 struct Placed {
     solid: MeshSolid,
     centre: Point,
@@ -284,7 +283,7 @@ fn placed_ball(random: &mut Random, size: [usize; 2]) -> Placed {
     Placed { solid: solid(placed), centre, radius }
 }
 
-/// Where a ray is in a ball.
+/// Returns the span of a ray in the ball.
 fn span_of(ball: &Placed, from: Point, way: Point) -> Option<[f64; 2]> {
     let to = minus(ball.centre, from);
     let dot = |p: Point, q: Point| (0..3).map(|k| p[k] * q[k]).sum::<f64>();
@@ -293,7 +292,7 @@ fn span_of(ball: &Placed, from: Point, way: Point) -> Option<[f64; 2]> {
     (root > 0.0).then(|| [(along - root.sqrt()) / size, (along + root.sqrt()) / size])
 }
 
-/// Whatever is told of the mesh is true of the ball, and something is told.
+/// Checks that each answer for the mesh is true of the ball, and that there are answers.
 fn check_ball(random: &mut Random, size: [usize; 2]) {
     const SLOP: f64 = 1e-9;
     let ball = placed_ball(random, size);
@@ -303,7 +302,7 @@ fn check_ball(random: &mut Random, size: [usize; 2]) {
     let depth_of = |p: Point| radius - length(minus(p, centre));
     let off = solid.mesh().deviation();
     let point = |random: &mut Random| [0; 3].map(|_| random.between(-3.5, 3.5));
-    // Many of them near to the boundary.
+    // Many of them near the boundary.
     let near = |random: &mut Random| {
         let way = [0; 3].map(|_| random.between(-1.0, 1.0));
         let far = radius + random.between(-3.0, 3.0) * off;
@@ -315,7 +314,7 @@ fn check_ball(random: &mut Random, size: [usize; 2]) {
         match answer {
             Membership::Inside => assert!(depth_of(p) > -SLOP),
             Membership::Outside => assert!(depth_of(p) < SLOP),
-            // (Along an axis or a diagonal the way out is told but near to edges.)
+            // (For a ray along an axis or a diagonal, the exit is undecided only near edges.)
             Membership::Undecided => assert!(depth_of(p).abs() < 8.0 * off + 0.01, "{} {off}", depth_of(p)),
         }
     }
@@ -384,7 +383,7 @@ fn check_ball(random: &mut Random, size: [usize; 2]) {
     let whole = measure(solid, &frame, 1e-3, &Control { max_splits: Some(2000), ..alone() }).unwrap();
     let volume = 4.0 / 3.0 * PI * radius.powi(3);
     assert!(whole.volume.contains(volume), "{whole:?}");
-    // (Of the coarsest nothing may be proven solid.)
+    // (For the coarsest mesh, possibly no point is proven inside.)
     if let Some(centroid) = whole.centroid {
         assert!((0..3).all(|k| centroid[k].contains(centre[k])), "{centroid:?} {centre:?}");
     }
@@ -446,7 +445,7 @@ fn check_ball(random: &mut Random, size: [usize; 2]) {
 #[test]
 fn balls_in_chords_under_any_placement() {
     let mut random = Random(31);
-    // (The coarser they are, the longer they take.)
+    // (Coarser meshes take longer.)
     for size in [[4, 2], [5, 3], [8, 4], [12, 7], [24, 12]].into_iter().skip(repeated(3, 0)) {
         check_ball(&mut random, size);
     }

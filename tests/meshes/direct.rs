@@ -1,5 +1,5 @@
-//! Rays, points and distances that a mesh answers without cells, beside every triangle by itself and beside
-//! cells.
+//! Rays, points and distances that a mesh answers without cells, compared with an examination of every
+//! triangle and with answers by cells.
 
 use crate::common::{Random, alone};
 use crate::descended::Descended;
@@ -18,7 +18,7 @@ fn has(spans: &[Interval], t: f64) -> bool {
     spans.iter().any(|span| span.contains(t))
 }
 
-/// A block between two corners, with what it adds to the winding number.
+/// A block between two corners, with its contribution to the winding number.
 type Block = (Ints, Ints, i32);
 
 fn blocks(random: &mut Random, count: usize) -> Vec<Block> {
@@ -49,8 +49,8 @@ fn encloses(fill: FillRule, winding: i32) -> bool {
     }
 }
 
-/// On which sides of a point, which is a fraction with the denominator `q`, blocks lie: whether on some,
-/// whether on all.
+/// Examines the eight octants around a point, a fraction with the denominator `q`. Returns whether some
+/// octant is inside, and whether all are.
 fn around(blocks: &[Block], fill: FillRule, p: Ints, q: i64) -> (bool, bool) {
     let inside = |octant: usize| {
         let within = |k: usize, min: Ints, max: Ints| {
@@ -64,7 +64,7 @@ fn around(blocks: &[Block], fill: FillRule, p: Ints, q: i64) -> (bool, bool) {
     (found.contains(&true), !found.contains(&false))
 }
 
-/// Whether a point lies on a facet of a block.
+/// True if a point lies on a facet of a block.
 fn is_on_facet(blocks: &[Block], p: Ints, q: i64) -> bool {
     blocks.iter().any(|(min, max, _)| {
         let is_within = (0..3).all(|k| min[k] * q <= p[k] && p[k] <= max[k] * q);
@@ -74,8 +74,8 @@ fn is_on_facet(blocks: &[Block], p: Ints, q: i64) -> bool {
 
 const RULES: [FillRule; 3] = [FillRule::NonZero, FillRule::EvenOdd, FillRule::Positive];
 
-/// Rays through corners, along edges and in faces of blocks that overlap, nest, touch and are inside out:
-/// what is said of each stretch between planes is what integers say.
+/// Rays through corners, along edges and in faces of blocks that overlap, nest, touch and are inside out. The
+/// answer for each stretch between planes agrees with integer arithmetic.
 #[test]
 fn rays_of_blocks_are_those_of_integers() {
     let mut random = Random(1);
@@ -120,8 +120,8 @@ fn rays_of_blocks_are_those_of_integers() {
                 assert!(!inner || some, "not inside: {place}");
                 assert!(outer || !some, "not outside: {place}");
                 assert!(inner || !all, "known to be inside: {place}");
-                // (A facet that does not bound the solid, as one between two negative winding numbers, may be
-                // one that does.)
+                // (A facet that does not bound the solid, such as one between two negative winding numbers,
+                // may count as one that does.)
                 assert!(!outer || some || is_on_facet(&blocks, at, 8), "known to be outside: {place}");
                 (inside, outside, on) =
                     (inside + i32::from(all), outside + i32::from(!some), on + i32::from(some && !all));
@@ -131,7 +131,7 @@ fn rays_of_blocks_are_those_of_integers() {
     assert!(inside > 1000 && outside > 10_000 && on > 500, "{inside} {outside} {on}");
 }
 
-/// Overlapping, nested and inside-out bodies, slivers, and bodies that share vertices with others.
+/// Overlapping, nested and inside-out bodies, slivers, and bodies that share vertices.
 fn bodies(random: &mut Random, kind: usize) -> Soup {
     match kind {
         0 => shapes::torus([0.1, 0.2, 0.3], 3.0, 1.0, 24, 12),
@@ -157,7 +157,7 @@ fn bodies(random: &mut Random, kind: usize) -> Soup {
     }
 }
 
-/// A point of the box around them, as a rule; a vertex, or a point between vertices, now and then.
+/// A point: usually from the box around the mesh, sometimes a vertex, sometimes between vertices.
 fn point(random: &mut Random, mesh: &TriangleMesh) -> Point {
     let vertex = |random: &mut Random| mesh.vertices()[random.below(mesh.vertices().len() as u64) as usize];
     match random.below(8) {
@@ -202,7 +202,7 @@ fn points_are_those_of_all_triangles() {
     assert!(counts.iter().all(|&count| count > 1000), "{counts:?}");
 }
 
-/// The distance of a point from a triangle, and the nearest point of it.
+/// Returns the distance of a point from a triangle, and the nearest point.
 fn from_triangle([a, b, c]: [Point; 3], p: Point) -> (f64, Point) {
     let minus = |p: Point, q: Point| [0, 1, 2].map(|k| p[k] - q[k]);
     let dot = |p: Point, q: Point| (0..3).map(|k| p[k] * q[k]).sum::<f64>();
@@ -238,8 +238,8 @@ fn is_near(mesh: &TriangleMesh, p: Point, distance: f64) -> bool {
     (0..mesh.triangles().len()).any(|triangle| from_triangle(corners(mesh, triangle), p).0 <= distance)
 }
 
-/// Beside cells, whose intervals hold the answers; and at points of the ray away from the surface beside all
-/// triangles.
+/// Compares rays with intervals by cells, which contain the answers, and compares points of the ray away from
+/// the surface with all triangles.
 #[test]
 fn rays_are_those_of_all_triangles_and_of_cells() {
     let mut random = Random(3);
@@ -268,8 +268,8 @@ fn rays_are_those_of_all_triangles_and_of_cells() {
                 let place = format!("{round} {fill:?} {on:?} {ray:?} {own:?} {by_cells:?}");
                 match (own, by_cells) {
                     (Some(own), Some(by_cells)) => {
-                        // (Points at which it only touches count for cells that they lie in, and not for
-                        // others.)
+                        // (Where the ray only touches the surface, a point counts for the cells that contain
+                        // it, and not for others.)
                         let touches = own.t.upper <= by_cells.t.lower && {
                             let (from, to) = ends(ray);
                             let at = [0, 1, 2].map(|k| from[k] + own.t.upper * (to[k] - from[k]));
@@ -279,13 +279,13 @@ fn rays_are_those_of_all_triangles_and_of_cells() {
                         assert_eq!(own.cell.level, 7);
                         hits += 1;
                     }
-                    // Of cells that it only touches nothing is said.
+                    // Cells report nothing about a surface that the ray only touches.
                     (Some(own), None) if on == Obstacle::Upper => {
                         let (from, to) = ends(ray);
                         let at = [0, 1, 2].map(|k| from[k] + own.t.lower * (to[k] - from[k]));
                         assert!(is_near(&mesh, at, 1e-9), "{place}");
                     }
-                    // Cells may not prove what is thin.
+                    // Cells may be unable to prove thin parts.
                     (Some(own), None) => assert!(own.t.upper.is_finite(), "{place}"),
                     (None, Some(by_cells)) if on == Obstacle::Upper => {
                         assert!(by_cells.t.upper == f64::INFINITY, "{place}");
@@ -318,7 +318,7 @@ fn rays_are_those_of_all_triangles_and_of_cells() {
     assert!(hits > 1500 && checked > 10_000, "{hits} {checked}");
 }
 
-/// Where a ray begins, and where it is at time 1.
+/// Returns the points of a ray at time 0 and at time 1.
 fn ends(ray: &Ray) -> (Point, Point) {
     let text = format!("{ray:?}");
     let numbers: Vec<f64> = text
@@ -345,7 +345,7 @@ fn distances_are_those_of_all_triangles_and_of_cells() {
             for ((&p, own), by_cells) in points.iter().zip(&own).zip(&by_cells) {
                 let place = format!("{round} {to:?} {p:?} {own:?} {by_cells:?}");
                 assert!(own.distance.common(by_cells.distance).is_some(), "{place}");
-                // (Where cells were asked, no triangle is known.)
+                // (Where cells were queried, no triangle is known.)
                 let Some((near, surface)) = own.nearest.and_then(|near| Some((near, near.surface?))) else {
                     continue;
                 };
@@ -361,7 +361,7 @@ fn distances_are_those_of_all_triangles_and_of_cells() {
                     }
                 }
                 if round % 4 != 1 {
-                    // All triangles bound the solid (or no answer came).
+                    // All triangles bound the solid (or there was no answer).
                     let all = (0..mesh.triangles().len()).map(|t| from_triangle(corners(&mesh, t), p).0);
                     assert!(all.fold(f64::INFINITY, f64::min) <= way + 1e-12, "{place}");
                 }
@@ -386,7 +386,7 @@ fn facets_within_other_bodies_are_no_hits() {
     assert!(hit.t.contains(1.0) && hit.normal == [1.0, 0.0, 0.0]);
     let facet = solid.mesh().triangles()[hit.surface.unwrap() as usize];
     assert!(facet.iter().all(|&v| solid.mesh().vertices()[v as usize][0] == 6.0));
-    // Its nearest point from within both is none of the facets within the other one.
+    // From inside both bodies, the nearest point is on no facet inside the other body.
     let near = distances(&solid, &frame, &[[1.5, 2.0, 2.0]], DistanceTo::Boundary, 1e-6, &alone()).unwrap();
     assert!(near[0].distance.contains(-1.5), "{near:?}");
 }
@@ -411,7 +411,7 @@ fn a_mesh_that_sticks_out_is_cut_by_the_universe() {
     assert_eq!(hits[0].unwrap().cell.at[0], 0);
     assert!(hits[1].unwrap().t.contains(5.0));
     assert_eq!(hits[2].unwrap().t, Interval::exactly(0.0));
-    // Beyond the universe nothing counts.
+    // Parts outside the universe do not count.
     let spans = ray_spans(&solid, &frame, &rays[0], &alone()).unwrap();
     assert_eq!(
         (spans.inner, spans.outer),
@@ -426,15 +426,15 @@ fn a_mesh_that_sticks_out_is_cut_by_the_universe() {
     );
 }
 
-/// A turned mesh is known but for the rounding of its vertices; it is asked as any other, and never lies
-/// about its edges.
+/// A rotated mesh is known up to the rounding of its vertices. It is queried like any other mesh, and its
+/// answers at edges are never wrong.
 #[test]
 fn turned_meshes_are_asked_without_cells_too() {
     let turn = Affine::new([[0.6, -0.8, 0.0, 0.1], [0.8, 0.6, 0.0, 0.2], [0.0, 0.0, 1.0, 0.3]]).unwrap();
     let back = Affine::new([[0.6, 0.8, 0.0, -0.22], [-0.8, 0.6, 0.0, -0.04], [0.0, 0.0, 1.0, -0.3]]).unwrap();
     let solid = MeshSolid::new(shapes::mesh(&shapes::block([-3.0; 3], [3.0; 3])), FillRule::NonZero).unwrap();
     let frame = Frame::new([-8.0; 3], 16.0, 20).unwrap();
-    // The tree of the source is there, and its order is taken over.
+    // The source's tree already exists, and its order is reused.
     cast_rays(&solid, &frame, &[Ray::new([0.0; 3], [1.0; 3]).unwrap()], Obstacle::Full, &alone()).unwrap();
     let turned = solid.placed(&turn).unwrap();
     assert!(turned.mesh().displacement() > 0.0);
@@ -462,7 +462,8 @@ fn turned_meshes_are_asked_without_cells_too() {
     }
 }
 
-/// The winding number of an open surface by its definition: solid angles (van Oosterom and Strackee 1983).
+/// The winding number of an open surface by its definition as a sum of solid angles (van Oosterom and
+/// Strackee 1983).
 fn winding_of(mesh: &TriangleMesh, p: Point) -> f64 {
     let sum: f64 = (0..mesh.triangles().len())
         .map(|triangle| {
@@ -518,8 +519,8 @@ fn points_of_open_meshes_are_those_of_solid_angles() {
     assert!(inside > 1000 && undecided == 0, "{inside} {undecided}");
 }
 
-/// Boxes beside points of all of them, and beside cells, which may be undecided where the tree is not, and
-/// the other way round.
+/// Compares the verdicts of boxes with all their points, and with cells. Either method may be undecided where
+/// the other one decides.
 #[test]
 fn boxes_are_those_of_points_and_of_cells() {
     let mut random = Random(8);

@@ -1,5 +1,5 @@
-//! Meshes, rays and points at the ends of what is answered without cells: empty lists, numbers without
-//! bounds, all sizes and places of meshes, triangles without area, and bodies in the same place.
+//! Extreme cases of answers without cells: empty lists, infinite numbers, all sizes and places of meshes,
+//! triangles without area, and bodies at the same place.
 
 use crate::common::{Random, alone};
 use crate::oracle::PointOracle;
@@ -67,9 +67,9 @@ fn points_that_are_no_places() {
             let mut p = [0.5; 3];
             p[axis] = -far;
             let found = &distances(&solid, &frame(), &[p], DistanceTo::Boundary, 0.0, &alone()).unwrap()[0];
-            // (An interval next to the greatest double has no end.)
+            // (The upper bound next to the greatest double is infinite.)
             assert!(found.distance.lower <= far && found.distance.upper >= far, "{far} {found:?}");
-            // (Beyond 2^99 times the mesh nobody looks at single triangles.)
+            // (Beyond 2^99 times the mesh's size, single triangles are not examined.)
             assert!(far > 1e29 || found.distance.lower >= far * (1.0 - 1e-11), "{far} {found:?}");
             let answer = member(&solid, &wide, p);
             assert!(answer != Membership::Inside);
@@ -78,7 +78,7 @@ fn points_that_are_no_places() {
     }
 }
 
-/// Numbers that exact arithmetic does not take: next to a vertex around which triangles stand as a fan.
+/// Coordinates that exact arithmetic does not take, beside a vertex with a fan of triangles.
 #[test]
 fn points_next_to_nothing_are_where_they_are() {
     let mut random = Random(5);
@@ -116,14 +116,14 @@ fn points_next_to_nothing_are_where_they_are() {
 #[test]
 fn a_mesh_that_begins_before_the_universe() {
     let solid = solid(&shapes::block([-3.0; 3], [3.0; 3]), FillRule::NonZero);
-    // The universe cuts it, and the ray is in the solid before it is in the universe.
+    // The universe cuts it. The ray is in the solid before it is in the universe.
     let frame = Frame::new([-1.0; 3], 8.0, 5).unwrap();
     let hit = first(&solid, &frame, ray([-8.0, 0.5, 0.5], [1.0, 0.0, 0.0])).unwrap();
     assert!(hit.t.contains(7.0) && hit.surface.is_none() && hit.normal == [-1.0, 0.0, 0.0], "{hit:?}");
     let sight = |from, to| line_of_sight(&solid, &frame, from, to, &alone()).unwrap();
     assert_eq!(sight([-8.0, 0.5, 0.5], [0.0, 0.5, 0.5]), Sight::Blocked);
     assert_eq!(sight([6.0, 0.5, 0.5], [4.0, 0.5, 0.5]), Sight::Clear);
-    // Two bodies, of which the first one lies before the universe.
+    // Two bodies. The first one lies before the universe.
     let mut soup = shapes::block([-6.0, 0.0, 0.0], [-5.0, 1.0, 1.0]);
     soup.extend(shapes::block([2.0, 0.0, 0.0], [3.0, 1.0, 1.0]));
     for fill in [FillRule::NonZero, FillRule::EvenOdd, FillRule::Positive] {
@@ -133,7 +133,7 @@ fn a_mesh_that_begins_before_the_universe() {
     }
 }
 
-/// Back to back they bound nothing: the ray is inside before, and comes in by the universe's face.
+/// Triangles back to back bound nothing. The ray is already inside, and enters through the universe's face.
 #[test]
 fn triangles_back_to_back_in_the_face_of_the_universe() {
     let [a, b, c] = [[1.0, 1.0, 1.0], [-3.0, 1.0, -3.0], [1.0, 0.0, 1.0]];
@@ -146,7 +146,7 @@ fn triangles_back_to_back_in_the_face_of_the_universe() {
     }
 }
 
-/// A block in all sizes and places, asked with directions of all lengths from all distances.
+/// A block of all sizes at all places, queried with directions of all lengths from all distances.
 #[test]
 fn meshes_rays_and_points_of_all_sizes() {
     let sizes = [1e-70, 1e-30, 1.0, 1e30, 1e60];
@@ -194,7 +194,7 @@ fn meshes_rays_and_points_of_all_sizes() {
     }
 }
 
-/// A slanted tetrahedron in all sizes: rays from its middle leave it, rays past it miss it.
+/// A tetrahedron of all sizes, with slanted faces. Rays from its middle leave it, and rays past it miss it.
 #[test]
 fn slanted_triangles_of_all_sizes() {
     let mut random = Random(8);
@@ -208,8 +208,8 @@ fn slanted_triangles_of_all_sizes() {
                 let away = [0, 1, 2].map(|k| corner[k] - middle[k]);
                 let RaySpans { inner, outer } =
                     ray_spans(&solid, &frame, &ray(middle, away), &alone()).unwrap();
-                // It passes the corner but for rounding; the other way it meets the middle of the facet on
-                // the other side.
+                // It passes the corner only by rounding. In the other direction it meets the middle of the
+                // opposite facet.
                 assert!(inner.len() == 1 && outer.len() == 1, "{size} {corners:?} {i}");
                 assert!((outer[0].upper - 1.0).abs() < 1e-9, "{size} {corners:?} {i} {outer:?}");
                 let back = ray_spans(&solid, &frame, &ray(middle, away.map(|c| -c)), &alone()).unwrap();
@@ -219,7 +219,7 @@ fn slanted_triangles_of_all_sizes() {
     }
 }
 
-/// Coordinates of 1e9 with small parts.
+/// Coordinates around 1e9 with small fractions.
 #[test]
 fn meshes_far_from_the_origin() {
     let mut random = Random(9);
@@ -251,7 +251,7 @@ fn meshes_far_from_the_origin() {
     }
 }
 
-/// Bodies without volume, and triangles without area, are no solid; they hide nothing.
+/// Bodies without volume, and triangles without area, are no solid. They hide nothing.
 #[test]
 fn triangles_without_area() {
     let line: Soup =
@@ -275,7 +275,7 @@ fn triangles_without_area() {
         }
         let found = distances(&alone_there, &frame, &[[5.0; 3]], DistanceTo::Solid, 0.0, &alone()).unwrap();
         assert!(found[0].nearest.is_none() && found[0].distance.upper == f64::INFINITY, "{found:?}");
-        // Beside a body it changes nothing.
+        // Beside a body, it changes nothing.
         let mut soup = shapes::block([-1.0; 3], [1.0; 3]);
         soup.extend(flat.iter());
         let with_body = solid(&soup, FillRule::NonZero);
@@ -289,12 +289,12 @@ fn triangles_without_area() {
     }
 }
 
-/// Nodes of the tree have four parts: as many triangles as fill it, one less and one more.
+/// Nodes of the tree have four parts. The counts are those that fill a tree, one less and one more.
 #[test]
 fn trees_of_all_sizes() {
     let mut random = Random(10);
     let frame = Frame::new([-4.0; 3], 128.0, 6).unwrap();
-    // Bodies of four triangles, and of a strip around a prism as many as one likes.
+    // Bodies of four triangles, and a strip around a prism of any number of triangles.
     for count in (4..=24).chain([62, 64, 66, 254, 256, 258, 1022, 1024, 1026]).filter(|count| count % 2 == 0)
     {
         // A double pyramid has twice as many triangles as corners on its rim.
@@ -336,7 +336,7 @@ fn trees_of_all_sizes() {
     }
 }
 
-/// The same body twice, and with its other sense.
+/// The same body twice, with the same and with reversed orientation.
 #[test]
 fn bodies_in_the_same_place() {
     let block = shapes::block([-1.0; 3], [1.0; 3]);
@@ -396,8 +396,7 @@ fn bodies_in_the_same_place() {
 #[test]
 fn threads_change_nothing() {
     let mut random = Random(11);
-    // Enough triangles that the tree is made on several threads, and enough questions that they are shared
-    // out.
+    // Enough triangles to build the tree on several threads, and enough queries to share them out.
     let mut soup = shapes::torus([0.1, 0.2, 0.3], 3.0, 1.0, 96, 64);
     soup.extend(shapes::octahedron([0.5; 3], 3.0));
     let frame = frame();
@@ -429,6 +428,6 @@ fn whoever_cancels_gets_no_tree() {
     is_cancelled(line_of_sight(&solid, &frame, [0.0; 3], [4.0; 3], &control).map(|_| ()));
     is_cancelled(contains(&solid, &frame, &[[0.5; 3]], &mut [Membership::Undecided], &control));
     is_cancelled(distances(&solid, &frame, &[[0.5; 3]], DistanceTo::Solid, 0.0, &control).map(|_| ()));
-    // Whoever does not, gets it afterwards.
+    // Without the cancel, the answer comes afterwards.
     assert!(first(&solid, &frame, line).unwrap().t.contains(2.0));
 }

@@ -1,12 +1,12 @@
-//! A million rays and a million points on each of some models, answered without cells, beside each triangle
-//! by itself:
+//! A million rays and a million points on each of several models, answered without cells and compared with an
+//! examination of every triangle:
 //!
 //!     LEAFLESS_MODELS=… cargo test --release --test meshes direct_heavy:: -- --ignored --nocapture
 //!     --test-threads 1
 //!
-//! A ray's truth is made of the triangles that it may meet by doubles with generous bounds, each with the
-//! time during which it may; between these times the winding number is constant, and exact arithmetic tells
-//! it of a point in their middle.
+//! A ray's truth comes from the triangles that the ray may meet. Doubles with generous bounds find these
+//! triangles and the time range of each. Between these ranges the winding number is constant, and exact
+//! arithmetic returns it for a point in the middle.
 
 use crate::common::{Random, alone, model, on_all_processors};
 use crate::oracle::{PointOracle, over};
@@ -42,7 +42,8 @@ fn length(p: Point) -> f64 {
     dot(p, p).sqrt()
 }
 
-/// Boxes around triangles, divided by halves: each part has the box and either two parts or triangles.
+/// A bounding-volume tree of triangles, split in halves: each node has a box and either two children or
+/// triangles.
 struct Boxes {
     low: Point,
     high: Point,
@@ -50,17 +51,17 @@ struct Boxes {
     triangles: Vec<u32>,
 }
 
-/// A mesh, of which all triangles that a ray may meet are found.
+/// A mesh with a search for all triangles that a ray may meet.
 struct Oracle {
     corners: Vec<[Point; 3]>,
     boxes: Boxes,
     points: PointOracle,
     size: f64,
-    /// How far the surface may lie from the mesh, generously.
+    /// A generous bound on the distance of the surface from the mesh.
     displacement: f64,
 }
 
-/// When a ray may meet a triangle.
+/// The time range in which a ray may meet a triangle.
 #[derive(Clone, Copy)]
 struct Meeting {
     from: f64,
@@ -93,10 +94,10 @@ impl Oracle {
         Boxes { low, high, parts: Some(Box::new(parts)), triangles: Vec::new() }
     }
 
-    /// All triangles that a ray may meet, in the order of time.
+    /// Returns all triangles that a ray may meet, in order of time.
     fn meetings(&self, from: Point, way: Point) -> Vec<Meeting> {
         let mut found = Vec::new();
-        // What doubles lose of positions.
+        // Rounding errors of positions in doubles.
         let far = from.iter().fold(self.size, |most, c| most.max(c.abs()));
         self.collect(&self.boxes, from, way, 1e-14 * far + self.displacement, &mut found);
         found.sort_by(|a, b| a.from.total_cmp(&b.from));
@@ -113,7 +114,7 @@ impl Oracle {
         found.extend(boxes.triangles.iter().filter_map(|&t| self.meeting(t, from, way, off)));
     }
 
-    /// When a ray may meet a triangle.
+    /// Returns the time range in which a ray may meet a triangle.
     fn meeting(&self, triangle: u32, from: Point, way: Point, off: f64) -> Option<Meeting> {
         let corners = self.corners[triangle as usize];
         let [low, high] = [f64::min, f64::max]
@@ -132,7 +133,7 @@ impl Oracle {
         let of_normal = length(u) * length(v);
         let lost = 1e-13 * of_normal;
         let (mut from, mut to) = (begin, end);
-        // Else it may be anywhere in the box.
+        // Otherwise it may be anywhere in the box.
         if slope.abs() > 1e3 * lost * length(way) {
             let t = height / slope;
             let away = lost * reach + self.displacement * of_normal;
@@ -142,7 +143,7 @@ impl Oracle {
         (from <= to).then_some(Meeting { from, to, triangle })
     }
 
-    /// Whether a point lies exactly in the plane of a triangle, and on it but for rounding.
+    /// True if a point lies exactly in the plane of a triangle, and on the triangle up to rounding.
     fn is_on_surface(&self, p: Point) -> bool {
         self.corners.iter().any(|&corners| {
             let off = 1e-12 * self.size + self.displacement;
@@ -162,7 +163,7 @@ impl Oracle {
     }
 }
 
-/// When a ray may be in a box.
+/// Returns the time range in which a ray may be in a box.
 fn stay(low: Point, high: Point, from: Point, way: Point, off: f64) -> Option<(f64, f64)> {
     let mut stay = (0.0, INFINITY);
     for k in 0..3 {
@@ -208,7 +209,7 @@ fn at_random(random: &mut Random, mut of: impl FnMut(&mut Random, usize) -> f64)
     [0, 1, 2].map(|k| of(random, k))
 }
 
-/// A ray of one of twelve kinds: where it begins, and its direction.
+/// A ray of one of twelve kinds: its origin and direction.
 fn ray(random: &mut Random, mesh: &TriangleMesh, kind: usize) -> (Point, Point) {
     let [a, b, c] = facet(random, mesh);
     let from = around(random, mesh, 2.5);
@@ -274,11 +275,11 @@ fn point(random: &mut Random, mesh: &TriangleMesh, kind: usize) -> Point {
 struct Counts {
     hits: u64,
     misses: u64,
-    /// Rays that may be stopped, and may not.
+    /// Number of rays that may or may not be stopped.
     undecided_hits: u64,
     stretches: u64,
     undecided_stretches: u64,
-    /// Stretches between triangles that are too near to each other to ask between them.
+    /// Number of stretches too narrow to query a point in them.
     narrow: u64,
     points: u64,
     inside: u64,
@@ -382,7 +383,7 @@ impl Trial<'_> {
         }
         let Some(hit) = full else { return };
         assert!(hit.t.upper.is_finite(), "{}", told());
-        // Something of the solid begins there: a stretch inside, or a triangle that may be met.
+        // A part of the solid begins there: a stretch inside, or a triangle that the ray may meet.
         let is_there =
             |&Meeting { from, to, .. }: &Meeting| from - fine <= hit.t.upper && hit.t.lower <= to + fine;
         let met: Vec<&Meeting> = meetings.iter().filter(|meeting| is_there(meeting)).collect();
@@ -427,7 +428,7 @@ impl Trial<'_> {
     }
 }
 
-/// Bodies that overlap, lie in each other and are inside out, with many triangles and with few.
+/// Bodies that overlap, nest and are inside out, with many triangles and with few.
 fn soup(random: &mut Random) -> Soup {
     let mut soup = shapes::torus([0.1, 0.2, 0.3], 3.0, 1.0, 40, 24);
     soup.extend(shapes::torus([0.1, 0.2, 0.3], 3.0, 0.5, 40, 24));
@@ -510,7 +511,7 @@ fn soups() {
     }
 }
 
-/// The same with few rays and points, on what is made here.
+/// The same with few rays and points, on generated meshes.
 #[test]
 fn few_rays_and_points_beside_each_triangle_by_itself() {
     let mut random = Random(2);

@@ -1,5 +1,5 @@
-//! Rays, boxes and distances that an open mesh answers without cells, beside winding numbers by solid angles
-//! and beside cells.
+//! Rays, boxes and distances that an open mesh answers without cells, compared with winding numbers by solid
+//! angles and with answers by cells.
 
 use crate::common::{Random, alone, repeated};
 use crate::descended::Descended;
@@ -37,7 +37,7 @@ fn corners(mesh: &TriangleMesh, triangle: usize) -> [Point; 3] {
     mesh.triangles()[triangle].map(|v| mesh.vertices()[v as usize])
 }
 
-/// The winding number by its definition: solid angles (van Oosterom and Strackee 1983).
+/// The winding number by its definition as a sum of solid angles (van Oosterom and Strackee 1983).
 fn winding(mesh: &TriangleMesh, p: Point) -> f64 {
     let angle = |triangle: usize| {
         let [a, b, c] = corners(mesh, triangle).map(|corner| minus(corner, p));
@@ -54,7 +54,8 @@ fn excess(fill: FillRule, winding: f64) -> f64 {
     if fill == FillRule::Positive { winding - 0.5 } else { winding.abs() - 0.5 }
 }
 
-/// The distance from a triangle's nearest point, of a grid of them and of what lies next to the best.
+/// Returns the distance from a triangle: from its edges, and from its plane if the perpendicular foot lies in
+/// the triangle.
 fn from_triangle([a, b, c]: [Point; 3], p: Point) -> f64 {
     let edge = |a: Point, b: Point| {
         let (way, from) = (minus(b, a), minus(p, a));
@@ -78,8 +79,7 @@ fn from_mesh(mesh: &TriangleMesh, p: Point) -> f64 {
     (0..mesh.triangles().len()).map(|t| from_triangle(corners(mesh, t), p)).fold(f64::INFINITY, f64::min)
 }
 
-/// Shapes with holes: some facets that are gone, a box without a lid, part of a ball, a band, and loose
-/// triangles.
+/// Shapes with holes: some missing facets, a box without a lid, part of a ball, a band, and loose triangles.
 fn open(random: &mut Random, kind: usize) -> Soup {
     let soup = open_facets(random, kind);
     if soup.is_empty() { open(random, kind) } else { soup }
@@ -150,7 +150,7 @@ fn point(random: &mut Random, mesh: &TriangleMesh) -> Point {
     }
 }
 
-/// From inside and from outside, through corners and along axes now and then.
+/// A ray from inside or outside. Some rays pass through corners or along axes.
 fn ray(random: &mut Random, mesh: &TriangleMesh) -> (Point, Point) {
     loop {
         let (from, to) = (point(random, mesh), point(random, mesh));
@@ -169,15 +169,15 @@ fn has(spans: &[Interval], t: f64) -> bool {
     spans.iter().any(|span| span.contains(t))
 }
 
-/// What was compared.
+/// Numbers of compared answers.
 #[derive(Debug, Default)]
 struct Counts {
     inside: u32,
     outside: u32,
-    /// Ends at which the winding number is one half.
+    /// Number of ends at which the winding number is one half.
     halves: u32,
     hits: u32,
-    /// Points of rays about which cells say more.
+    /// Number of points of rays that only cells decide.
     coarser: u32,
 }
 
@@ -259,7 +259,7 @@ fn check_ray(
         line_of_sight(cells, frame, from, end, &alone()).unwrap(),
     );
     let is_same = sight == by_cells || sight == Sight::Undecided || by_cells == Sight::Undecided;
-    // (What touches the surface is blocked to the tree and may be clear to cells.)
+    // (Contact with the surface is blocked for the tree, and may be clear for cells.)
     let touches = || (0..=1000).any(|k| from_mesh(mesh, along(from, way, f64::from(k) / 1000.0)) < 0.05);
     assert!(is_same || touches(), "{sight:?} {by_cells:?} {place}");
 }
@@ -285,7 +285,7 @@ fn rays_of_open_meshes_are_those_of_solid_angles_and_of_cells() {
     assert!(coarser < 100, "{counts:?}");
 }
 
-/// A point of a box, its corners among them.
+/// A point of a box, sometimes a corner.
 fn within(random: &mut Random, a: Point, b: Point) -> Point {
     [0, 1, 2].map(|k| match random.below(4) {
         0 => a[k],
@@ -378,7 +378,7 @@ fn distances_of_open_meshes_are_those_of_cells() {
     assert!(told > 100, "{told} {not_told}");
 }
 
-/// Most rays are told without cells: no cell may be split.
+/// Most rays are decided without cells, so that no cell may be split.
 #[test]
 fn rays_are_told_without_cells() {
     let mut random = Random(2);
@@ -403,7 +403,7 @@ fn rays_are_told_without_cells() {
     assert!(told[0] * 50 < told[1], "{told:?}");
 }
 
-/// A moved mesh is known but for the rounding of its vertices. Its rays are those of the mesh, moved back.
+/// A moved mesh is known up to the rounding of its vertices. Its rays are the mesh's rays, moved back.
 #[test]
 fn turned_open_meshes_are_asked_without_cells_too() {
     let turn = Affine::new([[0.6, -0.8, 0.0, 0.1], [0.8, 0.6, 0.0, 0.2], [0.0, 0.0, 1.0, 0.3]]).unwrap();
@@ -437,7 +437,7 @@ fn turned_open_meshes_are_asked_without_cells_too() {
     assert!(count > 500, "{count}");
 }
 
-/// A model with five holes, beside cells.
+/// A model with five holes, compared with cells.
 #[test]
 fn the_bunny_with_its_holes() {
     let Some(folder) = std::env::var_os("LEAFLESS_MODELS") else {

@@ -1,5 +1,5 @@
-//! The slabs of meshes, against winding numbers in exact arithmetic, and by their definition where the
-//! surface is open.
+//! The slabs of meshes, against winding numbers in exact arithmetic. For open surfaces, the winding number is
+//! computed by its definition.
 
 use crate::common::slabs::{bits, told};
 use crate::common::{Random, Way, alone, lattice_frame};
@@ -14,7 +14,7 @@ use leafless::{AnySolid, Classifier, Csg, FillRule, Frame, MeshSolid, Solid, Tri
 
 const RULES: [FillRule; 3] = [FillRule::NonZero, FillRule::EvenOdd, FillRule::Positive];
 
-/// What the truth says of a point, if it lies off the boundary and its position is a double.
+/// The true membership of a point, if the point lies off the boundary and its position is a double.
 type Truth<'a> = dyn FnMut([f64; 3]) -> Option<bool> + 'a;
 
 #[derive(Debug, Default)]
@@ -23,11 +23,11 @@ struct Found {
     enclosed: u64,
     inside: u64,
     outside: u64,
-    /// The sum of widths over the greatest that there could be, of enclosed cells.
+    /// Sum, over enclosed cells, of the slab's width divided by the greatest possible width.
     widths: f64,
 }
 
-/// A point of the open cell, anywhere or near to where the slab ends.
+/// A point of the open cell, anywhere or near a face of the slab.
 fn point(random: &mut Random, slab: &Slab) -> Option<[f64; 3]> {
     let mut x = [0; 3].map(|_| random.between(-1.0, 1.0));
     if random.below(4) != 0 {
@@ -41,7 +41,7 @@ fn point(random: &mut Random, slab: &Slab) -> Option<[f64; 3]> {
     x.iter().all(|c| c.abs() < 1.0).then_some(x)
 }
 
-/// Walks to a finest cell and asks every cell on the way.
+/// Walks to a finest cell, and checks every cell on the way.
 fn walk(solid: &MeshSolid, frame: &Frame, truth: &mut Truth<'_>, random: &mut Random, found: &mut Found) {
     let complement = Csg::solid(AnySolid::new(solid.clone())).complement().on(frame, &alone()).unwrap();
     let way = Way::new(solid.on(frame, &alone()).unwrap().worker().unwrap());
@@ -100,7 +100,7 @@ fn closed(name: &str, soup: &Soup, depth: u8, walks: u64, found: &mut Found) {
     }
 }
 
-/// Corners anywhere, on planes and centres of the lattice, and shared.
+/// Corners at arbitrary places, on planes and centres of the lattice, and shared.
 fn soups(random: &mut Random, depth: u8) -> Soup {
     let cells = f64::from(1u32 << depth);
     let is_aligned = random.below(2) == 0;
@@ -160,7 +160,7 @@ fn slabs_of_smooth_and_of_nested_bodies_hold() {
     assert!(found.inside > 1000 && found.outside > 1000, "{found:?}");
 }
 
-/// The boundary of what an open surface encloses is partly where the winding number is one half.
+/// Where an open surface has holes, the boundary of the enclosed set is where the winding number is one half.
 #[test]
 fn slabs_of_open_surfaces_hold() {
     let mut found = Found::default();
@@ -194,8 +194,8 @@ fn slabs_of_open_surfaces_hold() {
     assert!(found.inside > 1000 && found.outside > 1000, "{found:?}");
 }
 
-/// Beyond the coarsest cells, the slabs of a finely faceted ball are thin: their width falls with the cell's
-/// square.
+/// Below the coarsest cells, the slabs of a finely faceted ball are thin: their width falls with the square
+/// of the cell's size.
 #[test]
 fn slabs_are_thin_to_second_order() {
     let middle = [2048.0; 3];

@@ -1,5 +1,5 @@
-//! Extended octrees of meshes: which planes bound the solid in a cell, and which function of their sides it
-//! is.
+//! Extended octrees of meshes: the planes that bound the solid in a cell, and the Boolean function of their
+//! sides.
 
 use crate::attributes::distance;
 use crate::common::{Random, alone, model, on_all_processors, repeated};
@@ -21,7 +21,7 @@ fn at(of: impl FnMut(usize) -> f64) -> Point {
     [0, 1, 2].map(of)
 }
 
-/// Turned by an angle of no round number, and moved.
+/// Rotates a soup by an angle of no round number, and moves it.
 fn turned(soup: &Soup) -> Soup {
     shapes::moved(soup, |[x, y, z]| {
         let (x, y) = (0.8 * x - 0.6 * y, 0.6 * x + 0.8 * y);
@@ -30,7 +30,7 @@ fn turned(soup: &Soup) -> Soup {
     })
 }
 
-/// As a file in single precision has it.
+/// Rounds a soup to single precision, as a file does.
 fn single(soup: &Soup) -> Soup {
     shapes::moved(soup, |p| p.map(|c| f64::from(c as f32)))
 }
@@ -39,7 +39,7 @@ fn joined(soups: &[Soup]) -> Soup {
     soups.concat()
 }
 
-/// What each mesh is there for.
+/// All test meshes, each with its purpose.
 fn soups(random: &mut Random) -> Vec<(&'static str, Soup)> {
     let block = shapes::block;
     let base = || block([0.0; 3], [1.0, 0.75, 0.5]);
@@ -108,7 +108,7 @@ impl Trial {
         Trial { oracle: PointOracle::new(&mesh), mesh, fill, frame, tolerance, tree }
     }
 
-    /// The truth at a point; `None` on the surface.
+    /// Returns the truth at a point; `None` on the surface.
     fn truth(&self, p: Point) -> Option<bool> {
         self.oracle.winding(p).map(|winding| Oracle::inside(self.fill, winding))
     }
@@ -118,7 +118,8 @@ impl Trial {
         self.mesh.triangles().iter().map(|t| t.map(|v| vertices[v as usize]))
     }
 
-    /// Points on the surface, and off it by next to nothing to a tenth of the size, and anywhere.
+    /// Points on the surface, points at distances from almost nothing to a tenth of the size, and points
+    /// anywhere.
     fn points(&self, random: &mut Random, count: usize) -> Vec<Point> {
         let (low, high) = self.mesh.bounds();
         let size = (0..3).map(|k| high[k] - low[k]).fold(0.0, f64::max);
@@ -145,7 +146,7 @@ impl Trial {
             .collect()
     }
 
-    /// Whether a triangle lies within a distance of a point.
+    /// True if a triangle lies within a distance of a point.
     fn is_within(&self, p: Point, most: f64) -> bool {
         self.corners().any(|corners| {
             let [a, b, c] = corners;
@@ -155,13 +156,13 @@ impl Trial {
         })
     }
 
-    /// Whether nothing is known in the finest cell of a point.
+    /// True if the finest cell that contains a point has no function.
     fn is_given_up(&self, p: Point) -> bool {
         let Some(at) = self.frame.cell_of(p) else { return true };
         self.tree.view().cell_function(Cell { level: self.frame.depth(), at }).is_none()
     }
 
-    /// Compares what is told of points with the truth; returns how many of them are told.
+    /// Compares the answers for points with the truth; returns the number of decided points.
     fn check(&self, name: &str, points: &[Point]) -> usize {
         let mut answers = vec![Membership::Undecided; points.len()];
         contains(&self.tree, &self.frame, points, &mut answers, &alone()).unwrap();
@@ -183,7 +184,7 @@ impl Trial {
     }
 }
 
-/// No point is told wrong, and all are told that are not near to the surface, whatever the mesh.
+/// For every mesh, no point is decided wrongly, and all points away from the surface are decided.
 #[test]
 fn functions_of_planes_are_the_solid() {
     let mut random = Random(0x1A7E5);
@@ -193,14 +194,13 @@ fn functions_of_planes_are_the_solid() {
             let trial = Trial::new(shapes::mesh(&soup), fill, tolerance, most);
             let points = trial.points(&mut random, 2_000);
             let known = trial.check(name, &points);
-            // (Of a needle most points lie closer to the surface than a thousandth of the tolerance.)
+            // (For a needle, most points are closer to the surface than a thousandth of the tolerance.)
             assert!(known > 250, "{name}, {tolerance}: {known}");
         }
     }
 }
 
-/// What a mesh knows of its own moments is kept until something changes the solid.
-/// In a cube straight ways between points of a cell run through edges and corners.
+/// In a cube, straight lines between points of a cell run through edges and corners.
 #[test]
 fn cubes_take_a_cell_a_corner() {
     for (low, high) in [(0.0, 1.0), (-1.0, 1.0), (1.1, 3.3), (1.125, 3.25), (-7.7, 5.9)] {
@@ -214,6 +214,7 @@ fn cubes_take_a_cell_a_corner() {
     }
 }
 
+/// A mesh's own moments are kept until an operation changes the solid.
 #[test]
 fn moments_of_meshes_are_kept() {
     let options = SurfaceOptions { tolerance: Some(1e-3) };
@@ -232,7 +233,7 @@ fn moments_of_meshes_are_kept() {
     assert!(found.exact && found.splits == 0 && found.volume == own.volume);
     assert_eq!(found.centroid, own.centroid());
 
-    // Without them the cells say less, and nothing else.
+    // Without moments the cells give wider bounds, and all else is the same.
     let bare = tree.without_moments();
     assert_eq!((&bare, bare.view().moments()), (&tree, None));
     let few = Control { max_splits: Some(10_000), ..alone() };
@@ -240,7 +241,7 @@ fn moments_of_meshes_are_kept() {
     assert!(!by_cells.exact && by_cells.volume.contains(own.volume.lower));
     assert!(by_cells.volume.width() > found.volume.width());
 
-    // A file has them, a copy, and a tree that is built from the tree.
+    // Files, copies, and trees built from the tree have the moments.
     let bytes = to_bytes(&tree).unwrap();
     let opened = from_bytes(&bytes).unwrap();
     assert_eq!(opened.view().moments(), Some(own));
@@ -248,23 +249,23 @@ fn moments_of_meshes_are_kept() {
     assert_eq!(compact(tree.view()).unwrap().view().moments(), Some(own));
     let again = build_extended(&tree, tree.frame(), &options, &alone()).unwrap();
     assert_eq!(again.view().moments(), Some(own));
-    // What is another solid has not.
+    // A different solid has no stored moments.
     let ball =
         build_extended(&Csg::ball([1.0, 0.0, 0.0], 0.3).unwrap(), tree.frame(), &options, &alone()).unwrap();
     assert_eq!(difference(tree.view(), ball.view(), &alone()).unwrap().view().moments(), None);
     assert_eq!(complement(tree.view(), &alone()).unwrap().view().moments(), None);
-    // Nor has a mesh whose triangles intersect, nor what the universe cuts off.
+    // A mesh with intersecting triangles has none, either, nor has a mesh cut off by the universe.
     let crossed = joined(&[shapes::block([0.0; 3], [1.0; 3]), turned(&shapes::block([0.0; 3], [1.0; 3]))]);
     assert_eq!(built(&crossed).view().moments(), None);
     let inner = Frame::new([0.0; 3], 1.0, 8).unwrap();
     assert_eq!(build_extended(&solid(&whole), &inner, &options, &alone()).unwrap().view().moments(), None);
 }
 
-/// A function of two booleans.
+/// A Boolean function of two operands.
 type Joins = fn(bool, bool) -> bool;
 
-/// Set operations of a stored mesh with a ball, a turned block and the same mesh moved: no point is told
-/// wrong.
+/// Set operations of a stored mesh with a ball, a rotated block and the same mesh moved. No point may be
+/// decided wrongly.
 fn check_booleans(name: &str, trial: &Trial, random: &mut Random, count: usize) {
     let (low, high) = trial.mesh.bounds();
     let middle = at(|k| low[k].midpoint(high[k]));
@@ -313,7 +314,7 @@ fn check_booleans(name: &str, trial: &Trial, random: &mut Random, count: usize) 
             assert!(known > count / 5, "{name} {what} {other_name}: {known} of {count}");
         }
     }
-    // Of a set less itself nothing is left, though its slabs are known within a width alone.
+    // A set minus itself is empty, although its slabs are known only within a width.
     let none = difference(trial.tree.view(), trial.tree.view(), &alone()).unwrap();
     let given_up = trial.tree.view().cuts().map_or(0, |cuts| cuts.given_up);
     assert!(given_up > 0 || none.statistics().nodes() == 0, "{name}");
@@ -336,7 +337,7 @@ fn opened(name: &str) -> Option<(TriangleMesh, f64)> {
     Some((mesh, size))
 }
 
-/// Parts of a CAD program take few cells, and their volume is known nearly as well as the mesh's own.
+/// Machined parts take few cells, and their volume is known nearly as well as the mesh's own.
 #[test]
 fn machined_parts_take_few_cells() {
     for (name, most_nodes, width) in
@@ -356,7 +357,7 @@ fn machined_parts_take_few_cells() {
     }
 }
 
-/// A million points around the surface of a model, and as many of ten set operations of it.
+/// A million points around the surface of a model, and as many around ten set operations of the model.
 fn million(name: &str, tolerance: f64) {
     let Some((mesh, size)) = opened(name) else { return };
     let triangles = mesh.triangles().len();
@@ -391,14 +392,14 @@ fn a_million_points_of_smooth_parts() {
     }
 }
 
-/// Turned and scaled by five, about two axes: all of it is exact for points of not too many bits.
+/// Two rotations about axes, scaled by five. They are exact for points of moderately many bits.
 const TURNS: [[[f64; 4]; 3]; 2] = [
     [[3.0, -4.0, 0.0, 0.0], [4.0, 3.0, 0.0, 0.0], [0.0, 0.0, 5.0, 0.0]],
     [[5.0, 0.0, 0.0, 0.0], [0.0, 3.0, -4.0, 0.0], [0.0, 4.0, 3.0, 0.0]],
 ];
 
-/// A stored mesh that is turned again and again: no point is told wrong. Returns the numbers of nodes and of
-/// points that are told, of `count` each time.
+/// Rotates a stored mesh again and again. No point may be decided wrongly. Returns, for each rotation, the
+/// number of nodes and the number of decided points out of `count`.
 fn turned_stored(name: &str, trial: &Trial, turns: usize, count: usize) -> Vec<(u64, usize)> {
     let mut random = Random(0x7057);
     let (low, high) = trial.mesh.bounds();
@@ -406,8 +407,7 @@ fn turned_stored(name: &str, trial: &Trial, turns: usize, count: usize) -> Vec<(
     let unit = 2f64.powi(reach.log2().ceil() as i32 - 45);
     let mut points = trial.points(&mut random, count);
     points.iter_mut().for_each(|p| *p = p.map(|c| (c / unit).round() * unit + 0.0));
-    // (On a facet that is parallel to its rays the oracle decides by a shift: such points count as
-    // undecided.)
+    // (On a facet parallel to its rays, the oracle decides by a shift. Such points count as undecided.)
     let truth_off_surface = |p: Point| {
         let truth = trial.truth(p)?;
         let beside =
@@ -481,7 +481,7 @@ fn turned_prisms_take_few_cells() {
     }
 }
 
-/// A part that is turned, in at most so many times its nodes.
+/// Rotates a part. The result has at most `most` times the part's nodes.
 fn turn_machined_part(name: &str, most: u64) {
     let Some((mesh, size)) = opened(name) else { return };
     let trial = Trial::new(mesh, FillRule::NonZero, 1e-6 * size, 20);

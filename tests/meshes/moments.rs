@@ -1,5 +1,5 @@
-//! The moments of meshes without splitting, against sums in exact arithmetic; and triangles that intersect,
-//! against a slow search in exact arithmetic.
+//! The moments of meshes without splits, against sums in exact arithmetic; intersecting triangles, against a
+//! slow search in exact arithmetic.
 
 use crate::common::exact::Exact;
 use crate::common::{Random, model};
@@ -13,7 +13,7 @@ use leafless::{
 
 use std::slice::from_ref;
 
-/// Bodies, and how often each counts under each rule.
+/// Bodies, and the number of times that each body counts under each rule.
 type Case<'a> = (&'a [Vec<Facet>], [&'a [i32]; 3]);
 type Point = [f64; 3];
 type Facet = [Point; 3];
@@ -52,12 +52,13 @@ fn cube(half: f64) -> Vec<Facet> {
     block([-half; 3], [half; 3])
 }
 
-/// The faces of a tetrahedron, seen from outside counter-clockwise if `d` lies below a, b, c.
+/// The faces of a tetrahedron. Seen from outside they are counter-clockwise if `d` lies below a, b, c.
 fn tetrahedron([a, b, c, d]: [Point; 4]) -> Vec<Facet> {
     vec![[a, b, c], [b, a, d], [c, b, d], [a, c, d]]
 }
 
-/// 20 times 6 times the volume, and the first and second moments about the origin in the same units, exactly.
+/// Exact sums: 20 times 6 times the volume, and the first and second moments about the origin in the same
+/// unit.
 struct Sums {
     volume: Exact,
     first: [Exact; 3],
@@ -90,7 +91,7 @@ impl Sums {
     }
 }
 
-/// lower ≤ numerator / denominator ≤ upper, exactly, and not wider than `width` of `size`.
+/// Checks lower ≤ numerator / denominator ≤ upper, exactly, and that the interval is at most `width` wide.
 #[track_caller]
 fn check(what: &str, interval: Interval, numerator: &Exact, denominator: &Exact, width: f64) {
     let side = |x: f64| Exact::from(x).times(denominator).minus(numerator).sign();
@@ -98,8 +99,8 @@ fn check(what: &str, interval: Interval, numerator: &Exact, denominator: &Exact,
     assert!(interval.width() <= width, "{what} is known too badly: {interval:?}");
 }
 
-/// Everything that is known of a solid which a mesh encloses, of the signed triangles given, against exact
-/// sums. `size` is the extent of the mesh, `far` its distance from the origin.
+/// Checks all measures of the solid that a mesh encloses against exact sums over the signed triangles
+/// `facets`. `size` is the extent of the mesh, `far` its distance from the origin.
 #[track_caller]
 fn check_all(measures: &MassProperties, facets: Vec<(Facet, i32)>, size: f64, far: f64) {
     let sums = Sums::of(facets);
@@ -157,7 +158,7 @@ fn random_tetrahedra_and_blocks() {
             let high = [0, 1, 2].map(|_| scale * random.between(0.1, 1.0) + far);
             block(low, high)
         };
-        // Whichever way it turns, NonZero and EvenOdd enclose it.
+        // With either orientation, NonZero and EvenOdd enclose it.
         let sign = if mesh(from_ref(&facets)).volume() > 0.0 { 1 } else { -1 };
         for rule in RULES {
             let measures = measured(mesh(from_ref(&facets)), rule);
@@ -174,19 +175,20 @@ fn random_tetrahedra_and_blocks() {
     }
 }
 
-/// How often each of some nested shells counts, under each rule.
+/// Nested shells, each with the number of times that it counts under each rule.
 #[test]
 fn nested_shells() {
     let [one, two, three] = [cube(1.0), cube(2.0), cube(3.0)];
     let tilted: Vec<Facet> =
         tetrahedron([[0.5, 0.0, 0.1], [-0.2, 0.4, 0.0], [-0.3, -0.4, 0.2], [0.0, 0.1, -0.5]]);
-    // Bodies from the inside out, each with the sign of its volume, and how often it counts under each rule.
+    // Bodies from the inside out, each with the sign of its volume, and the number of times that it counts
+    // under each rule.
     let cases: [Case<'_>; 9] = [
         (from_ref(&one), [&[1], &[1], &[1]]),
         (&[turned(&one)], [&[-1], &[-1], &[0]]),
         // A cavity.
         (&[turned(&one), two.clone()], [&[1, 1], &[1, 1], &[1, 1]]),
-        // In the same sense.
+        // With the same orientation.
         (&[one.clone(), two.clone()], [&[0, 1], &[-1, 1], &[0, 1]]),
         (&[turned(&one), turned(&two)], [&[0, -1], &[1, -1], &[0, 0]]),
         // An inside-out block with a body in it.
@@ -211,7 +213,7 @@ fn nested_shells() {
     }
 }
 
-/// Several bodies side by side, that share vertices and edges, or turned against each other.
+/// Several bodies side by side that share vertices and edges, or have opposite orientations.
 #[test]
 fn bodies_that_touch() {
     let [a, edge, corner] = [[0.0; 3], [1.0, 1.0, 0.0], [1.0; 3]].map(|low| block(low, low.map(|x| x + 1.0)));
@@ -222,7 +224,7 @@ fn bodies_that_touch() {
             assert!(inside_out.contains(if rule == FillRule::Positive { 1.0 } else { 2.0 }), "{rule:?}");
         }
     }
-    // One triangle turned over: only parity means something.
+    // With one inverted triangle, only parity is meaningful.
     let mut one_turned = a.clone();
     one_turned[3].swap(0, 1);
     let one_turned = mesh(&[one_turned]);
@@ -252,7 +254,7 @@ fn what_intersects_is_split() {
     }
 }
 
-/// Of parts with round dimensions nothing is rounded.
+/// Parts with round dimensions have no rounding at all.
 #[test]
 fn round_parts_are_exact() {
     let cavity = turned(&block([11.0, -4.0, 3.25], [12.5, -3.0, 4.0]));
@@ -264,7 +266,7 @@ fn round_parts_are_exact() {
     assert!(inertia.contains(16.0 / 3.0) && inertia.width() < 2e-15, "{inertia:?}");
 }
 
-/// What is clipped is not what the mesh encloses. It is known by cells, up to rounding.
+/// The part within the universe is smaller than the enclosed set. Cells measure it, up to rounding.
 #[test]
 fn clipped_meshes_are_measured_in_the_universe() {
     let solid = MeshSolid::new(mesh(&[cube(1.0)]), FillRule::NonZero).unwrap();
@@ -276,13 +278,13 @@ fn clipped_meshes_are_measured_in_the_universe() {
     let whole = Frame::new([-1.0; 3], 2.0, 5).unwrap();
     let measures = measure(&solid, &whole, 1e-12, &control).unwrap();
     assert_eq!((measures.clipped, measures.splits, measures.stop_reason), (false, 0, StopReason::Tolerance));
-    // Nothing is to be had by splitting where more is asked for than rounding allows.
+    // Splits cannot reach a tolerance below rounding.
     let third = MeshSolid::new(mesh(&[cube(1.0 / 3.0)]), FillRule::NonZero).unwrap();
     let measures = measure(&third, &whole, 0.0, &control).unwrap();
     assert_eq!((measures.splits, measures.stop_reason), (0, StopReason::Exhausted));
 }
 
-/// Vertices that were rounded may be elsewhere; the exact image is contained.
+/// Rounded vertices may be displaced. The intervals contain the exact image.
 #[test]
 fn placed_meshes_contain_the_exact_image() {
     let turn = [[0.6, -0.8, 0.0, 1e3], [0.8, 0.6, 0.0, 0.1], [0.0, 0.0, 1.0, 0.3]];
@@ -292,16 +294,16 @@ fn placed_meshes_contain_the_exact_image() {
     let sign = if placed.volume() > 0.0 { 1 } else { -1 };
     let measures = measured(placed, FillRule::NonZero);
     assert_eq!(measures.splits, 0);
-    // The linear part is not a rotation exactly: the doubles 0.6 and 0.8 give the determinant.
+    // The linear part is not exactly a rotation: the doubles 0.6 and 0.8 give the determinant.
     let [p, q] = [0.6, 0.8].map(Exact::from);
     let determinant = p.times(&p).plus(&q.times(&q));
     let sums = Sums::of(facets.into_iter().map(|facet| (facet, sign)));
     check("volume", measures.volume, &sums.volume.times(&determinant), &Exact::from(120.0), 1e-10);
-    // It is not nothing that is added for it.
+    // The added error is not zero.
     assert!(measures.volume.width() > 1e-13);
 }
 
-/// Whether two triangles of small integer coordinates have no point in common: by separating axes.
+/// True if two triangles with small integer coordinates have no point in common, by separating axes.
 fn separated(a: &Facet, b: &Facet) -> bool {
     let whole = |facet: &Facet| facet.map(|p| p.map(|x| x as i64));
     let (a, b) = (whole(a), whole(b));
@@ -352,8 +354,8 @@ fn pairs_without_common_vertices() {
     assert!(counts[0] > 5000 && counts[1] > 5000, "{counts:?}");
 }
 
-/// Close to a common vertex triangles are cones: they meet beyond it if a segment across one of them, close
-/// to the vertex, meets the other one. With a common edge it is a segment beside the edge.
+/// Close to a common vertex, triangles are cones. They meet beyond the vertex if a segment across one of
+/// them, close to the vertex, meets the other one. For a common edge, the segment lies beside the edge.
 #[test]
 fn pairs_with_common_vertices() {
     let mut random = Random(4);
@@ -415,7 +417,7 @@ fn models() {
     let pairs = bunny.intersecting_pairs(100, &Control::default()).unwrap();
     assert_eq!((pairs.count, pairs.pairs.len(), pairs.is_complete), (11, 11, true));
     assert!(matches!(moments(&bunny, FillRule::NonZero), MeshMoments::Intersecting(_)));
-    // A body inside out, which shares edges with nobody: parity says what it encloses.
+    // An inside-out body that shares no edges. Parity defines the enclosed set.
     let multibody = model_mesh("multibody.stl").unwrap();
     assert_eq!(moments(&multibody, FillRule::NonZero), MeshMoments::Open);
     let volume = known(&multibody, FillRule::EvenOdd).volume;

@@ -1,8 +1,8 @@
-//! Rays that pierce an open mesh an odd number of times, against one ray after the other in whole numbers.
+//! Rays that pierce an open mesh an odd number of times, against a ray-by-ray count in integers.
 
 use leafless::{Control, Error, FillRule, Frame, MeshSolid, TriangleMesh};
 
-/// Cells to an axis; their centres are (2 k + 1) / 2.
+/// Cells along an axis. Their centres are (2 k + 1) / 2.
 const CELLS: i32 = 16;
 
 fn frame() -> Frame {
@@ -14,12 +14,12 @@ fn odd_rays(mesh: TriangleMesh) -> [u64; 3] {
     solid.odd_rays(&frame(), &Control::default()).unwrap()
 }
 
-/// The same from the definition: each ray against each triangle. Vertices are multiples of 1/2 below 64 from
-/// the origin.
+/// The count by its definition: each ray against each triangle. Vertices are multiples of 1/2, at most 64
+/// from the origin.
 ///
 /// In units of 2^-51, differences are multiples of 2^50 below 2^59, and determinants multiples of 2^100. The
-/// shift along x adds less than 2^99 to them, so that it decides those that are zero alone; 2^88 at the
-/// least, if it adds anything, and the shift along y less than 2^85; and so on.
+/// shift along x adds less than 2^99 to a determinant, so that it decides only zero determinants. A nonzero
+/// contribution is at least 2^88, and the shift along y adds less than 2^85; and so on.
 fn one_by_one(mesh: &TriangleMesh) -> [u64; 3] {
     let scaled = |x: f64| {
         let doubled = 2.0 * x;
@@ -52,7 +52,7 @@ fn one_by_one(mesh: &TriangleMesh) -> [u64; 3] {
     })
 }
 
-/// |x − 8| + |y − 8| + |z − 8| = 8, whose edges run through centres; without its first triangles.
+/// The octahedron |x − 8| + |y − 8| + |z − 8| = 8 without its first triangles. Its edges run through centres.
 fn octahedron(without: usize) -> TriangleMesh {
     let vertices = (0..6).map(|i| {
         [0, 1, 2].map(|axis| 8.0 + if axis == i / 2 { if i % 2 == 0 { 8.0 } else { -8.0 } } else { 0.0 })
@@ -70,8 +70,8 @@ fn a_closed_mesh_has_none() {
     assert_eq!(one_by_one(&octahedron(0)), [0; 3]);
 }
 
-/// Of the face that is missing each projection is the triangle of the centres with i + j + 1 ≤ 8; those on
-/// its hypotenuse are shifted out of it.
+/// Each projection of the missing face is the triangle of the centres with i + j + 1 ≤ 8. The shift moves the
+/// centres on the hypotenuse out of the triangle.
 #[test]
 fn a_missing_face_makes_the_rays_through_it_odd() {
     let found = odd_rays(octahedron(1));
@@ -82,7 +82,7 @@ fn a_missing_face_makes_the_rays_through_it_odd() {
     }
 }
 
-/// A numbers' generator after Knuth.
+/// A random number generator after Knuth.
 struct Random(u64);
 
 impl Random {
@@ -92,7 +92,7 @@ impl Random {
     }
 }
 
-/// Triangles anywhere, also outside of the universe, whose corners often lie on rays, and edges on rows.
+/// Triangles anywhere, also outside the universe. Many corners lie on rays, and many edges on rows.
 #[test]
 fn any_triangles() {
     let mut random = Random(7);
@@ -111,7 +111,7 @@ fn any_triangles() {
     assert!(odd > 150);
 }
 
-/// More rows than the bits of one pass hold, of a plate that covers all of them.
+/// A plate covers more rows than the bits of one pass hold.
 #[test]
 fn a_wide_frame_is_counted_in_several_passes() {
     let mut vertices = vec![];
@@ -123,7 +123,7 @@ fn a_wide_frame_is_counted_in_several_passes() {
     for depth in [6, 14] {
         let frame = Frame::new([0.0; 3], 1.0, depth).unwrap();
         let odd = solid.odd_rays(&frame, &Control::default()).unwrap();
-        // Along x and y a ray of the plate's height would run in it.
+        // Rays along x and y at the plate's height would lie in the plate.
         assert_eq!(odd, [0, 0, 1 << (2 * depth)], "depth {depth}");
     }
 }

@@ -1,10 +1,10 @@
-//! Meshes as they come, against the winding number by its definition.
+//! Meshes in any condition, against the winding number by its definition.
 //!
-//! The truth of a soup is the set of points with |w| ≥ ½ (or w ≥ ½), w being the sum of the solid angles of
-//! all its triangles over 4π. Damaged variants of many shapes are built, and every kind of verdict is held
-//! against that sum.
+//! The truth of a soup is the set of points with |w| ≥ ½ (or w ≥ ½), where w is the sum of the solid angles
+//! of all its triangles over 4π. The tests build damaged variants of many shapes, and compare every kind of
+//! verdict with that sum.
 //!
-//! The heavier sets, of many more variants, deeper trees, more points, and five million triangles:
+//! The heavier tests have many more variants, deeper trees, more points, and five million triangles:
 //!
 //! ```text
 //! LEAFLESS_MODELS=/path/to/models \
@@ -29,7 +29,7 @@ use leafless::{
 
 const RULES: [FillRule; 2] = [FillRule::NonZero, FillRule::Positive];
 
-/// A frame whose planes are at no short doubles, around a soup with some room.
+/// A frame around a soup, with some room. Its planes are not at short doubles.
 fn odd_frame(soup: &Soup, depth: u8) -> Frame {
     let truth = Soupy::new(soup);
     let extent = damage::extent(soup) * 1.3;
@@ -37,8 +37,8 @@ fn odd_frame(soup: &Soup, depth: u8) -> Frame {
     Frame::new(origin, extent, depth).unwrap()
 }
 
-/// Shapes in the cube [0, 32]³. The second is whether they lie on the planes and centres of the lattice of
-/// depth 5.
+/// Shapes in the cube [0, 32]³. The flag says whether a shape lies on the planes and centres of the lattice
+/// of depth 5.
 fn shapes_of_all_kinds(detail: usize) -> Vec<(&'static str, Soup, bool)> {
     let mut random = Random(17);
     let far = [16.0; 3];
@@ -100,7 +100,7 @@ fn solid(soup: &Soup, fill: FillRule) -> MeshSolid {
     MeshSolid::new(mesh(soup), fill).unwrap()
 }
 
-/// Everything about one soup on one frame.
+/// Checks everything about one soup on one frame.
 fn verify(name: &str, soup: &Soup, frame: &Frame, fill: FillRule, aligned: bool, effort: Effort) -> Findings {
     let solid = solid(soup, fill);
     let all = trees(&solid, frame);
@@ -126,14 +126,14 @@ fn the_oracle_agrees_with_integers_and_with_itself() {
     for soup in &closed {
         let exact = PointOracle::new(&mesh(soup));
         let mut whole = Soupy::new(soup);
-        // Open pieces of it: their numbers add up to the whole one.
+        // Open pieces of it. Their winding numbers add up to that of the whole.
         let (one, other): (Vec<_>, Vec<_>) = soup.iter().partition(|facet| facet[0][0] + facet[1][1] > 0.3);
         let (mut one, mut other) = (Soupy::new(&one), Soupy::new(&other));
         for i in 0..4000 {
             let p = if i % 2 == 0 {
                 [0; 3].map(|_: i32| random.between(-3.0, 3.0))
             } else {
-                // Very near to the surface, where only exact signs tell the sides apart.
+                // Very near the surface, where only exact signs distinguish the sides.
                 let [a, b, c] = whole.corners(random.below(whole.len() as u64) as usize);
                 let far = 10f64.powi(-(random.below(16) as i32));
                 [0, 1, 2]
@@ -149,7 +149,7 @@ fn the_oracle_agrees_with_integers_and_with_itself() {
             }
         }
     }
-    // A rectangle over whose corner the point stands: atan(ab / (h·√(a² + b² + h²))).
+    // A rectangle with the point above its corner: atan(ab / (h·√(a² + b² + h²))).
     for (a, b, h) in [(1.0f64, 2.0f64, 0.5f64), (3.0, 0.1, 1e-6), (1e-3, 1e-3, 4.0), (7.0, 5.0, -3.0)] {
         let mut plate =
             Soupy::new(&vec![[[0.0; 3], [a, 0.0, 0.0], [a, b, 0.0]], [[0.0; 3], [a, b, 0.0], [0.0, b, 0.0]]]);
@@ -158,7 +158,7 @@ fn the_oracle_agrees_with_integers_and_with_itself() {
         assert!((winding.value - expected).abs() <= winding.error, "{winding:?} {expected}");
         assert!(winding.error < 1e-8);
     }
-    // On the surface, the shifted point decides: up is outside of the top and inside of the bottom.
+    // On the surface, the shifted point decides: up is outside at the top and inside at the bottom.
     let mut cube = Soupy::new(&block([0.0; 3], [2.0; 3]));
     for (p, inside) in [
         ([1.0, 0.5, 0.0], 1.0),
@@ -236,14 +236,14 @@ fn the_checks_see_lies() {
         let is_seen = each().any(|(i, fill)| !findings_of(lie, i, fill).faults.is_empty());
         assert!(is_seen, "{lie:?} was not seen");
     }
-    // Who decides too little tells no lie, but is seen.
+    // A solid that decides too little tells no lie, but the checks notice it.
     let coward = findings(Lie::Coward);
     assert!(coward.faults.is_empty() && coward.left_open * 100 > coward.decidable, "{coward:?}");
 }
 
-/// Every damage to every shape, and those variants that are to be filled by `only`: every other one. With
-/// `only`, one of two variants of its rule is examined; with four instead of one behind the rule, one of
-/// eight.
+/// Applies every damage to every shape, and examines a part of the variants. Without `only`, this is every
+/// other variant. `only` gives a rule and, behind it, whether one of two variants of this rule is examined,
+/// or (with four instead of one) one of eight.
 fn damage_all(
     seed: u64,
     detail: usize,
@@ -293,7 +293,7 @@ fn damaged_shapes(fill: FillRule) {
     let effort = Effort { points: 250, centres: 160, corners: 40, shares: 50 };
     let (variants, total) = damage_all(2, 0, 0, Some((fill, repeated(8, 1))), effort);
     assert!(variants > repeated(16, 130));
-    // Most of what no triangle meets is decided, though many of these soups are nothing but holes.
+    // Most cells that no triangle meets are decided, though many of these soups consist of holes.
     assert!(total.clear_open * 5 < total.clear);
     total.judge();
 }
@@ -317,7 +317,8 @@ fn more_damaged_shapes() {
     }
 }
 
-/// Holes with long boundaries of many short edges: what closes them is near in one place and far in another.
+/// Holes with long boundaries of many short edges. The closing membrane is near in one place and far in
+/// another.
 #[test]
 fn large_holes() {
     let centre = [16.1, 15.9, 16.2];
@@ -344,8 +345,8 @@ fn large_holes() {
     total.judge();
 }
 
-/// Faces through centres, some of them missing: every centre of the lattice, also those on what closes the
-/// holes.
+/// A block with faces through centres, some faces missing. Every centre of the lattice is checked, also
+/// centres on the membrane over the holes.
 #[test]
 fn every_centre_of_an_aligned_block_without_some_faces() {
     let frame = Frame::new([0.0; 3], 16.0, 4).unwrap();
@@ -382,7 +383,7 @@ fn every_centre_of_an_aligned_block_without_some_faces() {
     assert!(skipped * 20 < asked, "{skipped} of {asked} skipped");
 }
 
-/// How `soup` lies to the universe of a frame.
+/// Soups at several positions relative to the universe of a frame.
 #[test]
 fn holes_and_meshes_outside_of_the_universe() {
     let mut random = Random(12);
@@ -397,8 +398,8 @@ fn holes_and_meshes_outside_of_the_universe() {
         ("sheet", sheet(centre, 24.0, 1.5, 0)),
     ];
     let frames = [
-        // Parts of it, by the faces, an edge and a corner; a cube within; one beside; one that sees it from
-        // afar; and one in which it is a speck.
+        // Universes that cut it by faces, an edge and a corner; a cube inside; one beside; one far away; and
+        // one in which it is tiny.
         ([16.1, 0.0, 0.0], 32.0),
         ([0.0, 0.0, 16.05], 32.0),
         ([-16.0, -16.1, 0.0], 32.3),
@@ -448,7 +449,7 @@ fn any_number_of_threads_and_blocks_or_not() {
             _ => (torus(centre, 9.0, 4.0, 20, 12), false),
         };
         let soup = damaged(&soup, damage, &mut random, 1.0, aligned);
-        // At depth 8 blocks are scanned below nodes that are handed from thread to thread.
+        // At depth 8, blocks are scanned below nodes that pass from thread to thread.
         let frame = if aligned { Frame::new([0.0; 3], 32.0, 8).unwrap() } else { odd_frame(&soup, 7) };
         let solid = solid(&soup, RULES[i % 2]);
         for rule in [Rule::Certified, Rule::Sampled] {
@@ -470,22 +471,22 @@ fn bytes(tree: &Octree) -> Vec<u8> {
     bytes
 }
 
-/// A certified and a sampled tree.
+/// Builds a certified and a sampled tree.
 fn both(soup: &Soup, frame: &Frame) -> [Octree; 2] {
     let solid = solid(soup, FillRule::NonZero);
     [Rule::Certified, Rule::Sampled].map(|rule| build(&solid, frame, rule, &Control::threads(2)).unwrap())
 }
 
-/// Removes single facets of a soup that is closed, and holds the trees against the intact one's.
+/// Removes single facets of a closed soup, and compares the trees with the intact soup's trees.
 ///
-/// Where the winding number is an integer n, without a facet seen at the solid angle Ω it is n ± Ω/4π, and
-/// |Ω| < 2π away from the facet: no winding number crosses ½. So
+/// Consider a point with the integer winding number n. Without a facet seen at the solid angle Ω, the winding
+/// number is n ± Ω/4π, and |Ω| < 2π away from the facet. Hence no winding number crosses ½, and
 ///
-/// * the sampled cells are the same, unless their centre is on the facet;
-/// * decided cells never turn from FULL to EMPTY or back;
-/// * beyond d + 2h of the facet, d its diameter and h half the diagonal of a cell, finest cells are decided
-///   as they were: all of the cell is then d + h away, so that Ω ≤ (√3/4) d²/(d + h)², |w − n| < 0.035; and
-///   it changes in the cell by at most 3d h/(4π (d + h)²) ≤ 3/16π < 0.06, both far from ½.
+/// * sampled cells stay the same, unless their centre is on the facet;
+/// * decided cells never change between FULL and EMPTY;
+/// * beyond d + 2h of the facet (d its diameter, h half the diagonal of a cell), finest cells keep their
+///   decision. All of such a cell is at least d + h away, so that Ω ≤ (√3/4) d²/(d + h)² and |w − n| < 0.035.
+///   In the cell, w changes by at most 3d h/(4π (d + h)²) ≤ 3/16π < 0.06. Both are far from ½.
 fn remove_single_facets(name: &str, soup: &Soup, depth: u8, times: usize, random: &mut Random) {
     // (Some models that are taken for closed have cracks as wide as a rounding.)
     assert!(Boundary::of(soup).0.is_empty(), "{name} is not closed");
@@ -518,7 +519,7 @@ fn remove_single_facets(name: &str, soup: &Soup, depth: u8, times: usize, random
                 let distance = soup::winding::distance(gone, soup::check::centre(&frame, at));
                 assert!(tags.contains(&Tag::Partial), "{name} {at:?}: {tags:?} without {gone:?}");
                 assert!(distance <= reach, "{name} {at:?}: {tags:?} at {distance} of {gone:?}, {reach}");
-                // Where a facet is gone that lay between the numbers 0 and 1, it still bounds the solid.
+                // A missing facet between the winding numbers 0 and 1 still bounds the solid.
                 let is_within = distance < 0.5 * frame.cell_size() && tags[1] != Tag::Partial;
                 let between = |winding: f64| (0.05..0.95).contains(&winding.abs());
                 assert!(
@@ -548,15 +549,15 @@ fn a_facet_that_is_gone_changes_little_and_only_near_it() {
     }
 }
 
-/// A model as it is in the file, facet by facet.
+/// Reads a model exactly as its file has it, facet by facet.
 fn read(name: &str) -> Option<Soup> {
     let mesh = open_mesh(common::model(name)?, &MeshOptions::default()).unwrap().mesh;
     let vertices = mesh.vertices();
     Some(mesh.triangles().iter().map(|t| t.map(|v| vertices[v as usize])).collect())
 }
 
-/// What is undecided lies around a surface: that of the mesh, or the membrane over its holes on which the
-/// winding number is ½. Cells of half the edge hold half as much of it.
+/// Undecided cells lie around a surface: the mesh, or the membrane over its holes where the winding number is
+/// ½. Halving the cells' edge halves the undecided volume.
 #[test]
 fn what_is_undecided_halves_with_every_level() {
     let mut random = Random(41);
@@ -580,7 +581,8 @@ fn what_is_undecided_halves_with_every_level() {
             assert!((0.4..0.6).contains(&ratio), "{name}: {ratio}, {open:?}");
         }
         println!("{name}: {:?}", open[4..].windows(2).map(|pair| pair[1] / pair[0]).collect::<Vec<_>>());
-        // Neither more of it than a layer of cells on the surface and on membranes no larger than it.
+        // The undecided volume is a layer of a few cells on the surface and on membranes no larger than the
+        // surface.
         let area: f64 = soup.iter().map(area).sum();
         let layer = open[7] / (area * frame.cell_size());
         assert!((1.0..4.5).contains(&layer), "{name}: a layer of {layer} cells");
@@ -594,7 +596,7 @@ fn area([a, b, c]: &[[f64; 3]; 3]) -> f64 {
     cross.iter().map(|x| x * x).sum::<f64>().sqrt() / 2.0
 }
 
-/// Models, as they are and damaged.
+/// Checks models, intact and damaged.
 fn models(names: &[(&str, u8)], kinds: &[Damage], effort: Effort) {
     let mut random = Random(51);
     let mut total = Findings::default();
@@ -646,15 +648,15 @@ fn more_models() {
     models(&large, &[Damage::Intact, Damage::RemovePatch], Effort { points: 400, centres: 400, ..LIGHT });
 }
 
-/// The sampled volume, relative to another.
+/// Returns the relative difference of the sampled volume from `intact`.
 fn off(name: &str, soup: &Soup, frame: &Frame, intact: f64) -> f64 {
     let volume = both(soup, frame)[1].statistics().volume().lower;
     println!("{name}: {volume}, {:.4} % off", 100.0 * (volume / intact - 1.0));
     (volume / intact - 1.0).abs()
 }
 
-/// Holes that are small against the part cost little of its volume. One facet costs nothing at all, so
-/// nothing is off but by rounding; several that hang together lose about what the membrane over them cuts
+/// Holes that are small relative to the part cost little of its volume. A single missing facet costs nothing
+/// but rounding. Several connected missing facets lose about the volume that the membrane over the hole cuts
 /// off.
 fn holes_cost_little(name: &str, soup: &Soup, depth: u8, share: f64, random: &mut Random) {
     let frame = odd_frame(soup, depth);
@@ -690,7 +692,7 @@ fn small_holes_cost_little_volume_of_models() {
     holes_cost_little("bunny", &closed, 9, 0.01, &mut random);
 }
 
-/// How long five million triangles take. (No test of anything but a few points.)
+/// Measures the time for five million triangles. (Only a few points are checked.)
 #[test]
 #[ignore = "takes minutes, and some gigabytes"]
 fn five_million_triangles() {
@@ -731,7 +733,7 @@ fn five_million_triangles() {
     }
 }
 
-/// Corners of a cube, and its facets facing outward.
+/// The corners of a cube, and its outward facets.
 fn cube() -> (Vec<[f64; 3]>, Vec<[u32; 3]>) {
     let corners = (0..8).map(|k| [0, 1, 2].map(|axis| f64::from(k >> axis & 1))).collect();
     let quads = [[0, 2, 3, 1], [4, 5, 7, 6], [0, 1, 5, 4], [2, 6, 7, 3], [0, 4, 6, 2], [1, 3, 7, 5]];
@@ -739,8 +741,8 @@ fn cube() -> (Vec<[f64; 3]>, Vec<[u32; 3]>) {
     (corners, facets)
 }
 
-/// Random facets of a cube turned over, left out or doubled: nothing is enclosed outside of the bounds,
-/// though something is outside of the box around the corners.
+/// Random facets of a cube are inverted, missing or doubled. The bounds contain the whole enclosed set,
+/// although the set reaches beyond the corners' bounding box.
 #[test]
 fn bounds_hold_whatever_an_open_surface_encloses() {
     let (corners, whole) = cube();
@@ -779,7 +781,7 @@ fn bounds_hold_whatever_an_open_surface_encloses() {
     assert!(beyond > 0 && slack < 1.5, "{beyond} {slack}");
 }
 
-/// One flat, convex hole lets nothing out.
+/// With one flat, convex hole, the enclosed set stays within the corners' bounding box.
 #[test]
 fn bounds_of_a_surface_with_one_flat_hole_are_those_of_its_corners() {
     let (corners, whole) = cube();

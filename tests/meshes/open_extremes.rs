@@ -1,5 +1,5 @@
-//! Open meshes at the edge of what doubles can tell: boundary edges that pass close by and end far away, sewn
-//! meshes whose vertices moved in directions of their own, workers that are used again.
+//! Open meshes at the limits of doubles: boundary edges that pass close by and end far away, sewn meshes
+//! whose vertices moved in different directions, and workers that are used again.
 
 use leafless::solid::Parts;
 use leafless::{
@@ -34,7 +34,8 @@ fn winding(vertices: &[Point], triangles: &[[u32; 3]], point: Point) -> f64 {
     angles.sum()
 }
 
-/// FULL and EMPTY cells of depth 6 with a corner that contradicts them, and how many cells are PARTIAL.
+/// Returns the number of FULL and EMPTY cells of depth 6 with a contradicting corner, and the number of
+/// PARTIAL cells.
 fn faults(vertices: &[Point], triangles: &[[u32; 3]]) -> (usize, usize) {
     let frame = Frame::new([0.0; 3], 64.0, 6).unwrap();
     let mesh = TriangleMesh::new(vertices.to_vec(), triangles.to_vec()).unwrap();
@@ -69,7 +70,7 @@ fn edges_that_end_far_away() {
         // Twice the same, so that the winding number is ½ in a plane through the edge.
         let (wrong, partial) = faults(&vertices, &[[0, 1, 2], [0, 1, 2]]);
         assert_eq!(wrong, 0, "{length}");
-        // Beyond, doubts about where the edge is grow with its length.
+        // Beyond the edge, the uncertainty about its place grows with its length.
         assert!(length > 1e8 || partial < 25_000, "{length}: {partial}");
     }
 }
@@ -83,7 +84,7 @@ fn sewn_vertices_move_each_in_its_own_direction() {
         .map(|i| (if i & 1 == 0 { 1.0 } else { -1.0 }, if i & 2 == 0 { golden } else { -golden }))
         .flat_map(|(a, b)| [corner(a, b, 0.0), corner(0.0, a, b), corner(b, 0.0, a)])
         .collect();
-    // The faces of the icosahedron: corners at the distance of an edge, turned outward.
+    // The icosahedron's faces, outward: corners at the distance of an edge.
     let mut faces: Vec<[Point; 3]> = Vec::new();
     let edge = 4.0 / (1.0 + golden * golden);
     let close = |a: Point, b: Point| (dot(minus(a, b), minus(a, b)) - edge).abs() < 1e-9;
@@ -117,8 +118,8 @@ fn sewn_vertices_move_each_in_its_own_direction() {
         let on = face.map(|p| [0, 1, 2].map(|axis| centre[axis] + 100.0 * p[axis]));
         let middle = [0, 1, 2].map(|axis| (on[0][axis] + on[1][axis] + on[2][axis]) / 3.0);
         let shrunk = on.map(|p| [0, 1, 2].map(|axis| middle[axis] + 0.712 * (p[axis] - middle[axis])));
-        // Hairs at the corners, onto which these are sewn: away from the middles of the triangles. They are
-        // so long, outward, that they reach a tenth of a cell at least.
+        // Hairs at the corners, outward from the triangles' middles. The corners are sewn onto these hairs.
+        // The hairs are long enough to reach at least a tenth of a cell.
         for p in shrunk {
             let outward = unit(minus(p, centre));
             let end = [0, 1, 2].map(|axis| p[axis] + 3f64.sqrt() * 0.1 * f64::from(1 << 24) * outward[axis]);
@@ -182,7 +183,8 @@ fn a_worker_knows_nothing_of_other_solids() {
         [2, 4, 6],
     ];
     let near = solid(corners.collect(), [box_faces.clone(), box_faces].concat());
-    // Each is asked again while the other one's scratch memory is in use, and after its own was released.
+    // Each worker is queried again while the other one's scratch memory is in use, and after its own is
+    // released.
     let [near, far] = [near, far].map(|solid| solid.on(&frame, &Control::default()).unwrap());
     assert_eq!(near.worker().unwrap().root().unwrap().tag(), Tag::Full);
     let (mut near, mut far) = (near.worker().unwrap(), far.worker().unwrap());

@@ -1,5 +1,6 @@
-//! What a mesh says of the cells of a frame, by definition and in integers: slow, and without a rounding that
-//! counts. A sign that doubles show far beyond any rounding error is taken from them, all others are exact.
+//! The verdicts of a mesh about the cells of a frame, by definition and in integers. The oracle is slow, and
+//! no rounding affects it: a sign comes from doubles if it is far beyond any rounding error, else from
+//! integers.
 
 // Each test program uses its own part of this.
 #![allow(dead_code)]
@@ -7,29 +8,29 @@
 use leafless::{FillRule, Frame, TriangleMesh};
 use num_bigint::{BigInt, Sign};
 
-/// Bound of the relative rounding error of any polynomial below, a hundred times over.
+/// A bound of the relative rounding error of every polynomial below, a hundred times too large.
 const SAFE: f64 = 1e-12;
 
-/// What the triangles do to a finest cell.
+/// The contact of the triangles with a finest cell.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Contact {
-    /// None comes near.
+    /// No triangle comes near.
     Clear,
-    /// One comes within the tolerance, but none meets the open cell.
+    /// A triangle comes within the tolerance, but none meets the open cell.
     Near,
-    /// One meets the open cell.
+    /// A triangle meets the open cell.
     Meets,
 }
 
-/// A mesh in finest cells (approximately) and in integers (exactly), from the frame's origin.
+/// A mesh in units of finest cells (approximately) and in integers (exactly), relative to the frame's origin.
 pub struct Oracle {
     pub cells: i64,
     approximate: Vec<[f64; 3]>,
     exact: Vec<[BigInt; 3]>,
-    /// Half a cell in the exact unit.
+    /// Half a cell, in the exact unit.
     half: BigInt,
     triangles: Vec<[usize; 3]>,
-    /// Largest magnitude of a coordinate.
+    /// Largest magnitude of a coordinate, in cells.
     size: f64,
 }
 
@@ -51,7 +52,7 @@ fn sure(x: f64, bound: f64) -> Option<i32> {
     }
 }
 
-/// mantissa · 2^exponent.
+/// A double as mantissa · 2^exponent.
 fn dyadic(x: f64) -> (BigInt, i64) {
     assert!(x.is_finite());
     let bits = x.to_bits();
@@ -105,7 +106,7 @@ impl Oracle {
             approximate,
             size,
         };
-        // A triangle without area bounds nothing: the solid is the same with and without it.
+        // A triangle without area bounds nothing. The solid is the same with and without it.
         let proper = oracle.triangles.iter().copied().filter(|&t| !oracle.is_flat(t)).collect();
         oracle.triangles = proper;
         oracle
@@ -122,8 +123,8 @@ impl Oracle {
         &self.half * k
     }
 
-    /// On which side of the line from `a` to `b`, seen along x, the centre (y, z) lies, shifted by (ε², ε³):
-    /// 1 on the left. 0 only if the line is a point.
+    /// Returns the side of the centre (y, z), shifted by (ε², ε³), relative to the line from `a` to `b` seen
+    /// along x: 1 on the left. It is 0 only if the line is a point.
     fn side(&self, a: usize, b: usize, [y, z]: [i64; 2]) -> i32 {
         let (p, q) = (self.approximate[a], self.approximate[b]);
         let (cy, cz) = (y as f64 + 0.5, z as f64 + 0.5);
@@ -138,14 +139,14 @@ impl Oracle {
         [side, -sign(&ez), sign(&ey)].into_iter().find(|&s| s != 0).unwrap_or(0)
     }
 
-    /// Whether the line along x through the shifted centre (y, z) pierces the triangle, and the sign of its
+    /// If the line along x through the shifted centre (y, z) pierces the triangle, returns the sign of its
     /// normal's x.
     fn pierces(&self, [a, b, c]: [usize; 3], at: [i64; 2]) -> Option<i32> {
         let first = self.side(a, b, at);
         (first != 0 && first == self.side(b, c, at) && first == self.side(c, a, at)).then_some(first)
     }
 
-    /// On which side of the triangle's plane the shifted centre lies: 1 where the normal points.
+    /// Returns the side of the triangle's plane on which the shifted centre lies: 1 where the normal points.
     fn over(&self, t: [usize; 3], at: [i64; 3]) -> i32 {
         let [a, b, c] = t.map(|v| self.approximate[v]);
         let edge = |to: [f64; 3]| [0, 1, 2].map(|i| to[i] - a[i]);
@@ -162,7 +163,7 @@ impl Oracle {
         [sign(&value), x, y, z].into_iter().find(|&s| s != 0).unwrap()
     }
 
-    /// The cells along an axis whose closed extent the triangle may reach.
+    /// Returns the cells along an axis whose closed extent the triangle may reach.
     fn reach(&self, t: [usize; 3], axis: usize) -> std::ops::Range<i64> {
         let at = t.map(|v| self.approximate[v][axis]);
         let margin = 1.0 + SAFE * self.size;
@@ -170,8 +171,8 @@ impl Oracle {
         (low.floor() as i64).clamp(0, self.cells)..(high.ceil() as i64).clamp(0, self.cells)
     }
 
-    /// The winding number of every finest cell's centre, shifted by (ε, ε², ε³), x fastest: by the
-    /// definition, a ray from x = −∞.
+    /// Returns the winding number of every finest cell's centre, shifted by (ε, ε², ε³), x fastest. By the
+    /// definition, it counts along a ray from x = −∞.
     pub fn windings(&self) -> Vec<i32> {
         let n = self.cells;
         let mut windings = vec![0; (n * n * n) as usize];
@@ -193,7 +194,7 @@ impl Oracle {
         windings
     }
 
-    /// What the triangles do to every finest cell, x fastest; `tolerance` in cells.
+    /// Returns the triangles' contact with every finest cell, x fastest; `tolerance` in cells.
     pub fn contacts(&self, tolerance: f64) -> Vec<Contact> {
         let mut contacts = vec![Contact::Clear; (self.cells * self.cells * self.cells) as usize];
         self.descend([0; 3], self.cells, &self.triangles, tolerance, &mut contacts);
@@ -225,9 +226,9 @@ impl Oracle {
         contacts[cell] = if meets { Contact::Meets } else { Contact::Near };
     }
 
-    /// Along each of the axes that can separate the triangle from a cube: how far it lies beyond the cube's
-    /// lower and upper side (from the cube's centre, positive when apart), the sum of the axis' components,
-    /// and the degree of the polynomials.
+    /// For each axis that can separate the triangle from a cube, returns the gap between the two along the
+    /// axis (positive if they are apart), the sum of the magnitudes of the axis' components, and the degree
+    /// of the polynomials.
     fn gaps(&self, t: [usize; 3], at: [i64; 3], size: i64) -> [(f64, f64, i32); 13] {
         let half = size as f64 / 2.0;
         let [a, b, c] = t.map(|v| [0, 1, 2].map(|axis| self.approximate[v][axis] - (at[axis] as f64 + half)));
@@ -239,13 +240,13 @@ impl Oracle {
         })
     }
 
-    /// Whether the triangle keeps more than `tolerance` away from the cube along some axis.
+    /// True if the triangle keeps more than `tolerance` away from the cube along some axis.
     fn is_clear(&self, t: [usize; 3], at: [i64; 3], size: i64, tolerance: f64) -> bool {
         let gaps = self.gaps(t, at, size);
         gaps.iter().any(|&(gap, reach, degree)| gap - tolerance * reach > SAFE * self.size.powi(degree))
     }
 
-    /// Whether the triangle meets the open cell: whether no axis separates them, contact being separation.
+    /// True if the triangle meets the open cell: no axis separates them. Contact counts as separation.
     fn meets(&self, t: [usize; 3], at: [i64; 3]) -> bool {
         let bound = |degree| SAFE * self.size.powi(degree);
         let gaps = self.gaps(t, at, 1);
@@ -265,7 +266,7 @@ impl Oracle {
         })
     }
 
-    /// Whether a point of this winding number is inside.
+    /// True if a point of this winding number is inside.
     pub fn inside(fill: FillRule, winding: i32) -> bool {
         match fill {
             FillRule::NonZero => winding != 0,
@@ -275,7 +276,7 @@ impl Oracle {
     }
 }
 
-/// The thirteen axes of a triangle and a cube, with the degree of what is measured along them.
+/// Returns the thirteen separating axes of a triangle and a cube, each with the degree of a measure along it.
 fn axes<T>(a: &[T; 3], b: &[T; 3], c: &[T; 3]) -> [([T; 3], i32); 13]
 where
     T: Clone + From<i32>,
@@ -292,7 +293,7 @@ where
     })
 }
 
-/// The winding number of points, by rays along x through a grid of bins.
+/// An oracle for the winding number of points, by rays along x through a grid of bins.
 pub struct PointOracle {
     vertices: Vec<[f64; 3]>,
     triangles: Vec<[usize; 3]>,
@@ -361,7 +362,8 @@ impl PointOracle {
     }
 }
 
-/// Exactly: on which side of the line from `a` to `b`, seen along x, `p` lies when shifted by (0, ε, ε²).
+/// Returns, exactly, the side of `p`, shifted by (0, ε, ε²), relative to the line from `a` to `b` seen along
+/// x.
 fn side(a: [f64; 3], b: [f64; 3], p: [f64; 3]) -> i32 {
     let size = [a, b, p].iter().flatten().fold(0.0, |most: f64, x| most.max(x.abs()));
     let estimate = (b[1] - a[1]) * (p[2] - a[2]) - (b[2] - a[2]) * (p[1] - a[1]);
@@ -373,7 +375,7 @@ fn side(a: [f64; 3], b: [f64; 3], p: [f64; 3]) -> i32 {
     })
 }
 
-/// Exactly: on which side of the triangle's plane `p` lies, 1 where the normal points.
+/// Returns, exactly, the side of the triangle's plane on which `p` lies: 1 where the normal points.
 pub fn over(corners: [[f64; 3]; 3], p: [f64; 3]) -> i32 {
     let [a, b, c] = corners;
     let size = corners.iter().flatten().chain(&p).fold(0.0, |most: f64, x| most.max(x.abs()));
@@ -388,7 +390,7 @@ pub fn over(corners: [[f64; 3]; 3], p: [f64; 3]) -> i32 {
     })
 }
 
-/// Exactly: on which side of the triangle's plane (ε, ε², ε³) leads away from it; 0 for a triangle without
+/// Returns, exactly, the side of the triangle's plane to which (ε, ε², ε³) leads; 0 for a triangle without
 /// area.
 pub fn facing(corners: [[f64; 3]; 3]) -> i32 {
     let [a, b, c] = common(corners);
@@ -396,7 +398,7 @@ pub fn facing(corners: [[f64; 3]; 3]) -> i32 {
     cross(&edge(b), &edge(c)).iter().map(sign).find(|&s| s != 0).unwrap_or(0)
 }
 
-/// Points as integers of one unit.
+/// Converts points to integers of one common unit.
 fn common<const N: usize>(points: [[f64; 3]; N]) -> [[BigInt; 3]; N] {
     let points = points.map(|p| p.map(dyadic));
     let unit = points.iter().flatten().map(|x| x.1).min().unwrap();
@@ -408,7 +410,7 @@ fn common<const N: usize>(points: [[f64; 3]; N]) -> [[BigInt; 3]; N] {
     })
 }
 
-/// The oracle itself is checked against shapes whose answers are plain.
+/// Checks of the oracle itself, on shapes whose answers are obvious.
 #[cfg(test)]
 mod tests {
     use super::*;

@@ -1,4 +1,4 @@
-//! Solids of plane faces: volumes that are known, closedness always, and every way to be refused.
+//! Solids of plane faces: known volumes, closedness in every case, and every refusal.
 
 #![cfg(feature = "std")]
 
@@ -6,7 +6,7 @@ use leafless::error::{MeshError, PolyhedronError};
 use leafless::mesh::{Polyhedron, PolyhedronArrays};
 use leafless::{Error, FillRule};
 
-/// Arrays to be filled part by part.
+/// The arrays of a polyhedron, filled part by part.
 #[derive(Debug, Clone, Default, PartialEq)]
 struct Arrays {
     vertices: Vec<[f64; 3]>,
@@ -17,7 +17,7 @@ struct Arrays {
     solids: Vec<u32>,
 }
 
-/// The loops of a face, outer loop first.
+/// The loops of a face, with the outer loop first.
 type Face = Vec<Vec<u32>>;
 
 impl Arrays {
@@ -26,7 +26,7 @@ impl Arrays {
         Arrays { loops, faces, shells, solids, ..Default::default() }
     }
 
-    /// One solid of shells that have vertices of their own.
+    /// One solid, made of shells with their own vertices.
     fn solid(shells: &[(Vec<[f64; 3]>, Vec<Face>)]) -> Arrays {
         let mut arrays = Arrays::new();
         shells.iter().for_each(|(vertices, faces)| arrays.shell(vertices, faces));
@@ -62,7 +62,8 @@ impl Arrays {
         }
     }
 
-    /// The polyhedron, which is closed, and has as many triangles as its loops demand.
+    /// Builds the polyhedron. Checks that it is closed and has the number of triangles that its loops
+    /// require.
     #[track_caller]
     fn made(&self) -> Polyhedron {
         let polyhedron = Polyhedron::new(&self.view()).unwrap();
@@ -93,8 +94,8 @@ fn turned(faces: &[Face]) -> Vec<Face> {
     faces.iter().map(|face| face.iter().map(reversed).collect()).collect()
 }
 
-/// A prism over a polygon that turns counter-clockwise, with holes that turn clockwise; `place` takes its
-/// coordinates to space without a reflection.
+/// A prism over a counter-clockwise polygon with clockwise holes. `place` maps its coordinates to space
+/// without a reflection.
 fn prism(
     polygon: &[Vec<[f64; 2]>],
     [low, high]: [f64; 2],
@@ -133,7 +134,7 @@ fn block(low: [f64; 3], size: [f64; 3]) -> (Vec<[f64; 3]>, Vec<Face>) {
     prism(&[rectangle([x, y], [size[0], size[1]])], [z, z + size[2]], upright)
 }
 
-/// The same shell inside out: a void.
+/// The same shell with reversed orientation: a void.
 fn void((vertices, faces): (Vec<[f64; 3]>, Vec<Face>)) -> (Vec<[f64; 3]>, Vec<Face>) {
     (vertices, turned(&faces))
 }
@@ -216,7 +217,7 @@ fn nested_voids_and_several_solids() {
 
 #[test]
 fn voids_may_touch_their_shell() {
-    // The void's first vertices lie in the outer shell's faces and edges, its last ones within.
+    // The void's first vertices lie in the outer shell's faces and edges, its last ones inside.
     let pyramid = |apex: [f64; 3]| {
         let vertices = vec![[0.0, 4.0, 0.0], [8.0, 4.0, 0.0], [8.0, 4.0, 8.0], [0.0, 4.0, 8.0], apex];
         let faces = [vec![3, 2, 1, 0], vec![0, 1, 4], vec![1, 2, 4], vec![2, 3, 4], vec![3, 0, 4]];
@@ -225,7 +226,7 @@ fn voids_may_touch_their_shell() {
     let solid = |apex: [f64; 3]| {
         let (vertices, faces) = pyramid(apex);
         let volume = (apex[1] - 4.0) * 64.0 / 3.0;
-        // Its base turns counter-clockwise seen from above, where the apex may be.
+        // Seen from above, where the apex may be, its base is counter-clockwise.
         let faces = if volume > 0.0 { turned(&faces) } else { faces };
         (Arrays::solid(&[block([0.0; 3], [8.0; 3]), (vertices, turned(&faces))]), volume.abs())
     };
@@ -292,7 +293,7 @@ fn faces_that_are_not_convex() {
 #[test]
 fn regular_solids() {
     let phi = (1.0 + 5f64.sqrt()) / 2.0;
-    // All faces: sets of vertices that are the farthest in one direction, sorted around it.
+    // All faces: sets of vertices farthest in one direction, sorted around it.
     let hull = |vertices: &[[f64; 3]], normals: &[[f64; 3]]| -> Vec<Face> {
         let dot = |a: [f64; 3], b: [f64; 3]| a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
         let cross = |a: [f64; 3], b: [f64; 3]| {
@@ -356,8 +357,8 @@ impl Random {
         low + self.below((high - low + 1) as u32) as i32
     }
 
-    /// A polygon around a point, seen from which its corners come one after the other: at most `large` away
-    /// and nowhere nearer than half of `small`, in integers.
+    /// A star-shaped polygon around a point, in integers: its corners are in angular order. They are at most
+    /// `large` away, and no part of the polygon is nearer than half of `small`.
     fn star(&mut self, [x, y]: [i32; 2], small: i32, large: i32) -> Vec<[f64; 2]> {
         let directions = [
             [2, 0],
@@ -393,7 +394,7 @@ fn doubled_area(points: &[[f64; 2]]) -> f64 {
     pairs.map(|(a, b)| a[0] * b[1] - a[1] * b[0]).sum()
 }
 
-/// A prism over a random polygon with holes, moved by a random matrix of integers; six times its volume.
+/// A prism over a random polygon with holes, moved by a random integer matrix; and six times its volume.
 fn random_prism(random: &mut Random) -> ((Vec<[f64; 3]>, Vec<Face>), f64) {
     let mut polygon = vec![random.star([0, 0], 100, 400)];
     for x in -1..=1 {
@@ -450,14 +451,14 @@ fn many_voids() {
     let side = f64::from(4 * n);
     let expected = side * side * side - 8.0 * f64::from(n * n * n);
     assert_eq!(Arrays::solid(&shells).made().mesh().volume(), expected);
-    // The last one is not where it should be, though within the bounds: in a dent of the outer shell.
+    // The last void is misplaced, though within the bounds: in a dent of the outer shell.
     let dented = prism(
         &[vec![[0.0, 0.0], [48.0, 0.0], [48.0, 48.0], [44.0, 48.0], [44.0, 44.0], [0.0, 44.0]]],
         [0.0, 48.0],
         upright,
     );
     shells[0] = dented;
-    // Of the shells in the dent, the first: x < 11, y = 11, z = 0.
+    // The first of the shells in the dent: x < 11, y = 11, z = 0.
     assert_eq!(Arrays::solid(&shells).refused(), PolyhedronError::VoidOutside { shell: 1 + 11 * 12 });
 }
 
@@ -476,10 +477,10 @@ fn tolerance() {
     let polyhedron = Polyhedron::with_tolerance(&arrays.view(), 1.2e-8).unwrap();
     assert_eq!(polyhedron.deviation(), deviation);
     polyhedron.mesh().check_closed(FillRule::NonZero).unwrap();
-    // Half of it is within the tolerance that is a fraction of the extent.
+    // Half of it is within the tolerance, a fraction of the extent.
     vertices[1][2] = 1.0 + 1.9e-8;
     Arrays::solid(&[(vertices, faces)]).made();
-    // None at all, for coordinates that allow it.
+    // No tolerance at all, for coordinates that allow it.
     let exact = Arrays::solid(&[block([0.0; 3], [10.0, 10.0, 1.0])]);
     Polyhedron::with_tolerance(&exact.view(), 0.0).unwrap();
     for bad in [-1e-300, f64::NAN, f64::NEG_INFINITY] {
@@ -488,7 +489,7 @@ fn tolerance() {
     }
 }
 
-/// A block of whose faces 0 is the bottom, 1 the top, both with a hole.
+/// A block with a hole through its bottom (face 0) and top (face 1).
 fn drilled() -> Arrays {
     let shape = [rectangle([0.0, 0.0], [4.0, 4.0]), hole([1.0, 1.0], [2.0, 2.0])];
     Arrays::solid(&[prism(&shape, [0.0, 2.0], upright)])
@@ -539,7 +540,7 @@ fn wrong_corners_and_edges() {
     assert_eq!(damaged(&|a| a.corners[5] = 16), Vertex { corner: 5, vertex: 16, vertices: 16 });
     assert_eq!(damaged(&|a| a.corners[1] = 6), NoLength { face: 0, from: 6, to: 6 });
     assert_eq!(damaged(&|a| a.vertices[12] = a.vertices[14]), NoLength { face: 0, from: 14, to: 12 });
-    // The first loop cut in two: of two corners each, and of three and one.
+    // The first loop is cut in two: of two corners each, and of three and one.
     assert_eq!(
         damaged(&|a| {
             a.loops.insert(1, 2);
@@ -556,7 +557,7 @@ fn wrong_corners_and_edges() {
     );
     // A face left out: its edges are open, the first of them in the order of the faces.
     assert_eq!(damaged(&|a| cut(a, 9)), Open { shell: 0, face: 0, from: 8, to: 14 });
-    // One side turned over.
+    // One side is inverted.
     let side = damaged(&|a| a.corners[16..20].reverse());
     assert_eq!(side, Unoriented { shell: 0, face: 0, other: 2, from: 2, to: 0 });
     // A side twice.
@@ -577,12 +578,12 @@ fn wrong_corners_and_edges() {
     assert!(matches!(halves, Open { shell: 0, face: 0, .. }));
 }
 
-/// Adds a loop to the first face's.
+/// Adjusts the faces' offsets for one more loop in the first face.
 fn rise(faces: &mut [u32]) {
     faces[1..].iter_mut().for_each(|face| *face += 1);
 }
 
-/// Removes a face of one loop of four corners, the last.
+/// Removes the last face, which has one loop of four corners.
 fn cut(arrays: &mut Arrays, face: usize) {
     assert_eq!(face, arrays.faces.len() - 2);
     arrays.corners.truncate(arrays.corners.len() - 4);
@@ -596,7 +597,7 @@ fn wrong_faces() {
     use PolyhedronError::*;
     let of = |polygon: &[Vec<[f64; 2]>]| Arrays::solid(&[prism(polygon, [0.0, 2.0], upright)]).refused();
     let outer = rectangle([0.0, 0.0], [8.0, 8.0]);
-    // The bottom runs backwards: its edges end where those of the polygon begin.
+    // The bottom runs backwards. Its edges end where those of the polygon begin.
     let crossed = of(&[vec![[0.0, 0.0], [8.0, 0.0], [0.0, 8.0], [7.0, 9.0]]]);
     assert!(matches!(crossed, Crossing { face: 0, .. }), "{crossed:?}");
     let touching = of(&[vec![[0.0, 0.0], [8.0, 0.0], [8.0, 8.0], [4.0, 0.0], [0.0, 8.0]]]);
@@ -638,7 +639,7 @@ fn wrong_shells() {
     let ring = prism(&shape, [0.0, 9.0], upright);
     let arrays = Arrays::solid(&[ring.clone(), void(block([3.0; 3], [2.0; 3]))]);
     assert_eq!(arrays.refused(), VoidOutside { shell: 1 });
-    // Nowhere but on the surface: whether such a void lies within is not decided, and it is let through.
+    // The void lies only on the surface. Whether it is inside is not decided, and it is accepted.
     Arrays::solid(&[block([0.0; 3], [8.0; 3]), void(block([0.0; 3], [8.0; 3]))]).made();
 }
 
@@ -659,7 +660,7 @@ fn what_meshes_refuse() {
     assert!(matches!(missing, Error::Polyhedron(PolyhedronError::Offsets { array: "loops", index: 0, .. })));
 }
 
-/// Arrays damaged at random are refused or sound, and nothing else.
+/// Randomly damaged arrays are either refused or sound.
 #[test]
 fn random_damage() {
     let mut random = Random(11);
@@ -704,7 +705,7 @@ fn random_damage() {
     assert!(sound > 300 && refused > 10_000, "{sound} {refused}");
 }
 
-/// A block of so many square holes in rows, from top to bottom.
+/// A block with `holes` square through holes in rows.
 fn plate(holes: usize) -> Arrays {
     let mut vertices = vec![];
     let square = |vertices: &mut Vec<[f64; 3]>, [x, y]: [f64; 2], edge: [f64; 2]| -> [Vec<u32>; 2] {
@@ -738,7 +739,7 @@ fn plate(holes: usize) -> Arrays {
     Arrays::solid(&[(vertices, faces)])
 }
 
-/// What is written as polygons is read back as the same solid.
+/// A solid written as polygons is read back as the same solid.
 #[test]
 fn polygons_are_written() {
     use leafless::exchange::{MeshFormat, MeshOptions, WriteOptions, read_mesh, write_polygons};

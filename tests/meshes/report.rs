@@ -1,4 +1,4 @@
-//! What is told about meshes, and where their defects lie, against the definitions.
+//! Reports about meshes, and the places of their defects, against the definitions.
 
 use crate::common;
 use leafless::TriangleMesh;
@@ -30,7 +30,7 @@ fn mesh(facets: &[Vec<[[f64; 3]; 3]>]) -> TriangleMesh {
     TriangleMesh::from_facets(facets.concat()).unwrap()
 }
 
-/// The counts of a mesh that are its own, and not those of how it came in.
+/// Returns the counts that depend on the mesh alone, and not on its construction.
 fn counts(mesh: &TriangleMesh) -> [u64; 10] {
     let MeshReport {
         boundary_edges,
@@ -68,14 +68,14 @@ fn known_meshes() {
     // Two holes: a triangle's and a square's, in different sides.
     let holed = a[1..10].to_vec();
     assert_eq!(counts(&mesh(&[holed.clone(), b.clone()])), [7, 2, 0, 0, 0, 0, 0, 2, 1, 0]);
-    // The two triangles that meet in a corner only: two loops, not one in the shape of an eight.
+    // The two triangles that meet only in a corner: two loops, and not one in the shape of an eight.
     let corner = [&a[1..6], &a[7..]].concat();
     assert_eq!(counts(&mesh(&[corner])), [6, 2, 0, 0, 0, 0, 0, 1, 1, 0]);
-    // One facet turned over.
+    // One facet inverted.
     let mut one = a.clone();
     one[0].swap(0, 1);
     assert_eq!(counts(&mesh(&[one])), [0, 0, 3, 0, 0, 0, 0, 1, 1, 0]);
-    // One facet twice, thrice, and once more from the other side.
+    // One facet twice, three times, and once more with reversed orientation.
     let again = |facets: &[[[f64; 3]; 3]]| counts(&mesh(&[a.clone(), facets.to_vec()]));
     assert_eq!(again(&a[..1]), [3, 1, 0, 3, 1, 0, 0, 1, 1, 0]);
     assert_eq!(again(&[a[0], a[0]]), [0, 0, 3, 3, 2, 0, 0, 1, 1, 0]);
@@ -107,7 +107,7 @@ fn block(low: [f64; 3], high: [f64; 3]) -> Vec<[[f64; 3]; 3]> {
     cube([0.0; 3]).into_iter().map(|facet| facet.map(place)).collect()
 }
 
-/// Bodies that overlap, and those that may.
+/// Returns the number of bodies that overlap, and the number of bodies that may.
 fn overlapping(facets: &[Vec<[[f64; 3]; 3]>]) -> [u64; 2] {
     let report = mesh(facets).report().unwrap();
     [report.overlapping_bodies, report.undecided_bodies]
@@ -129,7 +129,7 @@ fn bodies_that_overlap() {
     assert_eq!(overlapping(&[base.clone(), moved([5.0, 0.0, 0.0])]), [0, 0]);
     assert_eq!(overlapping(&[base.clone(), moved([1.0, 0.25, 0.25])]), [0, 0]);
     assert_eq!(overlapping(&[base.clone(), moved([1.0, 1.0, 1.0])]), [0, 0]);
-    // Inside, in one sense and in the other.
+    // Inside, with the same and with reversed orientation.
     assert_eq!(overlapping(&[one.clone(), two.clone()]), [2, 0]);
     assert_eq!(overlapping(&[turned(&one), turned(&two)]), [2, 0]);
     assert_eq!(overlapping(&[turned(&one), two.clone()]), [0, 0]);
@@ -145,10 +145,10 @@ fn bodies_that_overlap() {
     let corner = vec![[o, y, x], [o, x, z], [x, y, z], [y, o, z]];
     assert_eq!(overlapping(&[cube([0.0; 3]), corner.clone()]), [2, 0]);
     assert_eq!(overlapping(&[cube([0.0; 3]), turned(&corner)]), [0, 0]);
-    // A peg that fits into a cavity exactly: to tell needs more than signs.
+    // A peg that fits into a cavity exactly. Signs alone do not decide this case.
     let peg = block([-1.0, -1.0, -0.5], [1.0, 1.0, 0.5]);
     assert_eq!(overlapping(&[two.clone(), turned(&one), peg]), [0, 2]);
-    // Of an open body nothing is said.
+    // Open bodies are not examined for overlaps.
     assert_eq!(overlapping(&[two[1..].to_vec(), one.clone()]), [0, 0]);
     // Far away, where coordinates are rounded.
     let far = |facets: &[[[f64; 3]; 3]]| -> Vec<[[f64; 3]; 3]> {
@@ -158,7 +158,7 @@ fn bodies_that_overlap() {
     assert_eq!(overlapping(&[far(&two), far(&turned(&one))]), [0, 0]);
 }
 
-/// A block whose sides are grids of so many squares along each edge.
+/// A block whose sides are grids of `count` squares along each edge.
 fn divided(low: [f64; 3], high: [f64; 3], count: u32) -> Vec<[[f64; 3]; 3]> {
     let mut facets = vec![];
     for [a, b, c] in block(low, high).chunks_exact(2).map(|pair| pair[0]) {
@@ -183,8 +183,8 @@ fn divided(low: [f64; 3], high: [f64; 3], count: u32) -> Vec<[[f64; 3]; 3]> {
     facets
 }
 
-/// Hundreds of bodies in one of many triangles: each is decided, for which all triangles of the large one
-/// need not be looked at each time.
+/// Hundreds of bodies inside one body of many triangles. Each is decided without an examination of all
+/// triangles of the large body.
 #[test]
 fn many_bodies_in_a_large_one() {
     let outer = divided([0.0; 3], [64.0; 3], 64);
@@ -217,7 +217,7 @@ fn many_bodies_in_a_large_one() {
     assert_eq!(all(&mut (0..1000).flat_map(touching)), [0, 0]);
 }
 
-/// Blocks with whole coordinates, where all can be told cell by cell.
+/// Blocks with integer coordinates, where a cell-by-cell count decides everything.
 #[test]
 fn random_blocks_that_overlap() {
     let mut random = Random(3);
@@ -284,12 +284,12 @@ fn faces_that_are_not_flat() {
         let mesh = read_obj(text.as_bytes()).unwrap();
         let report = mesh.report().unwrap();
         assert_eq!(mesh.clone().sewn().unwrap().report().unwrap().polygons, report.polygons);
-        // What is moved is another surface, of triangles.
+        // A moved mesh is another surface, of triangles.
         assert_eq!(mesh.transformed(|p| p).unwrap().report().unwrap().polygons, 0);
         (report.polygons, report.bent_polygons, report.polygon_deviation)
     };
     assert_eq!(report(0.0, ""), (3, 0, 0.0));
-    // The plane of a square with the heights 0, 0, z, 0 has its corners z/4 above and below, but for the
+    // The plane of a square with the heights 0, 0, z, 0 lies z/4 from its corners, above and below, up to the
     // tilt.
     let (polygons, bent, deviation) = report(0.25, "");
     assert_eq!((polygons, bent), (3, 2));
@@ -307,7 +307,7 @@ fn the_order_of_questions_does_not_matter() {
     assert!(second.check_closed(leafless::FillRule::NonZero).is_err());
     assert_eq!(second.report().unwrap(), report);
     assert_eq!(second.clone().report().unwrap(), report);
-    // What is made of a mesh is looked at anew.
+    // A mesh made from another mesh is examined anew.
     let closed = second.transformed(|[x, y, z]| [x, y, 3.0 * f64::from(z >= 3.0)]).unwrap();
     assert_ne!(closed.report().unwrap(), report);
 }
@@ -316,7 +316,7 @@ fn the_order_of_questions_does_not_matter() {
 fn known_places() {
     let a = cube([0.0; 3]);
     let mut far = cube([10.0, 20.0, 30.0]);
-    // A hole of one triangle, one of two, and a facet turned over elsewhere.
+    // A hole of one triangle, one of two, and an inverted facet elsewhere.
     far.remove(0);
     let holed = [&a[..4], &a[6..]].concat();
     let mut odd = cube([50.0; 3]);
@@ -328,7 +328,7 @@ fn known_places() {
     assert_eq!(
         shapes,
         [
-            // Both as large; the one of four edges first.
+            // Both are equally large. The one with four edges comes first.
             (Hole, 4, ([0.0, 0.0, 0.0], [1.0, 0.0, 1.0])),
             (Hole, 3, ([10.0, 20.0, 30.0], [11.0, 21.0, 30.0])),
             (Misoriented, 3, ([50.0, 51.0, 50.0], [51.0, 51.0, 51.0])),
@@ -345,7 +345,7 @@ fn known_places() {
     assert_eq!(mesh(&[a]).defects(9).unwrap(), []);
 }
 
-/// All sets of items that hang together over vertices.
+/// Returns all sets of items that are connected by common vertices.
 fn clusters(items: &[Vec<u32>]) -> Vec<Vec<usize>> {
     let mut label: Vec<usize> = (0..items.len()).collect();
     loop {
@@ -366,10 +366,10 @@ fn clusters(items: &[Vec<u32>]) -> Vec<Vec<usize>> {
     sets.filter(|set: &Vec<usize>| !set.is_empty()).collect()
 }
 
-/// The triangles that use an edge, and whether they run from its lower vertex to its higher one.
+/// The triangles that use an edge, each with whether it runs from the edge's lower vertex to the higher one.
 type Uses = Vec<(usize, bool)>;
 
-/// The report's counts and the defects but for holes, by their definitions.
+/// Returns the report's counts, and the defects except holes, by their definitions.
 fn slow(mesh: &TriangleMesh) -> ([u64; 10], Vec<MeshDefect>) {
     let (vertices, triangles) = (mesh.vertices(), mesh.triangles());
     let mut edges: BTreeMap<(u32, u32), Uses> = BTreeMap::new();
@@ -403,7 +403,7 @@ fn slow(mesh: &TriangleMesh) -> ([u64; 10], Vec<MeshDefect>) {
         [u[1] * v[2] - u[2] * v[1], u[2] * v[0] - u[0] * v[2], u[0] * v[1] - u[1] * v[0]]
     };
     let flat: Vec<Vec<u32>> = triangles.iter().filter(|t| cross(t) == [0.0; 3]).map(|t| t.to_vec()).collect();
-    // Bodies hang together over edges.
+    // Bodies are connected over edges.
     let of_edges = |t: &[u32; 3]| -> Vec<u32> {
         let number = |a: u32, b: u32| edges.keys().position(|&k| k == (a.min(b), a.max(b))).unwrap() as u32;
         vec![number(t[0], t[1]), number(t[1], t[2]), number(t[2], t[0])]
@@ -488,7 +488,7 @@ fn random_soups_agree_with_the_definitions() {
         let mesh = TriangleMesh::from_facets(&facets).unwrap();
         let (mut expected, mut others) = slow(&mesh);
         let defects = mesh.defects(usize::MAX).unwrap();
-        // Holes: each is a closed walk, and together they have all open edges.
+        // Each hole is a closed walk, and together the holes contain all open edges.
         let loops: Vec<_> = defects.iter().filter(|d| d.kind == DefectKind::Hole).collect();
         assert!(loops.iter().all(|hole| hole.count >= 3));
         assert_eq!(loops.iter().map(|hole| hole.count).sum::<u64>(), expected[0]);
@@ -536,7 +536,7 @@ fn a_real_file_with_holes() {
     let holes = mesh.defects(5).unwrap();
     assert!(holes.iter().all(|hole| hole.kind == DefectKind::Hole));
     assert_eq!(holes.iter().map(|hole| hole.count).sum::<u64>(), 223);
-    // The four large ones lie in the base.
+    // The four large holes lie in the base.
     let high: Vec<bool> = holes.iter().map(|hole| hole.bounds.1[1] > 0.04).collect();
     assert_eq!(high, [false, false, false, false, true]);
 }
@@ -552,7 +552,7 @@ fn real_files() {
         ("fandisk.obj", [0, 0, 0, 0, 0, 0, 0, 1, 0, 0]),
         ("rocker-arm.obj", [0, 0, 0, 0, 0, 0, 0, 1, 0, 0]),
         ("spot.obj", [0, 0, 0, 0, 0, 0, 0, 1, 0, 0]),
-        // Bodies that touch each other in edges, and none that is open.
+        // Bodies that touch each other in edges, all closed.
         ("cycloidal.ply", [0, 0, 0, 242, 0, 0, 0, 112, 0, 0]),
     ];
     for (name, expected) in known {

@@ -12,7 +12,7 @@ pub fn mesh(soup: &Soup) -> TriangleMesh {
     TriangleMesh::from_facets(soup).unwrap()
 }
 
-/// Faces outward for min < max on every axis.
+/// A block with outward faces, if min < max on every axis.
 pub fn block(min: [f64; 3], max: [f64; 3]) -> Soup {
     let corner = |i: usize| [0, 1, 2].map(|axis| if i >> axis & 1 != 0 { max[axis] } else { min[axis] });
     let faces = [[0, 4, 6, 2], [1, 3, 7, 5], [0, 1, 5, 4], [2, 6, 7, 3], [0, 2, 3, 1], [4, 5, 7, 6]];
@@ -20,7 +20,8 @@ pub fn block(min: [f64; 3], max: [f64; 3]) -> Soup {
     quads.flat_map(|[a, b, c, d]| [[a, b, c], [a, c, d]]).collect()
 }
 
-/// Outward whatever the order of the corners; nothing is promised for flat ones.
+/// A tetrahedron with outward faces for any order of the corners. Flat tetrahedra have no defined
+/// orientation.
 pub fn tetrahedron(corners: [[f64; 3]; 4]) -> Soup {
     let [a, b, c, d] = corners;
     let edge = |to: [f64; 3]| [0, 1, 2].map(|i| to[i] - a[i]);
@@ -47,8 +48,8 @@ pub fn octahedron(centre: [f64; 3], radius: f64) -> Soup {
         .collect()
 }
 
-/// A prism over a counter-clockwise polygon around `centre` (which every edge sees from its left), from z =
-/// low to high.
+/// A prism over a counter-clockwise polygon around `centre`, from z = low to high. Every edge of the polygon
+/// sees `centre` on its left.
 pub fn prism(polygon: &[[f64; 2]], centre: [f64; 2], low: f64, high: f64) -> Soup {
     let mut soup = Soup::new();
     for (i, &a) in polygon.iter().enumerate() {
@@ -90,7 +91,7 @@ pub fn moved(soup: &Soup, f: impl Fn([f64; 3]) -> [f64; 3]) -> Soup {
     soup.iter().map(|facet| facet.map(&f)).collect()
 }
 
-/// Closed tetrahedra of random corners.
+/// Closed tetrahedra with random corners.
 pub fn tetrahedra(
     random: &mut Random,
     count: usize,

@@ -1,4 +1,4 @@
-//! Solids that are split to a geometric tolerance.
+//! Solids split to a geometric tolerance.
 
 use crate::common::alone;
 use leafless::octree::Cursor;
@@ -16,7 +16,7 @@ fn turned_block() -> Csg {
     block.difference(&bore).unwrap().placed(&Affine::new(rows).unwrap()).unwrap()
 }
 
-/// How far the sides of the slabs of a cell are apart, in model units; infinite if nothing is known.
+/// Returns the distance between the sides of a cell's slabs, in model units; infinite without slabs.
 fn thickness<W: Worker>(worker: &mut W, cell: Cell, part: &W::Part) -> f64 {
     let half = 0.5 * worker.frame().edge() / (1u64 << cell.level) as f64;
     let Some(enclosure) = worker.enclosure(cell, part).unwrap() else { return f64::INFINITY };
@@ -26,9 +26,9 @@ fn thickness<W: Worker>(worker: &mut W, cell: Cell, part: &W::Part) -> f64 {
         .fold(0.0, f64::max)
 }
 
-/// Walks through the solid beside an octree of its adaptive form: each cell of the octree is what the solid
-/// says, and each undecided one above the finest level is known to the tolerance. Eight equal cells are one
-/// in an octree: there the cursor stays above (`is_below`).
+/// Walks through the solid and the octree of its adaptive form together. Each cell of the octree has the
+/// solid's verdict, and each undecided cell above the finest level is known to the tolerance. An octree
+/// merges eight equal cells into one: there the cursor stays above (`is_below`).
 fn check<W: Worker>(
     worker: &mut W,
     (cell, verdict): (Cell, Verdict<W::Part>),
@@ -116,7 +116,7 @@ fn what_knows_nothing_is_split_as_ever() {
     }
 }
 
-/// Where a mesh and a ball meet, both are open in a cell, and what each knows of it is joined.
+/// Where a mesh and a ball meet, both are open in a cell. The cell combines the enclosures of both.
 #[test]
 fn expressions_of_meshes_and_half_spaces_end_where_both_are_known() {
     let vertices = (0..8).map(|k| [0, 1, 2].map(|axis| f64::from(k >> axis & 1))).collect();
@@ -128,7 +128,7 @@ fn expressions_of_meshes_and_half_spaces_end_where_both_are_known() {
     let frame = Frame::new([-0.77; 3], 2.7, 14).unwrap();
     let adaptive = Adaptive::new(part, 1e-3).unwrap();
     let tree = build(&adaptive, &frame, Rule::Certified, &alone()).unwrap();
-    // Nothing that is faster than splitting gets past the tolerance.
+    // Shortcuts for faster builds respect the tolerance, too.
     assert_eq!(build(&SplitCounter::new(adaptive), &frame, Rule::Certified, &alone()).unwrap(), tree);
     // The curves where the mesh meets the ball take some ten thousand cells by verdicts.
     let finest = |tree: &Octree| tree.statistics().levels()[14].partial;

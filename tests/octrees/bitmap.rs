@@ -1,4 +1,4 @@
-//! The cells of a box as bits, against dense arrays, and of damaged trees.
+//! The cells of a box as bits, against dense arrays and for damaged trees.
 
 use crate::aligned::Aligned;
 use crate::common::{Dense, Random, alone, cases, shapes};
@@ -6,7 +6,8 @@ use leafless::{Cell, Control, Csg, Error, Frame, Octree, Rule, Tag, build, compa
 use proptest::prelude::*;
 use std::sync::atomic::AtomicBool;
 
-/// All that is asked, with words that must be overwritten: the words a row, and both planes.
+/// Queries both planes into words that must be overwritten. Returns the number of words a row, and both
+/// planes.
 fn bitmap(
     tree: &Octree,
     level: u8,
@@ -41,7 +42,7 @@ fn check(tree: &Octree, dense: &Dense, level: u8, min: [u32; 3], max: [u32; 3], 
             }
         }
     }
-    // Nothing stands beyond the rows.
+    // Bits beyond the rows are zero.
     let count = |plane: &[u64]| plane.iter().map(|word| word.count_ones()).sum::<u32>();
     assert_eq!([count(&inner), count(&outer)], bits);
 }
@@ -124,7 +125,7 @@ fn what_is_refused() {
     assert!(matches!(result, Err(Error::Cancelled)));
 }
 
-/// Bytes in which anything may stand below the table of sections.
+/// Damaged files with arbitrary bytes below the section table.
 #[test]
 fn damaged_trees() {
     let frame = Frame::new([-1.0; 3], 2.0, 7).unwrap();

@@ -29,7 +29,7 @@ fn not(a: &Octree) -> Octree {
     complement(a.view(), &alone()).unwrap()
 }
 
-/// Asserts that `found` is the one tree that `expected` has.
+/// Asserts that `found` is `expected`, in its only canonical form.
 fn assert_canonical(found: &Octree, expected: &Octree) {
     found.view().check().unwrap();
     assert_eq!(found, expected);
@@ -39,7 +39,7 @@ fn assert_canonical(found: &Octree, expected: &Octree) {
     assert_eq!(found.is_binary(), expected.is_binary());
 }
 
-/// Every operation, both ways round, on raw, coded and mixed operands.
+/// Checks every operation, with the operands in both orders, on raw, coded and mixed operands.
 fn compare_all(da: &Dense, db: &Dense) {
     let (a, b) = (da.octree(), db.octree());
     assert_is(&a, da);
@@ -218,8 +218,8 @@ fn refusals() {
     }
 }
 
-/// Runs `work` with limits one short of, at, and above what its result takes; `brick` is the size of a brick
-/// of the working form.
+/// Runs `work` with limits one below, at and above the need of its result. `brick` is the size of a brick in
+/// the working form.
 fn limit(threads: usize, brick: u64, work: &dyn Fn(&Control<'_>) -> Result<Octree, Error>) {
     let free = Control::threads(threads);
     let tree = work(&free).unwrap();
@@ -278,10 +278,10 @@ fn a_flag_that_is_already_set_stops_everything() {
     assert!(complement(tree.view(), &control).is_ok());
 }
 
-/// Entries of both operands from which the Booleans use threads; the test below must stay above it.
+/// Number of entries of both operands from which the Booleans use threads. The test below must exceed it.
 const WORTH_THREADS: u64 = 1 << 21;
 
-/// Two large hollow balls, a shade apart, so that they nearly coincide all around.
+/// Two large hollow balls, slightly shifted, so that they nearly coincide all around.
 fn large_pair(rule: Rule) -> (Octree, Octree) {
     let frame = lattice_frame(11);
     let ball = |x: f64, radius: f64| {
@@ -295,7 +295,7 @@ fn large_pair(rule: Rule) -> (Octree, Octree) {
     (a, b)
 }
 
-/// The sampled pair, made once.
+/// The sampled pair, built once.
 fn sampled_pair() -> (Octree, Octree) {
     static PAIR: OnceLock<(Octree, Octree)> = OnceLock::new();
     PAIR.get_or_init(|| large_pair(Rule::Sampled)).clone()
@@ -317,7 +317,7 @@ fn threads_agree(rule: Rule) {
             same(&one, &op(a.view(), b.view(), &Control::threads(threads)).unwrap());
         }
         same(&one, &op(a.view(), coded.view(), &Control::threads(2)).unwrap());
-        // Too many cells for a dense array; points of both, of one and of none.
+        // Too many cells for a dense array. The points lie in both operands, in one, and in none.
         let mut random = Random(7);
         for _ in 0..200_000 {
             let at = [0; 3].map(|_| random.below(2048) as u32);
@@ -388,7 +388,7 @@ proptest! {
     }
 }
 
-/// On trees that are large enough for a dictionary, Booleans through it are those of raw bricks.
+/// On trees large enough for a dictionary, dictionary-coded Booleans equal Booleans on raw bricks.
 #[test]
 fn dictionary_coded_operands_give_the_same() {
     let frame = Frame::new([0.0; 3], 1.0, 8).unwrap();

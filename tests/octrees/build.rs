@@ -1,4 +1,4 @@
-//! The laws of solids, and what the builder makes of them, against exact arithmetic.
+//! The laws of solids, and the builder's results, against exact arithmetic.
 
 use crate::common::cubes::{Cubes, Plain};
 use crate::common::exact::Definition;
@@ -25,7 +25,7 @@ fn made<S: Solid>(solid: &S, frame: &Frame, rule: Rule) -> Octree {
     tree
 }
 
-/// A shape by its definition, and as the library has it.
+/// Builds the library's solid for a definition.
 fn shape(definition: Definition) -> AnySolid {
     match definition {
         Definition::Ball { centre, radius } => AnySolid::new(Csg::ball(centre, radius).unwrap()),
@@ -34,7 +34,7 @@ fn shape(definition: Definition) -> AnySolid {
     }
 }
 
-/// Everything that the laws say of a solid whose verdicts should be the best possible ones.
+/// Checks all laws for a solid whose verdicts should be the best possible ones.
 fn assert_exact(definition: Definition, frame: &Frame) {
     let depth = frame.depth();
     let truth = Dense::from_fn(depth, |at| definition.tag(frame, at));
@@ -42,7 +42,7 @@ fn assert_exact(definition: Definition, frame: &Frame) {
         Tag::Partial if definition.sampled(frame, at) => Tag::Full,
         Tag::Partial => Tag::Empty,
         tag => {
-            // The shift never leads out of a cell that lies inside, nor into one that does not.
+            // The shift never leads out of an inside cell, nor into an outside cell.
             assert_eq!(definition.sampled(frame, at), tag == Tag::Full);
             tag
         }
@@ -73,7 +73,7 @@ fn assert_exact(definition: Definition, frame: &Frame) {
     laws(&solid, frame, &truth);
 }
 
-/// Verdicts by splitting from the root, into an array: no builder.
+/// Collects the verdicts into an array by splits from the root, without a builder.
 fn descend(worker: &mut impl Worker) -> Dense {
     fn walk<W: Worker>(worker: &mut W, cell: Cell, part: &W::Part, out: &mut Dense) {
         let mark = worker.mark();
@@ -103,7 +103,8 @@ fn descend(worker: &mut impl Worker) -> Dense {
     out
 }
 
-/// The verdict of one cell by replaying the splits on the way to it, with the worker's memory as it is found.
+/// Returns the verdict of one cell by replaying the splits on the way to it. The worker's memory is used as
+/// it is.
 fn replay(worker: &mut impl Worker, cell: Cell) -> Tag {
     let mut verdict = worker.root().unwrap();
     for level in 0..cell.level {
@@ -117,7 +118,7 @@ fn replay(worker: &mut impl Worker, cell: Cell) -> Tag {
             let again = worker.split(above(level), &part).unwrap();
             assert!(a.iter().zip(&again).all(|(a, b)| a.tag() == b.tag()), "asked without the way");
         }
-        // Either answer's part must do, whatever was asked in between.
+        // The parts of both answers must be valid, whatever was split in between.
         a.swap(octant as usize, 0);
         b.swap(octant as usize, 0);
         let [a, ..] = a;
@@ -127,7 +128,7 @@ fn replay(worker: &mut impl Worker, cell: Cell) -> Tag {
     verdict.tag()
 }
 
-/// The laws, `truth` being what the solid says of the finest cells.
+/// Checks the laws. `truth` has the solid's verdicts for the finest cells.
 fn laws<S: Solid>(solid: &S, frame: &Frame, truth: &Dense) {
     let classifier = solid.on(frame, &alone()).unwrap();
     assert_eq!(classifier.frame(), frame);
@@ -146,7 +147,7 @@ fn laws<S: Solid>(solid: &S, frame: &Frame, truth: &Dense) {
             used.release(0);
         }
     }
-    // Parts mean the same in the memory of another thread's worker, and there among others.
+    // Parts keep their meaning in the memory of another thread's worker, and among other parts there.
     let mut here = fresh();
     if let Verdict::Partial(part) = here.root().unwrap() {
         let children = here.split(Cell::ROOT, &part).unwrap();
@@ -163,7 +164,8 @@ fn laws<S: Solid>(solid: &S, frame: &Frame, truth: &Dense) {
     }
 }
 
-/// Frames: lattice planes that are integers, exact doubles, no doubles at all; far from the origin, tiny.
+/// Frames whose lattice planes are integers, exact doubles, or no doubles at all; far from the origin; and
+/// tiny.
 fn frames(depth: u8) -> Vec<Frame> {
     let frame = |origin, edge| Frame::new(origin, edge, depth).unwrap();
     vec![
@@ -175,7 +177,7 @@ fn frames(depth: u8) -> Vec<Frame> {
     ]
 }
 
-/// A point given in lattice coordinates, rounded.
+/// Converts a point from lattice to model coordinates, rounded.
 fn model(frame: &Frame, at: [f64; 3]) -> [f64; 3] {
     [0, 1, 2].map(|axis| frame.origin()[axis] + at[axis] * frame.cell_size())
 }
@@ -222,8 +224,8 @@ fn verdicts_are_exact_on_a_finer_lattice() {
     }
 }
 
-/// Frames whose origin and cell size have few bits, so that lattice points *and* what is computed from them
-/// are doubles, while most of the roundings on the way are not exact.
+/// Frames whose origin and cell size have few bits. Lattice points *and* the results computed from them are
+/// doubles, but most intermediate roundings are inexact.
 fn short_frames(depth: u8) -> Vec<Frame> {
     let frame = |origin: [f32; 3], edge: f32| Frame::new(origin.map(f64::from), edge as f64, depth).unwrap();
     vec![lattice_frame(depth), frame([0.1, -0.3, 0.7], 0.9), frame([-1000.1; 3], 3.3), frame([0.0; 3], 0.1)]
@@ -246,7 +248,7 @@ fn balls_that_touch_the_lattice() {
                 let cell = frame.cell_size();
                 let centre = model(&frame, corner.map(|c| c as f64));
                 assert_exact(Definition::Ball { centre, radius: radius as f64 * cell }, &frame);
-                // A hair more or less must be noticed.
+                // Slightly larger or smaller radii must be noticed.
                 let radius = radius as f64 * cell;
                 assert_exact(Definition::Ball { centre, radius: radius.next_up() }, &frame);
                 assert_exact(Definition::Ball { centre, radius: radius.next_down() }, &frame);
@@ -265,7 +267,8 @@ fn planes_through_the_lattice() {
             let [o, _, _] = frame.origin();
             let level = Frame::new([o; 3], frame.edge(), depth).unwrap();
             let cell = level.cell_size();
-            // Through the diagonals: every cell beside the diagonal is decided, those on it are cut.
+            // Planes through the diagonals. Every cell beside the diagonal is decided, and cells on it are
+            // cut.
             for normal in [[1.0, -1.0, 0.0], [-1.0, 1.0, 0.0], [0.0, 0.3, -0.3], [-2.5, 0.0, 2.5]] {
                 assert_exact(Definition::HalfSpace { normal, offset: 0.0 }, &level);
             }
@@ -291,7 +294,7 @@ fn planes_through_the_lattice() {
                     }
                 }
             }
-            // Through corners obliquely, and a hair beside them.
+            // Obliquely through corners, and slightly beside them.
             for normal in [[1.0, 1.0, 1.0], [1.0, -2.0, 3.0], [-0.5, -0.25, 1.0]] {
                 let corner = model(&level, [1.0, 2.0, 1.0]);
                 let at = -(normal[0] * corner[0] + normal[1] * corner[1] + normal[2] * corner[2]);
@@ -367,7 +370,7 @@ fn numbers_of_extreme_size() {
 
 #[test]
 fn origins_smaller_than_anything_else_are_refused() {
-    // Products of what lies below 2^-256 would underflow, and with them a sign.
+    // Products of numbers below 2^-256 would underflow, and lose their sign.
     for small in [1e-300, -1e-300, f64::MIN_POSITIVE, 5e-324, 2f64.powi(-256).next_down()] {
         for axis in 0..3 {
             let mut origin = [0.0; 3];
@@ -404,7 +407,8 @@ fn rules_are_nested() {
 
 #[test]
 fn deeper_trees_only_refine() {
-    // Cells of these shapes are decided as soon as they can be: cut at a level, a deeper tree says the same.
+    // Cells of these shapes are decided as early as possible. A deeper tree cut at a level is the tree of
+    // that level.
     let frame = Frame::new([0.1, 0.2, -0.3], 0.77, 8).unwrap();
     let shapes = [
         shape(Definition::Ball { centre: [0.45, 0.55, 0.1], radius: 0.31 }),
@@ -428,7 +432,7 @@ fn deeper_trees_only_refine() {
     }
 }
 
-/// Bit-identical for any number of threads, and so are the statistics.
+/// Checks that results and statistics are bit-identical for any number of threads.
 fn threads_agree<S: Solid>(solid: &S, frame: &Frame, rule: Rule) -> Octree {
     let one = made(solid, frame, rule);
     for threads in [2, 16] {
@@ -463,22 +467,22 @@ fn threads_do_not_change_results() {
     }
 }
 
-/// A union of balls whose parts are lists in scratch memory: the balls that still cut the cell. Parts that
-/// refer to released memory would be noticed, as would one that another part overwrites.
+/// A union of balls. Each part is a list in scratch memory of the balls that still cut the cell. The tests
+/// notice a part that refers to released memory, and a part that another part overwrites.
 #[derive(Clone)]
 struct Crowd(Vec<Plain>);
 
-/// A ball on a frame.
+/// A ball's classifier on a frame.
 type PlacedBall = <Plain as Solid>::Classifier;
 
-/// The balls on a frame.
+/// The balls' classifiers on a frame.
 #[derive(Clone)]
 struct CrowdOnFrame {
     balls: Arc<[PlacedBall]>,
     frame: Frame,
 }
 
-/// The balls, and the lists.
+/// The balls' workers, and the lists.
 struct Lists {
     balls: Vec<<PlacedBall as Classifier>::Worker>,
     frame: Frame,
@@ -632,18 +636,18 @@ fn parts_in_scratch_memory_survive_what_the_builder_does() {
     }
 }
 
-/// A solid that fills blocks at once, by looking them up in trees that were built without.
+/// A solid that fills whole blocks from trees that were built without block-wise filling.
 #[derive(Clone)]
 struct Bulk<'a> {
     ball: Plain,
     certified: &'a Octree,
     sampled: &'a Octree,
-    /// What the builder resolves by, and so asks for.
+    /// The builder's rule, and hence the rule that it requests.
     rule: Rule,
     filled: &'a AtomicU64,
 }
 
-/// The same on a frame: handle and worker.
+/// Classifier and worker on a frame.
 #[derive(Clone)]
 struct BulkOnFrame<'a> {
     bulk: Bulk<'a>,
@@ -801,7 +805,7 @@ proptest! {
 
     #[test]
     fn callbacks_give_what_they_say(shape in shapes(1..=4), origin in -3..3i32) {
-        // A callback that knows only boxes in model units, over a random solid.
+        // A callback that provides only verdicts on boxes in model units, for a random solid.
         let dense = shape.dense();
         let n = dense.depth;
         let frame = Frame::new([origin as f64 * 0.5; 3], 2.0, n).unwrap();
@@ -840,7 +844,7 @@ fn callbacks_see_boxes_that_contain_their_cells() {
         build(&callback, &frame, Rule::Certified, &alone()).unwrap();
         let boxes = boxes.into_inner().unwrap();
         assert_eq!(boxes.len(), 1 + 8 + 64 + 512 + 4096);
-        // The boxes of the finest cells are those that contain the cells' exact planes and nothing more.
+        // The boxes of the finest cells contain the cells' exact planes, and nothing more.
         let (min, max) = boxes[0];
         for axis in 0..3 {
             let below = |x: f64, k: u32| Exact::from(x).minus(&Exact::plane(&frame, axis, k)).sign();
@@ -891,7 +895,7 @@ fn nothing_is_known_of_an_undecided_universe() {
         assert_is(&made(&callback, &frame, Rule::Inner), &Dense::uniform(depth, Tag::Empty));
         assert_is(&made(&callback, &frame, Rule::Outer), &Dense::uniform(depth, Tag::Full));
         assert!(matches!(build(&callback, &frame, Rule::Sampled, &alone()), Err(Error::NotSampled)));
-        // Cells that split for ever are undecided in the end, and merge.
+        // Cells that would split for ever end as undecided, and merge.
         let endless = Callback::new(|_, _| Ok(Verdict::Partial(())));
         assert_eq!(made(&endless, &frame, Rule::Certified), tree);
         let all = complement(tree.view(), &alone()).unwrap();
@@ -996,7 +1000,7 @@ fn progress_rises_to_one() {
         let frame = Frame::new([0.1, 0.2, -0.3], 0.77, depth).unwrap();
         let solids = [
             shape(Definition::Ball { centre: [0.45, 0.55, 0.1], radius: 0.31 }),
-            // All of the universe, none of it, one corner.
+            // All of the universe, nothing, and one corner.
             shape(Definition::Ball { centre: [0.45, 0.55, 0.1], radius: 31.0 }),
             shape(Definition::Ball { centre: [9.0, 0.55, 0.1], radius: 1.0 }),
             shape(Definition::HalfSpace { normal: [-1.0, -1.0, -1.0], offset: 0.1 }),
@@ -1055,7 +1059,7 @@ fn errors_of_a_solid_end_the_build() {
     struct Failing<'a>(&'a AtomicU64);
     impl Cubes for Failing<'_> {
         fn verdict(&self, _: &Cube<'_>) -> Result<Verdict<()>, Error> {
-            // The universe, and a thousand cells that were split.
+            // The universe, and a thousand split cells.
             match self.0.fetch_add(1, Ordering::Relaxed) {
                 8001 => Err(Error::OutOfMemory),
                 _ => Ok(Verdict::Partial(())),

@@ -1,4 +1,4 @@
-//! What is asked of channels: summaries, regions, materials; volumes as attributes.
+//! Queries of channels: summaries, regions and materials; and volumes as attributes.
 
 use crate::common;
 use crate::common::values::{Values, kinds, values_of};
@@ -102,7 +102,7 @@ proptest! {
         prop_assert_eq!(Dense::of(region.view()), expected);
         prop_assert!(region.view().is_binary());
 
-        // Of a solid, and on a deeper or shallower frame.
+        // The region of a solid, also on a deeper or shallower frame.
         let solid = dense.octree();
         let within = ValueRegion::new(solid.view(), view, low, high).unwrap();
         let built = build(&within, solid.frame(), Rule::Certified, &alone()).unwrap();
@@ -111,7 +111,7 @@ proptest! {
         for threads in [1, 3] {
             let shallow = solid.frame().with_depth(2).unwrap();
             let built = build(&within, &shallow, Rule::Certified, &Control::threads(threads)).unwrap();
-            // What changes below is PARTIAL, also if all of it belongs.
+            // Cells that change below are PARTIAL, even if all of their parts belong to the region.
             for (found, expected) in Dense::of(built.view()).tags.iter().zip(expected.cut(2).tags) {
                 prop_assert!(*found == expected || *found == Tag::Partial);
             }
@@ -155,7 +155,7 @@ fn constant(frame: &Frame, value: f64, kind: ValueType) -> leafless::attribute::
     fill_channel(&ConstantAttribute::new(&[value]).unwrap(), &options, &alone()).unwrap()
 }
 
-/// A ball of two metals, of which the densities are known within intervals: the mass holds the analytic one,
+/// A ball of two metals with densities known within intervals. The mass interval contains the analytic mass,
 /// and is as narrow as densities and geometry allow.
 #[test]
 fn the_mass_of_two_materials_holds_the_analytic_one() {
@@ -206,7 +206,7 @@ fn the_mass_of_two_materials_holds_the_analytic_one() {
     assert!(summary.mean[0].contains(exact / all));
 }
 
-/// A region knows what its solid knows: second order where the value does not change.
+/// A region provides all that its solid provides: second order where the value does not change.
 #[test]
 fn a_region_of_a_solid_is_measured_as_fast() {
     let frame = Frame::new([-1.0; 3], 2.0, 20).unwrap();
@@ -238,7 +238,7 @@ fn what_cannot_be_summed_up_is_refused() {
     assert_eq!((all.volume, all.integral[0]), (Interval::exactly(512.0), Interval::exactly(1024.0)));
     let other = Octree::uniform(Frame::new([1.0; 3], 8.0, 3).unwrap(), Tag::Full, Tag::Empty).unwrap();
     assert!(matches!(view.summary(Some(other.view()), None, &alone()), Err(Error::FrameMismatch { .. })));
-    // Too many materials for anybody.
+    // More materials than anybody needs.
     let count =
         FunctionAttribute::new(1, |p| Some([p[0] + 16.0 * (p[1] + 16.0 * p[2]), 0.0, 0.0, 0.0])).unwrap();
     let frame = lattice_frame(5);
@@ -249,7 +249,7 @@ fn what_cannot_be_summed_up_is_refused() {
     assert!(matches!(refused, Err(Error::Limit { what: "materials", .. })));
 }
 
-/// On the grid's own frame, the nearest samples are the samples.
+/// On the grid's own frame, the nearest samples are the grid's samples.
 #[test]
 fn a_volume_becomes_a_channel() {
     let grid = VoxelGrid::new([8, 5, 7], [0.0; 3], [0.5; 3]).unwrap();

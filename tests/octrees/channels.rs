@@ -15,7 +15,7 @@ use leafless::{
 };
 use proptest::prelude::*;
 
-/// The tag of a cell of a lattice of `depth`, as a walk down to there meets it.
+/// Returns the tag that a walk down a lattice of `depth` meets at a cell.
 fn tag(dense: &Dense, depth: u8, at: [u32; 3]) -> Tag {
     if dense.depth <= depth {
         return dense.at(at.map(|a| a >> (depth - dense.depth)));
@@ -31,7 +31,7 @@ proptest! {
         let channel = values.channel(5, kind, None, 1);
         prop_assert_eq!(Values::of(&channel), values.clone());
         prop_assert_eq!(&channel, &values.channel(5, kind, None, 3));
-        // One value a run of equal ones: never more than cells that have one.
+        // One value for each run of equal values: never more values than cells that have one.
         let valued = values.cells.iter().flatten().count() as u64;
         prop_assert!(channel.value_count() <= valued);
         prop_assert_eq!(channel.value_count() == 0, valued == 0);
@@ -51,7 +51,7 @@ proptest! {
                 prop_assert_eq!(found, values.at(at));
             }
         }
-        // Where nobody looks, nothing is stored that need not be.
+        // Cells outside the solid add no unnecessary values.
         prop_assert!(channel.value_count() <= values.channel(depth, kind, None, 1).value_count());
     }
 
@@ -125,8 +125,7 @@ proptest! {
     ) {
         let n = f64::from(1u32 << values.depth);
         let channel = values.channel(values.depth, kind, None, 1);
-        // From the moved cube back: axis i of the image is axis axes[i] of the point, turned about if
-        // flipped.
+        // From the moved cube back: axis i of the image is axis axes[i] of the point, reversed if flipped.
         let mut rows = [[0.0; 4]; 3];
         for i in 0..3 {
             let flipped = flips >> i & 1 != 0;
@@ -175,7 +174,7 @@ fn scalar(scalar: ScalarType) -> ValueType {
     ValueType::new(scalar, 1).unwrap()
 }
 
-/// The published rule and the certified one, at a spot that no corner sees.
+/// The published variance rule and the certified rule, at a spot that no corner samples.
 #[test]
 fn variance_misses_a_spot_that_a_range_does_not() {
     let frame = Frame::new([0.0; 3], 8.0, 6).unwrap();
@@ -204,7 +203,7 @@ fn variance_misses_a_spot_that_a_range_does_not() {
     assert_eq!(values(&fill(Criterion::Variance, 0.5)), exact);
 }
 
-/// The sizes of the documentation's table: one value for a uniform part, whatever the depth.
+/// The sizes in the documentation's table: a uniform part has one value, whatever the depth.
 #[test]
 fn simple_channels_are_small() {
     let frame = Frame::new([0.0; 3], 1.0, 10).unwrap();
@@ -253,7 +252,7 @@ fn what_is_no_value_is_refused() {
     assert_eq!(integer(u32::MAX.into(), ScalarType::U32).unwrap(), f64::from(u32::MAX));
     assert!(integer(-0.0, ScalarType::F32).unwrap().is_sign_positive());
     assert!(ValueType::new(ScalarType::U8, 0).is_err() && ValueType::new(ScalarType::U8, 5).is_err());
-    // What a value has beyond its components does not count.
+    // Numbers beyond a value's components do not count.
     assert_eq!(fill([1.0, f64::NAN, 7.0, 9.0], scalar(ScalarType::F32)).unwrap(), [1.0, 0.0, 0.0, 0.0]);
     let components = ConstantAttribute::new(&[1.0, 2.0]).unwrap();
     let options = FillOptions { value_type: scalar(ScalarType::U8), frame, solid: None, detail: None };
@@ -395,8 +394,8 @@ proptest! {
         let in_place = leafless::file::from_static(&bytemuck_bytes(statics)[..bytes.len()]).unwrap();
         assert_same(&octree, &in_place);
 
-        // One changed byte: refused, or what is read in place is safe, ends, and says the same of each point
-        // however it is asked.
+        // One changed byte: the file is refused, or reading in place is safe, ends, and gives the same answer
+        // for each point in every way.
         let mut bad = bytes.clone();
         let at = seed as usize % bad.len();
         bad[at] ^= 1 << (seed >> 24 & 7);
@@ -443,7 +442,7 @@ fn a_file_without_channels_is_of_the_first_version() {
     assert_eq!(leafless::file::probe_bytes(&bytes).unwrap().version, (0, 1));
 }
 
-/// Sets the checksums of a changed file right.
+/// Changes a file and repairs its checksums.
 fn sealed(mut bytes: Vec<u8>, change: impl FnOnce(&mut Vec<u8>)) -> Vec<u8> {
     change(&mut bytes);
     let field = |bytes: &[u8], at: usize| u64::from_le_bytes(bytes[at..at + 8].try_into().unwrap()) as usize;
@@ -460,14 +459,15 @@ fn sealed(mut bytes: Vec<u8>, change: impl FnOnce(&mut Vec<u8>)) -> Vec<u8> {
     bytes
 }
 
-/// Where a section begins.
+/// Returns the offset of a section.
 fn section(bytes: &[u8], owner: u32, kind: u32) -> usize {
     let sections = leafless::file::probe_bytes(bytes).unwrap().sections;
     let is_it = |section: &&leafless::file::Section| (section.owner, section.kind) == (owner, kind);
     sections.iter().find(is_it).unwrap().offset as usize
 }
 
-/// Two things are wrong, the solid's tree and the record of its channel: whoever verifies names the same one.
+/// The solid's tree and the record of its channel are both damaged. Every way of verifying reports the same
+/// damage first.
 #[test]
 fn all_ways_in_name_the_same_damage_first() {
     let values = Values::from_fn(2, |[x, ..]| Some([f64::from(x), 0.0, 0.0, 0.0]));
@@ -485,7 +485,7 @@ fn all_ways_in_name_the_same_damage_first() {
     assert!(verified.to_string().contains("exterior"), "{verified}");
 }
 
-/// Values of other bits than those that the library stores, and the same value twice.
+/// Values with bits that the library never stores, and repeated values.
 #[test]
 fn wrong_values_are_refused_and_read_as_they_stand() {
     let values = Values::from_fn(1, |[x, ..]| Some([f64::from(x) + 0.5, 2.0, 0.0, 0.0]));
@@ -518,14 +518,14 @@ fn wrong_values_are_refused_and_read_as_they_stand() {
     }
 }
 
-/// As many records of channels as a file can have objects: the 257th is refused, whatever it says.
+/// A file with as many channel records as objects are allowed. The 257th is refused, whatever its content.
 #[test]
 fn thousands_of_records_of_channels_are_refused() {
     let crowd = include_bytes!("../../format_spec/vectors/invalid/channel-count.lfl");
     assert!(leafless::file::from_bytes(crowd).is_err());
     let octree = with_channels(2, &[]);
     let bytes = leafless::file::to_bytes(&octree).unwrap();
-    // Records of nothing but a type behind the file, where its objects are now.
+    // Records with nothing but a type, at the end of the file, where its objects are now.
     let (count, old) = (4096usize, section(&bytes, 0, 1));
     let mut many = bytes.clone();
     many.resize(bytes.len().next_multiple_of(64), 0);
@@ -563,7 +563,7 @@ fn thousands_of_records_of_channels_are_refused() {
     assert!(refused.to_string().contains("channel"), "{refused}");
 }
 
-/// Channels that share all but their values, with one another and with the solid.
+/// Channels that share all sections but their values, with each other and with the solid.
 #[test]
 fn channels_that_share_sections_are_read() {
     let bytes = include_bytes!("../../format_spec/vectors/valid/channels-shared.lfl");

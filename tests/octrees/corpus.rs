@@ -1,8 +1,8 @@
-//! What every kind of solid is built into, by checksums that were taken when the corpus was first made.
+//! Octrees of every kind of solid, against checksums from the first run of the corpus.
 //!
-//! `corpus.txt` has a line for each solid, depth and rule: the checksum of all tags, and how many finest
-//! cells are FULL and PARTIAL. A resolved octree must never change. A certified one may only become tighter,
-//! and then the line that it had at first stays in the file behind the new one, after `was`.
+//! `corpus.txt` has a line for each solid, depth and rule: the checksum of all tags, and the numbers of FULL
+//! and PARTIAL finest cells. A resolved octree must never change. A certified octree may only become tighter.
+//! Then its first line stays in the file behind the new one, after `was`.
 
 use crate::common::{Random, alone, model, repeated};
 use leafless::octree::Cursor;
@@ -17,7 +17,7 @@ use std::sync::Arc;
 
 const RULES: [Rule; 4] = [Rule::Certified, Rule::Sampled, Rule::Inner, Rule::Outer];
 
-/// One of the frame's own kind of solid.
+/// Makes a solid of its own kind for a frame.
 type Make = Box<dyn Fn(&Frame) -> AnySolid>;
 
 struct Entry {
@@ -27,12 +27,12 @@ struct Entry {
     make: Make,
 }
 
-/// [-1, 1]³.
+/// The frame [-1, 1]³.
 fn unit(depth: u8) -> Frame {
     Frame::new([-1.0; 3], 2.0, depth).unwrap()
 }
 
-/// A universe whose lattice planes are no doubles.
+/// A frame whose lattice planes are no doubles.
 fn odd(depth: u8) -> Frame {
     Frame::new([-1.1, -1.3, -0.9], 2.3, depth).unwrap()
 }
@@ -62,7 +62,7 @@ fn torus(n: u32, major: f64, minor: f64) -> TriangleMesh {
     TriangleMesh::new(vertices.collect(), triangles.collect()).unwrap()
 }
 
-/// Sine and cosine by their series: the same bits on every platform.
+/// Sine and cosine by their series, with the same bits on every platform.
 fn libm_sincos(x: f64) -> (f64, f64) {
     let (mut sin, mut cos, mut term) = (0.0, 0.0, 1.0);
     for k in 0..40 {
@@ -102,7 +102,7 @@ fn balls(count: usize, radius: f64) -> Csg {
     Csg::union_of((0..count).map(ball).collect::<Vec<_>>()).unwrap()
 }
 
-/// A union built of pairs of unions, of which some are taken away from the others.
+/// A nested expression of unions. Every fifth operation is a difference.
 fn nested(count: usize) -> Csg {
     let mut random = Random(5);
     let mut all = Csg::empty();
@@ -133,7 +133,7 @@ fn half_spaces() -> Vec<(&'static str, Csg)> {
     ]
 }
 
-/// z ≤ 0.3 − x² as a host tells it.
+/// The solid z ≤ 0.3 − x² as callbacks of a host program.
 fn host(frame_knows: bool) -> AnySolid {
     let hill = |x: f64, z: f64| 0.3 - x * x - z;
     let callback = Callback::new(move |min: [f64; 3], max: [f64; 3]| {
@@ -299,7 +299,7 @@ fn corpus() -> Vec<Entry> {
     all
 }
 
-/// Of all tags, cell by cell in depth-first order (FNV-1a).
+/// Returns the checksum of all tags, cell by cell in depth-first order (FNV-1a).
 fn checksum(tree: &Octree) -> u64 {
     fn walk(cursor: &mut Cursor<'_>, sum: &mut u64) {
         let tag = cursor.tag();

@@ -1,5 +1,5 @@
-//! Octrees that are split on demand: against dense recursion over the same cells, counted, limited,
-//! cancelled, frozen and taken up again.
+//! Octrees that are split on demand: compared with dense recursion over the same cells, counted, limited,
+//! cancelled, frozen and resumed.
 
 use crate::common::cubes::{Cubes, Plain};
 use crate::common::{
@@ -20,22 +20,22 @@ use std::sync::atomic::{AtomicBool, AtomicU64, Ordering};
 
 // ---- a solid that finds out late ------------------------------------------------------------------------
 
-/// A dense array as a solid that does not see at once that a cell is of one kind. Its parts lie in scratch
-/// memory.
+/// A dense array as a solid that sometimes recognises uniform cells only after splits. Its parts lie in
+/// scratch memory.
 #[derive(Clone, Copy)]
 struct Late<'a> {
     dense: &'a Dense,
     seed: u8,
 }
 
-/// The same on a frame.
+/// The solid's classifier on a frame.
 #[derive(Clone, Copy)]
 struct LateOnFrame<'a> {
     late: Late<'a>,
     frame: Frame,
 }
 
-/// The same with the cells that parts stand for.
+/// The solid's worker, with the cells that parts stand for.
 struct Cells<'a> {
     late: Late<'a>,
     frame: Frame,
@@ -151,15 +151,15 @@ impl Worker for Cells<'_> {
     }
 }
 
-// ---- what should come out -------------------------------------------------------------------------------
+// ---- expected results -----------------------------------------------------------------------------------
 
-/// Which cells were split; nothing else is remembered.
+/// A model of a lazy octree that remembers only which cells were split.
 struct Model<'a> {
     solid: &'a Late<'a>,
     split: HashSet<Cell>,
-    /// Whether the octree was taken up again: it does not know any more which cells splitting does not help.
+    /// True if the octree was resumed. It no longer remembers which cells cannot be improved by splits.
     resumed: bool,
-    /// Splits that such an octree does not count.
+    /// Number of splits that a resumed octree does not count.
     before: usize,
 }
 
@@ -180,7 +180,7 @@ impl Model<'_> {
         Dense::from_fn(self.solid.dense.depth, |at| self.known(at))
     }
 
-    /// Whether a cell can be split now.
+    /// True if a cell can be split now.
     fn is_open(&self, cell: Cell) -> bool {
         let split = |level: u8| {
             let at = cell.at.map(|a| a >> (cell.level - level));
@@ -192,7 +192,8 @@ impl Model<'_> {
             && cell.level < self.solid.dense.depth
     }
 
-    /// Splits the cells of a zone above `level`, all or those of one level; at most `left`.
+    /// Splits the open cells of a zone above `level`, all of them or those of one level; at most `left`
+    /// cells.
     fn refine(&mut self, zone: &Zone, only: Option<u8>, level: u8, left: &mut u64) -> bool {
         let mut stack = vec![Cell::ROOT];
         while let Some(cell) = stack.pop() {
@@ -218,7 +219,7 @@ impl Model<'_> {
         assert!(self.refine(zone, None, level, &mut left));
     }
 
-    /// What an octree forgets when it is frozen: splits that found out nothing.
+    /// Removes the splits that freezing forgets: splits that decided nothing.
     fn forget(&mut self) {
         let dense = self.dense();
         self.split.retain(|&cell| dense.tag_of(cell) != Some(Tag::Partial));
@@ -226,7 +227,7 @@ impl Model<'_> {
     }
 }
 
-/// A fraction with a denominator above zero.
+/// A fraction with a positive denominator.
 #[derive(Clone, Copy)]
 struct Fraction(i128, i128);
 
@@ -236,8 +237,7 @@ impl Fraction {
     }
 }
 
-/// Whether a zone has the cell, by the words of its documentation. Coordinates are multiples of ½ and not
-/// large.
+/// True if a zone has the cell, by its documentation. Coordinates are multiples of ½ and not large.
 fn meets(zone: &Zone, depth: u8, cell: Cell) -> bool {
     let size = 1u32 << (depth - cell.level);
     let low = cell.at.map(|a| (a * size) as f64);
@@ -280,7 +280,7 @@ fn meets(zone: &Zone, depth: u8, cell: Cell) -> bool {
     }
 }
 
-/// One call.
+/// One call of the interface.
 #[derive(Debug, Clone)]
 enum Call {
     Split(u8, [u32; 3]),
@@ -318,7 +318,7 @@ fn calls() -> impl Strategy<Value = Vec<Call>> {
     proptest::collection::vec(call, 0..16)
 }
 
-/// Everything that an octree says of itself.
+/// Compares everything that an octree reports about itself.
 fn compare(lazy: &LazyOctree<Late<'_>>, model: &Model<'_>) {
     let depth = lazy.frame().depth();
     let dense = model.dense();
@@ -409,7 +409,7 @@ proptest! {
                         let tag = tags[octant as usize];
                         assert!(tag == expected || tag == Tag::Branch && expected == Tag::Partial);
                     }
-                    // Again, it costs nothing.
+                    // A second split costs nothing.
                     let again = lazy.split(cell).unwrap();
                     assert_eq!(again, tags);
                     assert_eq!(lazy.splits() - before, opens as u64);
@@ -433,7 +433,7 @@ proptest! {
                     } else if most.is_none() {
                         assert!(model.refine(&zone, None, level, &mut left) && done == Refinement::Done);
                     } else {
-                        // The order along a ray is another test's matter.
+                        // Another test checks the order along a ray.
                         assert!(lazy.splits() - before <= most.unwrap());
                         assert_eq!(lazy.refine(&zone, level, &alone()).unwrap(), Refinement::Done);
                         model.refine_all(&zone, level);
@@ -448,12 +448,12 @@ proptest! {
             }
         }
         compare(&lazy, &model);
-        // All that is left.
+        // Nothing more remains.
         assert_eq!(lazy.refine(&Zone::Whole, depth, &alone()).unwrap(), Refinement::Done);
         model.refine_all(&Zone::Whole, depth);
         compare(&lazy, &model);
         assert_eq!(lazy.freeze(&alone()).unwrap(), dense.octree());
-        // What is left are cells that differ, at most eight to a block, and the universe's own block.
+        // The remaining nodes are cells that differ, at most eight to a block, and the universe's own block.
         let nodes = lazy.statistics().nodes();
         assert!(lazy.bytes() <= 64 * (nodes + 1));
     }
@@ -473,7 +473,7 @@ fn solids(frame: &Frame) -> Vec<AnySolid> {
         let mesh = tetrahedron();
         TriangleMesh::new(mesh.vertices().to_vec(), mesh.triangles()[..3].to_vec()).unwrap()
     };
-    // Half-spaces, and solids that remember something else of a cell.
+    // Half-spaces, and solids whose parts contain other data.
     let mesh = AnySolid::new(MeshSolid::new(tetrahedron(), FillRule::NonZero).unwrap());
     let ball = Csg::ball([0.4; 3], 0.3).unwrap();
     let mixed = Csg::solid(mesh).difference(&ball).unwrap();
@@ -500,7 +500,7 @@ fn callback<'a>(
     Callback::new(Box::new(classify))
 }
 
-/// The slab 0.3 ≤ z ≤ 0.7, known through boxes.
+/// The slab 0.3 ≤ z ≤ 0.7, given by verdicts on boxes.
 fn slab() -> Callback<'static, Classify<'static>> {
     callback(|min, max| {
         Ok(match (min[2], max[2]) {
@@ -532,10 +532,10 @@ fn a_full_refinement_is_the_build_bit_for_bit() {
             assert_eq!(bytes(&frozen), bytes(&built), "solid {i}, depth {depth}");
             assert_eq!(frozen.view().exterior(), built.view().exterior());
             assert_eq!(bytes(&lazy.freeze(&Control::threads(2)).unwrap()), bytes(&built));
-            // In one go nothing is asked twice.
+            // In a single pass nothing is queried twice.
             assert_eq!(lazy.replays(), 0);
 
-            // By and by, in an order that has to go back.
+            // Step by step, in an order that goes back.
             let mut lazy = LazyOctree::new(solid.clone(), &frame).unwrap();
             for level in 0..=depth {
                 for at in positions(level.min(2)).collect::<Vec<_>>().into_iter().rev() {
@@ -659,7 +659,7 @@ fn what_is_no_cell_is_refused() {
 
 // ---- counted --------------------------------------------------------------------------------------------
 
-/// The ball of radius 0.4 around the middle, known through boxes.
+/// The ball of radius 0.4 around the middle, given by verdicts on boxes.
 fn round(min: [f64; 3], max: [f64; 3]) -> Verdict<()> {
     let (mut near, mut far) = (0.0, 0.0);
     for axis in 0..3 {
@@ -674,7 +674,7 @@ fn round(min: [f64; 3], max: [f64; 3]) -> Verdict<()> {
     }
 }
 
-/// The same as a solid whose parts must be had again by splits; every box that it is asked about is noted.
+/// The same ball as a solid that recomputes parts by splits. It records every queried box.
 #[derive(Clone)]
 struct Noted<'a>(&'a Mutex<Vec<([f64; 3], [f64; 3])>>);
 
@@ -695,7 +695,7 @@ fn only_cells_that_matter_are_asked_about() {
     let taken = || std::mem::take(&mut *asked.lock().unwrap());
     assert_eq!(taken().len(), 1);
 
-    // A point: one cell a level, whose children are asked about.
+    // A point: one cell at each level is split, and its children are queried.
     let point = [0.5, 0.8, 0.76];
     lazy.refine(&Zone::Point(point), 10, &alone()).unwrap();
     let boxes = taken();
@@ -705,7 +705,7 @@ fn only_cells_that_matter_are_asked_about() {
         let (low, high) = (siblings[0].0, siblings[7].1);
         assert!((0..3).all(|axis| low[axis] <= point[axis] && point[axis] <= high[axis]));
     }
-    // Again: nothing.
+    // A repeated call costs nothing.
     let splits = lazy.splits();
     lazy.refine(&Zone::Point(point), 10, &alone()).unwrap();
     assert!(taken().is_empty() && lazy.splits() == splits);
@@ -720,7 +720,7 @@ fn only_cells_that_matter_are_asked_about() {
         let (low, high) = (siblings[0].0, siblings[7].1);
         assert!((0..3).all(|axis| low[axis] < max[axis] && min[axis] < high[axis]));
     }
-    // Only the splits on the way are asked for anew.
+    // Only the splits on the way are computed anew.
     assert!(replays <= 3, "{replays}");
 
     // Cell by cell along a line: neighbours share their ancestors.
@@ -749,7 +749,7 @@ fn a_cell_that_nobody_can_split_is_asked_about_once() {
     assert!(!lazy.can_split(cell));
     assert_eq!(lazy.split(cell).unwrap(), [Tag::Partial; 8]);
     assert_eq!(lazy.splits(), ball.statistics().nodes());
-    // An octree that is taken up again forgot it, and has to ask.
+    // A resumed octree forgot it, and queries again.
     let octree = lazy.freeze(&alone()).unwrap();
     let frame = *lazy.frame();
     let mut lazy = LazyOctree::resume(&octree, *ball.view(), &frame, &alone()).unwrap();
@@ -762,7 +762,7 @@ fn a_cell_that_nobody_can_split_is_asked_about_once() {
 
 #[test]
 fn merged_cells_give_their_memory_back() {
-    // Nothing is there, but only the finest cells know it.
+    // The solid is empty, but only the finest cells show it.
     let nothing = || {
         Callback::new(|min: [f64; 3], max: [f64; 3]| {
             Ok(if max[0] - min[0] < 1.5 / 64.0 { Verdict::Empty } else { Verdict::Partial(()) })
@@ -778,11 +778,10 @@ fn merged_cells_give_their_memory_back() {
     }
     assert_eq!((lazy.tag(Cell::ROOT), lazy.splits()), (Tag::Empty, (1 << 18) / 7));
     assert_eq!(lazy.statistics().nodes(), 0);
-    // The universe's block; the blocks on the way to what is not merged yet: up to 64 of level 3 and 8 of
-    // level 2.
+    // The universe's block, and the blocks on the way to unmerged cells: up to 64 of level 3 and 8 of level 2.
     assert_eq!(lazy.bytes(), 64);
     assert!(most <= 64 * (4 + 8 + 1), "{most}");
-    // In one go only those on the way are there.
+    // In a single pass only the blocks on the way exist.
     let mut lazy = LazyOctree::new(nothing(), &unit_frame(6)).unwrap();
     let control = Control { max_bytes: Some(64 * 8), ..alone() };
     for _ in 0..3 {
@@ -838,7 +837,7 @@ fn what_depends_on_the_cell_alone_is_never_replayed() {
     // A solid that has to replay splits comes to the same.
     assert!(replayed.replays() > 0);
     assert_eq!(bytes(&lazy.freeze(&alone()).unwrap()), bytes(&replayed.freeze(&alone()).unwrap()));
-    // So it is cell by cell, in any order.
+    // The same result cell by cell, in any order.
     let mut lazy = LazyOctree::new(Plain::ball([0.5; 3], 0.4).unwrap(), &unit_frame(5)).unwrap();
     let mut open = vec![Cell::ROOT];
     while !open.is_empty() {
@@ -868,11 +867,11 @@ fn evaluations_are_counted_by_the_expression() {
         assert!(lazy.replays() > 0);
         let asked = lazy.splits() + lazy.replays();
         assert_eq!(counted.splits().iter().sum::<u64>() - splits, asked);
-        // They are known once the octree and its worker are gone.
+        // The counts are known once the octree and its worker are dropped.
         drop(lazy);
-        // A cell that is split has a half-space that is open there, and eight children.
+        // A split cell has an open half-space and eight children.
         assert!(solid.evaluations() - last >= asked, "{} {last} {asked}", solid.evaluations());
-        // Each time it is the same work, and the clone counts with it.
+        // The work is the same each time, and the clone shares the counter.
         let more = solid.evaluations() - last;
         assert_eq!(*each.get_or_insert(more), more);
         last += more;
@@ -919,7 +918,7 @@ fn limits_stop_the_work_and_lose_nothing() {
             assert_eq!(lazy.splits(), direct.splits());
             assert_eq!(lazy.freeze(&alone()).unwrap(), expected);
         }
-        // No more is held than allowed.
+        // The octree holds no more than the limit.
         for limit in [0, 1, 10, 50] {
             let mut lazy = LazyOctree::new(solid.clone(), &frame).unwrap();
             let control = Control { max_nodes: Some(limit), ..alone() };
@@ -944,7 +943,7 @@ fn a_ray_is_refined_from_its_beginning_on() {
         let origin = direction.map(|d: f64| 0.5 - 2.0 * d);
         let zone = Zone::Ray { origin, direction, from: 0.0, to: f64::INFINITY };
         let mut lazy = LazyOctree::new(&ball, &frame).unwrap();
-        // Enough for where it enters, not for where it leaves.
+        // Enough splits for the ray's entry, and not for its exit.
         let control = Control { max_splits: Some(24), ..alone() };
         assert_eq!(lazy.refine(&zone, 8, &control).unwrap(), Refinement::Spent);
         let at = |t: f64| [0, 1, 2].map(|axis| origin[axis] + t * direction[axis]);
@@ -985,7 +984,7 @@ fn cancelling_keeps_what_was_split() {
             let control = Control { cancel: Some(&cancelled), max_splits: limit, ..alone() };
             let mut lazy = LazyOctree::new(shape(), &frame).unwrap();
             assert!(matches!(lazy.refine(&Zone::Whole, 5, &control), Err(Error::Cancelled)));
-            // The call in which it happened was the last.
+            // The call that caused the cancel was the last one.
             assert!(calls.load(Ordering::Relaxed) <= after + 9);
             let splits = lazy.splits();
             let volume = lazy.freeze(&alone()).unwrap().statistics().volume();
@@ -1054,7 +1053,7 @@ fn progress_ends_at_one() {
     }
 }
 
-// ---- taken up by the wrong one --------------------------------------------------------------------------
+// ---- resumed by the wrong solid -------------------------------------------------------------------------
 
 #[test]
 fn another_source_is_refused() {
@@ -1073,7 +1072,7 @@ fn another_source_is_refused() {
     let mut crc = Metadata::new();
     crc.insert("source", "crc32:00000000 bytes:12");
     mismatch(resume(&octree.with_metadata(crc), &frame));
-    // Built, not frozen: it has no source until somebody says so.
+    // Built and not frozen: the tree has no source until a caller states one.
     let built = build(&ball, &frame, Rule::Certified, &alone()).unwrap();
     mismatch(resume(&built, &frame));
     resume(&built.with_metadata(octree.metadata().clone()), &frame).unwrap();
@@ -1179,8 +1178,8 @@ fn threads_may_have_it_one_after_another() {
     is_send_and_sync::<LazyOctree<MeshSolid>>();
 }
 
-/// Any octree that a file may hold: taken up without a crash, and refined as far as it does not contradict
-/// the solid.
+/// Any octree from a file is resumed without a crash, and refined as long as it does not contradict the
+/// solid.
 #[test]
 #[cfg(all(feature = "mmap", target_endian = "little"))]
 fn damaged_files_are_taken_up_without_a_crash() {
@@ -1206,7 +1205,7 @@ fn damaged_files<S: Solid>(ball: &S) {
             bytes[at] ^= 1 << random.below(8);
         }
         std::fs::write(&path, &bytes).unwrap();
-        // SAFETY: nobody else knows the file.
+        // SAFETY: no other process uses the file.
         let Ok(octree) = (unsafe { file::map(&path) }) else { continue };
         let Ok(mut lazy) = LazyOctree::resume(&octree, ball, &frame, &alone()) else { continue };
         taken += 1;

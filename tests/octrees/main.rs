@@ -1,5 +1,4 @@
-//! Stored octrees: what builds them, their laws, their Booleans, their channels and voxel records, and what
-//! they prove.
+//! Stored octrees: their construction, laws, Booleans, channels, voxel records and proofs.
 
 #[path = "../../fuzz/bodies/aligned.rs"]
 mod aligned;

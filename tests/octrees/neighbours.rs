@@ -1,4 +1,4 @@
-//! Neighbours of cells, and cells and boundary faces one after another, against dense arrays.
+//! Neighbours of cells, and iterators over cells and boundary faces, against dense arrays.
 
 use crate::aligned::Aligned;
 use crate::common;
@@ -10,7 +10,7 @@ use std::collections::{HashMap, HashSet};
 
 const LEAVES: [Tag; 3] = [Tag::Empty, Tag::Full, Tag::Partial];
 
-/// Every cell of the canonical octree of a dense array, in Morton order, parents first.
+/// Returns every cell of the canonical octree of a dense array, in Morton order, parents first.
 fn cells_of(dense: &Dense) -> Vec<TaggedCell> {
     let mut cells = vec![];
     let mut open = vec![Cell::ROOT];
@@ -24,20 +24,20 @@ fn cells_of(dense: &Dense) -> Vec<TaggedCell> {
     cells
 }
 
-/// The finest cells that a cell covers: the first, and the first beyond.
+/// Returns the range of finest cells that a cell covers: the first, and the first beyond.
 fn extent(cell: Cell, depth: u8) -> [[u32; 3]; 2] {
     let shift = depth - cell.level;
     [cell.at.map(|a| a << shift), cell.at.map(|a| (a + 1) << shift)]
 }
 
-/// Whether a box of finest cells and a cell have a finest cell in common.
+/// True if a box of finest cells and a cell overlap.
 fn reaches(cell: Cell, depth: u8, min: [u32; 3], max: [u32; 3]) -> bool {
     let [low, high] = extent(cell, depth);
     (0..3).all(|axis| low[axis].max(min[axis]) < high[axis].min(max[axis]))
 }
 
-/// Whether `b` touches `a` in just this direction: along an axis with a step, it begins where `a` ends; along
-/// the others the two overlap.
+/// True if `b` touches `a` in exactly this direction: along an axis with a step, `b` begins where `a` ends;
+/// along the other axes the two overlap.
 fn touches(a: Cell, b: Cell, direction: Direction, depth: u8) -> bool {
     let ([low, high], [min, max]) = (extent(a, depth), extent(b, depth));
     (0..3).all(|axis| match direction.steps()[axis] {
@@ -47,7 +47,7 @@ fn touches(a: Cell, b: Cell, direction: Direction, depth: u8) -> bool {
     })
 }
 
-/// The neighbour by its definition.
+/// Returns the neighbour by its definition.
 fn neighbour(dense: &Dense, cell: Cell, direction: Direction) -> Option<TaggedCell> {
     let mut at = [0; 3];
     for axis in 0..3 {
@@ -93,7 +93,7 @@ fn gcd(a: usize, b: usize) -> usize {
     if b == 0 { a } else { gcd(b, a % b) }
 }
 
-/// A filter and the same in words of the oracle.
+/// A filter, and the same filter for the oracle.
 #[derive(Debug, Clone)]
 struct Wanted {
     tags: Vec<Tag>,
@@ -131,7 +131,7 @@ fn wanted(depth: u8) -> impl Strategy<Value = Wanted> {
     )
 }
 
-/// Where a cell comes in Morton order: parents first.
+/// Returns a cell's key in Morton order, parents first.
 fn order(cell: Cell) -> (u64, u8) {
     let [x, y, z] = cell.first_at(20).at;
     let bit = |a: u32, level: u32| (a >> level & 1) as u64;
@@ -161,7 +161,7 @@ fn assert_cells(tree: &OctreeRef<'_>, dense: &Dense, wanted: &Wanted) {
         }
     }
     assert_eq!(found, expected);
-    // From any cell, also such as are parts of leaves.
+    // Start from any cell, including parts of leaves.
     let finest = positions(depth).step_by(11).map(|at| Cell { level: depth, at });
     let starts = all.iter().map(|found| found.cell).step_by(1 + all.len() / 60).chain(finest.take(60));
     for start in starts {
@@ -178,7 +178,7 @@ fn assert_cells(tree: &OctreeRef<'_>, dense: &Dense, wanted: &Wanted) {
 /// The unit squares of faces: a finest cell, an axis, and the side.
 type Squares = HashSet<([u32; 3], usize, bool)>;
 
-/// The boundary by its definition: finest cells of such a tag, and what is beside them.
+/// Returns the boundary by its definition: the faces of finest cells with these tags towards other cells.
 fn squares_of(dense: &Dense, tags: &[Tag], exterior: Tag) -> Squares {
     let n = 1u32 << dense.depth;
     let mut squares = HashSet::new();
@@ -239,7 +239,7 @@ fn assert_faces(tree: &OctreeRef<'_>, dense: &Dense, tags: &[Tag]) {
     }
 }
 
-/// The tree in memory, with a dictionary, and over the bytes of its file.
+/// Checks the tree in memory, with a dictionary, and over the bytes of its file.
 fn in_all_forms(tree: &Octree, mut check: impl FnMut(&OctreeRef<'_>)) {
     check(tree.view());
     check(compact(tree.view()).unwrap().view());
@@ -275,7 +275,7 @@ proptest! {
     }
 }
 
-/// A box and levels are those of the inner cells.
+/// The faces within a box and levels are the faces of the inner cells there.
 #[test]
 fn faces_of_some_cells() {
     let dense = Dense::from_fn(4, |[x, y, z]| match x * x + y * y + z * z {
@@ -316,7 +316,7 @@ fn cells_that_are_none_are_refused() {
         assert!(matches!(faces.seek(cell), Err(Error::Argument { name: "cell", .. })));
     }
     assert_eq!(cursor.cell(), Cell { level: 3, at: [2, 7, 1] });
-    // The part of a leaf that is looked for leads to the leaf.
+    // A cell within a leaf leads to the leaf.
     assert!(!cursor.seek(Cell { level: 3, at: [7, 7, 7] }).unwrap());
     assert_eq!((cursor.cell(), cursor.tag()), (Cell { level: 1, at: [1, 1, 1] }, Tag::Empty));
 }

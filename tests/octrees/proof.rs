@@ -1,5 +1,5 @@
-//! What octrees say that their cells prove: the bits are those of the table in `src/octree/proof.rs`,
-//! whatever made the tree, and what is claimed is true of the source, point by point.
+//! The proofs that octrees claim for their cells. The bits are those of the table in `src/octree/proof.rs`,
+//! whatever made the tree, and each claim is true of the source, point by point.
 
 #![cfg(feature = "std")]
 
@@ -39,11 +39,12 @@ impl Random {
     }
 
     fn rule(&mut self) -> Rule {
-        // Mostly the one that loses nothing: of many operations little else would be left.
+        // Mostly the rule that loses nothing. After many operations with other rules little would remain
+        // proven.
         RULES[self.below(10).saturating_sub(6) as usize]
     }
 
-    /// A multiple of a quarter.
+    /// Returns a random multiple of a quarter.
     fn quarter(&mut self, low: u64, high: u64) -> f64 {
         (4 * low + self.below(4 * (high - low))) as f64 / 4.0
     }
@@ -51,7 +52,7 @@ impl Random {
 
 // ---- the source, exactly --------------------------------------------------------------------------------
 
-/// What a tree was made from. Numbers are multiples of small powers of two, so that all sums below are exact.
+/// The source of a tree. Numbers are multiples of small powers of two, so that all sums below are exact.
 #[derive(Clone)]
 enum Source {
     Ball([f64; 3], f64),
@@ -60,7 +61,7 @@ enum Source {
     And(Vec<Source>),
     Or(Vec<Source>),
     Xor(Vec<Source>),
-    /// Scaled, then moved.
+    /// A source, scaled and then translated.
     Placed(Arc<Source>, f64, [f64; 3]),
 }
 
@@ -69,7 +70,7 @@ impl Source {
         Source::Not(Arc::new(self))
     }
 
-    /// Whether a point is inside; `None` on the surface of a primitive, where either may be said.
+    /// True if a point is inside; `None` on the surface of a primitive, where both answers are allowed.
     fn contains(&self, point: [f64; 3]) -> Option<bool> {
         let all =
             |parts: &[Source]| parts.iter().map(|part| part.contains(point)).collect::<Option<Vec<bool>>>();
@@ -120,7 +121,7 @@ impl Source {
         }
     }
 
-    /// A few primitives, joined.
+    /// A few primitives, combined.
     fn scene(random: &mut Random) -> Source {
         let parts: Vec<_> = (0..1 + random.below(3)).map(|_| Source::primitive(random)).collect();
         let joined = join(random, parts);
@@ -140,7 +141,7 @@ fn placement(scale: f64, [x, y, z]: [f64; 3]) -> Affine {
     Affine::new([[scale, 0.0, 0.0, x], [0.0, scale, 0.0, y], [0.0, 0.0, scale, z]]).unwrap()
 }
 
-/// Points in a finest cell: the middle, and one near each corner.
+/// Points in a finest cell: the middle, and one point near each corner.
 fn points(cell: [u32; 3], size: f64) -> impl Iterator<Item = [f64; 3]> {
     (0..9).map(move |k| {
         let within = |axis: u32| if k == 8 { 0.5 } else { [0.0625, 0.9375][k >> axis & 1] };
@@ -148,7 +149,7 @@ fn points(cell: [u32; 3], size: f64) -> impl Iterator<Item = [f64; 3]> {
     })
 }
 
-/// How many points of the cells contradict `claim`; only every `stride`-th cell is looked at.
+/// Counts the points of the cells that contradict `claim`; only every `stride`-th cell is examined.
 fn lies(tree: &Octree, claim: Proof, source: &Source, stride: u64) -> usize {
     let (cells, size) = (tree.frame().cells(), tree.frame().cell_size());
     let mut count = 0;
@@ -167,7 +168,7 @@ fn lies(tree: &Octree, claim: Proof, source: &Source, stride: u64) -> usize {
 
 // ---- the table ------------------------------------------------------------------------------------------
 
-/// What should be proven, by the table; displacements up to the last places.
+/// The expected proof by the table. Displacements are exact up to the last places.
 #[derive(Clone, Copy, Debug)]
 struct Claim {
     full: bool,
@@ -186,7 +187,7 @@ impl Claim {
         Claim { full: self.empty, empty: self.full, ..self }
     }
 
-    /// Of unions and intersections.
+    /// Returns the claim for unions and intersections.
     fn joined(claims: &[Claim]) -> Claim {
         Claim {
             full: claims.iter().all(|claim| claim.full),
@@ -210,7 +211,7 @@ impl Claim {
     }
 }
 
-/// A tree, what should be proven of it, and what it was made from.
+/// A tree, its expected proof, and its source.
 #[derive(Clone)]
 struct Grown {
     tree: Octree,
@@ -232,7 +233,8 @@ impl Grown {
     }
 }
 
-/// `solid` built by `rule`; where it cannot say what lies at centres, as it is. Tells which it was.
+/// Builds `solid` by `rule`, or by the certified rule if the solid cannot be sampled at centres. Returns the
+/// rule used, too.
 fn built<S: Solid>(solid: &S, depth: u8, rule: Rule) -> (Octree, Rule) {
     match build(solid, &frame(depth), rule, &CONTROL) {
         Err(Error::NotSampled) if rule == Rule::Sampled => {
@@ -254,7 +256,7 @@ fn leaf(random: &mut Random) -> Grown {
     Grown::new(tree, Claim { displacement, ..claim }, source)
 }
 
-/// An expression over stored trees and primitives, with what should be proven of it.
+/// A random expression over stored trees and primitives, with its expected proof.
 fn expression(random: &mut Random, level: u32) -> (Csg, Claim, Source) {
     if level == 0 {
         if random.below(4) == 0 {
@@ -286,7 +288,7 @@ fn expression(random: &mut Random, level: u32) -> (Csg, Claim, Source) {
     }
 }
 
-/// A tree by so many operations, one on the other.
+/// A tree made by up to `level` nested operations.
 fn grow(random: &mut Random, level: u32) -> Grown {
     if level == 0 {
         return leaf(random);
@@ -404,7 +406,7 @@ fn what_is_claimed_is_what_the_table_says_and_true() {
     assert!(seen.iter().all(|&count| count > 60), "{seen:?}");
 }
 
-/// The table itself, line by line.
+/// The documentation's table, line by line.
 #[test]
 fn the_table_of_the_documentation() {
     let all = [Proof::new(false, false), Proof::new(true, false), Proof::new(false, true), Proof::CERTIFIED];
@@ -428,7 +430,7 @@ fn the_table_of_the_documentation() {
     }
 }
 
-/// The check above sees lies: what is not proven is false somewhere.
+/// The check above notices lies: a claim that is not proven is false somewhere.
 #[test]
 fn a_lie_is_seen() {
     let sources = [
@@ -444,7 +446,7 @@ fn a_lie_is_seen() {
                 let lying = tree.with_proof(lie);
                 let honest = tree.proof().and(lie) == lie;
                 assert_eq!(lies(&lying, lying.proof(), source, 1) == 0, honest, "{rule:?} as {lie:?}");
-                // Whatever takes the lie over lies, too, and what takes none does not.
+                // Operations that carry a lie over lie, too; operations that carry none do not.
                 let inverse = complement(lying.view(), &CONTROL).unwrap();
                 let inverted = source.clone().negated();
                 assert_eq!(lies(&inverse, inverse.proof(), &inverted, 1) == 0, honest);
@@ -455,7 +457,7 @@ fn a_lie_is_seen() {
     }
 }
 
-/// Whoever makes a tree by hand says what it proves; equal cells are equal whatever is said of them.
+/// The maker of a tree by hand states its proof. Equal cells are equal trees, whatever the proofs.
 #[test]
 fn what_is_said_of_a_tree() {
     let ball = Csg::ball([8.0; 3], 5.0).unwrap();
@@ -473,7 +475,7 @@ fn what_is_said_of_a_tree() {
     let zero = Proof::CERTIFIED.with_displacement(-0.0).unwrap();
     assert_eq!(zero.displacement().to_bits(), 0);
 
-    // The classifier says it, erased or not, counted or not.
+    // The classifier states the proof, in all wrappers.
     let on = |solid: &AnySolid| solid.on(&frame(4), &CONTROL).unwrap().proof();
     assert_eq!(on(&AnySolid::new(said.clone())), said.proof());
     assert_eq!(on(&AnySolid::new(ball)), Proof::CERTIFIED);
@@ -499,7 +501,7 @@ fn files_keep_it() {
                 );
                 #[cfg(feature = "mmap")]
                 {
-                    // SAFETY: nobody else knows the file.
+                    // SAFETY: no other process uses the file.
                     #[allow(unsafe_code)]
                     let mapped = unsafe { [file::map(&path), file::map_verified(&path)] };
                     mapped.into_iter().for_each(|mapped| assert_eq!(mapped.unwrap().proof(), proof));
@@ -509,7 +511,7 @@ fn files_keep_it() {
     }
 }
 
-/// A cube of facets, of which the upper face was lifted.
+/// A cube of facets whose upper face is lifted.
 fn cracked(by: f64) -> TriangleMesh {
     let corner = |i: usize| [i & 1, i >> 1 & 1, i >> 2].map(|bit| 3.0 + 8.0 * bit as f64);
     let faces = [[0, 2, 3, 1], [4, 5, 7, 6], [0, 1, 5, 4], [2, 6, 7, 3], [0, 4, 6, 2], [1, 3, 7, 5]];
@@ -528,7 +530,7 @@ fn cracked(by: f64) -> TriangleMesh {
 
 #[test]
 fn displacements() {
-    // Of a mesh whose cracks were sewn.
+    // The displacement of a mesh with sewn cracks.
     let mesh = cracked(1e-9).sewn().unwrap();
     let moved = mesh.displacement();
     assert!(moved > 0.0 && moved < 1e-8, "{moved}");
@@ -542,7 +544,7 @@ fn displacements() {
     assert_eq!(exact.proof(), Proof::CERTIFIED);
     let far = exact.with_proof(Proof::CERTIFIED.with_displacement(0.25).unwrap());
 
-    // The greatest of the operands.
+    // The greatest displacement of the operands.
     for (a, b, greatest) in
         [(&sewn, &exact, moved), (&sewn, &far, 0.25), (&far, &exact, 0.25), (&exact, &exact, 0.0)]
     {
@@ -564,7 +566,7 @@ fn displacements() {
         assert_eq!(build(&csg, &frame(4), Rule::Certified, &CONTROL).unwrap().proof().displacement(), moved);
     }
 
-    // Placements scale it, and never make it less than it is.
+    // Placements scale it, and never make it smaller than it is.
     for scale in [0.125, 1.0, 3.0] {
         for placed in [
             build(
@@ -584,7 +586,7 @@ fn displacements() {
             assert!((0.25 * scale..=0.25 * scale * (1.0 + 1e-12)).contains(&found), "{found}");
         }
     }
-    // Of a shear more than lengths of columns say.
+    // For a shear, the bound exceeds the lengths of the columns.
     let shear = Affine::new([[1.0, 1.0, 1.0, 0.0], [0.0, 1.0, 1.0, 0.0], [0.0, 0.0, 1.0, 0.0]]).unwrap();
     let placed = build(&Transform::of(far, &shear), &frame(4), Rule::Certified, &CONTROL).unwrap();
     // The greatest singular value of the map is about 2.247.

@@ -1,14 +1,13 @@
-//! What comes out proven of what goes in: one table of all ways in which the library makes a solid of
-//! another.
+//! One table of all ways in which the library makes a solid of another: the proof of the result for each
+//! proof of the input.
 //!
-//! An octree of a ball goes in, by each of the four rules. Each way says which bits of [`Proof`] come out,
-//! and what the truth is that they speak of. The bits are compared with the table; and where FULL or EMPTY is
-//! claimed, the cells are held against the truth, point by point and exactly, so that a wrong bit is a lie
-//! and no mere difference from the table.
+//! The input is an octree of a ball, built by each of the four rules. Each way states which bits of [`Proof`]
+//! its result has, and the truth that these bits describe. The bits are compared with the table. Where FULL
+//! or EMPTY is claimed, the cells are compared with the truth, point by point and exactly. So a wrong bit is
+//! found as a lie, and not only as a difference from the table.
 //!
-//! The table is complete: all types that are solids, and all public functions that return one, are looked for
-//! in the sources, and each must be covered by a row, or stand in a list of those that make solids of
-//! numbers.
+//! The table is complete. The test searches the sources for all solid types and all public functions that
+//! return one. Each must be covered by a row, or stand in a list of functions that make solids of numbers.
 
 #![cfg(feature = "std")]
 
@@ -36,17 +35,17 @@ use std::sync::Arc;
 const CONTROL: Control<'static> =
     Control { threads: 1, max_nodes: None, max_bytes: None, max_splits: None, cancel: None, progress: None };
 
-/// The rules that go in, in the order of the columns of the table.
+/// The rules of the inputs, in the order of the table's columns.
 const RULES: [Rule; 4] = [Rule::Certified, Rule::Inner, Rule::Outer, Rule::Sampled];
 
 const DEPTH: u8 = 4;
 
-/// A finest cell has the edge 1.
+/// A frame whose finest cells have the edge 1.
 fn frame(depth: u8) -> Frame {
     Frame::new([0.0; 3], 16.0, depth).unwrap()
 }
 
-/// The ball that everything is made of, and another one. Sums of squares of such numbers are exact.
+/// The ball from which everything is made, and another ball. Sums of squares of such numbers are exact.
 const BALL: ([f64; 3], f64) = ([7.25, 8.0, 6.5], 5.25);
 const OTHER: ([f64; 3], f64) = ([9.5, 7.25, 8.25], 4.5);
 
@@ -59,10 +58,11 @@ fn ball(point: [f64; 3]) -> Option<bool> {
     is_in(BALL, point)
 }
 
-/// What is claimed of: whether a point is inside; `None` on a surface, where either may be said.
+/// The truth that a result claims: whether a point is inside; `None` on a surface, where both answers are
+/// allowed.
 type Truth = Box<dyn Fn([f64; 3]) -> Option<bool>>;
 
-/// What a way makes.
+/// The result of a way, and its truth.
 struct Made {
     tree: Octree,
     truth: Truth,
@@ -70,12 +70,12 @@ struct Made {
 
 type Outcome = Result<Made, Error>;
 
-/// Of the ball.
+/// Pairs a tree with the truth of the ball.
 fn of_ball(tree: Octree) -> Outcome {
     Ok(Made { tree, truth: Box::new(ball) })
 }
 
-/// What a solid of the ball says on the frame.
+/// Builds the octree of a solid of the ball.
 fn asked(solid: &impl Solid) -> Outcome {
     of_ball(whole(solid)?)
 }
@@ -88,12 +88,12 @@ fn of(tree: Octree, truth: impl Fn([f64; 3]) -> Option<bool> + 'static) -> Outco
     Ok(Made { tree, truth: Box::new(truth) })
 }
 
-/// A solid of its own, whose cells are all that there is to tell of it.
+/// Pairs a tree with no truth: the tree's cells are the definition of the solid.
 fn of_itself(tree: Octree) -> Outcome {
     of(tree, |_| None)
 }
 
-/// The ball by the same rule as the input, and the other one.
+/// The ball and the other ball, built by the input's rule.
 struct Given {
     rule: Rule,
     tree: Octree,
@@ -116,7 +116,7 @@ impl Given {
         Csg::solid(AnySolid::new(self.other.clone()))
     }
 
-    /// The two with their surfaces, of which that is said which is proven of the inputs.
+    /// Builds both balls with their surfaces. The octrees claim the proofs of the inputs.
     fn extended(&self) -> Result<[Octree; 2], Error> {
         let of = |(centre, radius), proof| {
             let ball = Csg::ball(centre, radius)?;
@@ -131,7 +131,7 @@ impl Given {
         VoxelRecords::of(self.tree.view(), options, None, &CONTROL).unwrap()
     }
 
-    /// With a channel that has a value wherever the octree is not EMPTY.
+    /// Returns the octree with a channel that has a value wherever the octree is not EMPTY.
     fn with_channel(&self) -> Octree {
         let options = FillOptions {
             value_type: ValueType::new(ScalarType::U8, 1).unwrap(),
@@ -168,7 +168,7 @@ fn not(p: [f64; 3]) -> Option<bool> {
     ball(p).map(|inside| !inside)
 }
 
-/// A map for which the images of cells are no cells, and the ball's image.
+/// A map that takes cells to shapes that are not cells, and the ball's image.
 fn placement() -> Affine {
     Affine::new([[0.75, 0.0, 0.0, 1.25], [0.0, 0.75, 0.0, 2.5], [0.0, 0.0, 0.75, 1.0]]).unwrap()
 }
@@ -179,24 +179,24 @@ fn moved(p: [f64; 3]) -> Option<bool> {
     is_in(([0.75 * x + 1.25, 0.75 * y + 2.5, 0.75 * z + 1.0], 0.75 * radius), p)
 }
 
-/// One way, and what comes out of it.
+/// One way, and the proof of its result.
 struct Way {
     name: &'static str,
-    /// Types that are solids and public functions, with the folder and the file where they stand, that the
-    /// way goes through.
+    /// The solid types and public functions that the way uses, each with its folder and file.
     through: &'static [&'static str],
     make: fn(&Given) -> Outcome,
-    /// FULL and EMPTY for each rule of [`RULES`]: `1` if it is proven; `--` where the way refuses that rule.
+    /// The proofs of FULL and EMPTY for each rule of [`RULES`]: `1` if proven; `--` where the way refuses the
+    /// rule.
     proven: [&'static str; 4],
 }
 
-/// What goes in comes out.
+/// The input's proof stays.
 const SAME: [&str; 4] = ["11", "10", "01", "00"];
 const SWAPPED: [&str; 4] = ["11", "01", "10", "00"];
 const NOTHING: [&str; 4] = ["00", "00", "00", "00"];
-/// Only of what is proven on both sides.
+/// Proven only if both sides are proven.
 const IF_BOTH: [&str; 4] = ["11", "00", "00", "00"];
-/// A solid of its own: whatever it was made of, what it says is so.
+/// A solid of its own: its cells define it, whatever it was made of.
 const ITSELF: [&str; 4] = ["11", "11", "11", "11"];
 
 const WAYS: &[Way] = &[
@@ -306,7 +306,7 @@ const WAYS: &[Way] = &[
         proven: SAME,
     },
     Way {
-        // Of the values of the channel, whatever they were filled in by.
+        // The cells of the channel's values, whatever filled them.
         name: "the cells of a channel's values",
         through: &["attribute/value_region.rs region"],
         make: |a| {
@@ -696,7 +696,7 @@ const WAYS: &[Way] = &[
         proven: SAME,
     },
     Way {
-        // The fingerprint is that of the cells, which do not say what they prove.
+        // The fingerprint is that of the cells, which do not contain the proof.
         name: "resumed from what says that it is certified",
         through: &["op/lazy/mod.rs resume"],
         make: |a| {
@@ -709,9 +709,9 @@ const WAYS: &[Way] = &[
         },
         proven: SAME,
     },
-    // ---- what is a solid of its own
+    // ---- solids of their own
     Way {
-        // A function answers for itself, whatever it looks at.
+        // A function defines its own solid, whatever it reads.
         name: "function of a host",
         through: &["Callback", "solid/callback/mod.rs new", "solid/callback/mod.rs with_bounds"],
         make: |_| {
@@ -737,7 +737,7 @@ const WAYS: &[Way] = &[
         proven: ITSELF,
     },
     Way {
-        // A mesh is a solid of its own, the region inside of its triangles.
+        // A mesh is a solid of its own, the region inside its triangles.
         name: "mesh of an octree",
         through: &["MeshSolid", "solid/mesh/mesh_solid.rs new"],
         make: |a| {
@@ -970,7 +970,7 @@ const WAYS: &[Way] = &[
             file::save(&a.tree, &path)?;
             #[cfg(feature = "mmap")]
             {
-                // SAFETY: nobody else knows the file.
+                // SAFETY: no other process uses the file.
                 #[allow(unsafe_code)]
                 let mapped = unsafe { [file::map(&path)?, file::map_verified(&path)?] };
                 mapped.iter().for_each(|mapped| assert_eq!(mapped.proof(), a.tree.proof()));
@@ -989,7 +989,7 @@ fn coarse() -> VoxelOptions {
     VoxelOptions::new().boundary_depth(2)
 }
 
-/// How many points of FULL cells are outside, and how many of EMPTY cells inside.
+/// Counts the points of FULL cells that are outside, and the points of EMPTY cells that are inside.
 fn lies(made: &Made) -> [usize; 2] {
     let view = made.tree.view();
     let (cells, size) = (view.frame().cells(), view.frame().cell_size());
@@ -1017,7 +1017,7 @@ fn lies(made: &Made) -> [usize; 2] {
 #[test]
 fn what_comes_out_is_what_the_table_says_and_true() {
     let given = RULES.map(Given::new);
-    // Bits that would be lies if they were claimed.
+    // Number of unproven bits whose claim would be a lie.
     let mut seen = 0;
     for way in WAYS {
         for (given, expected) in given.iter().zip(way.proven) {
@@ -1050,14 +1050,14 @@ fn what_comes_out_is_what_the_table_says_and_true() {
             }
         }
     }
-    // Most of what is not claimed would be a lie: of what is claimed, lies would be seen, too.
+    // Most unproven bits would be lies. Hence a false claim would be noticed, too.
     assert!(seen > WAYS.len(), "{seen} of {} ways", WAYS.len());
 }
 
-// ---- that the table is complete -------------------------------------------------------------------------
+// ---- the completeness of the table ----------------------------------------------------------------------
 
-/// Files whose functions make solids of numbers, of what was written by other programs, or of what the
-/// program's own table holds against the truth (`cli/tests/program/proof_table.rs`).
+/// Files whose functions make solids of numbers or of other programs' files, or whose solids the program's
+/// own table compares with the truth (`cli/tests/program/proof_table.rs`).
 const NUMBERS: &[&str] = &[
     "exchange/volume/mod.rs",
     "scene/lower.rs",
@@ -1070,7 +1070,7 @@ const NUMBERS: &[&str] = &[
     "mesh/polyhedron",
 ];
 
-/// Functions that return half-spaces made of numbers, in a file of others.
+/// Functions that return half-spaces made of numbers, in files with other functions.
 const OF_NUMBERS: &[&str] = &["solid/csg/mod.rs half_space"];
 
 fn sources(folder: &Path, found: &mut Vec<(String, String)>) {
@@ -1089,7 +1089,7 @@ fn sources(folder: &Path, found: &mut Vec<(String, String)>) {
     }
 }
 
-/// What follows up to the first of these marks that is in no brackets.
+/// Returns the length of the text before the first of these marks outside brackets.
 fn until(text: &str, marks: &[char]) -> usize {
     let mut depth = 0;
     for (at, mark) in text.char_indices() {
@@ -1103,12 +1103,12 @@ fn until(text: &str, marks: &[char]) -> usize {
     text.len()
 }
 
-/// The words of a text.
+/// Splits a text into words.
 fn words(text: &str) -> impl Iterator<Item = &str> {
     text.split(|mark: char| !mark.is_alphanumeric() && mark != '_').filter(|word| !word.is_empty())
 }
 
-/// Types that implement `Solid`, as they are written, without their parameters.
+/// Returns the types that implement `Solid`, as written, without their parameters.
 fn solid_types(sources: &[(String, String)]) -> BTreeSet<String> {
     let mut types = BTreeSet::new();
     for (_, text) in sources {
@@ -1125,7 +1125,7 @@ fn solid_types(sources: &[(String, String)]) -> BTreeSet<String> {
     types
 }
 
-/// Public functions whose result has one of these types in it: file and name.
+/// Returns the public functions whose result contains one of these types: file and name.
 fn makers(sources: &[(String, String)], types: &BTreeSet<String>) -> BTreeSet<String> {
     let mut makers = BTreeSet::new();
     for (file, text) in sources {
@@ -1151,7 +1151,7 @@ fn until_name(text: &str) -> usize {
     text.find(|mark: char| !mark.is_alphanumeric() && mark != '_').unwrap_or(text.len())
 }
 
-/// Where the bracket closes that was opened before the text.
+/// Returns the index at which a bracket closes that was opened before the text.
 fn matching(text: &str) -> usize {
     let mut depth = 1;
     for (at, mark) in text.char_indices() {
@@ -1171,7 +1171,7 @@ fn matching(text: &str) -> usize {
 fn the_table_is_complete() {
     let mut found = vec![];
     sources(&Path::new(env!("CARGO_MANIFEST_DIR")).join("src"), &mut found);
-    // The interface in C calls what is in the table.
+    // The C interface calls the functions in the table.
     let types = solid_types(&found);
     assert!(types.len() >= 16 && types.contains("VoxelSolid") && types.contains("&S"), "{types:?}");
     let through: BTreeSet<&str> = WAYS.iter().flat_map(|way| way.through.iter().copied()).collect();
@@ -1190,7 +1190,7 @@ fn the_table_is_complete() {
             "{maker} returns a solid: which bits does it prove? Add a row"
         );
     }
-    // Nothing is named that is not there.
+    // Every name in the table exists.
     for name in through.iter().filter(|name| name.contains(' ') && !name.contains('\'')) {
         assert!(makers.contains(*name), "{name} is in the table, and in no source");
     }

@@ -1,5 +1,5 @@
-//! Shards of an octree: joined they are the whole, byte for byte, and alone they say nothing that is not true
-//! of it.
+//! Shards of an octree. Joined, they are the whole, byte for byte; alone, each makes only true claims about
+//! the whole.
 
 use crate::common::{Random, alone, repeated, shapes};
 use leafless::op::{build_extended_shard, join, shard};
@@ -13,7 +13,7 @@ use leafless::{
 };
 use proptest::prelude::*;
 
-/// How a tree is made of a solid.
+/// A way to make a tree of a solid.
 #[derive(Debug, Clone, Copy)]
 enum Way {
     Plain(Rule),
@@ -69,7 +69,7 @@ fn check<S: Solid>(solid: &S, frame: &Frame, way: Way, level: u8) {
     for cell in cut[0].view().open_cells(level).unwrap() {
         let one = shard(whole.view(), Shard::Below(cell), &alone()).unwrap();
         one.view().check().unwrap();
-        // The same as is built, where the cell is split at all.
+        // The same trees as the built ones, where the cell is split at all.
         if one.statistics().levels()[usize::from(cell.level)].nodes > 0 {
             let built = way.shard(solid, frame, Shard::Below(cell));
             assert!(bytes(&built) == bytes(&one), "{way:?}, {cell:?}");
@@ -79,7 +79,7 @@ fn check<S: Solid>(solid: &S, frame: &Frame, way: Way, level: u8) {
     assert!(bytes(&joined(&cut)) == expected, "cut, {way:?}, level {level} of {}", frame.depth());
 }
 
-/// The top with all that shards know of cells that are not split, and the others with their cells.
+/// Joins the top with all shards whose cells are not split. Returns it and the other shards with their cells.
 fn settled(built: &[Octree], level: u8) -> (Octree, Vec<(Cell, Octree)>) {
     let (mut top, mut shards) = (vec![built[0].clone()], Vec::new());
     let cells = built[0].view().open_cells(level).unwrap();
@@ -90,7 +90,7 @@ fn settled(built: &[Octree], level: u8) -> (Octree, Vec<(Cell, Octree)>) {
     (joined(&top), shards)
 }
 
-/// Statistics and measures of a top and its shards are those of the whole.
+/// Checks that the statistics and measures of a top and its shards are those of the whole.
 fn check_sums(whole: &Octree, (top, shards): (Octree, Vec<(Cell, Octree)>)) {
     let mut all = vec![top.clone()];
     all.extend(shards.iter().map(|(_, shard)| shard.clone()));
@@ -116,7 +116,7 @@ fn check_sums(whole: &Octree, (top, shards): (Octree, Vec<(Cell, Octree)>)) {
     assert_eq!((found.clipped, found.proof), (expected.clipped, expected.proof));
 }
 
-/// As a solid the shards are the whole.
+/// Checks that the shards, as a solid, are the whole.
 fn check_solid(whole: &Octree, sharded: &ShardedOctree) {
     let frame = *whole.frame();
     for frame in [frame, frame.with_depth(1).unwrap(), frame.with_depth((frame.depth() + 1).min(20)).unwrap()]
@@ -203,7 +203,7 @@ fn built_in_shards() {
     }
 }
 
-/// A ball of a host program, which is asked about many boxes at once.
+/// A ball of a host program, which is queried for many boxes at once.
 fn host() -> impl Solid {
     Callback::new(|min: [f64; 3], max: [f64; 3]| {
         let (mut near, mut far) = (0.0, 0.0);
@@ -267,7 +267,7 @@ fn large_enough_for_threads() {
     }
 }
 
-/// The triangles of a mesh by the places of their corners.
+/// Returns the triangles of a mesh by the places of their corners.
 fn places(meshes: &[TriangleMesh]) -> Vec<[[u64; 3]; 3]> {
     let corner = |mesh: &TriangleMesh, vertex: u32| mesh.vertices()[vertex as usize].map(f64::to_bits);
     let all = meshes.iter().flat_map(|mesh| mesh.triangles().iter().map(move |t| t.map(|v| corner(mesh, v))));
@@ -279,7 +279,7 @@ fn places(meshes: &[TriangleMesh]) -> Vec<[[u64; 3]; 3]> {
 #[test]
 fn surfaces_cell_by_cell() {
     for depth in [2, 3, 5, 6] {
-        // Of the second one the surface lies in walls of the universe, too.
+        // The surface of the second solid lies partly in walls of the universe.
         for solid in [part(), Csg::cuboid([-1.0, 0.2, 0.0], [0.7, 2.0, 0.6]).unwrap()] {
             let tree = build(&solid, &unit(depth), Rule::Certified, &alone()).unwrap();
             for resolve in [Resolve::Inner, Resolve::Outer] {
@@ -314,7 +314,7 @@ proptest! {
         let cells = trees[0].view().open_cells(level).unwrap();
         trees.extend(cells.iter().map(|&cell| cut(Shard::Below(cell))));
         prop_assert!(bytes(&joined(&trees)) == bytes(&whole));
-        // Without one of them nothing is known of its cell, and no more.
+        // Without one of the shards, its cell is unknown, and nothing else changes.
         if let Some(&cell) = cells.get(random.below(cells.len().max(1) as u64) as usize) {
             let place = cells.iter().position(|&other| other == cell).unwrap();
             trees.remove(1 + place);
@@ -355,7 +355,7 @@ fn what_is_refused() {
     let views = [*tree.view(), *other.view()];
     assert!(matches!(join(&views, &alone()), Err(Error::Argument { name: "trees", .. })));
     assert!(matches!(join(&[], &alone()), Err(Error::Argument { name: "trees", .. })));
-    // One decides a cell at once, of which the other decides parts otherwise.
+    // One tree decides a cell as a whole, and the other decides parts of the cell differently.
     let octant = build(&Csg::cuboid([0.0; 3], [0.5; 3]).unwrap(), &frame, Rule::Certified, &alone()).unwrap();
     let parts = build(&Csg::ball([0.25; 3], 0.2).unwrap(), &frame, Rule::Certified, &alone()).unwrap();
     let beside = build(&Csg::ball([0.75; 3], 0.2).unwrap(), &frame, Rule::Certified, &alone()).unwrap();
@@ -365,8 +365,7 @@ fn what_is_refused() {
     }
     let coarse = build(&part(), &unit(3), Rule::Certified, &alone()).unwrap();
     assert!(matches!(join(&[*tree.view(), *coarse.view()], &alone()), Err(Error::FrameMismatch { .. })));
-    // Of one solid by two rules something is known together that neither knows alone, or they contradict each
-    // other.
+    // Two rules of one solid: together they know more than each of them alone, or they contradict each other.
     let [inner, outer] =
         [Rule::Inner, Rule::Outer].map(|rule| build(&part(), &frame, rule, &alone()).unwrap());
     assert!(join(&[*inner.view(), *outer.view()], &alone()).is_err());
@@ -428,7 +427,7 @@ fn what_is_refused() {
     for at in 0..good.len() {
         let mut bad = good;
         bad[at] ^= 0x80;
-        // Whatever it is taken for can be told.
+        // Any accepted sum can be evaluated.
         if let Ok(sum) = MassSum::from_bytes(&bad) {
             let _ = sum.properties();
         }

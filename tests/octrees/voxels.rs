@@ -1,4 +1,4 @@
-//! Voxel records, against recursion over dense arrays and against searches without order.
+//! Voxel records, against recursion over dense arrays and against unordered searches.
 
 use crate::common;
 use crate::common::{Dense, Random, alone, cases, lattice_frame, repeated, shapes};
@@ -14,7 +14,7 @@ use leafless::{
 use proptest::prelude::*;
 use std::sync::atomic::AtomicBool;
 
-/// Two numbers that change everywhere, and none in a corner.
+/// An attribute of two components that change everywhere, without a value in a corner.
 fn slope() -> impl Attribute {
     let at = |p: [f64; 3]| p[0] * p[0] + 3.0 * p[1] - 0.5 * p[2];
     let function = move |p: [f64; 3]| (p[0] + p[1] > 0.5).then(|| [at(p), p[2], 0.0, 0.0]);
@@ -32,7 +32,7 @@ fn slope() -> impl Attribute {
     })
 }
 
-/// What the list must be, by its definition.
+/// The expected list, by its definition.
 struct Oracle<'a> {
     dense: &'a Dense,
     frame: Frame,
@@ -45,7 +45,7 @@ struct Oracle<'a> {
 }
 
 impl Oracle<'_> {
-    /// Whether the neighbour of a finest cell of the boundary level lies outside.
+    /// True if the neighbour of a finest cell of the boundary level lies outside.
     fn is_outside(&self, at: [i64; 3]) -> bool {
         let n = 1i64 << self.boundary_level;
         if at.iter().any(|a| !(0..n).contains(a)) {
@@ -178,7 +178,7 @@ proptest! {
     }
 }
 
-/// The arrays are accepted, and nothing else like them.
+/// Checks that the arrays are accepted, and that changed arrays are refused.
 fn check_arrays(records: &VoxelRecords) {
     let view = records.view();
     let frame = view.frame();
@@ -198,7 +198,7 @@ fn check_arrays(records: &VoxelRecords) {
     }
 }
 
-/// What is found by code is what is found by looking at each.
+/// Checks the search by code against an examination of every record.
 fn check_search(records: &VoxelRecords) {
     let view = records.view();
     let depth = view.frame().depth();
@@ -307,7 +307,7 @@ fn limits_and_refusals() {
         of(&VoxelOptions::new(), &small),
         Err(Error::TooLarge { limit: 1000, needed: 1001.., .. })
     ));
-    // Of voxels that touch outside cells not all are known beforehand.
+    // Not all voxels that touch outside cells are known in advance.
     let touching = VoxelOptions::new().boundary(VoxelBoundary::Touching);
     let shape = Csg::ball([0.1, 0.0, 0.0], 0.8).unwrap();
     let tree = build(&shape, &Frame::new([-1.0; 3], 2.0, 6).unwrap(), Rule::Sampled, &alone()).unwrap();
@@ -387,7 +387,7 @@ fn an_attribute_that_fails_ends_the_list() {
     assert!(voxels.next().is_none());
 }
 
-/// Records with all that there is: four kinds, two components.
+/// Records with all options: four kinds, two components.
 fn some_records(dense: &Dense, boundary: u8, refined: bool, detail: Option<Detail>) -> VoxelRecords {
     let mut options = VoxelOptions::new().boundary_depth(boundary).outside(true).refined(refined);
     if let Some(detail) = detail {
@@ -396,7 +396,7 @@ fn some_records(dense: &Dense, boundary: u8, refined: bool, detail: Option<Detai
     VoxelRecords::of(dense.octree().view(), &options, Some(&slope()), &alone()).unwrap()
 }
 
-/// Bits, since what is not a number is not equal.
+/// Returns the records as bits, because NaN is not equal to itself.
 fn bits(records: &VoxelRecords) -> (Vec<u64>, Vec<u8>, Vec<u8>, Vec<u64>) {
     let view = records.view();
     let values = view.values().iter().map(|value| value.to_bits()).collect();
@@ -433,7 +433,7 @@ proptest! {
         let records = VoxelRecords::of(tree.view(), &options, None, &alone()).unwrap();
         let tag = if binary { Tag::Full } else { Tag::Partial };
         let again = records.view().to_octree(tag, &alone()).unwrap();
-        // The same tree, as deep as records were looked for, on a lattice that is as deep as records go.
+        // The same tree, as deep as the tests search records, on a lattice as deep as records allow.
         let level = if binary { dense.depth } else { boundary.min(dense.depth).max(1) };
         let depth = records.view().frame().depth();
         let mut expected = dense.cut(level);
@@ -490,7 +490,7 @@ proptest! {
         }
     }
 
-    /// Against dense arrays, and against the octree as a solid under the same map.
+    /// Moved cells, against dense arrays and against the octree as a solid under the same map.
     #[test]
     fn whole_cells_move_as_octrees_do(
         shape in shapes(1..=3),
@@ -516,7 +516,7 @@ proptest! {
         let scale = 1i32 << (fine - depth);
         let moved = view.moved(symmetry, offset.map(|a| a * scale), &alone()).unwrap();
         check_arrays(&moved);
-        // Where a cell comes from, on a lattice of so many cells.
+        // The source of a cell, on a lattice of this many cells.
         let from = |at: [i32; 3], scale: i32| -> Option<[u32; 3]> {
             let mut old = [0; 3];
             for axis in 0..3 {
@@ -540,7 +540,7 @@ proptest! {
         let placed = AnySolid::new(tree.clone()).placed(&Affine::new(rows).unwrap()).unwrap();
         let built = build(&placed, tree.frame(), Rule::Certified, &alone()).unwrap();
         prop_assert_eq!(Dense::of(built.view()), expected);
-        // Kinds and values are those of the record that a cell comes from.
+        // Kinds and values are those of the record from which a cell comes.
         for record in moved.view().iter().filter(|record| record.kind != VoxelKind::Refined) {
             let at = record.cell.at.map(|a| (a << (fine - record.cell.level)) as i32);
             let old = from(at, scale).unwrap();
@@ -551,7 +551,7 @@ proptest! {
         if offset == [0; 3] {
             prop_assert_eq!(bits(&moved), bits(&view.turned(symmetry, &alone()).unwrap()));
         }
-        // What is known of the space outside.
+        // The exterior.
         let around = dense.octree_with(Tag::Full, &alone()).unwrap();
         let records = VoxelRecords::of(around.view(), &VoxelOptions::new(), None, &alone()).unwrap();
         let moved = records.view().moved(symmetry, [1, 0, 0], &alone()).unwrap();
@@ -602,7 +602,7 @@ proptest! {
             let told = |record: Option<VoxelRecord>| record.map(|record| (record.kind, record.value));
             prop_assert_eq!(told(found), told(expected));
         }
-        // What could merge has merged.
+        // All cells that can merge have merged.
         let all: Vec<VoxelRecord> = placed.view().iter().collect();
         for eight in all.windows(8) {
             let parent = eight[0].cell.parent();
@@ -658,10 +658,10 @@ fn maps_that_take_cells_to_cells() {
     refused([[1.0, 0.0, 0.0, 1e-17], [0.0, 1.0, 0.0, 0.0], [0.0, 0.0, 1.0, 0.0]]);
 }
 
-/// Whether a cube, seen along a line that an eye or a direction gives, may hide a part of another one.
+/// True if a cube may hide part of another cube, seen from an eye or along a direction.
 fn hides(front: [[f64; 3]; 2], back: [[f64; 3]; 2], from: &Viewpoint) -> bool {
     match *from {
-        // Moved on along the direction, for some t > 0, the front one meets the back one.
+        // The front cube, moved along the direction for some t > 0, meets the back one.
         Viewpoint::Parallel(direction) => {
             let (mut first, mut last) = (0.0f64, f64::INFINITY);
             for axis in 0..3 {
@@ -678,7 +678,7 @@ fn hides(front: [[f64; 3]; 2], back: [[f64; 3]; 2], from: &Viewpoint) -> bool {
             }
             first < last
         }
-        // Blown up about the eye, by some s > 1, the front one meets the back one.
+        // The front cube, scaled about the eye by some s > 1, meets the back one.
         Viewpoint::Perspective(eye) => {
             let (mut first, mut last) = (1.0f64, f64::INFINITY);
             for axis in 0..3 {
@@ -737,7 +737,7 @@ fn depth_orders_hold_for_a_thousand_views() {
         assert_eq!(sorted.len() as u64, leaves);
         assert!(sorted.iter().all(|&index| view.get(index as usize).unwrap().kind != VoxelKind::Refined));
         for (place, &back) in order.iter().enumerate() {
-            // Nothing behind in the order hides what comes before it.
+            // No later record hides an earlier one.
             for &front in &order[place + 1..] {
                 let [back, front] = [back, front].map(|index| cubes[index as usize]);
                 assert!(!hides(front, back, &from), "{from:?}: {front:?} hides {back:?}");
@@ -758,7 +758,7 @@ mod triangles {
     use super::*;
     use crate::common::exact::Exact;
 
-    /// Whether a triangle and a closed box have a point in common, by clipping the triangle with exact
+    /// True if a triangle and a closed box have a point in common. The triangle is clipped with exact
     /// fractions: a polygon whose corners are integers over one denominator each.
     fn meets(corners: [[i128; 3]; 3], low: [i128; 3], high: [i128; 3]) -> bool {
         // Homogeneous: (x, y, z, w), w > 0.
@@ -833,7 +833,7 @@ mod triangles {
         ) {
             let dense = shape.dense();
             let records = some_records(&dense, boundary, true, None);
-            // On the half-integers, where many only touch, or on a grid of 1/64 of cells.
+            // On half-integers, where many pairs only touch, or on a grid of 1/64 of cells.
             let step = if fine { 1.0 / 64.0 } else { 0.5 };
             let number = |k: i32| f64::from(k) * step * if fine { 29.0 } else { 1.0 };
             let vertices: Vec<[f64; 3]> =
@@ -851,7 +851,7 @@ mod triangles {
 
     #[test]
     fn planes_that_are_no_doubles_are_met_exactly() {
-        // Lattice planes at multiples of 0.1/16: a vertex next to such a plane lies on its own side.
+        // Lattice planes at multiples of 0.1/16. A vertex next to such a plane lies on its own side.
         let frame = Frame::new([0.1; 3], 0.1, 4).unwrap();
         let codes: Vec<u64> = (0..4096).collect();
         let records =
@@ -885,7 +885,7 @@ mod triangles {
 #[allow(dead_code)]
 mod gear_records;
 
-/// The published gear took 2.33 times fewer voxels where these follow the colour.
+/// On the published gear, voxels that follow the colour are 2.33 times fewer.
 #[test]
 fn adaptive_voxels_are_fewer_and_no_value_is_off() {
     for part in gear_records::parts(&alone()).unwrap() {
@@ -909,7 +909,7 @@ fn adaptive_voxels_are_fewer_and_no_value_is_off() {
             records.levels().iter().map(|&level| 1u64 << (3 * (fine.frame().depth() - level))).sum()
         };
         assert_eq!((space(&adaptive), space(&fine)), (voxels, voxels));
-        // The coarse picture is poor: there values are off.
+        // The coarse picture is poor: its values are wrong in places.
         let coarse = lists.coarse.view();
         let off = fine.iter().any(|record| {
             let around = coarse.get(coarse.containing(record.cell).unwrap()).unwrap();
@@ -919,7 +919,7 @@ fn adaptive_voxels_are_fewer_and_no_value_is_off() {
     }
 }
 
-/// The parts of voxels that are solid add up to the volume.
+/// The solid parts of voxels add up to the volume.
 #[test]
 fn solid_parts_add_up() {
     let control = alone();
@@ -958,8 +958,9 @@ fn solid_parts_add_up() {
 
 #[test]
 fn equal_records_beside_each_other_cost_nothing_where_they_meet() {
-    // Four octants inside and four outside, on a lattice of 2^20 cells to an axis, moved by no lattice step.
-    // Where equal octants meet nothing is split; where the others do, the result is larger than the limit.
+    // Four octants inside and four outside, on a lattice of 2^20 cells along an axis, moved by a fraction of
+    // a cell. Where equal octants meet, nothing is split; where different octants meet, the result exceeds
+    // the limit.
     let frame = Frame::new([0.0; 3], 1.0, 20).unwrap();
     let codes: Vec<u64> = (0..8).map(|octant| octant << 57).collect();
     let records = |kinds: Vec<u8>| {
@@ -977,8 +978,8 @@ fn equal_records_beside_each_other_cost_nothing_where_they_meet() {
 
 #[test]
 fn faces_that_run_along_the_lattice_cost_nothing() {
-    // Two of eight octants, of which nothing lies beside the others, on a lattice of 2^20 cells to an axis:
-    // 2^40 finest cells lie along each face.
+    // Two of eight octants without neighbours, on a lattice of 2^20 cells along an axis. 2^40 finest cells
+    // lie along each face.
     let frame = Frame::new([-1.0, 0.5, 3.0], 4.0, 20).unwrap();
     let (codes, kinds) = (vec![0, 3 << 57], vec![VoxelKind::Inside as u8, VoxelKind::Boundary as u8]);
     let records = VoxelRecords::from_arrays(&frame, codes, vec![1; 2], kinds, 0, vec![]).unwrap();
@@ -992,7 +993,7 @@ fn faces_that_run_along_the_lattice_cost_nothing() {
         let most = if placement == Affine::IDENTITY { 2 } else { 200 };
         assert!((1..=most).contains(&there.view().len()), "{}", there.view().len());
     }
-    // Of determinant -2^-60, which is zero in doubles.
+    // The determinant is -2^-60, which is zero in doubles.
     let small = 2f64.powi(-30);
     let flat = [[1.0 + small, 1.0, 0.0, 0.0], [1.0, 1.0 - small, 0.0, 0.0], [0.0, 0.0, 1.0, 0.0]];
     let found = records.view().placed_by_centres(&Affine::new(flat).unwrap(), &frame, &limited);

@@ -16,7 +16,7 @@ fn frame() -> Frame {
     Frame::new([-4.0; 3], 8.0, 20).unwrap()
 }
 
-/// A truth that is a rounded double.
+/// Checks a result against a truth that is a rounded double.
 #[track_caller]
 fn holds(found: &SurfaceArea, truth: f64, name: &str) {
     let slack = 1e-12 * truth;
@@ -24,12 +24,12 @@ fn holds(found: &SurfaceArea, truth: f64, name: &str) {
     assert!(area.lower <= truth + slack && truth - slack <= area.upper, "{name}: {truth} {found:?}");
 }
 
-/// The area of a cone's or a frustum's side.
+/// Returns the lateral area of a cone or a frustum.
 fn side(a: f64, b: f64, height: f64) -> f64 {
     PI * (a + b) * ((a - b) * (a - b) + height * height).sqrt()
 }
 
-/// The area of an ellipsoid with two equal radii a and a smaller one c along the axis.
+/// Returns the area of an ellipsoid with two equal radii a and a smaller radius c along the axis.
 fn oblate(a: f64, c: f64) -> f64 {
     let e = (1.0 - c * c / (a * a)).sqrt();
     2.0 * PI * a * a * (1.0 + (1.0 - e * e) / e * e.atanh())
@@ -45,7 +45,7 @@ fn primitives() -> Vec<(&'static str, Csg, f64)> {
     };
     let (r, s, h) = (0.8, 0.3, 1.7);
     let ell = [[0.0, 0.0], [2.0, 0.0], [2.0, 1.0], [1.0, 1.0], [1.0, 2.0], [0.0, 2.0]];
-    // The slope of a wedge goes from a width of 1.5 to one of 0.4.
+    // The slope of a wedge narrows from a width of 1.5 to a width of 0.4.
     let slope = f64::hypot(1.5 - 0.4, 1.2);
     vec![
         ("ball", of(Csg::ball([0.1, 0.2, 0.3], 1.5)), 4.0 * PI * 2.25),
@@ -62,7 +62,8 @@ fn primitives() -> Vec<(&'static str, Csg, f64)> {
     ]
 }
 
-/// A turn by a random angle about a random axis, a scale and an offset; and the scale.
+/// A random placement with its scale: a rotation by a random angle about a random axis, a scale and an
+/// offset.
 fn placement(random: &mut Random) -> (Affine, f64) {
     let [a, b, c] = [0; 3].map(|_| random.between(-1.0, 1.0));
     let turn = glam::DMat3::from_quat(glam::DQuat::from_scaled_axis(glam::DVec3::new(a, b, c) * 3.0));
@@ -107,7 +108,7 @@ fn each_budget_holds_the_truth() {
             let control = Control { max_splits: Some(budget), ..Control::default() };
             let found = surface_area(&placed, &frame(), 0.0, &control).unwrap();
             assert!(found.splits <= budget, "{name} {found:?}");
-            // (As long as a cell knows only how large it is, eight smaller ones may know less; and roundings
+            // (A cell known only by its size may have tighter bounds than its eight children, and roundings
             // add up.)
             assert!(budget < 50 || found.area.width() <= last + 1e-9, "{name} {budget} {found:?}");
             assert_ne!(found.stop_reason, StopReason::Tolerance);
@@ -120,7 +121,8 @@ fn each_budget_holds_the_truth() {
 
 #[test]
 fn widths_fall_with_the_number_of_splits() {
-    // Curved surfaces, and where they meet: with N splits by 1 / N. Plane ones are known at once.
+    // Curved surfaces and their intersections converge with 1 / N for N splits. Plane surfaces are known at
+    // once.
     for (name, solid, truth) in primitives() {
         let width = |budget: u64| {
             let control = Control { max_splits: Some(budget), ..Control::default() };
@@ -153,7 +155,7 @@ fn what_parts_have_in_common_does_not_count() {
         assert_eq!(found.stop_reason, StopReason::Tolerance);
         holds(&found, truth, name);
     }
-    // A plate with holes, of which all faces lie in planes of the lattice.
+    // A plate with holes. All of its faces lie in planes of the lattice.
     let mut plate = Csg::cuboid([-2.0, -2.0, -0.5], [2.0, 2.0, 0.5]).unwrap();
     for (x, y) in [(-1.0, -1.0), (1.0, -1.0), (0.0, 1.0)] {
         let hole = Csg::cylinder(0.5, -1.0, 1.0).unwrap();
@@ -164,7 +166,7 @@ fn what_parts_have_in_common_does_not_count() {
     let found = surface_area(&plate, &frame(), 1e-3, &Control::default()).unwrap();
     holds(&found, truth, "plate");
     assert_eq!(found.stop_reason, StopReason::Tolerance);
-    // A pocket that is as deep as the block is high: nothing is left of it.
+    // A pocket as deep as the block is high. The block is gone.
     let block = Csg::cuboid([-1.0; 3], [1.0; 3]).unwrap();
     let rest = block.difference(&Csg::cuboid([-1.0, -1.0, -1.0], [0.0, 1.0, 1.0]).unwrap()).unwrap();
     holds(
@@ -179,19 +181,19 @@ fn what_parts_have_in_common_does_not_count() {
 fn what_is_not_known_is_not_told() {
     let whole = Interval::new(0.0, f64::INFINITY).unwrap();
     let control = Control::default();
-    // A stored octree: what its surface is like is not stored.
+    // A stored octree. It does not store the shape of its surface.
     let small = Frame::new([-4.0; 3], 8.0, 5).unwrap();
     let tree = build(&Csg::ball([0.0; 3], 1.5).unwrap(), &small, Rule::Certified, &control).unwrap();
     let found = surface_area(&tree, &small, 0.01, &control).unwrap();
     assert_eq!((found.area, found.stop_reason, found.splits), (whole, StopReason::Exhausted, 0));
-    // All cells of a tree may be decided: its surface is that of the cells.
+    // All cells of a tree may be decided. Then its surface is that of the cells.
     let ell = Csg::prism(&[[0.0, 0.0], [2.0, 0.0], [2.0, 1.0], [1.0, 1.0], [1.0, 2.0], [0.0, 2.0]], 0.0, 0.5);
     let tree = build(&ell.unwrap(), &small, Rule::Certified, &control).unwrap();
     assert!(tree.view().is_binary());
     let found = surface_area(&tree, &small, 0.0, &control).unwrap();
     holds(&found, 2.0 * 3.0 + 8.0 * 0.5, "cells");
     assert!(found.area.width() < 1e-12 && found.stop_reason != StopReason::Budget, "{found:?}");
-    // A tree that is sampled proves nothing.
+    // A sampled tree proves nothing.
     let tree = build(&Csg::ball([0.0; 3], 1.5).unwrap(), &small, Rule::Sampled, &control).unwrap();
     assert_eq!(surface_area(&tree, &small, 0.01, &control).unwrap().area, whole);
     // A face of a clipped block in a plane of the lattice, and beside one.
@@ -201,7 +203,7 @@ fn what_is_not_known_is_not_told() {
         assert!(found.clipped && found.area.width() < 1e-9, "{found:?}");
         holds(&found, 64.0, "clipped");
     }
-    // Nothing, and a ball outside.
+    // The empty set, and a ball outside.
     let a = Csg::ball([0.1; 3], 1.0).unwrap();
     let far = surface_area(&Csg::ball([50.0; 3], 1.0).unwrap(), &frame(), 0.01, &control).unwrap();
     assert_eq!((far.area, far.clipped), (Interval::exactly(0.0), true));
@@ -229,7 +231,7 @@ fn extended(solid: &Csg, frame: &Frame) -> leafless::Octree {
     build_extended(solid, frame, &SurfaceOptions::default(), &alone()).unwrap()
 }
 
-/// Most faces of the plate lie in planes of the lattice, and so leave no surface in the tree.
+/// Most faces of the plate lie in planes of the lattice, and so the tree stores no surface for them.
 #[test]
 fn an_extended_tree_has_the_area_of_its_source() {
     let turn = Affine::new([[0.36, 0.48, -0.8, 0.0], [-0.8, 0.6, 0.0, 0.0], [0.48, 0.64, 0.6, 0.0]]).unwrap();
@@ -258,8 +260,7 @@ fn an_extended_tree_has_the_area_of_its_source() {
     }
 }
 
-/// Faces in planes of the lattice at each depth of trees, between cells that are decided, and beside cells
-/// that are cut.
+/// Faces in planes of the lattice at every depth of the tree, between decided cells and beside cut cells.
 #[test]
 fn faces_in_planes_of_the_lattice_are_counted_once() {
     let frame = Frame::new([-4.0; 3], 8.0, 12).unwrap();
@@ -272,7 +273,7 @@ fn faces_in_planes_of_the_lattice_are_counted_once() {
         let count = 1 + maker.below(4);
         let model = maker.joined(count);
         let Ok(csg) = model.csg(&frame) else { continue };
-        // What ends inside of the universe has its area on another lattice.
+        // A solid that ends inside the universe has its area on another lattice, too.
         let block = Csg::cuboid([-3.0, -2.5, -3.0], [3.0, 2.0, 2.75]).unwrap();
         let csg = Csg::intersection_of([csg, block]).unwrap();
         let control = Control { max_splits: Some(20_000), ..alone() };
@@ -302,16 +303,16 @@ fn faces_in_planes_of_the_lattice_are_counted_once() {
     assert!(checked > repeated(75, 300));
 }
 
-/// A surface that vanishes on faces of cells that it crosses, and has different signs on both sides of them.
+/// A surface that vanishes on faces of the cells it crosses, with different signs on both sides of a face.
 #[test]
 fn a_surface_that_holds_faces_is_counted() {
     let frame = Frame::new([-4.0; 3], 8.0, 12).unwrap();
-    // x y > 0 in a block: two quarters, whose faces are in planes of the lattice.
+    // x y > 0 in a block: two quarters with faces in planes of the lattice.
     let pair = Csg::from(HalfSpace::quadric([0.0, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0]).unwrap());
     for (low, high, truth) in [
         // Two cuboids of 2 × 2 × 2 that have an edge in common.
         ([-2.0, -2.0, -1.0], [2.0, 2.0, 1.0], 2.0 * 24.0),
-        // Nothing of one quarter: 1 × 2 × 2, and 2 × 0.5 × 2 beyond.
+        // One quarter is gone: 1 × 2 × 2, and 2 × 0.5 × 2 beyond.
         ([-1.0, -0.5, -1.0], [1.0, 2.0, 1.0], 2.0 * (2.0 + 4.0 + 2.0) + 2.0 * (0.5 + 1.0 + 2.0)),
     ] {
         let part = Csg::intersection_of([Csg::cuboid(low, high).unwrap(), pair.clone()]).unwrap();
@@ -319,12 +320,12 @@ fn a_surface_that_holds_faces_is_counted() {
         let control = Control { max_splits: Some(20_000), ..Control::default() };
         let found = surface_area(&tree, &frame, 1e-2, &control).unwrap();
         holds(&found, truth, "quarters");
-        // (It is not known whether x y is zero inside of a cell beside such a plane.)
+        // (Whether x y is zero inside a cell beside such a plane is unknown.)
         assert!(0.5 * truth < found.area.lower && found.area.upper < 2.0 * truth, "{found:?}");
     }
 }
 
-/// Two turned cubes of edge 1 that intersect: a mesh that does not know its area without splits.
+/// Two rotated, intersecting cubes of edge 1: a mesh whose area is not known without splits.
 fn intersecting_cubes() -> MeshSolid {
     let turn = glam::DMat3::from_quat(glam::DQuat::from_scaled_axis(glam::DVec3::new(0.3, 0.7, -0.4)));
     let quads = [[0, 4, 6, 2], [1, 3, 7, 5], [0, 1, 5, 4], [2, 6, 7, 3], [0, 2, 3, 1], [4, 5, 7, 6]];
@@ -342,7 +343,7 @@ fn intersecting_cubes() -> MeshSolid {
 
 #[test]
 fn an_area_without_an_upper_bound_meets_no_tolerance() {
-    // It tells which cells are decided, and no area.
+    // The solid decides cells, and provides no area.
     let solid = Plain::ball([0.1, 0.2, 0.3], 1.5).unwrap();
     let mut unbounded = 0;
     for splits in (0..64).chain([100_000]) {
@@ -361,7 +362,7 @@ fn an_area_without_an_upper_bound_meets_no_tolerance() {
 #[test]
 fn a_mesh_that_intersects_itself_has_the_area_of_what_it_encloses() {
     let found = surface_area(&intersecting_cubes(), &frame(), 1e-2, &Control::default()).unwrap();
-    // Less two pieces of the faces inside of the other cube, each 0.63².
+    // Minus two pieces of the faces inside the other cube, each 0.63².
     holds(&found, 12.0 - 6.0 * 0.63 * 0.63, "intersecting cubes");
 }
 
@@ -373,8 +374,8 @@ fn the_same_for_any_number_of_threads() {
     assert_eq!(surface_area(&solid, &frame(), tolerance, &alone()).unwrap(), many);
 }
 
-/// Bounds of the area in a cell by those of cells that are some levels finer, in squares of the cell's half
-/// edge. (Where a solid ends in a wall between two cells the area there is in neither.)
+/// Bounds the area in a cell by the areas of cells some levels finer, in squares of the cell's half edge. (If
+/// a solid ends in the wall between two cells, the area there is in neither.)
 fn by_finer<W: Worker>(worker: &mut W, cell: Cell, part: &W::Part, levels: u8) -> Interval {
     if levels == 0 {
         return worker.area(cell, part).unwrap().unwrap_or(Interval::new(0.0, f64::INFINITY).unwrap());
@@ -393,7 +394,7 @@ fn by_finer<W: Worker>(worker: &mut W, cell: Cell, part: &W::Part, levels: u8) -
     sum
 }
 
-/// Cells of `solid` on the way down to a random one: their areas against those of finer cells.
+/// Compares the areas of the cells of `solid` on the way down to a random cell with the areas of finer cells.
 fn cells_of<S: Solid>(solid: &S, frame: &Frame, seed: u64, random: &mut Random, found: &mut [u64; 2]) {
     let classifier = solid.on(frame, &alone()).unwrap();
     let Some(mut way) = Way::new(classifier.worker().unwrap()) else { return };

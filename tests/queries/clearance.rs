@@ -1,5 +1,5 @@
-//! Clearance to second order: distances of primitives against closed forms, the points that are told with
-//! them, how deep solids overlap, and gaps that are decided.
+//! Clearance to second order: distances of primitives against closed forms, the nearest points, penetration
+//! depths, and decided gaps.
 
 use crate::common::{Random, alone};
 use leafless::query::{GapVerdict, StopReason, clearance_at, gap_at_least, gap_at_least_at};
@@ -25,7 +25,7 @@ fn up_to(splits: u64) -> Control<'static> {
     Control { max_splits: Some(splits), ..alone() }
 }
 
-/// What must hold of any answer.
+/// Checks the laws of every answer.
 fn check(found: &Clearance, truth: f64, size: f64, between: &str) {
     let slack = 1e-11 * size;
     let distance = found.distance;
@@ -43,7 +43,7 @@ fn check(found: &Clearance, truth: f64, size: f64, between: &str) {
     assert!(found.depth == 0.0 || distance.upper == 0.0, "{between}: {found:?}");
 }
 
-/// A turn by unit quaternions, then an offset.
+/// A rotation by unit quaternions, followed by an offset.
 fn rigid(random: &mut Random, reach: f64) -> Affine {
     let q = loop {
         let q = [0; 4].map(|_| random.between(-1.0, 1.0));
@@ -61,7 +61,7 @@ fn rigid(random: &mut Random, reach: f64) -> Affine {
     Affine::new(turn.map(|[a, b, c]| [a, b, c, random.between(-reach, reach)])).unwrap()
 }
 
-/// A pin in the bore of a block, with the same play all around: nowhere is nearest.
+/// A pin in the bore of a block, with the same play all around, so that no place is nearest.
 #[test]
 fn a_pin_in_a_bore() {
     let bore = Csg::cylinder(5.0, -1.0, 21.0).unwrap();
@@ -118,13 +118,13 @@ fn a_tilted_shaft_in_a_ring() {
     assert!(found.distance.width() <= 1e-4, "{found:?}");
 }
 
-/// A convex body that knows how far it is from others: the points within a radius of a box's or of a
-/// segment's points, in a place.
+/// A convex body with a distance function: the points within a radius of a box or of a segment, placed
+/// somewhere.
 #[derive(Debug, Clone)]
 struct Body {
     half: [f64; 3],
     radius: f64,
-    /// Whether the radius counts across the axis z only: a cylinder.
+    /// True for a cylinder, whose radius counts only across the axis z.
     is_cylinder: bool,
     placement: Affine,
 }
@@ -160,7 +160,7 @@ impl Body {
         Body { placement: placement.unwrap(), ..self.clone() }
     }
 
-    /// The point that is furthest along a direction.
+    /// Returns the furthest point along a direction.
     fn furthest(&self, direction: [f64; 3]) -> [f64; 3] {
         let m = self.placement.rows();
         let own = [0, 1, 2].map(|j| (0..3).map(|i| m[i][j] * direction[i]).sum::<f64>());
@@ -173,7 +173,7 @@ impl Body {
         self.placement.apply(at)
     }
 
-    /// The nearest point of the body to another one.
+    /// Returns the body's nearest point to another point.
     fn nearest(&self, point: [f64; 3]) -> [f64; 3] {
         let m = self.placement.rows();
         let own = [0, 1, 2].map(|j| (0..3).map(|i| m[i][j] * (point[i] - m[i][3])).sum::<f64>());
@@ -191,11 +191,10 @@ impl Body {
     }
 }
 
-/// Bounds of the distance of two convex bodies: by their support functions, from below for sure, and by
-/// points of both from above.
+/// Bounds the distance of two convex bodies. Support functions prove the lower bound, and a point of each
+/// body gives the upper bound.
 fn convex_distance(a: &Body, b: &Body) -> (f64, f64) {
-    // The nearest points to each other by turns, with what momentum adds; the support functions prove the
-    // distance.
+    // Alternate between the nearest points, with momentum. The support functions prove the distance.
     let mut p = a.nearest(b.placement.apply([0.0; 3]));
     let (mut lower, mut upper) = (0.0f64, f64::INFINITY);
     let mut before = p;
@@ -255,7 +254,7 @@ fn random_pairs(count: u64, seed: u64) {
         check(&found, distance.lower, 16.0, &text);
         wide += u64::from(distance.width() > 1e-3);
         spent += u64::from(distance.width() > 1e-5);
-        // Points lie in the solids, but for rounding.
+        // Points lie in the solids, up to rounding.
         if let Some([p, q]) = found.points {
             assert!(
                 length(minus(a.nearest(p), p)) < 1e-11 && length(minus(b.nearest(q), q)) < 1e-11,
@@ -294,7 +293,7 @@ fn ten_thousand_random_primitives() {
     random_pairs(10_000, 12);
 }
 
-/// Gaps on both sides of the distance are decided, with evidence, and so they are in other places.
+/// Gaps on both sides of the distance are decided, with evidence, also under placements.
 #[test]
 fn gaps_are_decided() {
     let mut random = Random(13);
@@ -331,7 +330,7 @@ fn gaps_are_decided() {
         let refused = gap_at_least(&ball, &ball, &frame, wrong, &alone());
         assert!(matches!(refused, Err(Error::Argument { name: "least", .. })));
     }
-    // What goes on outside of the universe may come nearer.
+    // Parts outside the universe may come nearer.
     let half = Csg::cuboid([2.0, -20.0, -20.0], [20.0; 3]).unwrap();
     let found = gap_at_least(&ball, &half, &frame, 0.5, &alone()).unwrap();
     assert!(found.verdict == GapVerdict::Undecided && found.evidence.clipped, "{found:?}");
@@ -339,7 +338,7 @@ fn gaps_are_decided() {
     assert_eq!(found.verdict, GapVerdict::No);
 }
 
-/// Many placements are as one after the other, for any number of threads.
+/// A query with many placements equals one query after another, for any number of threads.
 #[test]
 fn clearances_in_many_places() {
     let mut random = Random(14);
@@ -375,7 +374,7 @@ fn clearances_in_many_places() {
     assert!(yes > 1 && no > 1, "{yes} {no}");
 }
 
-/// A ball in two balls that overlap, and in solids one of which lies in the other.
+/// A ball in two overlapping balls, and solids within each other.
 #[test]
 fn how_deep_solids_overlap() {
     let frame = Frame::new([0.0; 3], 128.0, 10).unwrap();
@@ -395,8 +394,8 @@ fn how_deep_solids_overlap() {
     assert_eq!((found.distance.upper, found.depth), (0.0, 0.0));
 }
 
-/// Solids that are known in other ways agree with expressions: meshes, stored octrees with and without
-/// surfaces, and moved ones.
+/// Solids of other kinds agree with expressions: meshes, stored octrees with and without surfaces, and moved
+/// solids.
 #[test]
 fn solids_of_all_kinds_agree() {
     let mut random = Random(15);
@@ -439,7 +438,7 @@ fn solids_of_all_kinds_agree() {
                 .unwrap(),
         );
         println!("case {case}: {least} {widths:?}");
-        // (Of a solid that is moved by its cells, up to four cells.)
+        // (For a solid moved by its cells, up to four cells.)
         assert!(widths[0] <= 0.0625 && widths[1] <= 0.25 && widths[2] <= 1e-2, "{widths:?}");
     }
 }

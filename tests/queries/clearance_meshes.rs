@@ -1,4 +1,4 @@
-//! Clearance of meshes by their triangles: held against all pairs of triangles, one by one.
+//! Clearance of meshes by their triangles, compared with all pairs of triangles.
 
 use crate::common::{Random, alone, model, repeated};
 use leafless::query::{GapVerdict, StopReason, clearance_at, gap_at_least, gap_at_least_at};
@@ -28,7 +28,7 @@ fn between(a: Point, b: Point, share: f64) -> Point {
     [0, 1, 2].map(|axis| a[axis] + share * (b[axis] - a[axis]))
 }
 
-/// The distance of a point from a triangle with an area.
+/// Returns the distance of a point from a triangle with positive area.
 fn point_to_triangle(p: Point, t: &[Point; 3]) -> f64 {
     let normal = cross(minus(t[1], t[0]), minus(t[2], t[0]));
     let is_above = (0..3).all(|k| {
@@ -46,7 +46,7 @@ fn point_to_triangle(p: Point, t: &[Point; 3]) -> f64 {
     to_edge(0).min(to_edge(1)).min(to_edge(2))
 }
 
-/// The distance of two segments: of a convex function, by ever smaller shares.
+/// Returns the distance of two segments: the minimum of a convex function, by ternary search.
 fn segments(a: [Point; 2], b: [Point; 2]) -> f64 {
     let from = |share: f64| {
         let p = between(a[0], a[1], share);
@@ -94,8 +94,8 @@ fn soup(mesh: &TriangleMesh, placement: &Affine) -> Vec<[Point; 3]> {
     mesh.triangles().iter().map(corners).collect()
 }
 
-/// The least distance of the triangles of two meshes. Pairs are left out whose balls around the first corners
-/// are further apart.
+/// Returns the least distance between the triangles of two meshes. Pairs are skipped if the balls around
+/// their first corners are further apart.
 fn by_pairs(a: &TriangleMesh, b: &TriangleMesh, placement: &Affine) -> f64 {
     let round = |t: [Point; 3]| (t, length(minus(t[1], t[0])).max(length(minus(t[2], t[0]))));
     let [own, others] = [soup(a, &Affine::IDENTITY), soup(b, placement)]
@@ -111,7 +111,7 @@ fn by_pairs(a: &TriangleMesh, b: &TriangleMesh, placement: &Affine) -> f64 {
     least
 }
 
-/// A ball of triangles between circles of latitude, or a lumpy one.
+/// A ball of triangles between circles of latitude, possibly lumpy.
 fn ball(centre: Point, radius: f64, steps: u32, mut lump: impl FnMut() -> f64) -> TriangleMesh {
     let round = 2 * steps;
     let mut vertices = vec![];
@@ -146,7 +146,7 @@ fn smooth() -> f64 {
     0.0
 }
 
-/// All triangles of some meshes; those of the others turned round.
+/// Joins the triangles of several meshes. Flagged meshes get reversed orientation.
 fn together(meshes: &[(&TriangleMesh, bool)]) -> TriangleMesh {
     let (mut vertices, mut triangles) = (vec![], vec![]);
     for (mesh, is_turned) in meshes {
@@ -197,7 +197,7 @@ fn check(found: &Clearance, truth: f64, slack: f64, case: &str) {
     }
 }
 
-/// Lumpy balls beside each other, turned, stretched, sheared, mirrored, and far from the origin.
+/// Lumpy balls beside each other: rotated, stretched, sheared, mirrored, and far from the origin.
 #[test]
 fn random_meshes_beside_all_pairs() {
     let mut random = Random(21);
@@ -207,7 +207,7 @@ fn random_meshes_beside_all_pairs() {
         let middle = [far, -0.5 * far, 0.25 * far];
         let mut lump = || random.between(-0.3, 0.3);
         let a = ball(middle, 1.0, 3 + case as u32 % 4, &mut lump);
-        // The second mesh lies far away before it is moved, or does not.
+        // Before the placement, the second mesh is near or far away.
         let home = if case % 2 == 0 { [0.0; 3] } else { [far, far, 0.0] };
         let b = ball(home, 0.8, 3 + case as u32 % 3, &mut lump);
         let mut linear = turn(&mut random);
@@ -266,7 +266,8 @@ fn random_meshes_beside_all_pairs() {
     assert!(apart > repeated(16, 40) && crossing > repeated(4, 10), "{apart} {crossing}");
 }
 
-/// A ball in a hollow one is as far from it as the triangles are; one within a solid one is not apart.
+/// A ball inside a hollow ball is as far from it as the triangles are. A ball inside a solid ball overlaps
+/// it.
 #[test]
 fn nested_meshes() {
     let frame = Frame::new([-8.0; 3], 16.0, 8).unwrap();
@@ -281,7 +282,7 @@ fn nested_meshes() {
     assert_eq!(found.stop_reason, StopReason::Tolerance);
     let gap = gap_at_least(&solid(&shell), &solid(&small), &frame, 1.2, &alone()).unwrap();
     assert_eq!(gap.verdict, GapVerdict::Yes);
-    // Within the massive ball, though triangles are as far apart.
+    // Within the massive ball, though its triangles are far away.
     for (a, b) in [(&large, &small), (&small, &large)] {
         let found = clearance(&solid(a), &solid(b), &frame, 1e-3, &alone()).unwrap();
         assert!(found.distance.upper == 0.0 && found.depth > 0.5, "{found:?}");
@@ -299,7 +300,8 @@ fn nested_meshes() {
     assert!(found.distance.lower > 1.0, "{found:?}");
 }
 
-/// Bodies that overlap are one solid; fins of two triangles, and what a rule leaves out, are none of it.
+/// Overlapping bodies are one solid. Fins of two triangles, and parts that a fill rule excludes, do not
+/// belong to it.
 #[test]
 fn meshes_that_intersect_themselves() {
     let frame = Frame::new([-8.0; 3], 16.0, 7).unwrap();
@@ -313,7 +315,7 @@ fn meshes_that_intersect_themselves() {
         assert!(found.distance.width() <= 1e-9 && found.splits == [0; 2], "{found:?}");
         let inner = ball([-0.95, 0.1, 0.2], 0.1, 5, smooth);
         let found = clearance(&two, &solid(&inner), &frame, 1e-9, &alone()).unwrap();
-        // Within two balls, which are none by the rule of odd numbers.
+        // A point in two balls is outside by the even-odd rule.
         if fill == FillRule::NonZero {
             assert_eq!(found.distance.upper, 0.0, "{found:?}");
         } else {
@@ -326,7 +328,7 @@ fn meshes_that_intersect_themselves() {
         let found = clearance(&mesh, &solid(&other), &frame, 0.25, &alone()).unwrap();
         assert!(found.distance.lower <= truth && truth <= found.distance.upper, "{found:?} {truth}");
     };
-    // A fin towards the other solid, which holds nothing.
+    // A fin towards the other solid, which encloses nothing.
     let unit = cuboid([-1.0; 3], [0.0; 3]);
     let (mut vertices, mut triangles) = (unit.vertices().to_vec(), unit.triangles().to_vec());
     vertices.extend([[-0.5, -0.5, -0.5], [1.75, -0.5, -0.5], [-0.5, -0.2, -0.5]]);
@@ -334,13 +336,14 @@ fn meshes_that_intersect_themselves() {
     let fin = TriangleMesh::new(vertices, triangles).unwrap();
     is_right(&fin, FillRule::NonZero, 2.0);
     is_right(&fin, FillRule::EvenOdd, 2.0);
-    // A body that is inside out is none by the rule of positive numbers.
+    // An inside-out body is empty by the positive rule.
     let turned = together(&[(&cuboid([-1.0; 3], [0.0; 3]), false), (&cuboid([-0.5; 3], [1.0; 3]), true)]);
     is_right(&turned, FillRule::Positive, 2.0);
     is_right(&turned, FillRule::NonZero, 1.0);
 }
 
-/// Boxes that touch on faces, edges and corners are not apart, and have no depth; equal meshes overlap.
+/// Boxes that touch on faces, edges and corners have distance 0 and no penetration depth. Equal meshes
+/// overlap.
 #[test]
 fn meshes_in_contact() {
     let frame = Frame::new([-8.0; 3], 16.0, 8).unwrap();
@@ -381,7 +384,7 @@ fn meshes_in_contact() {
     assert!(found.distance.upper == 0.0 && found.depth > 0.3, "{found:?}");
 }
 
-/// Faces that run alongside each other at one distance, very flat triangles, and few steps.
+/// Parallel faces at a constant distance, very flat triangles, and small limits of steps.
 #[test]
 fn parallel_faces_and_slivers() {
     let frame = Frame::new([-8.0; 3], 16.0, 8).unwrap();
@@ -399,12 +402,12 @@ fn parallel_faces_and_slivers() {
     let found = clearance(&solid(&a), &solid(&b), &frame, 0.0, &alone()).unwrap();
     check(&found, 0.5, 1e-12, "fans");
     assert!(found.distance.width() <= 1e-11, "{found:?}");
-    // A share of the budget proves a part.
+    // A part of the budget proves a part.
     let few = Control { max_splits: Some(1), ..alone() };
     let found = clearance(&solid(&a), &solid(&b), &frame, 0.0, &few).unwrap();
     assert!(found.distance.lower <= 0.5 && found.distance.upper >= 0.5, "{found:?}");
     assert_eq!(found.stop_reason, StopReason::Budget);
-    // A triangle without area, and a vertex that no triangle has.
+    // A triangle without area, and a vertex without triangles.
     let mut vertices = cuboid([0.0; 3], [1.0; 3]).vertices().to_vec();
     let mut triangles = cuboid([0.0; 3], [1.0; 3]).triangles().to_vec();
     vertices.push([0.5, 0.0, 0.0]);
@@ -442,8 +445,8 @@ fn threads_and_cancelling() {
     assert!(matches!(refused, Err(Error::Cancelled)));
 }
 
-/// Of a mesh in many places beside itself, no vertices are nearer than the lower bound, and the bounds are
-/// one number but for rounding.
+/// A mesh at many places beside itself: no vertices are nearer than the lower bound, and the two bounds are
+/// equal up to rounding.
 #[test]
 #[ignore = "minutes"]
 fn a_mesh_beside_itself() {

@@ -93,7 +93,7 @@ fn every_way_to_ask(tree: &OctreeRef<'_>, dense: &Dense, columns: &Columns) {
     }
 }
 
-/// Some rectangles: all columns, and others anywhere.
+/// Returns several rectangles: all columns, and random ones.
 fn rectangles(dense: &Dense, axis: usize, seed: u64) -> Vec<Columns> {
     let frame = lattice_frame(dense.depth);
     let n = frame.cells() as u64 + 1;
@@ -124,7 +124,7 @@ proptest! {
             for columns in rectangles(&dense, axis, seed) {
                 every_way_to_ask(tree.view(), &dense, &columns);
                 every_way_to_ask(&file::view(bytes.bytes()).unwrap(), &dense, &columns);
-                // By splitting cells: of the array, and of the tree.
+                // By splits of cells: of the array, and of the tree.
                 let solid = DenseSolid { dense: &dense, exterior: Tag::Empty };
                 let wanted = tree.columns(&columns).unwrap();
                 prop_assert_eq!(&leafless::query::columns(&solid, &frame, &columns, &alone()).unwrap(), &wanted);
@@ -139,7 +139,7 @@ proptest! {
     }
 }
 
-/// The answers of a solid are those of the octree that is built of it.
+/// Checks that a solid's columns equal those of the octree built from the solid.
 fn assert_built(solid: &impl leafless::Solid, frame: &Frame, within: &[[[u32; 2]; 2]]) -> Octree {
     let tree = build(solid, frame, Rule::Certified, &Control::default()).unwrap();
     for axis in 0..3 {
@@ -185,8 +185,8 @@ fn meshes_have_the_columns_of_their_octrees() {
     assert_built(&solid, &frame, &[[[0; 2], [128; 2]], [[17, 40], [91, 77]]]);
 }
 
-/// The height of a ball on a fine lattice lies in the interval: of the whole column, and so of the line
-/// through the centres of its cells.
+/// The height of a ball on a fine lattice lies in the intervals of its columns, hence also on the line
+/// through the cells' centres.
 #[test]
 fn the_true_height_lies_in_the_interval() {
     let frame = Frame::new([-1.0; 3], 2.0, 20).unwrap();
@@ -236,7 +236,7 @@ fn the_deepest_tree_and_a_uniform_one() {
     }
 }
 
-/// Cells of a sampled tree are asked for; what they prove of the solid is nothing.
+/// A query of a sampled tree's cells returns the cells. They prove nothing about the solid.
 #[test]
 fn what_is_proven() {
     let frame = Frame::new([-2.0; 3], 4.0, 5).unwrap();
@@ -288,14 +288,14 @@ fn what_is_refused() {
         heights(&ball, &frame, &all, Side::Above, &control),
         Err(Error::Limit { what: "bytes", .. })
     ));
-    // Of 2^40 columns nothing fits.
+    // The result for 2^40 columns fits into no memory.
     let fine = frame.with_depth(20).unwrap();
     let all = Columns::all(&fine, 2).unwrap();
     let control = Control { max_bytes: Some(1 << 30), ..alone() };
     assert!(matches!(columns(&ball, &fine, &all, &control), Err(Error::Limit { .. })));
 }
 
-/// Bytes in which anything may stand below the table of sections: what is found is in order and in bounds.
+/// Files with arbitrary bytes below the section table. The results are ordered and within bounds.
 #[test]
 fn damaged_trees_are_left() {
     let frame = Frame::new([-1.0; 3], 2.0, 7).unwrap();

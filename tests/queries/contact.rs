@@ -1,4 +1,5 @@
-//! Solids in contact, nearly in contact and apart: what is decided, and that nothing that is said is wrong.
+//! Solids in contact, nearly in contact and apart. The tests check that verdicts are reached, and that none
+//! is wrong.
 
 use crate::common::Random;
 use leafless::query::{Interference, Overlap};
@@ -7,14 +8,14 @@ use leafless::{
     query::{clearance_at, interference_at},
 };
 
-/// What the program allows by default.
+/// The program's default limits.
 fn alone() -> Control<'static> {
     Control { max_splits: Some(100_000), ..Control::threads(1) }
 }
 
 const PROOF: f64 = f64::INFINITY;
 
-/// A turn about no simple axis, and a shift.
+/// A rotation about no simple axis, followed by a translation.
 fn turned() -> Affine {
     let ((s, c), (t, d)) = (0.47f64.sin_cos(), 1.7f64.sin_cos());
     Affine::new([[c, -s * d, s * t, 0.1], [s, c * d, -c * t, 0.2], [0.0, t, d, -0.3]]).unwrap()
@@ -36,8 +37,8 @@ fn ask<A: Solid, B: Solid>(a: &A, b: &B, frame: &Frame) -> Interference {
     interference(a, b, frame, PROOF, &alone()).unwrap()
 }
 
-/// All ways to ask about a pair: as it is and turned, as expressions, from octrees that keep the surfaces,
-/// and mixed.
+/// Checks a pair in all forms: in place and rotated, as expressions, as octrees that keep their surfaces, and
+/// mixed.
 fn check(name: &str, a: &Csg, b: &Csg, frame: &Frame, expected: Overlap, most: u64) {
     for placement in [Affine::IDENTITY, turned()] {
         let (a, b) = (placed(a, &placement), placed(b, &placement));
@@ -58,7 +59,7 @@ fn check(name: &str, a: &Csg, b: &Csg, frame: &Frame, expected: Overlap, most: u
     }
 }
 
-/// Under many placements octrees that keep their surfaces decide contacts as one by one.
+/// Octrees that keep their surfaces decide contacts under many placements at once as they do one by one.
 #[test]
 fn octrees_in_many_places() {
     let frame = Frame::new([-32.0; 3], 64.0, 10).unwrap();
@@ -162,7 +163,7 @@ fn balls_that_touch() {
     check("inside", &inside, &hollow, &frame, Overlap::Disjoint, 2000);
 }
 
-/// A little beside a contact: so far, and what is expected there.
+/// Offsets from a contact, each with the expected verdict.
 const BESIDE: [(f64, Overlap); 5] = {
     const A_LITTLE: f64 = 1.0 / (1u64 << 20) as f64;
     const LESS: f64 = 1.0 / (1u64 << 30) as f64;
@@ -175,7 +176,7 @@ const BESIDE: [(f64, Overlap); 5] = {
     ]
 };
 
-/// Pairs that touch, the second of which is moved away along `x`, or into the first.
+/// Checks touching pairs with the second solid moved along `x`, away from the first or into it.
 fn check_beside(name: &str, a: &Csg, b: &Csg, most: u64) {
     check_some_beside(name, a, b, &BESIDE, most);
 }
@@ -187,7 +188,7 @@ fn check_some_beside(name: &str, a: &Csg, b: &Csg, beside: &[(f64, Overlap)], mo
     }
 }
 
-/// The points x, y, z become y, z, x.
+/// The map that takes the point (x, y, z) to (y, z, x).
 fn rolled() -> Affine {
     Affine::new([[0.0, 1.0, 0.0, 0.0], [0.0, 0.0, 1.0, 0.0], [1.0, 0.0, 0.0, 0.0]]).unwrap()
 }
@@ -199,7 +200,7 @@ fn cylinders_that_touch() {
     check_beside("on a plane", &upright, &wall, 40_000);
     let other = Csg::cylinder(1.5, -3.5, 2.5).unwrap();
     check_beside("parallel", &upright, &moved(&other, [2.5, 0.0, 0.0]), 40_000);
-    // Across, at right angles and askew: what turns about x keeps what is in its way.
+    // Across, at right angles and askew. Rotations about x keep the contact.
     let (s, c) = 0.3f64.sin_cos();
     let askew = Affine::new([[1.0, 0.0, 0.0, 0.0], [0.0, c, -s, 0.0], [0.0, s, c, 0.0]]).unwrap();
     let across = placed(&other, &rolled());
@@ -208,7 +209,7 @@ fn cylinders_that_touch() {
     // In a bore that is larger.
     let bore = Csg::cuboid([-4.0, -4.0, -2.0], [4.0, 4.0, 2.0]).unwrap();
     let bore = bore.difference(&moved(&other, [-0.5, 0.0, 0.0])).unwrap();
-    // (What overlaps least would take a million cells along the line of contact.)
+    // (Proving the least overlap would take a million cells along the line of contact.)
     check_some_beside("in a bore", &upright, &bore, &BESIDE[..4], 40_000);
 }
 
@@ -237,8 +238,8 @@ fn cones_on_planes() {
     let around = Csg::cuboid([-6.0; 3], [6.0; 3]).unwrap();
     let slope = Csg::half_space([4.0, 0.0, -3.0], 0.0).unwrap();
     let slope = Csg::intersection_of([slope, around]).unwrap();
-    // (Beside contact, the plane cuts the other nappe: nothing but cells tells, and of the cone's apex these
-    // do not.)
+    // (Beside the contact, the plane cuts the other nappe. Only cells could decide this, and at the cone's
+    // apex they cannot.)
     let cone = Csg::frustum(0.0, 3.0, 0.0, 4.0).unwrap();
     check_some_beside("a cone on a slope", &cone, &slope, &[BESIDE[0], BESIDE[3], BESIDE[4]], 20_000);
     let frustum = Csg::frustum(0.75, 3.0, 1.0, 4.0).unwrap();
@@ -255,8 +256,7 @@ fn ellipsoids_of_different_shapes() {
     check_beside("on a cylinder", &upright, &b, 2000);
 }
 
-/// The volume of what two convex polyhedra have in common, beside one that is clipped by the planes of the
-/// other.
+/// The common volume of two convex polyhedra, against the volume of one clipped by the planes of the other.
 #[test]
 fn overlaps_of_convex_polyhedra() {
     let mut random = Random(38);
@@ -279,7 +279,7 @@ fn overlaps_of_convex_polyhedra() {
         let (a, b) = (planes(0.0), planes(0.8));
         let solid = |planes: &[([f64; 3], f64)]| {
             let half = |&(n, end): &([f64; 3], f64)| Csg::half_space(n.map(|c| -c), end).unwrap();
-            // (Of planes alone nobody knows that they end somewhere.)
+            // (From planes alone, nobody can conclude that the solid is bounded.)
             let around = Csg::cuboid([-3.9; 3], [3.9; 3]).unwrap();
             Csg::intersection_of(planes.iter().map(half).chain([around])).unwrap()
         };
@@ -294,8 +294,8 @@ fn overlaps_of_convex_polyhedra() {
     }
 }
 
-/// The volume of the points with n · x ≤ end of all planes, which are bounded: faces are squares that are
-/// clipped.
+/// Returns the volume of the points with n · x ≤ end for all planes. The set must be bounded. Its faces are
+/// clipped squares.
 fn clipped_volume(planes: &[([f64; 3], f64)]) -> f64 {
     let dot = |a: [f64; 3], b: [f64; 3]| a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
     let cross = |a: [f64; 3], b: [f64; 3]| {
@@ -341,12 +341,12 @@ fn a_lens() {
     let d = 25.0 * 3f64.sqrt();
     let lens = std::f64::consts::PI * (60.0 - d) * (60.0 - d) * (d * d + 120.0 * d) / (12.0 * d);
     assert!(found.volume.contains(lens) && found.volume.width() <= 0.01, "{found:?} {lens}");
-    // A ball less itself is nothing, without a split.
+    // A ball minus itself is empty, without a split.
     let nothing = measure(&a.difference(&a).unwrap(), &frame, 1e-3, &alone()).unwrap();
     assert_eq!((nothing.volume.lower, nothing.volume.upper, nothing.splits), (0.0, 0.0, 0));
 }
 
-/// A ball or a box, in numbers that are exact.
+/// A ball or a box with exact numbers.
 #[derive(Debug, Clone, Copy)]
 enum Figure {
     Ball([f64; 3], f64),
@@ -371,7 +371,7 @@ impl Figure {
         }
     }
 
-    /// How far the two are apart, to the square, exactly; less than 0 if their interiors meet.
+    /// Returns the exact square of the distance of the two figures; less than 0 if their interiors meet.
     fn gap(&self, other: &Figure, shift: f64) -> f64 {
         match (*self, *other) {
             (Figure::Ball(a, r), Figure::Ball(b, s)) => {
@@ -397,8 +397,8 @@ impl Figure {
     }
 }
 
-/// Pairs on whole numbers, of which many touch exactly, or one of both a little beside that: returns how many
-/// stay undecided.
+/// Checks pairs with integer coordinates. Many touch exactly, or one of the two is moved slightly. Returns
+/// the number of undecided pairs.
 fn random_pairs(count: u32) -> u32 {
     let mut random = Random(3838);
     let frame = Frame::new([-32.0; 3], 64.0, 20).unwrap();

@@ -1,5 +1,5 @@
-//! How many cells of a solid lie in regions of any shape, and what volume both have in common, against dense
-//! arrays, subdivided cells and formulas.
+//! The number of a solid's cells in regions of any shape, and the common volume, against dense arrays,
+//! subdivided cells and formulas.
 
 use crate::common;
 use crate::common::{Dense, DenseSolid, Random, alone, cases, lattice_frame, positions, shapes};
@@ -13,12 +13,12 @@ use proptest::prelude::*;
 use proptest::strategy::ValueTree;
 use std::sync::atomic::AtomicBool;
 
-/// One split at a time, as often as needed.
+/// Allows any number of splits, one at a time.
 fn one_by_one() -> Control<'static> {
     Control { max_splits: Some(u64::MAX), ..alone() }
 }
 
-/// What dense arrays say.
+/// Counts the cells in dense arrays.
 fn counts(solid: &Dense, region: &Dense) -> CellsIn {
     let mut found = CellsIn::default();
     for at in positions(solid.depth) {
@@ -34,7 +34,7 @@ fn counts(solid: &Dense, region: &Dense) -> CellsIn {
     found
 }
 
-/// The volume of cells of edge 1, of which no more is known than their tags.
+/// Returns the volume of cells of edge 1 known only by their tags.
 fn plain(found: CellsIn) -> Interval {
     Interval::new(found.full_least as f64, found.upper_most as f64).unwrap()
 }
@@ -71,13 +71,13 @@ proptest! {
             prop_assert_eq!(tree.volume_in(&region, &control).unwrap(), plain(wanted));
             prop_assert_eq!(volume_in(&dense(&a), &coded_region(&region), &frame, &control).unwrap(), plain(wanted));
         }
-        // The complement's cells are counted from those of the tree.
+        // The complement's counts follow from the tree's cells.
         let rest = complement(tree.view(), &alone()).unwrap();
         let flipped = Csg::solid(AnySolid::new(tree.clone())).complement();
         let of_rest = rest.cells_in(&region, &alone()).unwrap();
         prop_assert_eq!(of_rest, counts(&a.complement(), &b));
         prop_assert_eq!(cells_in(&flipped, &region, &frame, &alone()).unwrap(), of_rest);
-        // What is not split is not decided.
+        // Unsplit cells are undecided.
         let control = Control { max_splits: Some(max_splits), ..alone() };
         for found in [tree.cells_in(&region, &control).unwrap(), cells_in(&a_solid(&a), &region, &frame, &control).unwrap()] {
             prop_assert!(holds(found, wanted), "{:?} {:?}", found, wanted);
@@ -109,16 +109,16 @@ fn a_solid(dense: &Dense) -> DenseSolid<'_> {
     DenseSolid { dense, exterior: Tag::Empty }
 }
 
-/// A copy with a dictionary of bricks.
+/// Returns a copy with a dictionary of bricks.
 fn coded_region(tree: &Octree) -> Octree {
     compact(tree.view()).unwrap()
 }
 
-/// Subdivisions of a cell's edge.
+/// Number of subdivisions of a cell's edge.
 const FINE: i64 = 16;
 
-/// How much of a cell lies in a ball, in subdivided cells that lie in it and that meet it; all in their
-/// edges.
+/// Returns the numbers of a cell's subdivided cells that lie in a ball and that meet it. Coordinates are in
+/// their edges.
 fn in_ball(at: [u32; 3], centre: [i64; 3], radius: i64) -> [u64; 2] {
     // Squares of the least and the greatest distance of an interval from a coordinate.
     let reach = |low: i64, high: i64, c: i64| {
@@ -147,7 +147,7 @@ fn in_ball(at: [u32; 3], centre: [i64; 3], radius: i64) -> [u64; 2] {
     found
 }
 
-/// Balls anywhere, against integers: which cells lie in them, which meet them, and which volumes they have.
+/// Balls anywhere, against integers: the cells inside, the cells that meet a ball, and the volumes.
 #[test]
 fn balls() {
     let mut random = Random(12);
@@ -200,7 +200,7 @@ fn balls() {
     }
 }
 
-/// A cap of a ball in a slab, whose volume is known, and how the interval narrows.
+/// A cap of a ball in a slab with known volume. The interval narrows.
 #[test]
 fn caps_of_balls() {
     let cap = |height: f64, radius: f64| std::f64::consts::PI * height * height * (radius - height / 3.0);
@@ -246,10 +246,10 @@ fn regions_of_every_kind() {
         assert!(by_box.lower - found.lower < margin && found.upper - by_box.upper < margin, "{found:?}");
     };
     is_near(of_box, 1e-6);
-    // Of a mesh not much is known in the 180 cells where faces meet.
+    // For a mesh, little is known in the 180 cells where faces meet.
     is_near(of_mesh, 270.0);
     assert_eq!(tree.cells_in(&mesh, &alone()).unwrap(), tree.cells_in(&cuboid, &alone()).unwrap());
-    // Any region is as the octree of its verdicts.
+    // Any region equals the octree of its verdicts.
     macro_rules! same {
         ($region:expr) => {{
             let built = build($region, &frame, Rule::Certified, &alone()).unwrap();
@@ -333,7 +333,7 @@ fn regions_that_are_none() {
     // Far smaller than a cell.
     let found = tree.cells_in(&Csg::ball([4.1, 4.1, 4.1], 1e-6).unwrap(), &alone()).unwrap();
     assert_eq!(found, CellsIn { full_least: 0, full_most: 1, upper_least: 0, upper_most: 1 });
-    // The cells count, whatever they prove; of a region and of a solid only what is proven does.
+    // The tree's cells count, whatever they prove. For a region and for a solid, only proven cells count.
     let ball = Csg::ball([4.0, 4.0, 6.0], 2.0).unwrap();
     let found = tree.cells_in(&ball, &alone()).unwrap();
     assert!(found.full_least > 0);
@@ -366,7 +366,7 @@ fn regions_that_are_none() {
     assert_eq!(block.volume_in(&block, &alone()).unwrap(), Interval::exactly(512.0));
 }
 
-/// A file that is mapped and not looked through.
+/// A mapped and unverified file.
 #[cfg(feature = "mmap")]
 #[test]
 fn mapped() {
@@ -375,7 +375,7 @@ fn mapped() {
     let folder = tempfile::tempdir().unwrap();
     let path = folder.path().join("ball.lfl");
     leafless::file::save(&tree, &path).unwrap();
-    // SAFETY: nobody else knows of the file.
+    // SAFETY: no other process uses the file.
     #[allow(unsafe_code)]
     let mapped = unsafe { leafless::file::map(&path) }.unwrap();
     let mut random = Random(3);
@@ -386,7 +386,7 @@ fn mapped() {
     }
 }
 
-/// Times of balls in a ball of 1024 cells.
+/// Measures times of balls in a ball of 1024 cells.
 #[test]
 #[ignore = "prints times"]
 fn times() {

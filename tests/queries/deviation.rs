@@ -1,4 +1,4 @@
-//! How far two boundaries are from each other: formulas, an independent sampler, and all kinds of solids.
+//! The deviation of two boundaries: formulas, an independent sampler, and solids of all kinds.
 
 use crate::common::repeated;
 use leafless::op::DexelOptions;
@@ -21,7 +21,7 @@ fn around(half: f64, depth: u8) -> Frame {
     Frame::new([-half; 3], 2.0 * half, depth).unwrap()
 }
 
-/// The answer, of which what holds of all of them is checked.
+/// Computes the deviation, and checks the laws of every answer.
 fn ask<A: Solid, B: Solid>(a: &A, b: &B, frame: &Frame, tolerance: f64) -> Deviation {
     let found = deviation(a, b, frame, tolerance, &alone()).unwrap();
     for way in [found.a_to_b, found.b_to_a] {
@@ -30,7 +30,7 @@ fn ask<A: Solid, B: Solid>(a: &A, b: &B, frame: &Frame, tolerance: f64) -> Devia
             assert!(way.distance.width() <= tolerance || way.distance.lower == f64::INFINITY, "{found:?}");
         }
         if let Some(at) = way.at {
-            // The witness is what the lower bound says.
+            // The witness supports the lower bound.
             assert!(at.apart < f64::INFINITY && at.point.iter().chain(&at.nearest).all(|c| c.is_finite()));
             assert!(
                 length(minus(at.point, at.nearest)) + at.apart >= way.distance.lower * (1.0 - 1e-12),
@@ -45,7 +45,7 @@ fn ask<A: Solid, B: Solid>(a: &A, b: &B, frame: &Frame, tolerance: f64) -> Devia
     found
 }
 
-/// That both directions hold what is true, to a width.
+/// Checks that both directions contain the truth, up to a width.
 fn holds(found: &Deviation, truth: [f64; 2], width: f64) {
     for (way, truth) in [(found.a_to_b, truth[0]), (found.b_to_a, truth[1])] {
         let Interval { .. } = way.distance;
@@ -76,7 +76,7 @@ fn balls_that_have_one_centre() {
         let truth = f64::abs(r - s);
         holds(&ask(&a, &b, &frame, 0.01), [truth; 2], 0.01);
     }
-    // Moved aside: the farthest points are those on the line of centres.
+    // Moved aside, the farthest points are on the line of centres.
     let (a, b) = (Csg::ball([0.1, 0.2, 0.3], 1.0).unwrap(), Csg::ball([0.3, 0.2, 0.3], 0.75).unwrap());
     holds(&ask(&a, &b, &frame, 0.02), [0.45, 0.45], 0.02);
 }
@@ -87,7 +87,7 @@ fn boxes_moved_and_turned() {
     let a = Csg::cuboid([-1.0; 3], [1.0; 3]).unwrap();
     let moved = Csg::cuboid([-0.9, -0.8, -1.0], [1.1, 1.2, 1.0]).unwrap();
     let truth = f64::hypot(1.1 - 1.0, 1.2 - 1.0);
-    // A corner of the one is as far from the other as the edges are moved, beyond them; inside, as far as the
+    // A corner of one box is as far outside the other box as the edges are moved. Inside, it is as far as the
     // nearer face.
     holds(&ask(&a, &moved, &frame, 1e-6), [truth, truth], 1e-6);
     // Faces in planes of the lattice.
@@ -96,15 +96,15 @@ fn boxes_moved_and_turned() {
     for angle in [0.1f64, 0.5, 0.785] {
         let (s, c) = angle.sin_cos();
         let turn = Affine::new([[c, -s, 0.0, 0.0], [s, c, 0.0, 0.0], [0.0, 0.0, 1.0, 0.0]]).unwrap();
-        // The edge at the angle of 45 degrees is turned beyond a face.
+        // The edge at 45 degrees is rotated beyond a face.
         let truth = 2f64.sqrt() * (PI / 4.0 - angle).cos() - 1.0;
         let found = ask(&a, &a.placed(&turn).unwrap(), &frame, 1e-5);
-        // Inside, the middle part of the faces is nowhere as far.
+        // Inside, the middle part of the faces is nowhere equally far.
         holds(&found, [truth, truth], 1e-5);
     }
 }
 
-/// A prism in a cylinder of radius r around z.
+/// A prism inscribed in a cylinder of radius r around z.
 fn prism(n: usize, r: f64, low: f64, high: f64, turn: f64) -> TriangleMesh {
     let ring = |z: f64| {
         (0..n).map(move |k| {
@@ -140,7 +140,7 @@ fn a_tessellated_cylinder_beside_its_source() {
     }
 }
 
-/// A ball as a mesh of rings, its radius a function of the direction.
+/// A ball-like mesh of rings. Its radius is a function of the direction.
 fn globe(rings: usize, around: usize, radius: impl Fn(Point) -> f64, turn: f64) -> TriangleMesh {
     let at = |theta: f64, phi: f64| {
         let ((st, ct), (sp, cp)) = (theta.sin_cos(), (phi + turn).sin_cos());
@@ -170,8 +170,8 @@ fn bumpy(size: f64) -> impl Fn(Point) -> f64 {
     move |[x, y, z]| 1.0 + size * ((5.0 * x).sin() + (4.0 * y + 1.0).cos() * (3.0 * z).sin())
 }
 
-/// The square of the distance of a point from a triangle, by the parts of the plane in which the nearest
-/// point may be.
+/// Returns the squared distance of a point from a triangle, by the regions of the plane that the nearest
+/// point may belong to.
 fn square(p: Point, [a, b, c]: [Point; 3]) -> f64 {
     let (u, v, w) = (minus(b, a), minus(c, a), minus(p, a));
     let (uu, uv, vv, uw, vw) = (dot(u, u), dot(u, v), dot(v, v), dot(u, w), dot(v, w));
@@ -190,7 +190,8 @@ fn square(p: Point, [a, b, c]: [Point; 3]) -> f64 {
     of_edge(a, b).min(of_edge(b, c)).min(of_edge(c, a))
 }
 
-/// The greatest distance of random points of one mesh from another, by looking at all triangles.
+/// Returns the greatest distance of random points of one mesh from another mesh, by an examination of all
+/// triangles.
 fn sampled(from: &TriangleMesh, to: &TriangleMesh, count: usize) -> f64 {
     let corners = |mesh: &TriangleMesh| -> Vec<[Point; 3]> {
         mesh.triangles().iter().map(|t| t.map(|v| mesh.vertices()[v as usize])).collect()
@@ -239,7 +240,7 @@ fn beside_samples(a: TriangleMesh, b: TriangleMesh, tolerance: f64, count: usize
     for (way, from, to) in [(found.a_to_b, &a, &b), (found.b_to_a, &b, &a)] {
         let most = sampled(from, to, count);
         assert!(most <= way.distance.upper * (1.0 + 1e-12), "{most} {way:?}");
-        // So many points miss the farthest one by little.
+        // With so many points, the farthest one is missed only slightly.
         assert!(way.distance.lower - most <= 0.1 * way.distance.lower, "{most} {way:?}");
         // The witness is a point of the surface, and that far away.
         let at = way.at.unwrap();
@@ -267,7 +268,7 @@ fn two_meshes_beside_a_sampler_with_a_million_points() {
 
 #[test]
 fn bodies_that_overlap_count_by_their_union() {
-    // The walls of both inside of each other are no boundary.
+    // The inner walls of both solids are no boundary.
     let block = |low: f64, high: f64| {
         let corner = |k: usize| {
             [
@@ -289,10 +290,10 @@ fn bodies_that_overlap_count_by_their_union() {
     let both = solid(TriangleMesh::new(vertices, triangles).unwrap());
     let one = Csg::cuboid([-1.0, -0.5, -0.5], [1.0, 0.5, 0.5]).unwrap();
     let found = ask(&both, &one, &around(1.5, 7), 0.01);
-    // Nobody knows of the walls inside that they are none of the boundary: they widen the interval.
+    // The solids cannot tell that inner walls do not belong to the boundary. These walls widen the interval.
     assert!(found.a_to_b.distance.contains(0.0) && found.b_to_a.distance.contains(0.0), "{found:?}");
     assert!(found.a_to_b.distance.upper < 0.6 && found.b_to_a.distance.upper < 0.05, "{found:?}");
-    // Walls that cross at lines: all of the union is known but next to these.
+    // Walls that cross at lines. All of the union is known except near these lines.
     let bar = |turn: usize| {
         let corner = |k: usize| {
             [0, 1, 2].map(|axis| {
@@ -362,11 +363,11 @@ fn every_way_in() {
             assert!(lower <= 0.25 + rest && upper >= 0.25 - 1e-12, "{name} {found:?}");
             assert!(upper - lower <= *width, "{name}: {} {found:?}", upper - lower);
         }
-        // Of the same solid in two ways.
+        // Two forms of the same solid.
         let found = ask(solid, &ball, &frame, 0.05);
         assert!(found.distance().lower <= rest && found.distance().upper <= width + rest, "{name} {found:?}");
     }
-    // What is not proven is not known to be anywhere.
+    // Unproven points may lie anywhere.
     let found = ask(&surface, &ball, &frame, 0.05);
     assert!(found.distance().lower == 0.0 && found.distance().upper == f64::INFINITY, "{found:?}");
 }
@@ -384,7 +385,7 @@ impl Random {
         [0; 3].map(|_| size * (2.0 * self.next() - 1.0))
     }
 
-    /// A body in a ball of radius 1.2.
+    /// A random body in a ball of radius 1.2.
     fn body(&mut self) -> Csg {
         let size = 0.2 + 0.3 * self.next();
         let body = match (self.next() * 5.0) as usize {
@@ -415,7 +416,8 @@ impl Random {
     }
 }
 
-/// What is told of random solids, beside rays that find points of boundaries, whose distances others tell.
+/// Compares random solids with points that rays find on their boundaries. Another query returns the distances
+/// of these points.
 #[test]
 fn random_solids_beside_rays() {
     let mut random = Random(7);
@@ -435,7 +437,7 @@ fn random_solids_beside_rays() {
         let ways: Vec<(Point, Point)> = (0..400).map(|_| (random.point(1.9), random.point(1.0))).collect();
         let fine = around(2.0, 20);
         for (way, from, other) in [(found.a_to_b, &a, &b), (found.b_to_a, &b, &a)] {
-            // The boundary lies between the ends of what is proven inside and of what is not proven outside.
+            // The boundary lies between the ends of the proven inside and of the proven outside.
             let mut points = vec![];
             for &(origin, way) in &ways {
                 let spans = ray_spans(from, &fine, &Ray::new(origin, way).unwrap(), &alone()).unwrap();
@@ -488,7 +490,7 @@ fn nothing_everything_and_the_same() {
     assert_eq!((found.distance(), found.within(0.0), found.splits), (zero, Within::Yes, [0; 2]));
     let mesh = solid(prism(20, 1.0, -1.0, 1.0, 0.0));
     assert_eq!(ask(&mesh, &mesh.clone(), &frame, 0.0).distance(), zero);
-    // The boundary of a complement is the same, but for what the cells tell.
+    // The complement has the same boundary, up to the cells.
     let found = ask(&ball, &ball.complement(), &frame, 0.02);
     assert!(found.distance().lower == 0.0 && found.distance().upper <= 0.02, "{found:?}");
     // Everything has no boundary in the universe, and perhaps one right outside of it.
@@ -499,7 +501,7 @@ fn nothing_everything_and_the_same() {
 
 #[test]
 fn what_goes_on_outside_of_the_universe() {
-    // Two slabs, of which one ends in the universe.
+    // Two slabs. One ends inside the universe.
     let frame = around(1.0, 10);
     let a = Csg::cuboid([-5.0, -5.0, -5.0], [5.0, 5.0, 0.25]).unwrap();
     let b = Csg::cuboid([-5.0, -5.0, -5.0], [5.0, 5.0, 0.75]).unwrap();
@@ -536,7 +538,7 @@ fn budgets_refusals_and_threads() {
     let cancel = AtomicBool::new(true);
     let control = Control { cancel: Some(&cancel), ..Control::default() };
     assert!(matches!(deviation(&a, &b, &frame, 0.1, &control), Err(Error::Cancelled)));
-    // A solid that cannot be had in this frame.
+    // A solid that does not exist on this frame.
     let tree = build(&a, &around(2.0, 5), Rule::Certified, &alone()).unwrap();
     assert!(matches!(deviation(&tree, &b, &around(3.0, 5), 0.1, &alone()), Err(Error::FrameMismatch { .. })));
     // The same for any number of threads.

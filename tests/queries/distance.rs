@@ -21,7 +21,7 @@ fn model(point: [i128; 3]) -> [f64; 3] {
     point.map(|c| c as f64 / ONE as f64)
 }
 
-/// The square of the distance of a point from the box between two corners, in cells.
+/// Returns the squared distance of a point from the box between two corners, in cells.
 fn square(point: [i128; 3], lower: [u32; 3], upper: [u32; 3]) -> i128 {
     let gap = |axis: usize| {
         let (low, high) = (lower[axis] as i128 * ONE, upper[axis] as i128 * ONE);
@@ -30,7 +30,7 @@ fn square(point: [i128; 3], lower: [u32; 3], upper: [u32; 3]) -> i128 {
     gap(0) + gap(1) + gap(2)
 }
 
-/// The least square of a point's distance from what has one of these tags.
+/// Returns the least squared distance of a point from the cells or the exterior with these tags.
 fn least(dense: &Dense, exterior: Tag, point: [i128; 3], tags: &[Tag]) -> Option<i128> {
     let cells = positions(dense.depth).filter(|&at| tags.contains(&dense.at(at)));
     let inside = cells.map(|at| square(point, at, at.map(|a| a + 1))).min();
@@ -40,7 +40,7 @@ fn least(dense: &Dense, exterior: Tag, point: [i128; 3], tags: &[Tag]) -> Option
     inside.into_iter().chain(outside).min()
 }
 
-/// The order of a distance and the root of a square; ∞ is beyond all.
+/// Compares a distance with the root of a square. ∞ is greater than all roots.
 fn order(distance: f64, square: Option<i128>) -> i32 {
     match square {
         None if distance == f64::INFINITY => 0,
@@ -57,7 +57,7 @@ fn order(distance: f64, square: Option<i128>) -> i32 {
     }
 }
 
-/// Whether `lower` is the double before or at the root, but for two more, and never above it.
+/// True if `lower` is at most the root, and at most three doubles below it.
 fn is_just_below(lower: f64, square: Option<i128>) -> bool {
     order(lower, square) <= 0 && order((0..3).fold(lower, |x, _| x.next_up()), square) >= 0
 }
@@ -66,7 +66,8 @@ fn is_just_above(upper: f64, square: Option<i128>) -> bool {
     order(upper, square) >= 0 && order((0..3).fold(upper, |x, _| x.next_down()), square) <= 0
 }
 
-/// The squares of the distances from what may be solid (or hollow), and from what is.
+/// Returns the squared distances from the points that may be solid (or hollow), and from the points that
+/// surely are.
 fn both(dense: &Dense, exterior: Tag, point: [i128; 3], hollow: bool) -> [Option<i128>; 2] {
     let sure = if hollow { Tag::Empty } else { Tag::Full };
     [&[sure, Tag::Partial][..], &[sure]].map(|tags| least(dense, exterior, point, tags))
@@ -121,7 +122,8 @@ fn leaves(dense: &Dense) -> Vec<TaggedCell> {
     all
 }
 
-/// The cells in Morton order are sorted by distance: a stable sort keeps equals so.
+/// Checks the nearest cells. The cells in Morton order are sorted by distance; a stable sort keeps equal ones
+/// in order.
 fn assert_nearest(tree: &Octree, all: &[TaggedCell], point: [i128; 3], tags: &[Tag], count: usize) {
     let depth = tree.frame().depth();
     let found: Vec<NearCell> = tree.nearest_cells(model(point), tags, count).unwrap();
@@ -172,7 +174,7 @@ proptest! {
         }
     }
 
-    /// A solid of which nothing is known but the cells: what is told contains what they tell.
+    /// Solids that provide only cells. The intervals contain the distances of the cells.
     #[test]
     fn solids_of_cells(shape in shapes(1..=4), seed in any::<u64>()) {
         let dense = shape.dense();
@@ -272,7 +274,7 @@ fn points_that_are_none_and_points_far_away() {
     }
 }
 
-/// The distance of `point` from a box, negative inside.
+/// Returns the distance of `point` from a box, negative inside.
 fn from_box(point: [f64; 3], min: [f64; 3], max: [f64; 3]) -> f64 {
     let past = [0, 1, 2].map(|axis: usize| (min[axis] - point[axis]).max(point[axis] - max[axis]));
     let outside = past.iter().map(|c| c.max(0.0).powi(2)).sum::<f64>().sqrt();
@@ -283,7 +285,7 @@ fn norm(v: [f64; 3]) -> f64 {
     v.iter().map(|c| c * c).sum::<f64>().sqrt()
 }
 
-/// Asks for the distance from the boundary, and holds it against a formula to a few roundings.
+/// Queries the distance from the boundary, and compares it with a formula up to a few roundings.
 #[track_caller]
 fn assert_formula<S: Solid>(
     solid: &S,
@@ -329,7 +331,7 @@ fn solids_with_slabs_to_second_order() {
     });
 }
 
-/// Cells of which nothing is proven tell nothing.
+/// Cells without proofs yield no distances.
 #[test]
 fn what_is_not_proven_is_not_told() {
     let frame = Frame::new([-1.0; 3], 2.0, 5).unwrap();
@@ -371,7 +373,7 @@ fn universes_of_one_tag() {
     }
 }
 
-/// A file that is mapped answers as the tree in memory.
+/// A mapped file gives the same answers as the tree in memory.
 #[cfg(feature = "mmap")]
 #[test]
 fn mapped_files() {
@@ -380,7 +382,7 @@ fn mapped_files() {
     let folder = tempfile::tempdir().unwrap();
     let path = folder.path().join("ball.lfl");
     leafless::file::save(&tree, &path).unwrap();
-    // SAFETY: nobody else knows of the file.
+    // SAFETY: no other process uses the file.
     #[allow(unsafe_code)]
     let mapped = unsafe { leafless::file::map(&path) }.unwrap();
     let mut random = Random(6);
@@ -404,7 +406,7 @@ fn mapped_files() {
     assert_eq!(fields[0], fields[1]);
 }
 
-/// Points of the boundary that come with distances: as near as said, and on the boundary, to second order.
+/// The nearest points that come with distances are as near as stated, and on the boundary to second order.
 #[test]
 fn nearest_points_of_balls_and_octrees() {
     let frame = Frame::new([-2.0; 3], 4.0, 20).unwrap();
@@ -427,7 +429,7 @@ fn nearest_points_of_balls_and_octrees() {
             let truth = (length(*point) - 1.0).abs();
             assert!((apart - truth).abs() < 2e-9 && (length(near) - 1.0).abs() < 2e-9, "{point:?} {found:?}");
         }
-        // A point inside is no distance from the solid, and nothing is said of the boundary.
+        // A point inside has distance 0 from the solid, and the query does not examine the boundary.
         let inside = distances(&solid, &frame, &[[0.1; 3]], DistanceTo::Solid, 1e-9, &alone()).unwrap();
         assert!(inside[0].distance.lower == 0.0 && inside[0].distance.upper <= 1e-9, "{inside:?}");
         assert_eq!(inside[0].nearest, None);

@@ -6,7 +6,7 @@ use leafless::{Control, Csg, Error, Frame, Octree, Rule, Tag, build, compact};
 use proptest::prelude::*;
 use std::sync::atomic::AtomicBool;
 
-/// The square of the distance, in half cells, from a cell's centre to the nearest closed cell with one of
+/// Returns the squared distance, in half cells, from a cell's centre to the nearest closed cell with one of
 /// these tags.
 fn square(dense: &Dense, exterior: Tag, at: [u32; 3], tags: &[Tag]) -> Option<u64> {
     let apart = |a: u32, b: u32| (2 * u64::from(a.abs_diff(b))).saturating_sub(1).pow(2);
@@ -17,8 +17,8 @@ fn square(dense: &Dense, exterior: Tag, at: [u32; 3], tags: &[Tag]) -> Option<u6
     inside.into_iter().chain(outside.filter(|_| tags.contains(&exterior))).min()
 }
 
-/// Whether a single is the last not above the root of a square (half cells of edge 1), or the first not
-/// below.
+/// True if a single is the greatest not above the root of a square (in half cells of edge 1), or the least
+/// not below.
 fn is_next_to(single: f32, square: Option<u64>, below: bool) -> bool {
     let Some(square) = square else { return single == f32::INFINITY };
     // The square of a single has 48 bits.
@@ -94,7 +94,7 @@ proptest! {
     }
 }
 
-/// Two small balls far from each other, on a lattice of which no test could look at all cells.
+/// Two small balls far from each other, on a lattice too large for a test of every cell.
 fn far_apart(depth: u8) -> Octree {
     let frame = Frame::new([0.0; 3], f64::from(1u32 << depth), depth).unwrap();
     let n = f64::from(1u32 << depth);
@@ -103,7 +103,7 @@ fn far_apart(depth: u8) -> Octree {
     build(&pair, &frame, Rule::Certified, &alone()).unwrap()
 }
 
-/// Cells one by one and all together: the entries are those of points.
+/// Cells one by one and all at once. The entries equal the distances of points.
 #[test]
 fn boxes_of_large_trees() {
     let mut random = Random(8);
@@ -163,7 +163,7 @@ fn boxes_that_are_refused() {
     assert_eq!(entry, [[7.0; 2]; 1]);
 }
 
-/// How long 256³ cells take: `--ignored --nocapture`.
+/// Measures the time of 256³ cells: `--ignored --nocapture`.
 #[test]
 #[ignore = "a measurement"]
 fn speed() {

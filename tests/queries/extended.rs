@@ -1,5 +1,5 @@
-//! Whatever takes a solid gives of an extended octree what it gives of the expression that the tree was made
-//! from: intervals that overlap, and are as sharp.
+//! Every query that accepts a solid gives intervals for an extended octree that overlap those of its source
+//! expression, and are as sharp.
 
 use crate::common::{Random, alone};
 use leafless::lattice::Frame;
@@ -15,15 +15,15 @@ use leafless::{
     build, build_extended, cast_rays, clearance, contains, dexelize, interference, measure,
 };
 
-/// Something that takes a solid, and tells numbers of it.
+/// A query that takes a solid and returns numbers.
 struct Consumer {
     name: &'static str,
-    /// All intervals of the tree together are at most so many times as wide as those of the source.
+    /// Limit of the total width of the tree's intervals, as a multiple of the source's total width.
     factor: f64,
     ask: fn(&AnySolid, &Frame) -> Vec<Interval>,
 }
 
-/// A number that both must tell to within rounding.
+/// A number that both solids must return up to rounding.
 fn near(number: f64, frame: &Frame) -> Interval {
     let slack = 1e-9 * frame.edge();
     Interval::new(number - slack, number + slack).unwrap()
@@ -33,7 +33,7 @@ fn between(lower: f64, upper: f64) -> Interval {
     Interval::new(lower, upper).unwrap()
 }
 
-/// A place in the universe by its shares.
+/// Returns the point at the given fractions of the universe's edges.
 fn place(frame: &Frame, [x, y, z]: [f64; 3]) -> [f64; 3] {
     let [a, b, c] = frame.origin();
     [a + x * frame.edge(), b + y * frame.edge(), c + z * frame.edge()]
@@ -44,7 +44,7 @@ fn places(frame: &Frame, count: usize) -> Vec<[f64; 3]> {
     (0..count).map(|_| place(frame, [0; 3].map(|_| random.between(0.01, 0.99)))).collect()
 }
 
-/// A ball that has something to do with what is in the middle of a universe.
+/// A ball that interacts with the shapes in the middle of a universe.
 fn ball(frame: &Frame, at: [f64; 3], radius: f64) -> Csg {
     Csg::ball(place(frame, at), radius * frame.edge()).unwrap()
 }
@@ -117,7 +117,7 @@ const CONSUMERS: [Consumer; 17] = [
         },
     },
     Consumer {
-        // Each search ends once the interval is as narrow as was asked for.
+        // Each search ends once the interval is within the tolerance.
         name: "distances",
         factor: 1.5,
         ask: |solid, frame| {
@@ -139,7 +139,7 @@ const CONSUMERS: [Consumer; 17] = [
         },
     },
     Consumer {
-        // It ends as soon as the tolerance is met: how far below the width then is, is chance.
+        // It ends as soon as the tolerance is met. The final width below the tolerance is arbitrary.
         name: "clearance",
         factor: 2.0,
         ask: |solid, frame| {
@@ -148,7 +148,7 @@ const CONSUMERS: [Consumer; 17] = [
         },
     },
     Consumer {
-        // Which cells are as large as the tolerance allows depends on how sharp the slabs of larger ones are.
+        // The sharpness of the larger cells' slabs determines which cells reach the tolerance.
         name: "Adaptive",
         factor: 2.0,
         ask: |solid, frame| {

@@ -1,5 +1,5 @@
-//! Bounding boxes by slabs, against formulas of how far shapes reach along a direction, and against the boxes
-//! of octrees, which know no slabs.
+//! Bounding boxes by slabs, against formulas of the shapes' support functions and against the boxes of
+//! octrees, which have no slabs.
 
 use crate::common::alone;
 use glam::{DMat3, DVec3, EulerRot};
@@ -8,7 +8,7 @@ use leafless::{
     Affine, Bounds, Callback, Control, Csg, Frame, Interval, Rule, Solid, Tag, Verdict, bounding_box, build,
 };
 
-/// A solid and how far it reaches along a direction.
+/// A solid and its support function: its reach along a direction.
 struct Known {
     name: &'static str,
     solid: Csg,
@@ -93,7 +93,7 @@ fn primitives() -> Vec<Known> {
     ]
 }
 
-/// Numbers between −1 and 1, pseudo-random.
+/// Pseudo-random numbers between −1 and 1.
 struct Random(u64);
 
 impl Random {
@@ -108,7 +108,7 @@ impl Random {
         DVec3::new(self.next(), self.next(), self.next())
     }
 
-    /// A map that does not squash.
+    /// A random map that flattens nothing.
     fn placement(&mut self) -> (DMat3, DVec3) {
         loop {
             let (matrix, offset) =
@@ -125,7 +125,7 @@ fn affine(matrix: DMat3, offset: DVec3) -> Affine {
     Affine::new([0, 1, 2].map(|i| [rows[i][0], rows[i][1], rows[i][2], offset[i]])).unwrap()
 }
 
-/// The six intervals, so that each is of how far the solid reaches along an outward direction.
+/// Returns the six intervals as reaches along the outward directions.
 fn sides(extent: &Extent) -> [Interval; 6] {
     let [min, max] = extent.corners.unwrap_or_else(|| panic!("{extent:?}"));
     core::array::from_fn(|side| match side {
@@ -159,7 +159,8 @@ fn intervals_hold_the_formulas_at_every_budget() {
             });
             for depth in [1, 4, 20] {
                 let frame = frame_around(&placed, depth);
-                // Where a curved side is touched along a line or a circle, each level takes twice the splits.
+                // Where a plane touches a curved side along a line or a circle, each level takes twice the
+                // splits.
                 let tolerance = if round == 0 { 1e-4 } else { 1e-9 } * frame.edge();
                 // The formulas are rounded.
                 let slack = 1e-13 * (frame.edge() + 20.0);
@@ -172,7 +173,7 @@ fn intervals_hold_the_formulas_at_every_budget() {
                         assert!(side.lower - slack <= truth && truth <= side.upper + slack, "{at}");
                     }
                     if (max_splits, depth) == (10_000, 20) {
-                        // Where more than three planes meet, and where there is no gradient, a point is known
+                        // Where more than three planes meet, or where no gradient exists, a point is known up
                         // to some finest cells.
                         let is_tip = matches!(name, "cone" | "octahedron");
                         let width = tolerance.max(if is_tip { 64.0 * frame.cell_size() } else { 0.0 });
@@ -187,7 +188,7 @@ fn intervals_hold_the_formulas_at_every_budget() {
         most.push((name, splits));
     }
     println!("splits to 1e-9, at most: {most:?}");
-    // Without slabs a turned cuboid took 10^18.
+    // Without slabs, a rotated cuboid took 10^18.
     let is_plane = |name| matches!(name, "cuboid" | "wedge" | "prism" | "octahedron" | "plate with holes");
     for (name, splits) in most.into_iter().filter(|(name, _)| is_plane(*name)) {
         assert!(splits <= 500, "{name}: {splits}");
@@ -211,8 +212,8 @@ fn a_tilted_plate_takes_few_splits() {
     }
 }
 
-/// Random polytopes, thin ones among them: the corners are what all planes hold of the points where three
-/// meet.
+/// Random polytopes, thin ones among them. The corners are the intersection points of three planes that lie
+/// within all planes.
 #[test]
 fn polytopes_against_their_corners() {
     let mut random = Random(7);
@@ -224,7 +225,7 @@ fn polytopes_against_their_corners() {
             planes.push((random.vector(), 0.3 * random.next()));
         }
         if round % 3 == 0 {
-            // A sliver, of which two faces are nearly parallel.
+            // A sliver with two nearly parallel faces.
             let (normal, offset) = planes[6];
             planes.push((-normal + 1e-3 * random.vector(), 1e-2 * random.next().abs() - offset));
         }
@@ -250,8 +251,8 @@ fn polytopes_against_their_corners() {
             assert!(found.corners.is_none(), "round {round}, {points:?}: {found:?}");
             continue;
         }
-        // Where a sliver is so thin that more than three planes meet in a finest cell, a corner may lie as
-        // far along it as faces at a thousandth of a radian let it.
+        // A sliver may be so thin that more than three planes meet in a finest cell. Then a corner may lie
+        // along the sliver as far as faces at a thousandth of a radian allow.
         if found.stop_reason != StopReason::Tolerance {
             slivers += 1;
             assert!(found.stop_reason == StopReason::Exhausted && round % 3 == 0, "round {round}: {found:?}");
@@ -261,7 +262,7 @@ fn polytopes_against_their_corners() {
         let truth = farthest(points);
         for (k, side) in sides(&found).into_iter().enumerate() {
             let truth = truth(outward(k));
-            // As far as slivers let the corners be known.
+            // The precision with which slivers determine the corners.
             assert!(
                 side.lower - 1e-7 <= truth && truth <= side.upper + 1e-7,
                 "round {round}, side {k}, {truth}: {found:?}"
@@ -272,8 +273,8 @@ fn polytopes_against_their_corners() {
     assert!((10..150).contains(&empty) && slivers < 10, "{empty} {slivers}");
 }
 
-/// Boxes of expressions whose cells know unions, complements and one side only, beside those of their
-/// octrees.
+/// Bounding boxes of expressions whose cells provide unions, complements or only one side, against the boxes
+/// of their octrees.
 #[test]
 fn expressions_beside_their_octrees() {
     let mut random = Random(3);
@@ -372,7 +373,7 @@ fn flat_thin_and_empty_solids_end() {
             );
         }
     }
-    // Nothing is left of it.
+    // The result is empty.
     let nothing =
         block.difference(&Csg::cuboid([-1.5; 3], [1.5; 3]).unwrap()).unwrap().placed(&turn).unwrap();
     let found = bounding_box(&nothing, &frame, 1e-9, &control).unwrap();
@@ -380,19 +381,19 @@ fn flat_thin_and_empty_solids_end() {
     assert!(found.splits < 1000, "{found:?}");
 }
 
-/// What two sides prove of an empty solid, before it is proven empty, may contradict each other: it would end
-/// before it begins. That is a proof, and no box.
+/// Before an empty solid is proven empty, the bounds from two sides may contradict each other: the box would
+/// end before it begins. This contradiction is a proof of emptiness, and no box is returned.
 #[test]
 fn a_box_that_ends_before_it_begins_is_none() {
     let frame = Frame::new([-1.0; 3], 2.0, 20).unwrap();
     let (mut none, mut open) = (0, 0);
     for gap in [0.02, 0.01, 0.005] {
-        // A ball within what lies outside of a slightly larger one, and the same of rings.
+        // A ball inside the complement of a slightly larger ball, and the same with rings.
         let ball = |radius: f64| Csg::ball([0.1, 0.0, -0.05], radius).unwrap();
         let ring = |minor: f64| Csg::torus(0.5, minor).unwrap();
         for solid in [ball(0.7).difference(&ball(0.7 + gap)), ring(0.2).difference(&ring(0.2 + gap))] {
             let solid = solid.unwrap();
-            // From nothing to more than it takes.
+            // Budgets from zero to more than needed.
             let budgets = (0..40).map(|k| (20.0 * 1.2f64.powi(k)) as u64);
             for splits in budgets {
                 let control = Control { max_splits: Some(splits), ..alone() };

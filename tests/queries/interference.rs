@@ -1,5 +1,5 @@
-//! Interference and clearance: the published cases, analytic truth for spheres and boxes, dense sampling for
-//! all else, and the set algebra of built octrees.
+//! Interference and clearance: the published cases, analytic truth for spheres and boxes, dense samples for
+//! all others, and the set algebra of built octrees.
 
 use crate::common::cubes::Plain;
 use crate::common::{Dense, Random, alone, model, repeated};
@@ -52,7 +52,7 @@ fn two_balls_take_eighty_splits_at_most() {
         check_ball(&over, &frame, "balls");
         let ball = over.ball.unwrap();
         assert!([50.0, 83.0].iter().all(|&c| distance(ball.centre, [c; 3]) + ball.radius <= 30.0));
-        // Other implementations of the same shapes, which know no surfaces, take the cells alone.
+        // Other implementations of the same shapes, without surfaces, provide only cells.
         for (at, expected) in [(86.0, &apart), (83.0, &over)] {
             let found = interference(&plain(50.0), &plain(at), &frame, PROOF, &alone()).unwrap();
             assert_eq!(found.verdict, expected.verdict);
@@ -63,7 +63,7 @@ fn two_balls_take_eighty_splits_at_most() {
     }
 }
 
-/// x² + y² ≤ r² around (64, 64), along z without end.
+/// x² + y² ≤ r² around (64, 64), infinitely long along z.
 fn rod(radius: f64) -> Csg {
     let [a, r] = [64.0, radius];
     let c = [-1.0, -1.0, 0.0, 0.0, 0.0, 0.0, 2.0 * a, 2.0 * a, 0.0, r * r - 2.0 * a * a];
@@ -76,10 +76,10 @@ fn a_shaft_in_a_ring() {
     let frame = published(8);
     let found = interference(&rod(20.0), &ring, &frame, PROOF, &alone()).unwrap();
     println!("shaft in ring: {:?}", found.splits);
-    // Both go on outside of the universe, where they might overlap.
+    // Both continue outside the universe, where they might overlap.
     assert_eq!((found.verdict, found.clipped), (Overlap::Undecided, true));
     assert_eq!((found.volume.lower, found.volume.upper), (0.0, f64::INFINITY));
-    // One that is cut off at the universe does not.
+    // A solid cut off at the universe cannot overlap there.
     let universe = Csg::cuboid([0.0; 3], [128.0; 3]).unwrap();
     let cut = Csg::intersection_of([rod(20.0), universe]).unwrap();
     let found = interference(&cut, &ring, &frame, PROOF, &alone()).unwrap();
@@ -91,7 +91,7 @@ fn a_shaft_in_a_ring() {
     let distance = clearance(&cut, &whole, &frame, 2.0, &up_to(100_000)).unwrap();
     println!("shaft in ring: {distance:?}");
     assert!(distance.distance.contains(4.0) && distance.distance.lower > 0.0, "{distance:?}");
-    // Of its own length the shaft ends inside, so that nothing outside matters to the overlap.
+    // With its own length the shaft ends inside, so that nothing outside matters for the overlap.
     let shaft = Csg::cylinder(20.0, 10.0, 120.0)
         .unwrap()
         .placed(&Affine::translation([64.0, 64.0, 0.0]).unwrap())
@@ -124,7 +124,7 @@ fn a_block_in_a_pocket() {
         assert!(splits(&found) <= 80);
         let found = interference(&pushed, &stock, &frame, 0.0, &alone()).unwrap();
         assert!(found.volume.contains(4.0 * 48.0 * 48.0) && found.volume.width() < 1e-6, "{found:?}");
-        // The same by a transform of a solid that knows nothing of placements.
+        // The same by a transform of a solid without placements of its own.
         let step = Affine::translation([6.0, 0.0, 0.0]).unwrap();
         let plain = Plain::cuboid([40.0; 3], [88.0; 3]).unwrap();
         let moved = Transform::new(&plain, &frame, &step);
@@ -138,7 +138,7 @@ fn distance(a: [f64; 3], b: [f64; 3]) -> f64 {
     (0..3).map(|axis| (a[axis] - b[axis]).powi(2)).sum::<f64>().sqrt()
 }
 
-/// The ball of an answer lies in its cell.
+/// Checks that the ball of an answer lies in its cell.
 fn check_ball(found: &Interference, frame: &Frame, between: &str) {
     assert_eq!(found.ball.is_some(), found.verdict == Overlap::Overlapping, "{between}: {found:?}");
     assert_eq!(found.ball.is_some(), found.witness.is_some(), "{between}: {found:?}");
@@ -150,7 +150,7 @@ fn check_ball(found: &Interference, frame: &Frame, between: &str) {
     assert!(ball.radius > 0.0 && (0..3).all(is_in), "{between}: {found:?}");
 }
 
-/// What must hold of any answer, if the truth is known but for rounding.
+/// Checks an answer against the true common volume, which is known up to rounding.
 fn check_truth(found: &Interference, common: f64, between: &str) {
     let slack = 1e-9 * (1.0 + common);
     match found.verdict {
@@ -253,7 +253,7 @@ fn balls_and_their_contacts() {
     assert!(counts[0] > most && counts[1] > most, "{counts:?}");
 }
 
-/// A turn by unit quaternions, then an offset.
+/// A rotation by unit quaternions, followed by an offset.
 fn rigid(random: &mut Random, reach: f64) -> Affine {
     let q = loop {
         let q = [0; 4].map(|_| random.between(-1.0, 1.0));
@@ -271,13 +271,13 @@ fn rigid(random: &mut Random, reach: f64) -> Affine {
     Affine::new(turn.map(|[a, b, c]| [a, b, c, random.between(-reach, reach)])).unwrap()
 }
 
-/// The inverse of a rigid map at a point.
+/// Applies the inverse of a rigid map to a point.
 fn back(placement: &Affine, p: [f64; 3]) -> [f64; 3] {
     let m = placement.rows();
     [0, 1, 2].map(|j| (0..3).map(|i| m[i][j] * (p[i] - m[i][3])).sum())
 }
 
-/// A CSG solid with its own rule for points: 1 inside, −1 outside, 0 too close to a surface to say.
+/// A CSG solid with its own point classifier: 1 inside, −1 outside, 0 too close to a surface to decide.
 #[derive(Clone)]
 enum Tree {
     Ball([f64; 3], f64),
@@ -336,7 +336,7 @@ impl Tree {
     }
 }
 
-/// Answers about two solids against points thrown into the universe.
+/// Checks answers about two solids against random points of the universe.
 fn check_points(
     found: &Interference,
     frame: &Frame,
@@ -388,7 +388,7 @@ fn random_trees_in_random_places() {
         let sides = |p| (a.side(p), b.side(back(&placement, p)));
         let (first, second) = (a.csg(), b.csg());
         let text = format!("case {case}");
-        // Placed by itself, and by way of its cells.
+        // Placed exactly, and by its cells.
         for tolerance in [PROOF, 0.05] {
             let control = up_to(20_000);
             let found =
@@ -425,7 +425,7 @@ fn random_trees_in_random_places() {
             .fold(f64::INFINITY, f64::min);
         assert!(near.distance.lower <= nearest, "{text}: {near:?} {nearest}");
         if let (Some(cells), Some(points)) = (near.nearest, near.points) {
-            // What is called nearest lies in the solids and in the cells, and no further apart.
+            // The nearest points lie in the solids and in the cells, and are no further apart.
             for (i, (cell, p)) in cells.into_iter().zip(points).enumerate() {
                 let (a, b) = sides(p);
                 assert!([a, b][i] >= 0, "{text}");
@@ -436,11 +436,11 @@ fn random_trees_in_random_places() {
             assert!(distance(points[0], points[1]) <= near.distance.upper + 1e-12, "{text}: {near:?}");
         }
     }
-    // Hardly any is left undecided.
+    // Hardly any pair is left undecided.
     assert!(counts[0] > 5 && counts[1] > 5 && counts[2] < 5, "{counts:?}");
 }
 
-/// To the end, the answer is that of the set algebra, cell by cell; and moving parts from memory to memory on
+/// A complete search gives the result of the set algebra, cell by cell. Moving parts from memory to memory on
 /// the way changes nothing.
 #[test]
 fn to_the_end_it_is_the_intersection_of_octrees() {
@@ -457,7 +457,7 @@ fn to_the_end_it_is_the_intersection_of_octrees() {
             build(&moved, &frame, Rule::Certified, &alone()).unwrap(),
         ];
         let common = intersection(x.view(), y.view(), &alone()).unwrap().statistics().volume();
-        // (Surfaces tell more than cells.)
+        // (Surfaces give tighter bounds than cells.)
         assert!(
             common.lower <= found.volume.lower && found.volume.upper <= common.upper,
             "{found:?} {common:?}"
@@ -475,7 +475,7 @@ fn many_placements_are_one_after_the_other() {
     let frame = Frame::new([-4.0; 3], 8.0, 7).unwrap();
     // (Two stored octrees under placements are searched in another way: see `oriented`.)
     let a = build(&Tree::random(&mut random, 2).csg(), &frame, Rule::Certified, &alone()).unwrap();
-    // Of solids that cannot be moved exactly the cells are moved.
+    // Solids that cannot be moved exactly are moved by their cells.
     let b = Plain::cuboid([-1.0, -1.5, -0.5], [1.25, 0.75, 1.0]).unwrap();
     let placements: Vec<Affine> = (0..40).map(|_| rigid(&mut random, 3.0)).collect();
     for tolerance in [PROOF, 0.5] {
@@ -522,7 +522,7 @@ fn budgets_and_refusals() {
     let control = Control { cancel: Some(&cancel), ..Control::default() };
     assert!(matches!(interference(&a, &b, &frame, PROOF, &control), Err(Error::Cancelled)));
     assert!(matches!(clearance(&a, &b, &frame, 0.0, &control), Err(Error::Cancelled)));
-    // A solid that cannot be had in this frame.
+    // A solid that does not exist on this frame.
     let tree = build(&a, &published(5), Rule::Certified, &alone()).unwrap();
     let other = Frame::new([1.0; 3], 128.0, 5).unwrap();
     assert!(matches!(interference(&tree, &b, &other, PROOF, &alone()), Err(Error::FrameMismatch { .. })));
@@ -542,12 +542,12 @@ fn nothing_everything_and_the_same() {
     assert_eq!(found.volume.lower, 64.0);
     let found = interference(&all, &ball, &frame, 0.0, &alone()).unwrap();
     assert!(found.volume.contains(4.0 / 3.0 * PI) && found.splits[0] == 0 && !found.clipped);
-    // A ball and all but the ball touch everywhere, and have nothing in common.
+    // A ball and its complement touch everywhere, and have no common points.
     let found = interference(&ball, &ball.complement(), &frame, PROOF, &alone()).unwrap();
     assert_eq!((found.verdict, found.splits), (Overlap::Disjoint, [0, 0]));
     let found = clearance(&ball, &ball.complement(), &frame, 0.5, &alone()).unwrap();
     assert!(found.distance.lower == 0.0 && found.distance.upper < 0.6 && found.clipped);
-    // What has no full cell is not known to be anywhere, unless slabs tell.
+    // Without slabs, a solid without full cells may be anywhere.
     let leaf = Csg::cuboid([1.0, 1.0, 1.0], [2.0, 2.0, 1.001]).unwrap();
     let found = clearance(&ball, &leaf, &frame, 0.0, &alone()).unwrap();
     assert_eq!((found.distance.lower, found.distance.upper), (0.0, 0.0));
@@ -558,7 +558,7 @@ fn nothing_everything_and_the_same() {
     assert_eq!((found.points, found.normals), (None, [None; 2]));
 }
 
-/// A mesh is moved by its vertices: what is said of it never contradicts what its own cells say.
+/// A mesh is moved by its vertices. The answers never contradict those of its own cells.
 #[test]
 fn a_mesh_in_other_places() {
     let corners = [[0.0, 0.0, 0.0], [3.0, 0.1, 0.0], [0.2, 2.0, 0.0], [0.7, 0.3, 2.5]];
@@ -589,7 +589,8 @@ fn a_mesh_in_other_places() {
                 assert!(tree.statistics().volume().contains(volume), "{case}");
                 assert_eq!(tree.view().exterior(), Tag::Empty);
             }
-            // Cells that one proves the other one proves, too, or leaves open; and moved vertices blur less.
+            // Decisions by one kind of cells are confirmed or left open by the other kind, and moved vertices
+            // blur less.
             for (a, b) in Dense::of(x.view()).tags.iter().zip(&Dense::of(y.view()).tags) {
                 let contradiction = matches!((a, b), (Tag::Full, Tag::Empty) | (Tag::Empty, Tag::Full));
                 assert!(!contradiction, "{case}");
@@ -599,7 +600,7 @@ fn a_mesh_in_other_places() {
     }
 }
 
-/// The part against itself, as a mesh and as a stored octree, in random places.
+/// A part against itself, as a mesh and as a stored octree, at random places.
 #[test]
 fn a_mesh_against_itself() {
     let Some(path) = model("featuretype.STL") else { return };
@@ -612,11 +613,11 @@ fn a_mesh_against_itself() {
     let longest = extent.iter().copied().fold(0.0, f64::max);
     let solid = MeshSolid::new(mesh, FillRule::NonZero).unwrap();
     let tree = build(&solid, &around, Rule::Certified, &Control::default()).unwrap();
-    // In its own place it overlaps itself wholly.
+    // At its own place it overlaps itself entirely.
     let found = interference(&solid, &tree, &around, 0.0, &up_to(2_000_000)).unwrap();
     assert_eq!(found.verdict, Overlap::Overlapping);
     assert!(found.volume.contains(volume) && found.volume.width() < 0.25 * volume, "{found:?}");
-    // Moved by its own extent it touches itself at most.
+    // Moved by its own extent, it touches itself at most.
     for axis in 0..3 {
         let mut offset = [0.0; 3];
         offset[axis] = extent[axis];
@@ -631,7 +632,7 @@ fn a_mesh_against_itself() {
     let mut counts = [0; 3];
     for case in 0..30 {
         let turn = rigid(&mut random, 0.0);
-        // About the centre, then off by up to a whole length.
+        // About the centre, then moved by up to a whole length.
         let centre = [0, 1, 2].map(|axis| 0.5 * (min[axis] + max[axis]));
         let turned = turn.apply(centre);
         let mut rows = *turn.rows();
@@ -672,7 +673,7 @@ fn solids_of_any_kind() {
     assert_eq!(found.verdict, Overlap::Overlapping);
 }
 
-/// A pin in the bore of a block, with the same play all around: nowhere is nearest.
+/// A pin in the bore of a block, with the same play all around, so that no place is nearest.
 fn pin_and_bore() -> (Csg, Csg) {
     let pin = Csg::cylinder(4.9, 2.0, 18.0).unwrap();
     let bore = Csg::cylinder(5.0, 0.0, 20.0).unwrap();
@@ -680,7 +681,7 @@ fn pin_and_bore() -> (Csg, Csg) {
     (pin, block)
 }
 
-/// Cells of 0.006 could tell the play to 0.01, but not soon; the surfaces tell it at once.
+/// Cells of 0.006 would find the play to 0.01 only slowly. The surfaces give it at once.
 #[test]
 fn a_pin_in_a_bore_ends_by_default() {
     let (pin, block) = pin_and_bore();
@@ -694,7 +695,7 @@ fn a_pin_in_a_bore_ends_by_default() {
     assert!(found.splits.iter().sum::<u64>() <= CLEARANCE_SPLITS / 1000);
 }
 
-/// A tolerance that the finest cells cannot give ends with what they can.
+/// If the finest cells cannot reach a tolerance, the search ends with their best bounds.
 #[test]
 fn cells_that_cannot_tell_more_end_a_search() {
     let (pin, block) = pin_and_bore();
@@ -712,8 +713,8 @@ fn cells_that_cannot_tell_more_end_a_search() {
     }
 }
 
-/// Two foils that are thinner than a cell, one on the other, each with a ball at its far end: nothing near
-/// the contact is FULL, and yet the distance is no greater than that of the balls.
+/// Two foils thinner than a cell, one on the other, each with a ball at its far end. No cell near the contact
+/// is FULL, and yet the upper bound of the distance is at most that of the balls.
 #[test]
 fn full_cells_anywhere_bound_a_distance() {
     let frame = Frame::new([0.0; 3], 16.0, 9).unwrap();
@@ -733,7 +734,7 @@ fn full_cells_anywhere_bound_a_distance() {
             assert!(found.distance.upper <= 12.0 && found.nearest.is_some(), "{found:?}");
         }
     }
-    // Of a foil alone nothing is FULL: that is found out, and said, if there are no slabs.
+    // No cell of a foil alone is FULL. Without slabs, the search finds and reports this.
     let foil = |low: f64| Plain::cuboid([2.0, 2.0, low], [14.0, 14.0, low + 0.02]).unwrap();
     let frame = Frame::new([0.0; 3], 16.0, 6).unwrap();
     let found = clearance(&foil(7.99), &foil(8.01), &frame, 0.0, &alone()).unwrap();
@@ -754,8 +755,7 @@ fn full_cells_of_thin_walls_are_found() {
     assert!(found.distance.upper < 3.2, "{found:?}");
 }
 
-/// Thousands of parts that all run through the same cells: what is remembered of a cell is as large as the
-/// solid.
+/// Thousands of parts that all run through the same cells. The record of a cell is as large as the solid.
 #[test]
 fn searches_end_before_they_take_too_much_memory() {
     let frame = Frame::new([-1.0; 3], 4.0, 12).unwrap();
@@ -772,7 +772,7 @@ fn searches_end_before_they_take_too_much_memory() {
     let limited =
         |max_bytes: u64| Control { max_bytes: Some(max_bytes), max_splits: Some(30_000), ..alone() };
     let (little, more) = (limited(1 << 22), limited(1 << 26));
-    // The volume of the ball, of which all is in each cube.
+    // The volume of the ball, which lies entirely in each cube.
     let truth = 4.0 / 3.0 * PI * 0.4f64.powi(3);
     let overlap = |control| interference(&a, &b, &frame, 1e-3, control).unwrap();
     assert!(overlap(&little).volume.contains(truth) && overlap(&more).volume.contains(truth));

@@ -1,4 +1,4 @@
-//! Layouts: what a check tells against closed forms and dense samples, and what a search places.
+//! Layouts: checks against closed forms and dense samples, and the placements of searches.
 
 use crate::common::{Random, alone, repeated};
 use leafless::layout::{
@@ -24,12 +24,12 @@ fn item(solid: AnySolid) -> Item {
     Item::new(solid).unwrap()
 }
 
-/// A box with items, without clearances.
+/// A box with items and no clearances.
 fn bay(size: [f64; 3], items: Vec<Item>) -> Bay {
     bay_in(cuboid(size), items, [0.0; 2])
 }
 
-/// Any container with items, the clearance between them, and that to the wall.
+/// Any container with items, the clearance between them, and the clearance to the wall.
 fn bay_in(container: AnySolid, items: Vec<Item>, [clearance, wall_clearance]: [f64; 2]) -> Bay {
     let mut bay = Bay::new(container).unwrap().with_clearances(clearance, wall_clearance).unwrap();
     for (number, item) in items.into_iter().enumerate() {
@@ -46,7 +46,7 @@ fn to(at: [f64; 3]) -> Affine {
     Affine::translation(at).unwrap()
 }
 
-/// A turn around z, then around x, and an offset.
+/// A rotation around z, then around x, followed by an offset.
 fn turned([a, b]: [f64; 2], at: [f64; 3]) -> Affine {
     let (sa, ca, sb, cb) = (a.sin(), a.cos(), b.sin(), b.cos());
     let rows = [[ca, -sa, 0.0, at[0]], [cb * sa, cb * ca, -sb, at[1]], [sb * sa, sb * ca, cb, at[2]]];
@@ -61,7 +61,7 @@ fn length(a: [f64; 3]) -> f64 {
     a.iter().map(|c| c * c).sum::<f64>().sqrt()
 }
 
-/// The distance of a point from a block that was placed.
+/// Returns the distance of a point from a placed block.
 fn from_block(point: [f64; 3], size: [f64; 3], placement: &Affine) -> f64 {
     let own = placement.inverse().unwrap().apply(point);
     length([0, 1, 2].map(|k| (own[k] - size[k]).max(-own[k]).max(0.0)))
@@ -75,7 +75,7 @@ fn counted(solid: AnySolid) -> AnySolid {
     AnySolid::new(SplitCounter::new(solid))
 }
 
-/// Everything that is placed is proven, once more.
+/// Proves every placed item once more.
 fn assert_proven(layout: &Layout) {
     let all = layout.check_all(&alone()).unwrap();
     for (number, standing) in all.iter().enumerate() {
@@ -83,8 +83,8 @@ fn assert_proven(layout: &Layout) {
     }
 }
 
-/// Eight blocks that fill a box to 80 %: all splits of the container and of the items are counted, whoever
-/// makes them.
+/// Eight blocks that fill a box to 80 %. All splits of the container and of the items are counted, wherever
+/// they are made.
 #[test]
 fn eight_blocks() {
     let sizes = [
@@ -108,7 +108,7 @@ fn eight_blocks() {
     let all = splits(&container) + blocks.iter().map(splits).sum::<u64>();
     assert!(all <= 52, "{all}");
     assert_proven(&layout);
-    // By plain numbers: all corners are in the box, and no two blocks have inner points in common.
+    // In plain numbers: all corners are in the box, and no two blocks have common inner points.
     let boxes: Vec<[[f64; 3]; 2]> = layout
         .placed()
         .iter()
@@ -140,7 +140,7 @@ fn a_thousand_arrangements() {
     check_arrangements(1000);
 }
 
-/// Arrangements of balls and blocks, placed by chance: no verdict contradicts the distance in closed form.
+/// Random arrangements of balls and blocks. No verdict contradicts the distance in closed form.
 fn check_arrangements(count: usize) {
     let mut random = Random(40);
     let (size, radius, clearance) = ([2.0, 1.5, 1.0], 0.8, 0.25);
@@ -222,8 +222,8 @@ fn check_arrangements(count: usize) {
     );
 }
 
-/// Solids of all kinds, found by a search, against dense samples: no point lies in two of them, or outside of
-/// the container.
+/// Searches with solids of all kinds, against dense samples: no point lies in two solids or outside the
+/// container.
 #[test]
 fn what_is_placed_is_apart() {
     let hook = Csg::cuboid([0.0; 3], [3.0, 1.0, 1.0]).unwrap();
@@ -265,7 +265,7 @@ fn what_is_placed_is_apart() {
     let mut solids = vec![pillar];
     for placed in layout.placed() {
         let solid = layout.items()[placed.item].solid();
-        // (A stored octree is asked by way of its placement.)
+        // (A stored octree is queried through its placement.)
         solids.push(solid.placed(&placed.placement).unwrap());
     }
     let within = inside(&container);
@@ -281,7 +281,7 @@ fn what_is_placed_is_apart() {
     assert!(held.iter().all(|&count| count <= 1) && hits > 1000, "{hits}");
 }
 
-/// The same for any number of threads, and other seeds give other layouts.
+/// Results are the same for any number of threads. Other seeds give other layouts.
 #[test]
 fn the_seed_decides() {
     let made = |seed: u64, threads: usize| {
@@ -324,7 +324,7 @@ fn what_was_best_survives_a_cancel() {
     assert!(found.end == SearchEnd::Cancelled && found.rounds < 50, "{found:?}");
     assert!(found.placed >= 60 && layout.placed().len() as u64 == found.placed, "{found:?}");
     assert_proven(&layout);
-    // One that is cancelled at once leaves what was placed before.
+    // A search cancelled at once keeps the earlier placements.
     let before = layout.placed().to_vec();
     let found = layout.search(&options, &Control { cancel: Some(&cancel), ..alone() }).unwrap();
     assert_eq!((found.end, found.placed), (SearchEnd::Cancelled, 0));
@@ -342,12 +342,12 @@ fn budgets_end_a_search() {
     assert_proven(&layout);
     let found = layout.search(&SearchOptions { max_tests: None, ..options }, &alone()).unwrap();
     assert_eq!((found.end, layout.placed().len()), (SearchEnd::Complete, 30));
-    // Everything is placed: there is nothing to do.
+    // All items are placed, so that nothing remains to do.
     let found = layout.search(&options, &alone()).unwrap();
     assert_eq!((found.end, found.placed, found.tests), (SearchEnd::Complete, 0, 0));
 }
 
-/// What was placed last is taken out first: on the way there is nothing of those before.
+/// The last placed item is taken out first. Its way out meets none of the earlier items.
 #[test]
 fn items_get_out_along_a_direction() {
     let hook = Csg::cuboid([0.0; 3], [3.0, 1.0, 1.0]).unwrap();
@@ -405,7 +405,7 @@ fn the_centre_of_gravity_goes_where_it_should() {
     }
 }
 
-/// As many as possible comes first: two cubes that just go in, none of which can stand in the middle.
+/// Placing as many items as possible has priority: two cubes just fit, and neither can stand in the middle.
 #[test]
 fn balance_leaves_nothing_out() {
     let mut layout = layout(&bay([20.0, 10.0, 10.0], vec![item(cuboid([10.0; 3])).with_count(2)]));
@@ -415,7 +415,7 @@ fn balance_leaves_nothing_out() {
     assert_proven(&layout);
 }
 
-/// Volume, mass, centroid and inertia of turned blocks in closed form.
+/// Volume, mass, centroid and inertia of rotated blocks in closed form.
 #[test]
 fn what_a_layout_weighs() {
     let size = [2.0, 3.0, 4.0];
@@ -446,7 +446,7 @@ fn what_a_layout_weighs() {
         let mut sum = 0.0;
         for (placement, centre) in placements.iter().zip(centres) {
             let rows = placement.rows();
-            // ∫ x xᵀ of a block about its centre, turned.
+            // ∫ x xᵀ of a block about its centre, rotated.
             let second = |i: usize, j: usize| {
                 (0..3).map(|k| rows[i][k] * rows[j][k] * 60.0 * size[k] * size[k] / 12.0).sum::<f64>()
             };
@@ -471,7 +471,7 @@ fn what_a_layout_weighs() {
     near(found.height, top.fold(0.0, f64::max));
 }
 
-/// Containers that are no boxes, and obstacles.
+/// Containers that are not boxes, and obstacles.
 #[test]
 fn containers_of_all_kinds() {
     let hollow = Csg::ball([0.0; 3], 6.0).unwrap();
@@ -483,13 +483,13 @@ fn containers_of_all_kinds() {
         let is_stored = container.home().is_some();
         let items = vec![item(cuboid([2.0; 3])).with_count(30)];
         let mut layout = layout(&bay_in(container, items, [0.05, 0.1]));
-        // In the middle it is free; beside the wall it is not; outside even less.
+        // In the middle the place is free; beside the wall it is not; outside even less.
         for (x, expected) in
             [(-1.0, GapVerdict::Yes), (3.9, GapVerdict::No), (5.0, GapVerdict::No), (40.0, GapVerdict::No)]
         {
             let number = layout.place(0, &to([x, -1.0, -1.0])).unwrap();
             let found = layout.check(number, &alone()).unwrap();
-            // (An octree knows its boundary to its cells.)
+            // (An octree knows its boundary only to its cells.)
             let is_close = found.verdict == GapVerdict::Undecided && x == 3.9 && is_stored;
             assert!(found.verdict == expected || is_close, "{x}: {found:?}");
             layout.remove(number).unwrap();
@@ -508,8 +508,8 @@ fn containers_of_all_kinds() {
     }
 }
 
-/// Faces in one plane: blocks that touch each other and the walls do not overlap, and meshes that nearly do
-/// are told.
+/// Faces in one plane: blocks that touch each other and the walls do not overlap. Near contacts of meshes are
+/// reported.
 #[test]
 fn what_touches_is_apart() {
     let items = vec![item(cuboid([2.0; 3])).with_count(27)];
@@ -519,7 +519,7 @@ fn what_touches_is_apart() {
     assert_proven(&layout);
     let standing: Standing = layout.check(13, &alone()).unwrap();
     assert!(standing.nearest.unwrap().gap.contains(0.0));
-    // With a clearance, and one to the wall, that leave nothing.
+    // With a clearance between items and one to the wall that leave no room.
     let cubes = || vec![item(cuboid([10.0; 3])).with_count(8)];
     for (side, clearance, wall_clearance) in [(21.0, 1.0, 0.0), (23.0, 1.0, 1.0), (20.5, 0.0, 0.25)] {
         let mut layout = self::layout(&bay_in(cuboid([side; 3]), cubes(), [clearance, wall_clearance]));
@@ -538,7 +538,7 @@ fn what_touches_is_apart() {
     }
 }
 
-/// All that is in the way is counted, though not all of it is told.
+/// All conflicts are counted, even if not all are returned.
 #[test]
 fn conflicts_are_counted() {
     let mut layout = layout(&bay([4.0; 3], vec![item(cuboid([1.0; 3]))]));
@@ -552,7 +552,7 @@ fn conflicts_are_counted() {
     assert_eq!((last.conflicts[0].other, last.conflict_count), (Beside::Placed(0), 299));
 }
 
-/// Clearances and items of any size, and limits of memory, end in a layout or in an error that says so.
+/// Clearances and items of any size, and limits of memory, give a layout or a clear error.
 #[test]
 fn sizes_of_any_kind() {
     for clearance in [20.0, 1e6, Bay::FURTHEST] {
@@ -561,7 +561,7 @@ fn sizes_of_any_kind() {
         let found = layout.search(&SearchOptions::default(), &alone()).unwrap();
         assert_eq!((found.placed, found.left), (1, 2), "{clearance}");
     }
-    // What is far too long is left; the rest is placed.
+    // Items that are far too long are left; the others are placed.
     let wedge = |length: f64| {
         let block = Csg::cuboid([0.0; 3], [length; 3]).unwrap();
         let half = Csg::half_space([1.0, 1.0, -1.0], 0.0).unwrap();
@@ -639,7 +639,7 @@ fn what_is_refused() {
     ] {
         assert!(layout.search(&wrong, &alone()).is_err(), "{wrong:?}");
     }
-    // What is too large, and nothing at all, is no error.
+    // Items that are too large, and an empty layout, are no errors.
     let none = layout_of(vec![]);
     assert_eq!(none, (0, 0, SearchEnd::Complete));
     assert_eq!(layout_of(vec![item(cuboid([5.0; 3]))]), (0, 1, SearchEnd::Rounds));

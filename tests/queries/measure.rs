@@ -22,8 +22,8 @@ fn zero() -> Exact {
     Exact::from(0.0)
 }
 
-/// Volume and moments about the model's origin, without a rounding; all times `factor`, which keeps them sums
-/// of doubles.
+/// Volume and moments about the model's origin, without rounding. All are multiplied by `factor`, which keeps
+/// them sums of doubles.
 #[derive(Clone)]
 struct Sums {
     factor: f64,
@@ -42,7 +42,7 @@ impl Sums {
         }
     }
 
-    /// A finest cell.
+    /// Adds a finest cell.
     fn add_cell(&mut self, frame: &Frame, at: [u32; 3]) {
         assert_eq!(self.factor, 12.0);
         let edge = Exact::from(frame.cell_size());
@@ -61,7 +61,8 @@ impl Sums {
         }
     }
 
-    /// The tetrahedron between the origin and a triangle, negative if that is seen from behind.
+    /// Adds the tetrahedron between the origin and a triangle; it counts as negative if the triangle is seen
+    /// from behind.
     fn add_triangle(&mut self, corners: [[f64; 3]; 3]) {
         assert_eq!(self.factor, 120.0);
         let [a, b, c] = corners.map(|corner| corner.map(Exact::from));
@@ -85,7 +86,7 @@ impl Sums {
         self.volume.sign() == 0
     }
 
-    /// `[numerator, positive denominator]` of the tensor of inertia.
+    /// Returns the inertia tensor's entries, each as `[numerator, positive denominator]`.
     fn tensor(&self, second: &[Exact; 6], denominator: &Exact) -> Vec<(usize, usize, [Exact; 2])> {
         PAIRS
             .iter()
@@ -114,7 +115,7 @@ impl Sums {
     }
 }
 
-/// lower ≤ numerator / denominator ≤ upper, exactly.
+/// True if lower ≤ numerator / denominator ≤ upper, exactly.
 fn contains(interval: Interval, [numerator, denominator]: &[Exact; 2]) -> bool {
     let below = |x: f64| Exact::from(x).times(denominator).minus(numerator).sign() <= 0;
     let above = |x: f64| Exact::from(x).times(denominator).minus(numerator).sign() >= 0;
@@ -151,8 +152,8 @@ fn contains_all(measures: &MassProperties, sums: &Sums) -> Result<(), String> {
     Ok(())
 }
 
-/// Asserts that an interval is as tight as the least and the greatest possible value allow, but for `slack`
-/// of the magnitude.
+/// Asserts that an interval is as tight as the least and the greatest possible value allow, up to `slack` of
+/// the magnitude.
 fn assert_tight(interval: Interval, least: &[Exact; 2], most: &[Exact; 2], slack: f64) {
     let slack = slack * interval.lower.abs().max(interval.upper.abs());
     let narrow = Interval::new(interval.lower + slack, f64::INFINITY).unwrap();
@@ -172,8 +173,8 @@ fn assert_symmetric(measures: &MassProperties) {
     }
 }
 
-/// What the cells of a dense array allow: every choice of the undecided that is tried lies in the intervals,
-/// and what can be exact is.
+/// Checks measures against the cells of a dense array. Every tried choice of the undecided cells lies in the
+/// intervals, and measures that can be exact are.
 fn check_dense(dense: &Dense, frame: &Frame, random: &mut Random) {
     let measures = measure(&DenseSolid { dense, exterior: Tag::Empty }, frame, 0.0, &alone()).unwrap();
     assert_symmetric(&measures);
@@ -193,7 +194,7 @@ fn check_dense(dense: &Dense, frame: &Frame, random: &mut Random) {
     for _ in 0..3 {
         let seed = random.next() as u8;
         choices.push(choose(&|at| common::noise(seed, at) & 1 == 0));
-        // What is extreme lies on one side of a plane, or of two planes.
+        // Extreme choices lie on one side of a plane, or of two planes.
         let normal = [0, 1, 2].map(|_| random.below(7) as i64 - 3);
         let level = (random.below(4) as i64) << dense.depth >> 1;
         let side = |at: [u32; 3]| (0..3).map(|axis| normal[axis] * at[axis] as i64).sum::<i64>() > level;
@@ -261,7 +262,7 @@ fn uniform_universes() {
     }
 }
 
-/// Where all faces are plane, slabs tell everything but for rounding.
+/// If all faces are plane, slabs determine everything up to rounding.
 #[test]
 fn boxes_are_known_at_once() {
     let frame = Frame::new([-4.0; 3], 8.0, 20).unwrap();
@@ -284,7 +285,7 @@ fn boxes_are_known_at_once() {
     assert!(measures.level <= 3 && measures.splits < 40, "{measures:?}");
 }
 
-/// A number that formulas in doubles give, near which the truth is.
+/// Asserts that an interval contains the truth near a number from formulas in doubles.
 fn assert_contains(interval: Interval, value: f64, scale: f64) {
     let error = 1e-13 * scale;
     assert!(interval.lower <= value + error && value - error <= interval.upper, "{value} in {interval:?}");
@@ -346,12 +347,12 @@ fn balls_and_boxes_contain_the_formulas_at_every_depth() {
     }
 }
 
-/// The moments of all undecided cells together bound the centroid of a ball by some 2/√3 of what it takes:
-/// that is the ratio of the root of the mean square to the mean, of a coordinate on a sphere.
+/// The moments of all undecided cells together bound the centroid of a ball at about 2/√3 of the cost: this
+/// is the ratio of the root mean square to the mean of a coordinate's magnitude on a sphere.
 #[test]
 fn the_centroid_is_as_tight_as_it_is_said_to_be() {
     let frame = Frame::new([-1.0; 3], 2.0, 4).unwrap();
-    // One that knows no slabs.
+    // A ball without slabs.
     let ball = Plain::ball([0.0; 3], 0.9).unwrap();
     let tree = build(&ball, &frame, Rule::Certified, &alone()).unwrap();
     let measures = measure(&ball, &frame, 0.0, &alone()).unwrap();
@@ -393,7 +394,7 @@ fn a_walk_finds_what_a_tree_holds() {
         assert!(tolerance > 0.0 || measures.level == depth);
         assert!(measures.splits >= tree.statistics().nodes());
         assert!(measures.splits <= tree.statistics().nodes() * 16 / 9);
-        // The stored tree gives the same, as a solid of its own, and knows no more.
+        // The stored tree gives the same as a solid of its own, and has no better bounds.
         let stored = measure(&tree, tree.frame(), 0.0, &alone()).unwrap();
         assert_eq!((stored.volume, stored.stop_reason), (measures.volume, StopReason::Exhausted));
         if measures.level == depth {
@@ -442,8 +443,7 @@ fn budgets_are_kept_and_not_wasted() {
     assert!(measures.volume.width() <= 0.05 * volume * 1.1);
 }
 
-/// A solid that counts, and whose parts lie in scratch memory; a part that is not what it should be is
-/// noticed.
+/// A solid that counts its calls. Its parts lie in scratch memory, and a wrong part is detected.
 struct Counting {
     ball: Plain,
     calls: Arc<AtomicU64>,
@@ -573,7 +573,7 @@ fn splits_are_counted_as_they_happen() {
             let solid = Counting::new(ball);
             let counted = measure(&solid, &frame, 0.0, &control).unwrap();
             assert_eq!((counted.volume, counted.splits), (plain.volume, plain.splits));
-            // A pass that the budget ends has been for nothing, and is not counted.
+            // A pass that the budget interrupts is wasted, and is not counted.
             let calls = solid.calls.load(Relaxed);
             let spare = max_splits.filter(|&most| most > 1000).map_or(0, |most| most + 10_000);
             assert!(counted.splits <= calls && calls <= counted.splits + spare, "{calls} {counted:?}");
@@ -603,7 +603,7 @@ fn what_the_universe_clips_is_said() {
 #[test]
 fn a_host_s_shape_that_knows_little() {
     let frame = Frame::new([0.0; 3], 1.0, 6).unwrap();
-    // Never decided: every cell would be split, and none gains anything.
+    // Never decided: every cell would be split without any gain.
     let doubtful = Callback::new(|_, _| Ok(Verdict::Partial(()))).with_exterior(Tag::Empty);
     let measures = measure(&doubtful, &frame, 0.1, &Control::default()).unwrap();
     assert_eq!((measures.volume, measures.centroid), (Interval::new(0.0, 1.0).unwrap(), None));
@@ -629,7 +629,7 @@ fn a_host_s_shape_that_knows_little() {
     assert!(matches!(measure(&failing, &frame, 0.1, &Control::default()), Err(Error::Callback { code: 7 })));
 }
 
-/// What overflows and underflows is wide, and true.
+/// Intervals that overflow or underflow are wide, and true.
 #[test]
 fn frames_at_the_ends_of_the_range() {
     let large = 2f64.powi(256);
@@ -722,7 +722,7 @@ fn a_mesh_against_the_divergence_theorem() {
 // --- Bounding boxes
 // ----------------------------------------------------------------------------------------------
 
-/// The corners of all finest cells for which `tag` holds, in planes.
+/// Returns the bounding box of all finest cells for which `tag` holds, in planes.
 fn hull(dense: &Dense, tag: impl Fn(Tag) -> bool) -> Option<[[u32; 3]; 2]> {
     let cells: Vec<[u32; 3]> = positions(dense.depth).filter(|&at| tag(dense.at(at))).collect();
     let of = |axis: usize| cells.iter().map(move |at| at[axis]);
@@ -752,7 +752,7 @@ proptest! {
                 prop_assert_eq!((extent.corners.is_some(), extent.occupied), (outer.is_some(), inner.is_some()));
             }
             let (Some(corners), Some(outer)) = (extent.corners, outer) else { continue };
-            // What may be, for every choice of the undecided.
+            // The possible range over every choice of the undecided cells.
             let latest = inner.unwrap_or([outer[1], outer[0]]);
             for axis in 0..3 {
                 let plane = |i: u32| frame.plane(axis, i);
@@ -783,7 +783,7 @@ fn boxes_of_balls_and_blocks() {
             let [min, max] = [-1.0, 1.0].map(|sign| centre.map(|c| c + sign * radius));
             let ball = AnySolid::new(Csg::ball(centre, radius).unwrap());
             let block = AnySolid::new(Csg::cuboid(min, max).unwrap());
-            // Planes are known to rounding, whatever the depth.
+            // Planes are known up to rounding, at any depth.
             for (solid, ended) in [(ball, StopReason::Exhausted), (block, StopReason::Tolerance)] {
                 let ended = if tolerance > 0.0 { StopReason::Tolerance } else { ended };
                 let extent = bounding_box(&solid, &frame, tolerance, &Control::default()).unwrap();
@@ -807,7 +807,7 @@ fn boxes_of_balls_and_blocks() {
             }
         }
     }
-    // On the lattice nothing is left open.
+    // On the lattice, no cell is open.
     let frame = Frame::new([-4.0; 3], 8.0, 20).unwrap();
     let solid = Csg::cuboid([-2.0, -1.0, 0.0], [2.0, 3.0, 1.0]).unwrap();
     let extent = bounding_box(&solid, &frame, 0.0, &Control::default()).unwrap();

@@ -16,12 +16,12 @@ fn unit_cube() -> AnySolid {
     AnySolid::new(MeshSolid::new(mesh, FillRule::NonZero).unwrap())
 }
 
-/// Expressions whose operands are no half-spaces, in one universe, with their volumes.
+/// Expressions with operands that are not half-spaces, in one universe, with their volumes.
 fn mixed(depth: u8) -> Vec<(&'static str, Csg, f64)> {
     let cube = unit_cube();
     let ball = Csg::ball([1.0; 3], 0.75).unwrap();
     let eighth = PI / 6.0 * 0.75f64.powi(3);
-    // About the middle of the cube, by an eighth of a turn: what both have in common has eight sides.
+    // Rotated about the middle of the cube by 45 degrees, so that the intersection has eight sides.
     let c = 0.5f64.sqrt();
     let turn = Affine::new([[c, -c, 0.0, 0.5], [c, c, 0.0, 0.5 - c], [0.0, 0.0, 1.0, 0.0]]).unwrap();
     let turned = cube.placed(&turn).unwrap();
@@ -42,12 +42,12 @@ fn mixed(depth: u8) -> Vec<(&'static str, Csg, f64)> {
     ]
 }
 
-/// The universe has no plane in common with the cube.
+/// A universe without a plane in common with the cube.
 fn around_cube(depth: u8) -> Frame {
     Frame::new([-0.77; 3], 2.7, depth).unwrap()
 }
 
-/// Cells in which several operands are open have slabs, so that measures converge there too.
+/// Cells with several open operands have slabs, so that measures converge there too.
 #[test]
 fn expressions_of_other_solids_converge() {
     for (name, csg, truth) in mixed(6).into_iter().take(2) {
@@ -58,7 +58,7 @@ fn expressions_of_other_solids_converge() {
             assert!(found.volume.width() <= 1.01 * tolerance * truth, "{name}: {found:?}");
             splits.push(found.splits);
         }
-        // By verdicts a tenth of the width takes a hundred times as many.
+        // By verdicts, a tenth of the width takes a hundred times as many splits.
         assert!(splits[1] < 30 * splits[0], "{name}: {splits:?}");
     }
 }
@@ -82,9 +82,9 @@ fn expressions_of_other_solids_to_a_ten_thousandth() {
     }
 }
 
-/// Children that are decided once their groups are taken apart leave nothing behind that belongs to their
-/// siblings: the small bodies lie on the faces of the mesh, so that both are open in many cells, and whoever
-/// walks depth first comes back to children whose siblings are done.
+/// Children that are decided when their groups are taken apart must leave their siblings' data alone. The
+/// small bodies lie on the faces of the mesh, so that both are open in many cells. A depth-first walk returns
+/// to children whose siblings are finished.
 #[test]
 fn many_small_bodies_on_a_mesh_are_walked_depth_first() {
     let mut random = Random(11);

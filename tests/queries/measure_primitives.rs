@@ -1,5 +1,5 @@
-//! Volume, centroid and inertia of every primitive under random affine placements: the intervals hold the
-//! formulas' values at every depth, after every number of splits, and to every tolerance.
+//! Volume, centroid and inertia of every primitive under random affine placements. The intervals contain the
+//! formulas' values at every depth, after every number of splits, and for every tolerance.
 
 use crate::common::repeated;
 use glam::{DMat3, DVec3};
@@ -7,7 +7,7 @@ use leafless::query::StopReason;
 use leafless::{Affine, Bounds, Control, Csg, Error, Frame, Interval, MassProperties, Solid, measure};
 use std::f64::consts::PI;
 
-/// A solid with its volume, its centroid, and ∫ (p − c)(p − c)ᵀ about that.
+/// A solid with its volume, its centroid, and ∫ (p − c)(p − c)ᵀ about the centroid.
 struct Known {
     name: &'static str,
     solid: Result<Csg, Error>,
@@ -16,13 +16,14 @@ struct Known {
     spread: DMat3,
 }
 
-/// p pᵀ
+/// Returns p pᵀ.
 fn outer(p: DVec3) -> DMat3 {
     DMat3::from_cols(p * p.x, p * p.y, p * p.z)
 }
 
-/// Of a solid whose section at each height t of [0, `height`] has this area, centre and second moments about
-/// the centre; polynomials in t of degree seven at the most, which five points integrate exactly.
+/// Returns the measures of a solid from its sections. `section` returns area, centre and second moments about
+/// the centre at each height t of [0, `height`]. They must be polynomials in t of degree at most seven, which
+/// five points integrate exactly.
 fn stacked(
     name: &'static str,
     solid: Result<Csg, Error>,
@@ -45,7 +46,7 @@ fn stacked(
     Known { name, solid, volume, centroid, spread: second - volume * outer(centroid) }
 }
 
-/// Of a solid that is symmetric to its centre, with the mean squares of the coordinates.
+/// Returns the measures of a solid symmetric about its centre, from the mean squares of the coordinates.
 fn central(
     name: &'static str,
     solid: Result<Csg, Error>,
@@ -136,7 +137,7 @@ fn primitives() -> Vec<Known> {
     ]
 }
 
-/// Entries between −1 and 1, pseudo-random.
+/// Pseudo-random entries between −1 and 1.
 struct Random(u64);
 
 impl Random {
@@ -147,7 +148,7 @@ impl Random {
         (self.0 >> 11) as f64 / (1u64 << 52) as f64 - 1.0
     }
 
-    /// A map that does not squash.
+    /// A random map that flattens nothing.
     fn placement(&mut self) -> (DMat3, DVec3) {
         loop {
             let mut column = || DVec3::new(self.next(), self.next(), self.next());
@@ -165,7 +166,7 @@ fn holds(interval: Interval, value: f64, size: f64) -> bool {
     interval.lower <= value + slack && value - slack <= interval.upper
 }
 
-/// A primitive somewhere, with its measures there.
+/// A placed primitive with its measures.
 struct Placed {
     solid: Csg,
     volume: f64,
@@ -195,7 +196,7 @@ impl Known {
 }
 
 impl Placed {
-    /// Asserts that the intervals hold what is known.
+    /// Asserts that the intervals contain the known values.
     fn check(&self, found: &MassProperties, context: &str) {
         let at = format!("{context}: {found:?}");
         assert!(!found.clipped && holds(found.volume, self.volume, self.volume), "{at}");
@@ -232,10 +233,10 @@ fn intervals_hold_the_formulas() {
                 placed.check(&found, &format!("{name}, depth {depth}"));
                 widths.push(found.volume.width());
             }
-            // Each level halves what is not known, more or less.
+            // Each level halves the unknown volume, approximately.
             let rounding = 1e-10 * placed.volume;
             assert!(widths[5] < (0.4 * widths[3]).max(rounding), "{name}: {widths:?}");
-            // Pass by pass, until hardly more is in doubt than comes of rounding.
+            // Pass by pass, until the uncertainty is mostly rounding.
             let frame = around(&placed.solid, 20);
             for most in (0..16).step_by(3).map(|log| 1 << log) {
                 let control = Control { max_splits: Some(most), ..Control::default() };
@@ -319,7 +320,7 @@ fn unions_and_intersections_add_up() {
     }
 }
 
-/// A turned block with a pocket that is turned in it.
+/// A rotated block with a pocket that is rotated in the block.
 #[test]
 fn turned_blocks_with_pockets() {
     let block = |min: [f64; 3], max: [f64; 3]| {

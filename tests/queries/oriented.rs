@@ -1,5 +1,5 @@
-//! Stored octrees under placements: every answer against all pairs of their cells, and against the search by
-//! cells.
+//! Stored octrees under placements. Every answer is compared with all pairs of their cells, and with the
+//! search by cells.
 
 use crate::common::{Random, alone, cases, pairs_of};
 use leafless::lattice::Cube;
@@ -27,13 +27,13 @@ fn cross(a: Vector, b: Vector) -> Vector {
     })
 }
 
-/// A parallelepiped: its centre, and halves of its edges.
+/// A parallelepiped, by its centre and its half edges.
 struct Block {
     centre: Vector,
     edges: [Vector; 3],
 }
 
-/// How far two parallelepipeds are apart along the best of all axes; negative if they overlap.
+/// Returns the gap of two parallelepipeds along the best of all axes; negative if they overlap.
 fn gap(a: &Block, b: &Block) -> f64 {
     let normals =
         |block: &Block| [0, 1, 2].map(|i| cross(block.edges[(i + 1) % 3], block.edges[(i + 2) % 3]));
@@ -54,7 +54,7 @@ fn linear(placement: &Affine, v: Vector) -> Vector {
     [0, 1, 2].map(|i| rows[i][0] * v[0] + rows[i][1] * v[1] + rows[i][2] * v[2])
 }
 
-/// The cells of a tree that are not EMPTY, placed, and whether each is FULL.
+/// Returns the placed cells of a tree that are not EMPTY, each with whether it is FULL.
 fn blocks(tree: &Octree, placement: &Affine) -> Vec<(Block, bool)> {
     let filter = CellFilter::tags(&[Tag::Full, Tag::Partial]);
     let cells = tree.view().cells(filter);
@@ -69,13 +69,13 @@ fn blocks(tree: &Octree, placement: &Affine) -> Vec<(Block, bool)> {
         .collect()
 }
 
-/// More than rounding, and less than any cell.
+/// A margin larger than rounding, and smaller than any cell.
 const MARGIN: f64 = 1e-9;
 
-/// Holds an answer against all pairs of cells.
+/// Checks an answer against all pairs of cells.
 fn check(a: &Octree, b: &Octree, placement: &Affine, found: &Interference, text: &str) {
     let (first, second) = (blocks(a, &Affine::IDENTITY), blocks(b, placement));
-    // The deepest overlap of FULL cells, and of those that are not EMPTY.
+    // The deepest overlap of FULL cells, and of cells that are not EMPTY.
     let (mut full, mut some) = (f64::INFINITY, f64::INFINITY);
     for (p, p_is_full) in &first {
         for (q, q_is_full) in &second {
@@ -89,13 +89,13 @@ fn check(a: &Octree, b: &Octree, placement: &Affine, found: &Interference, text:
     match found.verdict {
         Overlap::Disjoint => assert!(some > -MARGIN, "{text}: {some} {found:?}"),
         Overlap::Overlapping => assert!(full < 0.0, "{text}: {full} {found:?}"),
-        // Whatever is clear is found.
+        // Every clear case must be decided.
         Overlap::Undecided => assert!(full > -1e-5 && some < MARGIN, "{text}: {full} {some} {found:?}"),
     }
     check_proof(a, b, placement, found, text);
 }
 
-/// Holds the proof of an answer against the cells that it lies in.
+/// Checks the proof of an answer against the cells that contain it.
 fn check_proof(a: &Octree, b: &Octree, placement: &Affine, found: &Interference, text: &str) {
     assert_eq!(found.verdict == Overlap::Overlapping, found.ball.is_some(), "{text}: {found:?}");
     assert!(found.ball.is_some() || found.witness.is_none(), "{text}: {found:?}");
@@ -129,7 +129,7 @@ fn at(a: &Octree, b: &Octree, placements: &[Affine]) -> Vec<Interference> {
     interference_at(a, b, b.frame(), placements, a.frame(), PROOF, &alone()).unwrap()
 }
 
-/// A turn, or another map if `is_rigid` is not set, and then an offset.
+/// A rotation, or another map unless `is_rigid`, followed by an offset.
 fn placement(random: &mut Random, is_rigid: bool, reach: f64) -> Affine {
     let q = loop {
         let q = [0; 4].map(|_| random.between(-1.0, 1.0));
@@ -155,7 +155,7 @@ fn placement(random: &mut Random, is_rigid: bool, reach: f64) -> Affine {
     Affine::new([0, 1, 2].map(|i| [rows[i][0], rows[i][1], rows[i][2], offset[i]])).unwrap()
 }
 
-/// Balls and boxes within 1.5 of the origin, added and cut off.
+/// A random union of balls and boxes within 1.5 of the origin, with parts cut off.
 fn shape(random: &mut Random) -> Csg {
     let mut shape: Option<Csg> = None;
     for _ in 0..1 + random.below(4) {
@@ -207,12 +207,12 @@ proptest! {
         let (a, b) = (a.octree(), b.octree());
         let edge = a.frame().edge();
         for is_rigid in [true, false] {
-            // (Turned around a corner of the universe.)
+            // (Rotated around a corner of the universe.)
             let placement = placement(&mut random, is_rigid, 1.2 * edge);
             let found = at(&a, &b, &[placement]);
             let whole = [&a, &b].map(|tree| tree.proof().is_certified() && tree.view().exterior() == Tag::Empty);
-            // What is proven of cells by another search, which blurs, may be less.
-            // A tree whose universe, or each eighth of it, is decided has no elements to descend.
+            // Another search, which blurs cells, may prove less.
+            // A tree whose universe, or each octant of it, is decided has no elements to descend.
             let is_cut = |tree: &&Octree| tree.view().cells(CellFilter::leaves()).any(|cell| cell.cell.level > 1);
             if whole == [true; 2] && [&a, &b].iter().all(is_cut) {
                 check(&a, &b, &placement, &found[0], "any cells");
@@ -243,7 +243,7 @@ fn answers_never_contradict_the_search_by_cells() {
                     !verdicts.contains(&Overlap::Disjoint) || !verdicts.contains(&Overlap::Overlapping),
                     "case {case}: {found:?} {other:?}"
                 );
-                // Cells at twice the fineness blur away some answers; nothing is lost by boxes.
+                // Cells at twice the resolution blur some answers. The search by boxes loses none.
                 assert!(found.verdict != Overlap::Undecided || other.verdict != Overlap::Disjoint);
                 check_proof(&a, &b, placement, &found, &format!("case {case}"));
                 counts[found.verdict as usize] += 1;
@@ -254,7 +254,7 @@ fn answers_never_contradict_the_search_by_cells() {
     assert!(counts[0] > 20 && counts[1] > 20, "{counts:?}");
 }
 
-/// Faces, edges and corners that touch are no overlap, and a little more is.
+/// Touching faces, edges and corners are no overlap. Slightly deeper contacts are.
 #[test]
 fn boxes_that_touch() {
     let frame = Frame::new([-8.0; 3], 16.0, 6).unwrap();
@@ -281,7 +281,7 @@ fn boxes_that_touch() {
         let found = at(&tree, &tree, &[moved(rows, offset)]);
         assert_eq!(found[0].verdict, Overlap::Disjoint, "{offset:?}");
     }
-    // The face of z = 3 on that of z = −1, turned; and an edge on a face.
+    // The face z = 3 on the rotated face z = −1, and an edge on a face.
     for (rows, offset) in [
         (tilted, [0.0, 0.0, 4.0]),
         (tilted, [0.3, 0.1, -4.0]),
@@ -323,7 +323,7 @@ fn a_tree_meets_itself() {
     }
 }
 
-/// The work does not grow with the depth where solids are clearly apart, or clearly in each other.
+/// Where solids are clearly apart or clearly overlap, the work does not grow with the depth.
 #[test]
 fn clear_answers_take_as_long_at_any_depth() {
     let turn =
@@ -363,7 +363,7 @@ fn what_is_no_whole_octree_is_searched_by_cells() {
             let found = at(a, b, &[placement])[0];
             let by_cells =
                 interference(a, &Transform::new(b, &frame, &placement), &frame, PROOF, &alone()).unwrap();
-            // (Bounds, which are known of one of both, may let another ball be found.)
+            // (Bounds known for only one of the two may lead to another ball.)
             let all = |found: &Interference| (found.verdict, found.splits, found.level, found.clipped);
             assert_eq!(all(&found), all(&by_cells));
         }
@@ -378,8 +378,8 @@ fn what_is_no_whole_octree_is_searched_by_cells() {
     }
 }
 
-/// Behind any wrapper it is the same octree. Expressions of octrees are other solids, of which no less is
-/// true.
+/// A wrapped octree is the same octree. Expressions of octrees are other solids; their answers are equal or
+/// undecided.
 #[test]
 fn wrapped_octrees_are_octrees() {
     let mut random = Random(4);
@@ -400,7 +400,7 @@ fn wrapped_octrees_are_octrees() {
                 "{found:?} {direct:?}"
             );
         }
-        // Of two octrees in one expression each child of the root may be another one.
+        // With two octrees in one expression, each child of the root may belong to either.
         let parts = [
             Csg::cuboid([-1.5, -1.5, -1.5], [-0.5, 1.0, 1.0]),
             Csg::cuboid([0.5, -1.0, -1.0], [1.5, 1.0, 1.0]),

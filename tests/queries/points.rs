@@ -23,7 +23,8 @@ fn membership(tag: Tag) -> Membership {
     }
 }
 
-/// The answer for a point in lattice coordinates: the cell above each plane, the last on the upper face.
+/// Returns the answer for a point in lattice coordinates. A point on a plane belongs to the cell above; on
+/// the upper face, to the last cell.
 fn expected(dense: &Dense, point: [f64; 3]) -> Membership {
     let n = (1u32 << dense.depth) as f64;
     if !point.iter().all(|&x| (0.0..=n).contains(&x)) {
@@ -32,7 +33,7 @@ fn expected(dense: &Dense, point: [f64; 3]) -> Membership {
     membership(dense.at(point.map(|x| x.floor().min(n - 1.0) as u32)))
 }
 
-/// Points in cells, on planes, edges, corners and faces of the universe, beside it, and no points at all.
+/// Points in cells, on planes, edges, corners and faces of the universe and beside it, and invalid points.
 fn points(depth: u8, seed: u64, count: usize) -> Vec<[f64; 3]> {
     let mut random = Random(seed);
     let n = (1u64 << depth) as f64;
@@ -146,7 +147,8 @@ proptest! {
     }
 }
 
-/// A box in the cube [0, n]³ or beside it: with faces on planes and between them, thin ones, and absurd ones.
+/// A box in the cube [0, n]³ or beside it: with faces on planes and between them, thin boxes, and absurd
+/// ones.
 fn a_box(n: f64, random: &mut Random) -> ([f64; 3], [f64; 3]) {
     let (mut min, mut max) = ([0.0; 3], [0.0; 3]);
     let kind = random.below(6);
@@ -167,8 +169,8 @@ fn a_box(n: f64, random: &mut Random) -> ([f64; 3], [f64; 3]) {
     (min, max)
 }
 
-/// The answer for a box, cell by cell. A box without thickness along an axis is one cell thick: in the cell
-/// above it, or the last one.
+/// Returns the answer for a box, cell by cell. A box without thickness along an axis is one cell thick there:
+/// the cell above the box, or the last cell.
 fn region(dense: &Dense, min: [f64; 3], max: [f64; 3]) -> Region {
     let n = 1u32 << dense.depth;
     let (mut empty, mut full, mut partial) = (false, false, false);
@@ -239,7 +241,7 @@ fn what_is_refused() {
 #[test]
 fn points_beside_planes_that_are_no_doubles() {
     use crate::common::exact::Exact;
-    // Cells of a frame whose planes cannot be written as doubles, and the doubles on either side of them.
+    // Cells of a frame whose planes are no doubles, and the doubles on both sides of the planes.
     for (origin, edge, depth) in
         [([0.1, -7.3, 1e5 / 3.0], 10.0 / 3.0, 5), ([1e8 + 0.3, -1e-9, 3e-5], 1e-3, 4), ([-0.7; 3], 1.4, 3)]
     {
@@ -295,14 +297,14 @@ fn batches_on_a_tree_of_many_levels() {
 
 // ---- any solid, without an octree -----------------------------------------------------------------------
 
-/// Answers for points, in one call.
+/// Classifies points in one call.
 fn located<S: Solid>(solid: &S, frame: &Frame, points: &[[f64; 3]], threads: usize) -> Vec<Membership> {
     let mut answers = vec![Membership::Inside; points.len()];
     contains(solid, frame, points, &mut answers, &Control::threads(threads)).unwrap();
     answers
 }
 
-/// Points in lattice coordinates as points of a frame.
+/// Returns points in lattice coordinates as points of a frame.
 fn points_on(frame: &Frame, seed: u64, count: usize) -> Vec<[f64; 3]> {
     let mut points = points(frame.depth(), seed, count);
     for point in &mut points {
@@ -311,7 +313,7 @@ fn points_on(frame: &Frame, seed: u64, count: usize) -> Vec<[f64; 3]> {
     points
 }
 
-/// What a solid says of points and boxes is what its octree says of them.
+/// Checks that a solid's answers for points and boxes are those of its octree.
 fn octree_agrees<S: Solid>(solid: &S, frame: &Frame, seed: u64, count: usize) {
     let tree = build(solid, frame, Rule::Certified, &alone()).unwrap();
     points_agree(solid, &tree, seed, count);
@@ -344,7 +346,7 @@ fn boxes_agree<S: Solid>(solid: &S, tree: &Octree, seed: u64) {
         let wanted = tree.classify_box(min, max).unwrap();
         let found = ask(&Control::default());
         assert_eq!(found, wanted, "{min:?} {max:?}");
-        // A budget takes proofs away, makes none, and a larger one takes away less.
+        // A budget removes proofs and adds none. A larger budget removes fewer.
         let mut known = false;
         for most in [0, 1, 2, 5, 20, 100] {
             let found = ask(&Control { max_splits: Some(most), ..alone() });
@@ -357,7 +359,7 @@ fn boxes_agree<S: Solid>(solid: &S, tree: &Octree, seed: u64) {
     }
 }
 
-/// A dense array as a function of boxes.
+/// Returns a dense array as a function of boxes.
 fn as_callback(dense: &Dense, frame: Frame) -> impl Solid {
     Callback::new(move |min, max| {
         let at = |axis: usize, x: f64| ((x - frame.origin()[axis]) / frame.cell_size()).round() as u32;
@@ -397,7 +399,7 @@ proptest! {
         octree_agrees(&tree, &frame, seed, 300);
         let coded = compact(tree.view()).unwrap();
         octree_agrees(&AnySolid::new(coded), &frame, seed, 300);
-        // Cut at a level, and finer than it is.
+        // Cut at a level, and finer than the tree.
         for depth in [dense.depth.saturating_sub(1).max(1), dense.depth + 2] {
             octree_agrees(tree.view(), &frame.with_depth(depth).unwrap(), seed, 200);
         }
@@ -465,7 +467,7 @@ fn what_a_solid_knows_of_points_comes_first() {
                 assert_eq!(answer, wanted, "{point:?}");
                 known += (answer != Membership::Undecided) as u64;
             }
-            // Points that are none of the universe's are not asked about.
+            // Points outside the universe are not queried.
             assert_eq!(asked.load(Ordering::Relaxed), known);
         }
     }
@@ -479,7 +481,7 @@ fn points_cost_no_more_splits_than_their_way() {
     assert_eq!(located(&ball, &frame, &[[0.3, 0.4, 0.8]; 200], 1), [Membership::Inside; 200]);
     let one = splits();
     assert!((1..=20).contains(&one), "{one}");
-    // Neighbours share the way, in whatever order they come.
+    // Neighbours share the way, in any order.
     let points: Vec<[f64; 3]> = (0..1000u32)
         .map(|i| [1.0, f64::from(i * 577 % 1000) * 1e-6, f64::from(i * 311 % 1000) * 1e-6])
         .collect();
@@ -493,7 +495,7 @@ fn points_cost_no_more_splits_than_their_way() {
     for most in [0, 1, 7, 1000] {
         let before = splits();
         let control = Control { max_splits: Some(most), ..alone() };
-        // A box whose face lies on the surface.
+        // A box with a face on the surface.
         classify_box(&ball, &frame, [1.0, -0.5, -0.5], [1.5, 0.5, 0.5], &control).unwrap();
         assert!(splits() - before <= most);
     }
@@ -512,7 +514,7 @@ fn a_budget_of_nothing_proves_nothing_of_a_cut_universe() {
         assert_eq!(classify_box(&ball, &frame, min, max, &alone()).unwrap(), wanted);
         assert_eq!(classify_box(&ball, &frame, min, max, &none).unwrap(), Region::Undecided);
     }
-    // What is decided without a split needs no budget.
+    // Decisions without splits need no budget.
     let far = Csg::ball([99.0; 3], 12.0).unwrap();
     assert_eq!(classify_box(&far, &frame, [0.0; 3], [32.0; 3], &none).unwrap(), Region::Outside);
     assert_eq!(classify_box(&far.complement(), &frame, [0.0; 3], [32.0; 3], &none).unwrap(), Region::Inside);
@@ -539,7 +541,7 @@ fn what_is_refused_of_any_solid() {
         assert!(answers.iter().all(|&answer| answer == Membership::Inside), "nothing is half-done");
     }
     let mut answers = [Membership::Inside; 17];
-    // What the solid refuses.
+    // Queries that the solid refuses.
     let tree = Dense::uniform(3, Tag::Full).octree();
     let refused = contains(&tree, &frame, &points, &mut answers, &alone());
     assert!(matches!(refused, Err(Error::FrameMismatch { .. })));
@@ -597,7 +599,7 @@ fn every_tree_of_depth_one() {
 
 #[test]
 fn shapes_vary() {
-    // The oracles are only as good as what they are shown: the tapes must make all kinds of solids.
+    // The oracles test only the solids that they receive. The tapes must make all kinds of solids.
     let mut random = Random(5);
     let (mut binary, mut deep, mut branches, mut uniform) = (0, 0, 0, 0);
     for _ in 0..400 {

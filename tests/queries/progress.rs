@@ -1,5 +1,5 @@
-//! What long operations tell of their progress: it rises, ends with all of the work, and has no gap that
-//! holds most of it.
+//! The progress that long operations report. It rises, reaches the whole, and has no gap with most of the
+//! work in it.
 
 use crate::common::Random;
 use leafless::attribute::{
@@ -35,13 +35,13 @@ use std::time::Instant;
 const CONTROL: Control<'static> =
     Control { threads: 1, max_nodes: None, max_bytes: None, max_splits: None, cancel: None, progress: None };
 
-/// What was told of one operation.
+/// The progress reports of one operation.
 struct Told {
     name: &'static str,
     fractions: Vec<f64>,
-    /// The greatest difference of two neighbours, 0 and 1 included.
+    /// The greatest difference of two successive reports, including 0 and 1.
     widest: f64,
-    /// The longest time without a word, as a share of all.
+    /// The longest time without a report, as a fraction of the total time.
     stillest: f64,
     milliseconds: f64,
 }
@@ -74,8 +74,7 @@ impl Heard {
     }
 }
 
-/// Operations that are one search until what they look for is known well enough: nobody knows how long it
-/// will be.
+/// Operations that are one search up to a tolerance. The length of such a search is unknown in advance.
 const SEARCHES: &[&str] = &[
     "bounding box",
     "clearance",
@@ -89,7 +88,7 @@ const SEARCHES: &[&str] = &[
     "single precision",
 ];
 
-/// Operations that are one step of which only the end is told, or nothing.
+/// Operations of a single step, which report only the end, or nothing.
 const ONE_STEP: &[&str] = &[
     "build of a mesh",
     "complement of extended",
@@ -213,7 +212,7 @@ fn all_operations(depth: u8) -> Vec<Told> {
     heard.of("solid of dexels", |control| DexelSolid::new(model.view(), control));
     heard.of("voxels of dexels", |control| dexel_voxels(model.view(), &[], control));
 
-    // Questions.
+    // Queries.
     let mut random = Random(7);
     let mut point = || [0; 3].map(|_| random.between(-0.9, 0.9));
     let points: Vec<[f64; 3]> = (0..40_000).map(|_| point()).collect();
@@ -346,8 +345,8 @@ fn progress_rises_to_all_without_a_wide_gap() {
     assert!(wrong.is_empty(), "{}", wrong.join("\n"));
 }
 
-/// A difference of many operands is the first less each of the others; operands on another frame are refused
-/// before there is any progress, wherever they stand.
+/// A difference with many operands is the first without all others. Operands on another frame are refused
+/// before any progress, whatever their position.
 #[test]
 fn differences_of_many() {
     let frame = Frame::new([-1.0; 3], 2.0, 5).unwrap();

@@ -1,5 +1,5 @@
-//! Rays on meshes from files, on primitives and their combinations, and on mapped files: the true first hit
-//! lies in the interval that is told.
+//! Rays on meshes from files, on primitives and their combinations, and on mapped files. The true first hit
+//! lies in the returned interval.
 
 use crate::common::{Random, alone, model};
 use crate::triangles::Triangles;
@@ -8,10 +8,10 @@ use leafless::{
     Control, Csg, FillRule, Frame, Interval, MeshSolid, Octree, Ray, Rule, build, cast_rays, exchange, file,
 };
 
-/// A ray's start and its direction.
+/// A ray's origin and direction.
 type Plain = ([f64; 3], [f64; 3]);
 
-/// Rays from a sphere around a box to points in it; every eighth is parallel to an axis.
+/// Rays from a sphere around a box to points in the box. Every eighth is parallel to an axis.
 fn rays_towards(min: [f64; 3], max: [f64; 3], random: &mut Random, count: usize) -> Vec<Plain> {
     let centre = [0, 1, 2].map(|axis| (min[axis] + max[axis]) / 2.0);
     let radius = (0..3).map(|axis| (max[axis] - min[axis]).powi(2)).sum::<f64>().sqrt();
@@ -44,8 +44,8 @@ fn length(direction: [f64; 3]) -> f64 {
     direction.iter().map(|d| d * d).sum::<f64>().sqrt()
 }
 
-/// What is told of first hits on FULL or PARTIAL cells, beside intervals that hold the true ones: ∞ for none.
-/// Most intervals are narrower than `fine`.
+/// Compares first hits on FULL or PARTIAL cells with intervals that contain the true hits (∞ for a miss).
+/// Most returned intervals are narrower than `fine`.
 fn assert_hits(
     what: &str,
     plain: &[Plain],
@@ -89,7 +89,7 @@ fn mesh_from(name: &str, count: usize, depth: u8) {
     let mut hits = vec![None; count];
     tree.cast_rays(&rays_of(&plain), Obstacle::Upper, &mut hits).unwrap();
     assert_hits(name, &plain, &hits, truth, 30.0 * frame.cell_size());
-    // The mesh itself knows slabs.
+    // The mesh itself provides slabs.
     let few = &plain[..count / 40];
     let hits = cast_rays(&solid, &frame, &rays_of(few), Obstacle::Upper, &Control::default()).unwrap();
     assert_hits(name, few, &hits, truth, 3.0 * frame.cell_size());
@@ -112,10 +112,10 @@ fn a_million_rays_on_meshes() {
     mesh_from("bunny-closed.stl", 1_000_000, 10);
 }
 
-/// The times that a ray spends in a convex body, but for rounding; `None` if it misses it.
+/// The time range of a ray in a convex body, up to rounding; `None` for a miss.
 type Spell = Option<[f64; 2]>;
 
-/// Closer than this, the order of two moments is not told by doubles.
+/// Limit below which doubles do not decide the order of two times.
 const DOUBT: f64 = 1e-9;
 
 fn in_ball(centre: [f64; 3], radius: f64, (from, direction): &Plain) -> Spell {
@@ -123,7 +123,7 @@ fn in_ball(centre: [f64; 3], radius: f64, (from, direction): &Plain) -> Spell {
     in_quadric(from, *direction, radius, [true; 3])
 }
 
-/// A cylinder along z, or a ball.
+/// Returns the time range in a cylinder along z, or in a ball.
 fn in_quadric(from: [f64; 3], direction: [f64; 3], radius: f64, axes: [bool; 3]) -> Spell {
     let dot = |a: [f64; 3], b: [f64; 3]| -> f64 { (0..3).filter(|&i| axes[i]).map(|i| a[i] * b[i]).sum() };
     let (a, b, c) = (dot(direction, direction), dot(from, direction), dot(from, from) - radius * radius);
@@ -156,7 +156,8 @@ fn in_cylinder(from_z: f64, to_z: f64, radius: f64, ray: &Plain) -> Spell {
     (both[0] < both[1]).then_some(both)
 }
 
-/// (box ∪ cylinder) ∖ ball: when a ray is first in it; `None` where rounding errors may tell.
+/// Returns the time at which a ray first enters (box ∪ cylinder) ∖ ball; `None` where rounding errors may
+/// decide.
 fn in_part(ray: &Plain) -> Option<f64> {
     let block = in_box([-1.0, -0.7, -0.6], [0.9, 0.8, 0.3], ray);
     let cylinder = in_cylinder(-0.9, 1.1, 0.45, ray);
@@ -183,7 +184,7 @@ fn primitives(count: usize) {
     let ball = Csg::ball([0.2, 0.1, 0.7], 0.62).unwrap();
     let part = Csg::union_of([block, cylinder]).unwrap().difference(&ball).unwrap();
     let frame = Frame::new([-1.5; 3], 3.0, 9).unwrap();
-    // Of each ray that doubles can follow; some start in the part.
+    // Every ray that doubles can follow. Some rays start in the part.
     let mut random = Random(13);
     let mut plain = rays_towards([-1.1; 3], [1.2; 3], &mut random, count);
     for (from, _) in plain.iter_mut().step_by(5) {
@@ -191,7 +192,7 @@ fn primitives(count: usize) {
     }
     let sure: Vec<Plain> = plain.into_iter().filter(|ray| in_part(ray).is_some()).collect();
     assert!(sure.len() > count * 99 / 100);
-    // An oracle in doubles is right to this part of the numbers that it is made of, unless a ray grazes.
+    // An oracle in doubles is right up to this fraction of its numbers, unless a ray grazes.
     let truth = |ray: &Plain| {
         let t = in_part(ray).unwrap();
         Interval::new(t - DOUBT, t + DOUBT).unwrap()
@@ -215,7 +216,7 @@ fn a_million_rays_on_primitives() {
     primitives(1_000_000);
 }
 
-/// Rays on a file that is mapped give the same answers, bit for bit.
+/// Rays on a mapped file give the same answers, bit for bit.
 #[test]
 #[cfg(feature = "mmap")]
 #[allow(unsafe_code)]
@@ -227,7 +228,7 @@ fn rays_on_a_mapped_file() {
         let tree = build(&ball, &frame, rule, &alone()).unwrap();
         let path = folder.path().join("ball.lfl");
         file::save(&tree, &path).unwrap();
-        // SAFETY: nobody else knows of the file.
+        // SAFETY: no other process uses the file.
         let maps: [Octree; 2] = unsafe { [file::map(&path).unwrap(), file::map_verified(&path).unwrap()] };
         let rays = rays_of(&rays_towards([-1.5; 3], [1.5; 3], &mut Random(14), 5000));
         for mapped in maps {
@@ -244,8 +245,8 @@ fn rays_on_a_mapped_file() {
     }
 }
 
-/// The closed block [2, 6]³, and rays from its corners, edges, faces and inside, and from around it, along
-/// axes and diagonals: the times are whole numbers. A zero of either sign is no direction.
+/// The closed block [2, 6]³, with rays from its corners, edges, faces and inside, and from around it, along
+/// axes and diagonals. The times are integers. A zero of either sign has no direction.
 #[test]
 fn rays_from_corners_edges_and_faces() {
     let frame = Frame::new([0.0; 3], 8.0, 3).unwrap();

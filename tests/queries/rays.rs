@@ -26,7 +26,7 @@ impl Fraction {
     fn min(self, other: Fraction) -> Fraction {
         if self.order(other).is_gt() { other } else { self }
     }
-    /// The order of a double and this; exact.
+    /// Returns the exact order of a double and this number.
     fn order_of(self, t: f64) -> Ordering {
         if t.is_infinite() {
             return t.total_cmp(&0.0);
@@ -49,7 +49,7 @@ fn num_shift(n: i128) -> i128 {
     n.checked_mul(1 << 60).expect("small numbers")
 }
 
-/// A ray whose numbers are integers: an origin in multiples of 2^-UNIT, and a direction.
+/// A ray with integer numbers: an origin in multiples of 2^-UNIT, and a direction.
 #[derive(Clone, Copy, Debug)]
 struct Plain {
     from: [i128; 3],
@@ -57,7 +57,8 @@ struct Plain {
     last: Option<i128>,
 }
 
-/// The time in a closed cell between planes, if there is one; no end for a ray that goes on.
+/// Returns the time range in a closed cell between planes, if it is not empty. The end is `None` if the ray
+/// never leaves.
 fn passage(ray: &Plain, lower: [u32; 3], upper: [u32; 3]) -> Option<(Fraction, Option<Fraction>)> {
     let (mut entry, mut exit) = (Fraction(0, 1), ray.last.map(|last| Fraction(last, 1)));
     for axis in 0..3 {
@@ -77,7 +78,7 @@ fn passage(ray: &Plain, lower: [u32; 3], upper: [u32; 3]) -> Option<(Fraction, O
     exit.is_none_or(|exit| entry.order(exit).is_le()).then_some((entry, exit))
 }
 
-/// The passages through all finest cells of these tags.
+/// Returns the time ranges in all finest cells of these tags.
 fn passages(dense: &Dense, ray: &Plain, tags: &[Tag]) -> Vec<(Fraction, Fraction)> {
     common::positions(dense.depth)
         .filter(|&at| tags.contains(&dense.at(at)))
@@ -98,7 +99,7 @@ fn ray_of(plain: &Plain) -> Ray {
     ray.expect("good numbers")
 }
 
-/// Rays from everywhere in every direction; many of them in planes, along edges and through corners.
+/// Rays from everywhere in every direction. Many run in planes, along edges and through corners.
 fn random_ray(random: &mut Random, depth: u8) -> Plain {
     let n = 1i128 << depth;
     let segment = random.below(3) == 0;
@@ -123,7 +124,7 @@ fn random_ray(random: &mut Random, depth: u8) -> Plain {
     }
 }
 
-/// Whether `t` is the double before or at a number, but for one more.
+/// True if `t` is at most a number, and at most two doubles below it.
 fn is_just_below(t: f64, number: Fraction) -> bool {
     number.order_of(t).is_le() && number.order_of(t.next_up().next_up()).is_ge()
 }
@@ -149,7 +150,7 @@ fn assert_hit(dense: &Dense, plain: &Plain, on: Obstacle, hit: Option<RayHit>) {
         Some(inner) => assert!(is_just_above(hit.t.upper, inner), "{told}"),
         None => assert_eq!(hit.t.upper, f64::INFINITY, "{told}"),
     }
-    // The cell is one of these that the ray enters then, by the face that is told.
+    // The cell is one of those that the ray enters at that time, through the reported face.
     assert!(dense.tag_of(hit.cell).is_some_and(|tag| tags.contains(&tag)), "{told}");
     let edge = 1 << (dense.depth - hit.cell.level);
     let (lower, upper) = (hit.cell.at.map(|a| a * edge), hit.cell.at.map(|a| (a + 1) * edge));
@@ -181,7 +182,8 @@ fn union_of(mut stays: Vec<(Fraction, Fraction)>) -> Vec<(Fraction, Fraction)> {
     union
 }
 
-/// No two ends of the numbers that the tests draw differ by a rounding only, so that nothing is lost.
+/// Checks spans. In the tests' numbers, different ends never differ only by rounding, so that no span is
+/// lost.
 fn assert_spans(dense: &Dense, plain: &Plain, spans: &RaySpans) {
     let outer = union_of(passages(dense, plain, &[Tag::Full, Tag::Partial]));
     let inner = union_of(passages(dense, plain, &[Tag::Full]));
@@ -197,7 +199,7 @@ fn assert_spans(dense: &Dense, plain: &Plain, spans: &RaySpans) {
         }
     };
     same(&spans.outer, &outer, false);
-    // Of a point that is no double nothing is left after rounding inward.
+    // An interval of one point that is no double vanishes when rounded inward.
     let kept: Vec<_> = inner.iter().copied().filter(|&(from, to)| from.order(to).is_lt()).collect();
     let points: Vec<Interval> = spans.inner.iter().copied().filter(|span| span.width() > 0.0).collect();
     same(&points, &kept, true);
@@ -236,8 +238,8 @@ proptest! {
     }
 }
 
-/// Rays that run side by side from somewhere around or in the universe of a tree of 2^depth cells with edge
-/// 1: some of them on lattice planes, of different lengths, some of them ended.
+/// Parallel rays from around or inside the universe of a tree of 2^depth cells with edge 1. Some lie on
+/// lattice planes, their directions have different lengths, and some rays are ended.
 fn side_by_side(random: &mut Random, depth: u8, count: usize) -> Vec<Ray> {
     let cells = f64::from(1u32 << depth);
     let from = [0; 3].map(|_| random.between(-0.7, 1.7) * cells);
@@ -265,7 +267,7 @@ fn side_by_side(random: &mut Random, depth: u8, count: usize) -> Vec<Ray> {
         .collect()
 }
 
-/// All rays together are cast as each alone.
+/// Checks that all rays cast together give the answers of single rays.
 fn assert_together(tree: &OctreeRef<'_>, rays: &[Ray]) {
     let mut hits = vec![None; rays.len()];
     for on in [Obstacle::Full, Obstacle::Upper] {
@@ -289,7 +291,7 @@ proptest! {
     }
 }
 
-/// Bytes as a mapping has them.
+/// Bytes aligned as in a mapping.
 struct Aligned {
     memory: Vec<u8>,
     start: usize,
@@ -309,8 +311,8 @@ impl Aligned {
     }
 }
 
-/// Rays with all digits from around a ball; every third is parallel to an axis, every third nearly so, and
-/// some begin in the ball.
+/// Rays with full-precision numbers from around a ball. Every third is parallel to an axis, every third
+/// nearly so, and some begin in the ball.
 fn rays_with_digits(random: &mut Random, count: usize) -> Vec<([f64; 3], [f64; 3])> {
     let number = |random: &mut Random| random.between(-1.0, 1.0);
     (0..count)
@@ -333,7 +335,7 @@ fn rays_with_digits(random: &mut Random, count: usize) -> Vec<([f64; 3], [f64; 3
 const CENTRE: [f64; 3] = [0.1, -0.05, 0.03];
 const RADIUS: f64 = 0.77;
 
-/// |p − centre|² − radius² and the half of its derivative at p = from + t direction, exactly.
+/// Returns |p − centre|² − radius² and half its derivative at p = from + t direction, exactly.
 fn ball_at(from: [f64; 3], direction: [f64; 3], t: f64) -> (Exact, Exact) {
     let (mut value, mut slope) = (Exact::from(0.0), Exact::from(0.0));
     for axis in 0..3 {
@@ -392,8 +394,8 @@ fn the_true_hit_of_a_ball_lies_in_the_interval() {
     assert!(met > 1000 && missed > 300, "{met} {missed}");
 }
 
-/// Intervals along a ray end where slabs say: those inside in the ball, those outside out of it, close to
-/// each other.
+/// Intervals along a ray end at slabs. The inner intervals lie in the ball, the outer gaps outside the ball,
+/// close to each other.
 #[test]
 fn the_true_spans_of_a_ball_lie_between() {
     let frame = Frame::new([-1.0; 3], 2.0, 12).unwrap();
@@ -437,7 +439,7 @@ fn the_march_finds_what_exact_descent_does() {
         .collect();
     for rule in [Rule::Certified, Rule::Sampled] {
         let tree = build(&ball, &frame, rule, &alone()).unwrap();
-        // What is sampled proves nothing; here the cells are the solid.
+        // Samples prove nothing. Here the cells are the solid.
         let tree = tree.view().with_proof(Proof::CERTIFIED);
         for on in [Obstacle::Full, Obstacle::Upper] {
             let mut hits = vec![None; rays.len()];
@@ -445,7 +447,7 @@ fn the_march_finds_what_exact_descent_does() {
             assert!(hits.iter().flatten().count() > 2000);
             assert_eq!(cast_rays(&tree, &frame, &rays, on, &alone()).unwrap(), hits);
         }
-        // A picture, whose rays a beam leads to the ball, or past it.
+        // A picture. A beam of its rays leads to the ball or past it.
         let pixel = |i: i32| f64::from(i) / 40.0;
         let picture: Vec<Ray> = (-40..40)
             .flat_map(|y| (-64..64).map(move |x| [-3.0, pixel(x), pixel(y)]))
@@ -493,7 +495,7 @@ fn what_is_refused() {
     assert_eq!((hit.t, hit.normal), (Interval::exactly(1.0), [-1.0, 0.0, 0.0]));
 }
 
-/// A ray that ends is a segment: the same first cells as of the whole ray, as far as it goes.
+/// A ray with an end is a segment. It meets the same first cells as the whole ray, within its length.
 #[test]
 fn rays_end() {
     let frame = Frame::new([-1.0; 3], 2.0, 8).unwrap();
@@ -539,7 +541,7 @@ fn rays_end() {
     }
 }
 
-/// Bytes in which anything may stand below the table of sections.
+/// Files with arbitrary bytes below the section table.
 #[test]
 fn damaged_trees_are_left() {
     let frame = Frame::new([-1.0; 3], 2.0, 9).unwrap();

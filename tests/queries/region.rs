@@ -1,4 +1,4 @@
-//! How much of a solid lies in a box, and how regions of any shape lie to solids, against dense arrays.
+//! The part of a solid in a box, and the relation of regions of any shape to solids, against dense arrays.
 
 use crate::common::{Dense, DenseSolid, Random, alone, cases, lattice_frame, positions, shapes};
 use leafless::query::{Region, classify_box, classify_in};
@@ -8,7 +8,7 @@ use proptest::prelude::*;
 /// Coordinates are multiples of 1 / ONE.
 const ONE: u64 = 256;
 
-/// The volumes of the FULL cells and of those that are not EMPTY in a box, in cubes of 1 / ONE.
+/// Returns the volumes of the FULL cells and of the cells that are not EMPTY in a box, in cubes of 1 / ONE.
 fn volumes(dense: &Dense, min: [i64; 3], max: [i64; 3]) -> [u64; 2] {
     let mut volumes = [0; 2];
     for at in positions(dense.depth) {
@@ -35,7 +35,7 @@ fn a_box(random: &mut Random, n: i64) -> ([i64; 3], [i64; 3]) {
     (min, max)
 }
 
-/// What the finest cells say of a region.
+/// Derives the relation of a region from the finest cells.
 fn relation(solid: &Dense, region: &Dense, exteriors: [Tag; 2]) -> Region {
     let cells = positions(solid.depth).map(|at| (solid.at(at), region.at(at)));
     let all: Vec<(Tag, Tag)> =
@@ -100,7 +100,7 @@ proptest! {
     }
 }
 
-/// Regions that are boxes and balls: the same answers as those for boxes, and as a formula.
+/// Regions that are boxes and balls. They give the answers of the box queries, and those of a formula.
 #[test]
 fn boxes_and_balls() {
     let frame = Frame::new([-2.0; 3], 4.0, 7).unwrap();
@@ -114,7 +114,7 @@ fn boxes_and_balls() {
         let by_box = classify_box(&solid, &frame, min, max, &alone()).unwrap();
         let region = Csg::cuboid(min, max).unwrap();
         let found = classify_in(&solid, &region, &frame, &alone()).unwrap();
-        // A box of cells is known to be what it is; that of a solid has PARTIAL cells at its faces.
+        // A box of cells has an exact answer. A box solid has PARTIAL cells at its faces.
         assert!(
             found == by_box || found == Region::Undecided || by_box == Region::Undecided,
             "{found:?} {by_box:?}"
@@ -140,7 +140,7 @@ fn boxes_and_balls() {
     assert!(told.iter().take(3).all(|&count| count > 20), "{told:?}");
 }
 
-/// The volume in another solid is that of an intersection.
+/// The volume within another solid is the volume of the intersection.
 #[test]
 fn volumes_in_balls() {
     let frame = Frame::new([-2.0; 3], 4.0, 20).unwrap();

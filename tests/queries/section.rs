@@ -1,5 +1,5 @@
-//! Areas of plane sections, against formulas, against dense arrays that are cut cell by cell, and against the
-//! outlines that planes cut out of meshes.
+//! Areas of plane sections, against formulas, dense arrays cut cell by cell, and the outlines that planes cut
+//! out of meshes.
 
 use crate::common::{Dense, DenseSolid, Random, Shape, alone, lattice_frame, model, positions, repeated};
 use crate::random::Maker;
@@ -12,7 +12,7 @@ use leafless::{
 use std::f64::consts::PI;
 use std::sync::atomic::{AtomicBool, Ordering::Relaxed};
 
-/// A plane as the tests know it.
+/// A plane in the tests' own form.
 #[derive(Debug, Clone, Copy)]
 struct Plane {
     point: DVec3,
@@ -28,8 +28,8 @@ impl Plane {
         SectionPlane::new(self.point.into(), self.normal.into()).unwrap()
     }
 
-    /// The area of the plane's part in the intersection of half-spaces (n · p ≤ o) that lies near a point: a
-    /// large square in the plane, clipped by one after another.
+    /// Returns the area of the plane's part in the intersection of half-spaces (n · p ≤ o) near a point. A
+    /// large square in the plane is clipped by one half-space after another.
     fn area_within(&self, near: DVec3, size: f64, halves: impl IntoIterator<Item = (DVec3, f64)>) -> f64 {
         let n = self.normal.normalize();
         let centre = near - n * n.dot(near - self.point);
@@ -66,8 +66,8 @@ impl Plane {
         self.area_in_box(min, min + frame.edge())
     }
 
-    /// The area within what a closed mesh with outward triangles encloses: each triangle that the plane cuts
-    /// leaves a piece of the outline.
+    /// Returns the area of the plane's part inside a closed mesh with outward triangles. Each triangle that
+    /// the plane cuts contributes a piece of the outline.
     fn area_in_mesh(&self, mesh: &TriangleMesh) -> f64 {
         let n = self.normal.normalize();
         let mut sum = DVec3::ZERO;
@@ -108,7 +108,7 @@ fn turn(random: &mut Random) -> DMat3 {
     DMat3::from_quat(DQuat::from_scaled_axis(vector(random) * 3.0))
 }
 
-/// A truth that is a rounded double, known to a share of `scale`.
+/// Checks a result against a truth that is a rounded double, up to a fraction of `scale`.
 #[track_caller]
 fn holds(found: &SectionArea, truth: f64, scale: f64, at: &str) {
     let slack = 1e-12 * scale;
@@ -179,12 +179,12 @@ fn widths_fall_with_the_square_of_the_splits() {
         for (name, solid) in [("ball", ball), ("torus", tilted)] {
             let width = |budget: u64| ask(&solid, &frame, &plane, 0.0, &limited(budget)).area.width();
             let (coarse, fine) = (width(300), width(30_000));
-            // As far as rounding lets it.
+            // As far as rounding allows.
             let slope = (fine.max(1e-12) / coarse).ln() / 100f64.ln();
             println!("{name}: {coarse:e} {fine:e} {slope}");
             assert!(slope < -1.75, "round {round}, {name}: {coarse} {fine} {slope}");
         }
-        // To six digits, then to twelve less some.
+        // To six digits, then to about twelve.
         let splits = |tolerance: f64| {
             ask(&Csg::ball([0.1, 0.2, 0.0], 0.8).unwrap(), &frame, &plane, tolerance, &alone()).splits
         };
@@ -198,7 +198,8 @@ fn affine(matrix: DMat3, offset: DVec3) -> Affine {
     Affine::new([0, 1, 2].map(|i| [rows[i][0], rows[i][1], rows[i][2], offset[i]])).unwrap()
 }
 
-/// In faces and between planes of the lattice, to the last bit: the lattice and all areas are doubles.
+/// Sections in faces and between planes of the lattice, to the last bit. The lattice and all areas are
+/// doubles.
 #[test]
 fn boxes_on_the_lattice_have_exact_sections() {
     let mut random = Random(3);
@@ -248,7 +249,7 @@ fn boxes_on_the_lattice_have_exact_sections() {
     assert!(in_a_face > 100, "{in_a_face}");
 }
 
-/// Slabs of plane faces that meet, and of their complements, against polygons that are clipped by all planes.
+/// Slabs of plane faces that meet, and slabs of their complements, against polygons clipped by all planes.
 #[test]
 fn polytopes_have_the_sections_of_their_planes() {
     let mut random = Random(4);
@@ -288,8 +289,8 @@ fn polytopes_have_the_sections_of_their_planes() {
     assert!(cut > 200 && most < 2000, "{cut} {most}");
 }
 
-/// A face that leaves the plane at a slope of about 2^-k, along a line that is known exactly: rounding is to
-/// be in the interval.
+/// A face that leaves the plane at a slope of about 2^-k, along an exactly known line. The interval must
+/// include the rounding.
 #[test]
 fn nearly_parallel_faces_are_told_apart() {
     let frame = Frame::new([-1.0; 3], 2.0, 20).unwrap();
@@ -315,8 +316,8 @@ fn nearly_parallel_faces_are_told_apart() {
     }
 }
 
-/// Planes that have to do with a lattice of unit cells: oblique ones, those perpendicular to an axis, and
-/// those that run through edges and corners of cells.
+/// Planes related to a lattice of unit cells: oblique planes, planes perpendicular to an axis, and planes
+/// through edges and corners of cells.
 fn lattice_plane(random: &mut Random, cells: f64) -> Plane {
     let point = DVec3::from_array([0; 3].map(|_| random.between(-0.1, 1.1) * cells));
     match random.below(4) {
@@ -333,7 +334,7 @@ fn lattice_plane(random: &mut Random, cells: f64) -> Plane {
     }
 }
 
-/// The area of a plane in the FULL cells of a dense array, and in the FULL and the PARTIAL ones, on the
+/// Returns the area of a plane in the FULL cells of a dense array, and in the FULL and PARTIAL cells, on the
 /// lattice of unit cells.
 fn dense_sums(dense: &Dense, plane: &Plane) -> [f64; 2] {
     let frame = lattice_frame(dense.depth);
@@ -389,8 +390,8 @@ fn octrees_have_the_sections_of_their_cells() {
     }
 }
 
-/// The same cells on frames whose planes are no doubles: an axis-perpendicular plane next to one of them
-/// belongs to the layer that point queries say.
+/// The same cells on frames whose planes are no doubles. An axis-perpendicular plane next to a lattice plane
+/// belongs to the layer that point queries choose.
 #[test]
 fn planes_beside_lattice_planes_meet_one_layer() {
     let mut random = Random(6);
@@ -423,7 +424,7 @@ fn planes_beside_lattice_planes_meet_one_layer() {
     }
 }
 
-/// A closed mesh of a torus, turned.
+/// A rotated, closed mesh of a torus.
 fn torus(random: &mut Random) -> TriangleMesh {
     let (around, across) = (5 + random.below(20) as usize, 3 + random.below(9) as usize);
     let (turned, minor) = (turn(random), random.between(0.1, 0.4));
@@ -485,7 +486,7 @@ fn a_part_has_the_areas_of_its_outlines() {
     }
 }
 
-/// Expressions of all kinds: they and their complements share the plane, and octrees of them agree.
+/// Expressions of all kinds. An expression and its complement share the plane, and their octrees agree.
 #[test]
 fn expressions_and_their_complements_share_the_plane() {
     let mut random = Random(9);
@@ -570,7 +571,7 @@ fn planes_outside_of_the_universe_have_no_area() {
         let solid = Csg::ball([0.0, 3.0, 1.3], 0.9).unwrap().complement();
         let centre = DVec3::new(0.0, 3.0, 1.3);
         let normal = if round % 4 == 0 { DVec3::AXES[round % 3] } else { vector(&mut random) };
-        // Beyond the farthest corner, just so or by far.
+        // Beyond the farthest corner, slightly or far.
         let reach = normal.abs().element_sum() / normal.length();
         let far = [1.0 + 1e-12, 1.5, 1e9, 1e60][(round / 4) % 4];
         let plane = Plane { point: centre + normal.normalize() * reach * far, normal };
@@ -598,11 +599,11 @@ fn budgets_tolerances_and_depths() {
     assert!(of(0.0, 1e-3).area.width() <= 1e-3 && of(1e-3, 0.0).area.width() <= 1e-3 * 2.0);
     assert_eq!(of(0.0, 1e-3).stop_reason, StopReason::Tolerance);
     assert_eq!((of(f64::INFINITY, 0.0).splits, of(0.0, f64::INFINITY).splits), (0, 0));
-    // At depth 1 nothing but the eight cells can be told.
+    // At depth 1, only the eight cells are known.
     let shallow = deep.with_depth(1).unwrap();
     let found = ask(&ball, &shallow, &plane, 0.0, &alone());
     assert_eq!((found.splits, found.stop_reason), (1, StopReason::Exhausted));
-    // To the last bit that rounding leaves it ends, one way or the other.
+    // With the tolerance at the last bit that rounding leaves, the search ends, one way or the other.
     let found = ask(&ball, &deep, &plane, 0.0, &limited(SECTION_SPLITS / 8));
     assert!(found.splits <= SECTION_SPLITS / 8 && found.area.width() < 1e-8, "{found:?}");
     // The same for any number of threads, any length of the normal, and either direction.
@@ -625,7 +626,7 @@ fn a_face_in_an_oblique_plane_stays_in_doubt() {
         "{found:?}"
     );
     assert!(found.clipped && found.stop_reason == StopReason::Budget);
-    // In a plane across an axis that is none of the lattice's, too.
+    // Also in a plane across an axis that is no plane of the lattice.
     let half = Csg::half_space([0.0, 1.0, 0.0], -0.3).unwrap();
     let found = ask(&half, &frame, &Plane::across(1, 0.3), 0.0, &limited(2000));
     assert!(found.area.lower == 0.0 && found.area.upper == 4.0, "{found:?}");

@@ -1,10 +1,10 @@
-//! The first triangle that a ray meets, in doubles with bounds of their errors.
+//! The first triangle that a ray meets, in doubles with error bounds.
 
 use leafless::{Interval, TriangleMesh};
 
-/// A bound of the relative errors of the products and sums here, of which each is 2^-53.
+/// A bound of the accumulated relative error of the products and sums here. The error of each is 2^-53.
 const ERROR: f64 = 1e-14;
-/// Triangles that are not divided further.
+/// The number of triangles that are not divided further.
 const FEW: usize = 4;
 
 struct Bounds {
@@ -22,7 +22,7 @@ impl Bounds {
         }
     }
 
-    /// When a ray may be in the box, a little wider than the truth.
+    /// Returns the time range in which a ray may be in the box, slightly too wide.
     fn stay(&self, from: [f64; 3], direction: [f64; 3]) -> Option<[f64; 2]> {
         let mut stay = [0.0, f64::INFINITY];
         for axis in 0..3 {
@@ -57,7 +57,8 @@ impl Triangles {
         Triangles(divided(mesh.triangles().iter().map(corners).collect()))
     }
 
-    /// Contains the least t at which the ray meets a triangle: ∞ if it may miss all of them.
+    /// Returns an interval that contains the least t at which the ray meets a triangle: ∞ if it may miss all
+    /// triangles.
     pub fn first_hit(&self, from: [f64; 3], direction: [f64; 3]) -> Interval {
         let mut first = Interval::new(f64::INFINITY, f64::INFINITY).unwrap();
         search(&self.0, from, direction, &mut first);
@@ -106,8 +107,8 @@ fn length(a: [f64; 3]) -> f64 {
     dot(a, a).sqrt()
 }
 
-/// Takes in what is known of a ray and a triangle, by the method of Möller and Trumbore: that they meet, that
-/// they do not, or that rounding errors tell.
+/// Adds a ray and a triangle, by the method of Möller and Trumbore: they meet, they do not meet, or rounding
+/// errors decide.
 fn meet(triangle: &[[f64; 3]; 3], from: [f64; 3], direction: [f64; 3], first: &mut Interval) {
     let [a, b, c] = *triangle;
     let (ab, ac, way) = (minus(b, a), minus(c, a), minus(from, a));

@@ -1,4 +1,5 @@
-//! Pictures of the inside: voxels that follow a colour make as good a picture as many more of one size.
+//! Pictures of the inside. Voxels that follow a colour make as good a picture as many more voxels of one
+//! size.
 
 #[path = "../../examples/gear_pictures.rs"]
 #[allow(dead_code)]
@@ -7,7 +8,7 @@ mod gear_pictures;
 use gear_pictures::gear_records::{inside, parts};
 use leafless::Control;
 
-/// The published gear: 13 752 adaptive voxels looked as good as 32 059 of one size, and better than 7 571.
+/// For the published gear, 13 752 adaptive voxels looked as good as 32 059 of one size, and better than 7 571.
 #[test]
 fn adaptive_records_make_good_pictures() {
     let control = Control::default();

@@ -1,5 +1,5 @@
-//! Solids with meshes in them, against the same solids without: where they are seen, how they are lit and cut
-//! open.
+//! Solids that contain meshes, against the same solids without meshes: their visibility, lighting and
+//! cut-open views.
 
 use crate::common::alone;
 use leafless::render::{
@@ -15,7 +15,7 @@ fn frame() -> Frame {
     Frame::new([-1.0; 3], 2.0, 9).unwrap()
 }
 
-/// The triangles of a box, outward or inside out.
+/// The triangles of a box, outward or with reversed orientation.
 fn box_mesh([low, high]: [[f64; 3]; 2], is_turned: bool) -> TriangleMesh {
     let corner = |k: usize| [0, 1, 2].map(|axis| if k >> axis & 1 == 0 { low[axis] } else { high[axis] });
     let mut triangles = Vec::new();
@@ -35,7 +35,7 @@ fn solid(mesh: TriangleMesh) -> MeshSolid {
     MeshSolid::new(mesh, FillRule::NonZero).unwrap()
 }
 
-/// A mesh as scenes have it.
+/// Returns a mesh as a scene contains it.
 fn csg(mesh: TriangleMesh) -> Csg {
     Csg::solid(AnySolid::new(solid(mesh)))
 }
@@ -63,7 +63,7 @@ fn finish() -> Finish {
     Finish { cut: [255, 0, 0, 255], ..Finish::default() }
 }
 
-/// Pixels that differ, and those in which something is seen.
+/// Returns the number of pixels that differ, and the number of pixels that show something.
 fn differing(a: &Picture, b: &Picture) -> [usize; 2] {
     let differs = |&i: &usize| {
         let ([a_at, b_at], [p, q]) = ([a.depths()[i], b.depths()[i]], [a.colours()[i], b.colours()[i]]);
@@ -74,13 +74,14 @@ fn differing(a: &Picture, b: &Picture) -> [usize; 2] {
     [(0..a.depths().len()).filter(differs).count(), seen]
 }
 
-/// Slabs show edges to a pixel: the cells there are as large.
+/// Checks that two pictures agree but for edges. Slabs show edges only to a pixel, because the cells there
+/// are as large.
 fn assert_alike(a: &Picture, b: &Picture, what: &str) {
     let [differ, seen] = differing(a, b);
     assert!(seen > 300 && differ * 25 <= seen, "{what}: {differ} of {seen}");
 }
 
-/// Where the line of sight of a pixel meets the box; infinite if it does not.
+/// Returns the depth at which a pixel's line of sight meets the box; infinite if it misses the box.
 fn depth_of_box(shot: &Shot, i: usize) -> f64 {
     let place = [i as u32 % SIZE[0], i as u32 / SIZE[0]].map(|pixel| f64::from(pixel) + 0.5);
     let (from, along) = shot.line_of_sight(place);
@@ -122,7 +123,7 @@ fn a_mesh_looks_the_same_as_a_solid_in_an_expression_and_by_its_triangles() {
     }
 }
 
-/// A body that is inside out is solid, and its triangles are seen from behind.
+/// An inside-out body is solid. Its triangles are seen from behind.
 #[test]
 fn what_is_inside_out_is_drawn_as_the_solid() {
     let block = Csg::cuboid(LOW, HIGH).unwrap();
@@ -157,7 +158,7 @@ fn expressions_with_meshes_look_as_those_with_blocks() {
     };
     let meshes = expressions(csg(box_mesh([LOW, HIGH], false)), csg(box_mesh(other, false)));
     let blocks = expressions(Csg::cuboid(LOW, HIGH).unwrap(), Csg::cuboid(other[0], other[1]).unwrap());
-    // As they are, and cut open.
+    // Whole and cut open.
     for clip in [Clip::new(), Clip::new().plane([0.3, 2.0, 0.1, 0.2]).unwrap()] {
         for (i, (mesh, block)) in meshes.iter().zip(&blocks).enumerate() {
             for placement in [Affine::IDENTITY, turned()] {
@@ -200,7 +201,7 @@ fn meshes_that_are_cut_open_are_solid() {
     }
 }
 
-/// Edges, and what is translucent, are drawn by rays.
+/// Rays draw edges and translucent surfaces.
 #[test]
 fn edges_of_meshes_are_those_of_blocks() {
     let (block, scene) = (Csg::cuboid(LOW, HIGH).unwrap(), csg(box_mesh([LOW, HIGH], false)));

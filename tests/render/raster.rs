@@ -1,4 +1,4 @@
-//! Meshes, lines, slices and legends in pictures, against a caster of rays at every triangle and against
+//! Meshes, lines, slices and legends in pictures, against a ray caster over all triangles and against
 //! formulas.
 
 use leafless::attribute::FunctionAttribute;
@@ -36,7 +36,8 @@ impl Random {
     }
 }
 
-/// From where and whither one looks at a place of the picture, from the camera's definition.
+/// Returns the origin and direction of the line of sight through a place of the picture, by the camera's
+/// definition.
 fn line(camera: &Camera, [width, height]: [u32; 2], x: f64, y: f64) -> (V, V) {
     let (across, down) = (x - 0.5 * f64::from(width), y - 0.5 * f64::from(height));
     let shift =
@@ -50,7 +51,7 @@ fn line(camera: &Camera, [width, height]: [u32; 2], x: f64, y: f64) -> (V, V) {
     }
 }
 
-/// Where a line meets a triangle, and how far inside of its edges: the least barycentric coordinate.
+/// Returns the time at which a line meets a triangle's plane, and the least barycentric coordinate there.
 fn meet((from, along): (V, V), [a, b, c]: [V; 3]) -> Option<(f64, f64)> {
     let (u, v) = (add(b, a, -1.0), add(c, a, -1.0));
     let normal = cross(u, v);
@@ -74,8 +75,8 @@ fn triangles(mesh: &TriangleMesh) -> Vec<[V; 3]> {
     mesh.triangles().iter().map(|t| t.map(|v| mesh.vertices()[v as usize])).collect()
 }
 
-/// Compares depths with those of all triangles; returns how many pixels show one, and how many lay too near
-/// an edge.
+/// Compares depths with those of all triangles. Returns the number of pixels that show a triangle, and the
+/// number too near an edge.
 fn check_depths(mesh: &TriangleMesh, shot: &Shot) -> [usize; 2] {
     let picture = take(shot, &[&MeshLayer::new(mesh)]);
     let triangles = triangles(mesh);
@@ -106,7 +107,7 @@ fn check_depths(mesh: &TriangleMesh, shot: &Shot) -> [usize; 2] {
     counts
 }
 
-/// A ball of radius 0.8: an octahedron whose sides are cut into n × n triangles, blown up.
+/// A ball of radius 0.8: an octahedron with faces cut into n × n triangles, projected onto the ball.
 fn ball(n: i32) -> TriangleMesh {
     let (mut vertices, mut triangles) = (Vec::new(), Vec::new());
     for octant in 0..8 {
@@ -166,7 +167,7 @@ fn depths_of_random_triangles() {
     assert!(seen[0] > 50_000 && seen[1] < 200, "{seen:?}");
 }
 
-/// Triangles that are seen in more tiles than are listed one by one.
+/// Triangles that cover more tiles than are listed one by one.
 #[test]
 fn depths_of_large_triangles() {
     let mut random = Random(41);
@@ -192,7 +193,7 @@ fn depths_of_closed_meshes() {
     assert!(seen[0] > 5000 && seen[1] < 60, "{seen:?}");
 }
 
-/// How many surfaces of an opacity of 64 / 255 a pixel shows.
+/// Returns the number of surfaces of opacity 64 / 255 that a pixel shows.
 fn layers([.., opacity]: [u8; 4]) -> u32 {
     let left = 1.0 - f64::from(opacity) / 255.0;
     (left.ln() / (1.0 - 64.0 / 255.0_f64).ln()).round() as u32
@@ -200,11 +201,11 @@ fn layers([.., opacity]: [u8; 4]) -> u32 {
 
 const GLASS: [u8; 4] = [80, 120, 200, 64];
 
-/// A line of sight enters a convex body once, and leaves it once, however small its triangles are and
-/// wherever its vertices.
+/// A line of sight enters a convex body once and leaves it once, however small its triangles are and wherever
+/// its vertices lie.
 #[test]
 fn closed_meshes_have_no_cracks() {
-    // Far less than a pixel a triangle.
+    // Triangles far smaller than a pixel.
     let fine = ball(150);
     fine.check_closed(leafless::FillRule::NonZero).unwrap();
     for lens in [Lens::Perspective(40.0), Lens::Parallel(2.0)] {
@@ -223,7 +224,7 @@ fn closed_meshes_have_no_cracks() {
     }
 }
 
-/// The surface of the box [0, n·step]³, its sides cut into n × n squares along changing diagonals.
+/// The surface of the box [0, n·step]³. Its sides are cut into n × n squares along alternating diagonals.
 fn grid_box(n: u32, step: f64) -> TriangleMesh {
     let (mut vertices, mut triangles) = (Vec::new(), Vec::new());
     let mut random = Random(9);
@@ -272,7 +273,7 @@ fn edges_through_samples_are_counted_once() {
                 for (i, &colour) in picture.colours().iter().enumerate() {
                     let (x, y) = (i as i32 % 33 - 16, i as i32 / 33 - 16);
                     let far = x.abs().max(y.abs());
-                    // Samples on the outline belong to both sides or to none.
+                    // Samples on the outline belong to both sides or to neither.
                     let expected: &[u32] = match far.cmp(&inside) {
                         std::cmp::Ordering::Less => &[2],
                         std::cmp::Ordering::Equal => &[0, 2],
@@ -295,7 +296,7 @@ fn edges_through_samples_are_counted_once() {
     }
 }
 
-/// A sheet of glass looks the same all over, however it is cut.
+/// A sheet of glass looks the same all over, however it is cut into triangles.
 #[test]
 fn coplanar_triangles_show_no_seams() {
     let mut random = Random(17);
@@ -399,7 +400,7 @@ fn clip_planes_cut_meshes_and_show_their_inside() {
     assert!(counts[0] > 50 && counts[1] > 500, "{counts:?}");
 }
 
-/// A box that is cut at its own faces keeps them.
+/// A box cut at its own faces keeps them.
 #[test]
 fn faces_in_clip_planes_are_shown() {
     let mesh = grid_box(2, 0.3);
@@ -411,7 +412,7 @@ fn faces_in_clip_planes_are_shown() {
             let cut = Shot { clip: Clip::new().within(&bounds).unwrap(), ..whole.clone() };
             let [whole, cut] = [whole, cut].map(|shot| take(&shot, &[&MeshLayer::new(&mesh)]));
             let differ = whole.depths().iter().zip(cut.depths()).filter(|(a, b)| a != b).count();
-            // Only a line of sight along an edge may miss the box itself.
+            // Only a line of sight along an edge may miss the box entirely.
             assert!(differ <= 2, "{from:?} {lens:?}: {differ}");
         }
     }
@@ -431,8 +432,8 @@ fn triangles_have_colours_of_their_own() {
     assert!(matches!(refused, Err(Error::Argument { name: "colours", .. })));
 }
 
-/// With a crease angle above the dihedral angles neighbours have one normal at their edge; without one each
-/// is flat.
+/// With a crease angle above the dihedral angles, neighbours share one normal at their edge. Without a crease
+/// angle each triangle is flat.
 #[test]
 fn creases_are_kept_and_the_rest_is_smooth() {
     let mesh = ball(6);
@@ -500,8 +501,8 @@ fn edges_of_features_are_drawn() {
     );
 }
 
-/// A square of right-angled triangles, seen from in front, whose equal sides are so many pixels long: between
-/// the greatest size at which edges are left out and the least at which they are whole, they grow darker.
+/// A square of right-angled triangles seen from the front, with legs of several pixels. Between the greatest
+/// size without edges and the least size with full edges, the edges grow darker.
 #[test]
 fn edges_of_small_triangles_fade() {
     let picture = |pixels: f64, edges: MeshEdges| {
@@ -516,7 +517,7 @@ fn edges_of_small_triangles_fade() {
         let layer = MeshLayer::new(&mesh).edges(edges, 1.0, [0, 0, 0, 255]);
         take(&Shot { samples: 16, ..shot(front(2.0), [120, 120]) }, &[&layer])
     };
-    // The part of the light that the edges take away, in the middle of the picture.
+    // The part of the light absorbed by the edges, in the middle of the picture.
     let darker = |pixels: f64| {
         let light = |edges| -> f64 {
             let picture = picture(pixels, edges);
@@ -528,7 +529,7 @@ fn edges_of_small_triangles_fade() {
     for pixels in [0.5, 1.0, 2.0] {
         assert_eq!(picture(pixels, MeshEdges::All), picture(pixels, MeshEdges::None), "{pixels}");
     }
-    // Edges a pixel wide along two sides and the third, where they are whole.
+    // Edges one pixel wide along two sides and the third, where they are whole.
     let whole = |pixels: f64| 1.0 - (1.0 - 1.0 / pixels).powi(2) * (1.0 - 2f64.sqrt() / pixels);
     for pixels in [8.0, 12.0, 20.0, 40.0] {
         let (found, whole) = (darker(pixels), whole(pixels));
@@ -540,7 +541,7 @@ fn edges_of_small_triangles_fade() {
         let (found, expected) = (darker(pixels), opacity * whole(pixels));
         assert!((found - expected).abs() < 0.06, "{pixels}: {found} {expected}");
     }
-    // Where a large triangle ends at small ones, its edge is seen.
+    // Where a large triangle ends at small triangles, its edge is visible.
     let mut mesh = vec![[0.0, 0.0, -0.9], [0.0, 0.0, 0.9], [-0.9, 0.0, 0.0]];
     let mut triangles = vec![[0, 1, 2]];
     for i in 0..90u32 {
@@ -553,7 +554,7 @@ fn edges_of_small_triangles_fade() {
     assert!((10..90).all(|y| (48..52).any(|x| is_dark(picture.colours()[y * 100 + x]))));
 }
 
-/// The part of pixels that a line covers is its width, wherever it lies; samples are those within half of it.
+/// A line covers its width in pixels, wherever it lies. The covered samples are those within half the width.
 #[test]
 fn lines_cover_what_they_should() {
     let mut random = Random(23);
@@ -568,7 +569,7 @@ fn lines_cover_what_they_should() {
         let shot = shot(camera, size.map(|side| side as u32));
         let lines = [ends];
         let picture = take(&shot, &[&LinesLayer::new(&lines).width(width)]);
-        // Its ends in the picture, by search for the lines of sight through them.
+        // Its ends in the picture, found by a search for the lines of sight through them.
         let seen = ends.map(|end| {
             let from = add(end, camera.eye(), -1.0);
             let [x, y, z] = [camera.right(), camera.up(), camera.forward()].map(|axis| dot(from, axis));
@@ -594,7 +595,7 @@ fn lines_cover_what_they_should() {
                     Lens::Parallel(_) => near + (far - near) * part,
                     Lens::Perspective(_) => 1.0 / ((1.0 - part) / near + part / far),
                 };
-                // Nearer than it is, by its width and a pixel.
+                // Nearer than in reality, by the line's width and a pixel.
                 let pixel = 2.0 / size[1] * if round % 2 == 0 { 1.0 } else { expected * 0.268 };
                 let nearer = expected - f64::from(depth);
                 assert!(nearer > 0.0 && nearer < 1.01 * (1.0 + width) * pixel, "{expected} {depth}");
@@ -603,7 +604,7 @@ fn lines_cover_what_they_should() {
     }
 }
 
-/// Lines of one layer that cross are no darker there.
+/// Crossing lines of one layer are no darker at the crossing.
 #[test]
 fn translucent_lines_are_drawn_once() {
     let lines = [[[-1.0, 0.0, -0.4], [1.0, 0.0, 0.5]], [[-0.9, 0.5, 0.5], [0.8, -0.2, -0.6]]];
@@ -633,7 +634,7 @@ fn lines_are_hidden_and_cut() {
     }
     let left = Clip::new().plane([-1.0, 0.0, 0.0, -0.5]).unwrap();
     assert!(dark(&[across(-1.0, 0.0)], left.clone(), 32, 4) && !dark(&[across(-1.0, 0.0)], left, 32, 24));
-    // Through the eye's plane: what lies behind is not mirrored.
+    // Through the eye's plane: parts behind the eye are not mirrored.
     let camera = Camera::new([0.0; 3], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0], Lens::Perspective(60.0)).unwrap();
     let lines = [[[1.0, 4.0, 1.0], [0.9, -3.0, 1.0]]];
     let picture = take(&shot(camera, [64, 64]), &[&LinesLayer::new(&lines)]);
@@ -643,7 +644,7 @@ fn lines_are_hidden_and_cut() {
     assert!(picture.colours().iter().any(|&colour| is_dark(colour)));
 }
 
-/// Each part of an edge is there once, whatever cells it belongs to.
+/// Each part of an edge is drawn once, even if several cells share it.
 #[test]
 fn edges_of_cells_are_drawn_once() {
     let frame = Frame::new([-1.0; 3], 2.0, 3).unwrap();
@@ -741,19 +742,19 @@ fn colour_of(tag: Tag) -> [u8; 4] {
     }
 }
 
-/// A block with a bore through which a ball is seen.
+/// A block with a bore. A ball is visible through the bore.
 fn part() -> Csg {
     let block = Csg::cuboid([-0.7, -0.6, -0.5], [0.7, 0.6, 0.5]).unwrap();
     let bored = block.difference(&Csg::cylinder(0.35, -1.0, 1.0).unwrap()).unwrap();
     Csg::union_of([bored, Csg::ball([0.1, 0.2, 0.3], 0.3).unwrap()]).unwrap()
 }
 
-/// Planes with normals, offsets, and the axis that they lie across.
+/// Planes with normals, offsets, and the axis of axis-perpendicular planes.
 fn planes() -> Vec<(SlicePlane, V, f64, Option<usize>)> {
     let slanting = ([0.3, -0.8, 0.5], 0.05);
     let mut planes = vec![(SlicePlane::new(slanting.0, -slanting.1).unwrap(), slanting.0, slanting.1, None)];
     for axis in 0..3 {
-        // In the middle of the universe and elsewhere in planes of the lattice, and in none.
+        // In the middle of the universe, in other planes of the lattice, and in no plane of the lattice.
         for at in [0.0, -0.1875, 0.123] {
             let normal = [0, 1, 2].map(|k| f64::from(u8::from(k == axis)));
             planes.push((SlicePlane::across(axis, at).unwrap(), normal, at, Some(axis)));
@@ -762,7 +763,7 @@ fn planes() -> Vec<(SlicePlane, V, f64, Option<usize>)> {
     planes
 }
 
-/// The point of a plane that a pixel shows.
+/// Returns the point of a plane that a pixel shows.
 fn point_of(shot: &Shot, i: usize, (normal, offset, axis): (V, f64, Option<usize>)) -> Option<V> {
     let (column, row) = (i as u32 % shot.size[0], i as u32 / shot.size[0]);
     let (from, along) = line(&shot.camera, shot.size, f64::from(column) + 0.5, f64::from(row) + 0.5);
@@ -816,7 +817,7 @@ fn slices_show_the_tags_of_points() {
     assert!(counts.iter().all(|&count| count > 500), "{counts:?}");
 }
 
-/// The unsplit cell around a finest one, by search through all.
+/// Returns the unsplit cell around a finest one, by a search through all cells.
 fn leaf(cells: &[TaggedCell], depth: u8, at: [u32; 3]) -> Cell {
     let around = |cell: Cell| (0..3).all(|k| at[k] >> (depth - cell.level) == cell.at[k]);
     cells.iter().map(|found| found.cell).find(|&cell| around(cell)).unwrap()
@@ -925,7 +926,7 @@ fn slices_show_values() {
     }
 }
 
-/// The usual section: a mesh is cut where the slice lies. The slice covers what is open, without a gap.
+/// The usual section: a mesh is cut at the slice's plane. The slice covers the opening without a gap.
 #[test]
 fn slices_lie_in_clip_planes() {
     let control = Control::default();
@@ -966,7 +967,7 @@ fn slices_are_the_same_for_any_number_of_threads() {
         render(&Shot::new(camera, [150, 100]), &[&layer], &Control::threads(threads)).unwrap()
     });
     assert!(pictures[0] == pictures[1] && pictures[0] == pictures[2]);
-    // A universe of one tag, planes that meet nothing, and planes that are none.
+    // A universe of one tag, planes that meet nothing, and invalid planes.
     let empty =
         build(&Csg::ball([9.0; 3], 0.1).unwrap(), &frame, Rule::Certified, &Control::default()).unwrap();
     let layer = |plane| SliceLayer::new(empty.view(), plane).colours(TAGS).outlines(None);
@@ -984,12 +985,12 @@ fn slices_are_the_same_for_any_number_of_threads() {
     );
 }
 
-/// A picture of nothing on a colour.
+/// An empty picture of one colour.
 fn blank(size: [u32; 2], background: [u8; 4]) -> Picture {
     take(&Shot { background, ..shot(front(1.0), size) }, &[])
 }
 
-/// Whether two pictures differ only in a box, and how many pixels do.
+/// Returns whether two pictures differ only in a box, and the number of pixels that differ.
 fn changes(before: &Picture, after: &Picture, [left, top, width, height]: [u32; 4]) -> usize {
     assert!(width > 0 && height > 0 && left + width <= before.width() && top + height <= before.height());
     let mut count = 0;
@@ -1047,7 +1048,7 @@ fn legends_change_only_their_box() {
     }
 }
 
-/// Along the bar lie the colours of the range, the greatest on top or on the right.
+/// The colours of the range lie along the bar, with the greatest value at the top or on the right.
 #[test]
 fn colour_bars_show_their_range() {
     let colour = |x: f64| [100, (x - 300.0) as u8, 7, 255];

@@ -1,5 +1,5 @@
-//! Surfaces of octrees and solids in pictures, against formulas: where they are seen, how deep, cut open, in
-//! the colours of values.
+//! Surfaces of octrees and solids in pictures, against formulas: visibility, depth, cut-open views and
+//! colours of values.
 
 use crate::common::alone;
 use leafless::attribute::FunctionAttribute;
@@ -24,7 +24,7 @@ fn ball() -> Csg {
     Csg::ball(CENTRE, RADIUS).unwrap()
 }
 
-/// Cameras of both lenses, from several sides.
+/// Cameras with both lenses, on several sides.
 fn shots() -> Vec<Shot> {
     let mut shots = Vec::new();
     for (eye, up) in [
@@ -40,7 +40,7 @@ fn shots() -> Vec<Shot> {
     shots
 }
 
-/// The line of sight of a pixel's centre: from, and along, of depth 1.
+/// The line of sight through a pixel's centre: its origin, and its direction scaled to depth 1.
 fn line(camera: &Camera, [x, y]: [u32; 2]) -> ([f64; 3], [f64; 3]) {
     let half = match camera.lens() {
         Lens::Perspective(degrees) => (0.5 * degrees.to_radians()).tan(),
@@ -61,7 +61,7 @@ fn dot(a: [f64; 3], b: [f64; 3]) -> f64 {
     (0..3).map(|axis| a[axis] * b[axis]).sum()
 }
 
-/// When a line meets a ball of a radius, and how near it comes to its centre.
+/// Returns the times at which a line meets a ball of a radius, and the line's distance from the centre.
 fn meets([from, along]: [[f64; 3]; 2], radius: f64) -> (Option<[f64; 2]>, f64) {
     let to = [0, 1, 2].map(|axis| from[axis] - CENTRE[axis]);
     let (a, b, c) = (dot(along, along), dot(to, along), dot(to, to) - radius * radius);
@@ -86,7 +86,7 @@ fn balls_are_where_they_are() {
     let cell = fine.cell_size();
     let octree = OctreeLayer::new(tree.view(), Finish::default());
     let faces = OctreeLayer::new(tree.view(), Finish { faces: true, ..Finish::default() });
-    // Cells of a sixteenth: what is seen in them comes from slabs.
+    // Cells of a sixteenth. The visible surface in them comes from slabs.
     let by_slabs = SolidLayer::new(&solid, &fine, Finish::default()).at_most(5);
     for shot in shots() {
         for (layer, early, late) in
@@ -97,7 +97,7 @@ fn balls_are_where_they_are() {
             for (at, colour, depth) in pixels(&picture) {
                 let (from, along) = line(&shot.camera, at);
                 let (times, near) = meets([from, along], RADIUS);
-                // Near the silhouette cells hide a little more, and depths are anything.
+                // Near the silhouette, cells hide slightly more, and depths are arbitrary.
                 if (near - RADIUS).abs() < 2.0 * cell + 2e-3 {
                     continue;
                 }
@@ -127,7 +127,7 @@ fn what_is_cut_open_is_flat() {
     let tree = build(&solid, &frame(7), Rule::Certified, &alone()).unwrap();
     let finish = Finish { cut: [255, 0, 0, 255], ..Finish::default() };
     let cell = frame(7).cell_size();
-    // Kept is what lies on the side away from the eye.
+    // The kept part lies on the side away from the eye.
     let camera = Camera::new([0.0, -4.0, 0.5], [0.0; 3], [0.0, 0.0, 1.0], Lens::Perspective(35.0)).unwrap();
     let clip = Clip::new().plane([0.0, 2.0, 0.0, 0.4]).unwrap();
     let shot = Shot { samples: 1, clip, ..Shot::new(camera, SIZE) };
@@ -142,7 +142,7 @@ fn what_is_cut_open_is_flat() {
             let point = [0, 1, 2].map(|axis| from[axis] + t * along[axis] - CENTRE[axis]);
             let off = dot(point, point).sqrt() - RADIUS;
             if off < -2.0 * cell {
-                // All of one brightness, and of no green.
+                // Uniform brightness, and no green.
                 assert!(
                     (depth - t).abs() < 1e-5 && colour[0] > 90 && colour[1] == 0,
                     "{at:?} {colour:?} {depth} {t}"
@@ -154,7 +154,7 @@ fn what_is_cut_open_is_flat() {
     }
 }
 
-/// Lines of sight that begin at a wall and hardly part from it pass many cells by.
+/// Lines of sight that begin at a wall and hardly leave it pass many cells.
 #[test]
 fn grazed_walls_are_passed_by() {
     let block = Csg::cuboid([-0.9, -0.5, -0.8], [0.9, 0.5, 0.8]).unwrap();
@@ -169,7 +169,7 @@ fn grazed_walls_are_passed_by() {
     for (at, _, depth) in pixels(&picture) {
         let (from, along) = line(&camera, at);
         let begins = (0.2 - from[1]) / along[1];
-        // Where the line leaves the bore, of which the axis is that of z.
+        // The place where the line leaves the bore, whose axis is z.
         let (a, b) = (along[0].powi(2) + along[1].powi(2), from[0] * along[0] + from[1] * along[1]);
         let ends = (-b + (b * b - a * (from[0].powi(2) + from[1].powi(2) - 0.09)).sqrt()) / a;
         let height = (from[0] + begins * along[0]).hypot(0.2) - 0.3;
@@ -236,7 +236,7 @@ fn layers_hide_each_other() {
     let octree = OctreeLayer::new(tree.view(), Finish { colour: [0, 255, 0, 255], ..Finish::default() });
     let behind = render(&shot, &[&mesh, &octree], &alone()).unwrap();
     assert_eq!(behind, render(&shot, &[&octree, &mesh], &alone()).unwrap());
-    // A layer's own clip leaves the other one whole.
+    // A layer's own clip does not affect the other layer.
     let clipped = ClippedLayer::new(&octree, Clip::new().plane([0.0, 1.0, 0.0, 0.0]).unwrap());
     let front = render(&shot, &[&mesh, &clipped], &alone()).unwrap();
     let middle = (SIZE[1] / 2 * SIZE[0] + SIZE[0] / 2) as usize;
@@ -247,7 +247,7 @@ fn layers_hide_each_other() {
 
 #[test]
 fn eyes_may_be_anywhere() {
-    // From very far away a time says little of a place in the solid.
+    // From very far away, a time does not determine a place in the solid.
     let solid = ball();
     let tree = build(&solid, &frame(8), Rule::Certified, &alone()).unwrap();
     let layers: [&dyn Layer; 2] = [
@@ -296,7 +296,8 @@ fn eyes_may_be_anywhere() {
     }
 }
 
-/// A wall of a single layer of cells has no gradient; a plate of a few is no wall of its rim.
+/// A wall of a single layer of cells has no gradient. A plate a few layers thick is lit by its faces, not by
+/// its rim.
 #[test]
 fn thin_plates_are_lit_as_their_faces() {
     let camera = Camera::new([0.7, -1.5, 2.0], [0.0; 3], [0.0, 0.0, 1.0], Lens::Parallel(0.6)).unwrap();
@@ -313,12 +314,12 @@ fn thin_plates_are_lit_as_their_faces() {
                 "{thickness} {at:?} {colour:?} {middle:?}"
             );
         }
-        // From above it is bright.
+        // Seen from above, it is bright.
         assert!(middle[0] > 120, "{thickness} {middle:?}");
     }
 }
 
-/// What has no end in the universe ends there in a picture.
+/// A picture cuts off unbounded solids at the universe's faces.
 #[test]
 fn faces_of_the_universe_are_flat() {
     let tree = build(&ball().complement(), &frame(7), Rule::Certified, &alone()).unwrap();
@@ -329,7 +330,7 @@ fn faces_of_the_universe_are_flat() {
     for (at, colour, depth) in pixels(&picture).filter(|pixel| pixel.2.is_finite()) {
         let (from, along) = line(&camera, at);
         let point = [0, 1, 2].map(|axis| from[axis] + depth * along[axis]);
-        // At an edge normals turn.
+        // Normals turn at an edge.
         let near = |axis: usize| point[axis].abs() > 1.0 - 12.0 * frame(7).cell_size();
         let faces: Vec<usize> = (0..3).filter(|&axis| near(axis)).collect();
         if let &[axis] = &faces[..] {
@@ -343,7 +344,7 @@ fn faces_of_the_universe_are_flat() {
     }
 }
 
-/// Where a point is seen, in pixels.
+/// Returns the pixel coordinates of a point.
 fn place(camera: &Camera, point: [f64; 3]) -> [f64; 2] {
     let from = [0, 1, 2].map(|axis| point[axis] - camera.eye()[axis]);
     let [x, y, z] = [camera.right(), camera.up(), camera.forward()].map(|side| dot(from, side));
@@ -355,7 +356,8 @@ fn place(camera: &Camera, point: [f64; 3]) -> [f64; 2] {
     [0.5 * f64::from(SIZE[0]) + x / pixel, 0.5 * f64::from(SIZE[1]) - y / pixel]
 }
 
-/// How far a place is from a line between two others, and where along it its foot is, 0 to 1.
+/// Returns a place's distance from a line through two others, and the position of its foot along the line, 0
+/// to 1.
 fn beside(place: [f64; 2], [a, b]: [[f64; 2]; 2]) -> (f64, f64) {
     let (to, from) = ([b[0] - a[0], b[1] - a[1]], [place[0] - a[0], place[1] - a[1]]);
     let along = (from[0] * to[0] + from[1] * to[1]) / (to[0] * to[0] + to[1] * to[1]);
@@ -363,7 +365,7 @@ fn beside(place: [f64; 2], [a, b]: [[f64; 2]; 2]) -> (f64, f64) {
     ((from[0] - foot * to[0]).hypot(from[1] - foot * to[1]), along)
 }
 
-/// The edges of a block that are seen: those of which at least one face is.
+/// Returns the visible edges of a block: those with at least one visible face.
 fn edges_seen(camera: &Camera, corners: [[f64; 3]; 2]) -> Vec<[[f64; 2]; 2]> {
     let faces = |axis: usize, upper: usize| {
         let sign = if upper == 1 { 1.0 } else { -1.0 };
@@ -395,8 +397,8 @@ fn edges_are_drawn_where_faces_meet() {
     let edges = Some(Outline { width: 2.0, colour: [255, 0, 0, 255], crease: 40.0 });
     let finish = Finish { edges, ..Finish::default() };
     let trees = [8, 7].map(|depth| build(&block, &frame(depth), Rule::Certified, &alone()).unwrap());
-    // How far ink may be from an edge, and how much must be ink so near to it. Cells of a third of a pixel,
-    // or two, move it.
+    // The greatest distance of ink from an edge, and the amount of ink required near it. Cells of a third of
+    // a pixel, or of two pixels, shift it.
     let layers: [(&dyn Layer, f64, f64, f64); 3] = [
         (&SolidLayer::new(&block, &frame(7), finish), 1.2, 1.0, 0.7),
         (&OctreeLayer::new(trees[0].view(), finish), 1.6, 0.97, 0.4),
@@ -429,7 +431,7 @@ fn round_surfaces_have_silhouettes_only() {
     let tree = build(&solid, &frame(8), Rule::Certified, &alone()).unwrap();
     let edges = Some(Outline { width: 2.0, colour: [255, 0, 0, 255], crease: 30.0 });
     let finish = Finish { edges, ..Finish::default() };
-    // What is surely drawn, in pixels from the rim: cells, a third of a pixel long, reach beyond it.
+    // The region surely drawn, in pixels from the rim. Cells of a third of a pixel reach beyond it.
     let layers: [(&dyn Layer, f64); 2] =
         [(&SolidLayer::new(&solid, &frame(7), finish), 0.6), (&OctreeLayer::new(tree.view(), finish), 0.1)];
     for shot in shots() {
@@ -455,7 +457,7 @@ fn round_surfaces_have_silhouettes_only() {
             assert!(rim > 5, "{rim}");
         }
     }
-    // What is no outline is refused.
+    // Invalid outlines are refused.
     for (width, crease) in [(0.0, 30.0), (9.0, 30.0), (f64::NAN, 30.0), (1.0, -1.0), (1.0, f64::NAN)] {
         let edges = Some(Outline { width, crease, ..Outline::default() });
         let layer = OctreeLayer::new(tree.view(), Finish { edges, ..Finish::default() });
@@ -496,7 +498,7 @@ fn nothing_and_everything() {
         let picture = render(&shot, &[&OctreeLayer::new(full.view(), Finish::default())], &control).unwrap();
         assert!(picture.depths()[16 * 32 + 16].is_finite() && picture.depths()[0].is_infinite());
     }
-    // From within.
+    // From inside.
     let full = build(&Csg::ball([0.0; 3], 9.0).unwrap(), &frame(4), Rule::Certified, &control).unwrap();
     let inside = Camera::new([0.1; 3], [1.0, 0.0, 0.0], [0.0, 0.0, 1.0], Lens::Perspective(60.0)).unwrap();
     let finish = Finish { cut: [255, 0, 0, 255], ..Finish::default() };
@@ -520,7 +522,7 @@ fn what_is_no_picture_is_refused() {
     assert!(matches!(render(&Shot::new(camera, [8, 8]), &[], &control), Err(Error::Cancelled)));
 }
 
-/// A plate with bores, whose extended tree has large cells: it is shown as the plate, and with faces as its
+/// A plate with bores whose extended tree has large cells. It is shown as the plate, and with `faces` as its
 /// cells.
 #[test]
 fn an_extended_tree_is_shown_as_its_source() {
@@ -543,11 +545,11 @@ fn an_extended_tree_is_shown_as_its_source() {
         let differ = |(a, b): &(&[u8; 4], &[u8; 4])| a.iter().zip(*b).any(|(a, b)| a.abs_diff(*b) > 2);
         let others = own.colours().iter().zip(source.colours()).filter(differ).count();
         assert!(others < 30, "{others}");
-        // Something is seen of it, and through the bores.
+        // A part of it is visible, also through the bores.
         let covered = own.colours().iter().filter(|&&colour| colour != shot.background).count();
         assert!((5_000..20_000).contains(&covered), "{covered}");
     }
-    // Its own cells are those of the tree without cuts.
+    // The tree's own cells are those of the tree without cuts.
     let faces = Finish { faces: true, ..Finish::default() };
     let blunt = tree.without_cuts();
     assert_eq!(

@@ -1,5 +1,4 @@
-//! Volumes in pictures, against all voxels of each line of sight, sorted by where it enters them, and against
-//! formulas.
+//! Volumes in pictures, against all voxels on each line of sight, sorted by entry, and against formulas.
 
 use crate::common::Random;
 use leafless::render::{
@@ -14,7 +13,7 @@ fn frame() -> Frame {
     Frame::new([-1.0; 3], 2.0, 4).unwrap()
 }
 
-/// Records as they are put together.
+/// Voxel records under construction.
 #[derive(Default)]
 struct List {
     codes: Vec<u64>,
@@ -24,7 +23,7 @@ struct List {
 }
 
 impl List {
-    /// Divides a cell at random, and gives its parts what `what` says.
+    /// Divides a cell at random. `what` returns the kind and value of each part.
     fn divide(
         &mut self,
         cell: leafless::Cell,
@@ -59,7 +58,7 @@ impl List {
     }
 }
 
-/// Voxels of all kinds and gaps, with values of which some are missing.
+/// Voxels of all kinds and gaps. Some values are missing.
 fn random_records(random: &mut Random, components: usize) -> VoxelRecords {
     let mut list = List::default();
     list.divide(leafless::Cell::ROOT, random, &mut |random| {
@@ -72,7 +71,7 @@ fn random_records(random: &mut Random, components: usize) -> VoxelRecords {
     list.records(components)
 }
 
-/// One inside voxel, the universe, or what it is divided into.
+/// One inside voxel, the universe, or a random division of it.
 fn cube(random: Option<&mut Random>) -> VoxelRecords {
     let mut list = List::default();
     match random {
@@ -90,7 +89,7 @@ fn dot(a: Vector, b: Vector) -> f64 {
     a[0] * b[0] + a[1] * b[1] + a[2] * b[2]
 }
 
-/// A point, and a direction that is 1 long along the view.
+/// Returns a line of sight: a point, and a direction of length 1 along the view.
 fn line(camera: &Camera, [width, height]: [u32; 2], x: f64, y: f64) -> (Vector, Vector) {
     let (eye, right, up, forward) = (camera.eye(), camera.right(), camera.up(), camera.forward());
     let half = match camera.lens() {
@@ -108,7 +107,7 @@ fn line(camera: &Camera, [width, height]: [u32; 2], x: f64, y: f64) -> (Vector, 
     }
 }
 
-/// Where a line is in a box, from t = 0 on.
+/// Returns the range in which a line is in a box, from t = 0 on.
 fn inside(min: Vector, max: Vector, from: Vector, along: Vector) -> Option<[f64; 2]> {
     let mut span = [0.0, f64::INFINITY];
     for i in 0..3 {
@@ -133,8 +132,7 @@ fn encoded(x: f64) -> f64 {
     255.0 * if x <= 0.0031308 { 12.92 * x } else { 1.055 * x.powf(1.0 / 2.4) - 0.055 }
 }
 
-/// What a picture of a volume must be: for each pixel the colour in front of an opaque background, not
-/// rounded.
+/// The expected picture of a volume: for each pixel the unrounded colour in front of an opaque background.
 struct Oracle<'a> {
     records: VoxelRecordsRef<'a>,
     transfer: Transfer,
@@ -198,7 +196,7 @@ impl Oracle<'_> {
         colour.map(encoded)
     }
 
-    /// Returns how many pixels show something.
+    /// Checks a picture; returns the number of pixels that show something.
     fn assert_shows(&self, shot: &Shot, picture: &Picture) -> usize {
         assert_eq!(shot.samples, 1);
         let mut covered = 0;
@@ -207,7 +205,7 @@ impl Oracle<'_> {
             let (from, along) = line(&shot.camera, shot.size, x, y);
             let expected = self.pixel(from, along, shot.background);
             for k in 0..3 {
-                // Half a step of rounding, and a little for single precision.
+                // Half a step of rounding, and a margin for single precision.
                 let off = (f64::from(colour[k]) - expected[k]).abs();
                 assert!(off < 0.51, "{x} {y}: {colour:?} {expected:?} by {shot:?}, {:?}", self.compositing);
             }
@@ -217,7 +215,7 @@ impl Oracle<'_> {
     }
 }
 
-/// Cameras from all sides: parallel ones, distant ones, one in the midst of the voxels.
+/// Cameras on all sides: parallel ones, distant ones, and one amid the voxels.
 fn cameras(random: &mut Random) -> Vec<Camera> {
     let bounds = Bounds::new([-1.0; 3], [1.0; 3]).unwrap();
     let mut cameras = Vec::new();
@@ -290,7 +288,7 @@ fn repetitions_are_so_many_layers() {
     let alone = Control::threads(1);
     let (mut opacity, mut through) = (0.0, 1.0);
     for k in 1..=1024u32 {
-        // A layer behind those that there are.
+        // A layer behind the existing ones.
         opacity += 0.01 * through;
         through *= 0.99;
         assert!((transfer.opacity(&[0.4], 0.5 * f64::from(k)) - opacity).abs() < 1e-12);
@@ -309,7 +307,7 @@ fn repetitions_are_so_many_layers() {
     }
 }
 
-/// The greatest difference of two pictures.
+/// Returns the greatest difference of two pictures.
 fn difference(a: &Picture, b: &Picture) -> u8 {
     let pairs = a.bytes().iter().zip(b.bytes());
     pairs.map(|(a, b)| a.abs_diff(*b)).max().unwrap()
@@ -344,7 +342,7 @@ fn a_cube_looks_as_one_however_it_is_divided() {
             let up = if axis / 2 == 2 { [0.0, 1.0, 0.0] } else { [0.0, 0.0, 1.0] };
             let eye = forward.map(|x| -2.0 * x);
             let camera = Camera::new(eye, [0.0; 3], up, Lens::Parallel(2.5)).unwrap();
-            // Pixels of 1/8, of which the middles lie on planes.
+            // Pixels of 1/8 whose middles lie on planes.
             let shot = Shot { size: [21, 20], samples: 1, ..shot(camera) };
             let [a, b] = [whole, parts].map(|layer| render(&shot, &[&layer], &control).unwrap());
             assert!(difference(&a, &b) <= 1, "{}", difference(&a, &b));
@@ -486,7 +484,7 @@ fn colours_are_those_of_the_map() {
         assert!((0..240).step_by(16).all(|i| brightness(i) < brightness(i + 15)), "{map:?}");
     }
     assert_eq!(ColourMap::default(), ColourMap::Viridis);
-    // As matplotlib has them.
+    // The values of matplotlib.
     assert_eq!(ColourMap::Viridis.colour(0.0), [0x44, 0x01, 0x54]);
     assert_eq!(ColourMap::Viridis.colour(1.0), [0xfd, 0xe7, 0x25]);
     assert_eq!(ColourMap::Grey.colour(0.5), [128; 3]);

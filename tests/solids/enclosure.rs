@@ -1,4 +1,4 @@
-//! What solids say of where their boundary lies in a cell, against exact arithmetic.
+//! The enclosures of boundaries in cells that solids provide, against exact arithmetic.
 
 #[allow(dead_code)]
 use crate::common::exact::Exact;
@@ -13,7 +13,7 @@ use leafless::{
     Verdict, build_extended,
 };
 
-/// Frames whose planes are integers, exact doubles, no doubles at all; far from the origin, tiny.
+/// Frames whose planes are integers, exact doubles, or no doubles at all; far from the origin; and tiny.
 fn frames(depth: u8) -> [Frame; 5] {
     let frame = |origin, edge| Frame::new(origin, edge, depth).unwrap();
     [
@@ -25,7 +25,7 @@ fn frames(depth: u8) -> [Frame; 5] {
     ]
 }
 
-/// The point of a cell with the coordinates `x` from its centre, in half edges.
+/// Returns the point of a cell with the coordinates `x` relative to its centre, in half edges.
 fn at(frame: &Frame, cell: Cell, x: [f64; 3]) -> Point {
     let half = Exact::from(frame.edge()).times(&Exact::power_of_two(-(cell.level as i64) - 1));
     let [x, y, z] = [0, 1, 2].map(|axis| {
@@ -35,7 +35,7 @@ fn at(frame: &Frame, cell: Cell, x: [f64; 3]) -> Point {
     [x, y, z, Exact::from(1.0)]
 }
 
-/// A point of the open cell: anywhere, or next to where a slab ends.
+/// A point of the open cell: anywhere, or near a face of a slab.
 fn point(random: &mut Random, enclosure: &Enclosure) -> [f64; 3] {
     loop {
         let mut x = [0; 3].map(|_| random.between(-1.0, 1.0));
@@ -56,21 +56,21 @@ fn point(random: &mut Random, enclosure: &Enclosure) -> [f64; 3] {
     }
 }
 
-/// Cells that were asked, those that told, and points that were told to be inside and outside.
+/// Numbers of queried cells, of cells with an enclosure, and of points decided as inside and outside.
 #[derive(Debug, Default)]
 struct Found {
     cells: u64,
     enclosed: u64,
-    /// Cells with more than one slab, and with a side of which nothing is known.
+    /// Number of cells with more than one slab, and number of cells with an unknown side.
     several: u64,
     one_sided: u64,
     inside: u64,
     outside: u64,
 }
 
-/// Walks to a finest cell and asks every cell on the way.
+/// Walks to a finest cell, and checks every cell on the way.
 fn walk(model: &Model, frame: &Frame, csg: &Csg, points: u64, random: &mut Random, found: &mut Found) {
-    // (Placements may lead beyond what doubles can tell.)
+    // (Placements may exceed the range of doubles.)
     let Ok(classifier) = csg.on(frame, &alone()) else { return };
     let opposite = csg.complement().on(frame, &alone()).unwrap();
     let ways = (Way::new(classifier.worker().unwrap()), Way::new(opposite.worker().unwrap()));
@@ -105,7 +105,7 @@ fn walk(model: &Model, frame: &Frame, csg: &Csg, points: u64, random: &mut Rando
         if children.is_empty() {
             return;
         }
-        // Half of the ways lead to where surfaces meet.
+        // Half of the descents lead to places where surfaces meet.
         let slabs = |(cell, part): &(Cell, _)| {
             way.worker.enclosure(*cell, part).unwrap().map_or(0, |e| known(&e).count())
         };
@@ -118,12 +118,12 @@ fn walk(model: &Model, frame: &Frame, csg: &Csg, points: u64, random: &mut Rando
     }
 }
 
-/// Random solids made by `make`, until `wanted` points of them have been told something.
+/// Checks random solids made by `make`, until `wanted` of their points are decided.
 fn hold(name: &str, wanted: u64, make: impl Fn(&mut Maker<'_>) -> Model) {
     hold_as(name, wanted, make, |model, frame| model.csg(frame));
 }
 
-/// The same, with solids that are made of the models in another way.
+/// The same, with solids derived from the models by `solid`.
 fn hold_as(
     name: &str,
     wanted: u64,
@@ -142,14 +142,13 @@ fn hold_as(
         let aligned = random.below(3) == 0;
         let mut maker = Maker { random: &mut random, frame, aligned, others: false };
         let model = make(&mut maker);
-        // What the ranges of arguments do not admit.
+        // The library refuses arguments out of range.
         let Ok(csg) = solid(&model, &frame) else { continue };
         walk(&model, &frame, &csg, 8, &mut random, &mut found);
     }
     println!("{name}: {found:?}");
     assert!(!name.starts_with("joined") || found.several > found.cells / 10, "{name}: {found:?}");
-    // Neither side is kept silent about. (Turned balls lie partly outside of the universe: 18 % of a
-    // million.)
+    // Both sides are reported. (Rotated balls lie partly outside the universe: 18 % of a million.)
     assert!(found.inside > wanted / 6 && found.outside > wanted / 6, "{name}: {found:?}");
 }
 
@@ -159,7 +158,7 @@ fn joined(maker: &mut Maker<'_>) -> Model {
     maker.joined(count)
 }
 
-/// A solid of another kind that knows slabs, beside half-spaces.
+/// A solid of another kind that provides slabs, beside half-spaces.
 fn lone(maker: &mut Maker<'_>) -> Model {
     let (inner, beside) = (joined(maker), maker.half_space());
     let other = Model::Other(Other::Model(Box::new(inner)));
@@ -171,7 +170,7 @@ fn lone(maker: &mut Maker<'_>) -> Model {
     }
 }
 
-/// Two to four operands, half-spaces and other solids that know slabs, joined once or twice.
+/// Two to four operands, half-spaces and other solids that provide slabs, combined once or twice.
 fn several(maker: &mut Maker<'_>) -> Model {
     let operand = |maker: &mut Maker<'_>| match maker.below(3) {
         0 => maker.half_space(),
@@ -208,7 +207,7 @@ fn moved(maker: &mut Maker<'_>, make: impl Fn(&mut Maker<'_>) -> Model) -> Model
     maker.placed(model)
 }
 
-/// Turned about a point, by a rotation of rational numbers as doubles have them, and stretched a little.
+/// A model rotated about a point, by a rotation of rational numbers rounded to doubles, and slightly scaled.
 fn turned(maker: &mut Maker<'_>, make: impl Fn(&mut Maker<'_>) -> Model) -> Model {
     let (model, point) = (make(maker), maker.point());
     let scale = maker.random.between(0.8, 1.25);
@@ -223,8 +222,8 @@ fn turned(maker: &mut Maker<'_>, make: impl Fn(&mut Maker<'_>) -> Model) -> Mode
     Model::Placed(Box::new(model), Affine::new(about).unwrap_or(Affine::IDENTITY))
 }
 
-/// A placed model that is not placed as an expression, but from a frame of its own; some as complements of
-/// complements.
+/// Places a placed model with `Transform` from its own frame instead of in the expression. Some are
+/// complements of complements.
 fn by_transform(model: &Model, frame: &Frame) -> Result<Csg, Error> {
     let Model::Placed(model, placement) = model else { panic!("not placed") };
     let csg = model.csg(frame)?;
@@ -238,7 +237,7 @@ fn ball(maker: &mut Maker<'_>) -> Model {
     Model::Ellipsoid(maker.point(), [radius; 3])
 }
 
-/// A torus around a point of the universe with a hole.
+/// A torus with a hole, around a point of the universe.
 fn slim_torus(maker: &mut Maker<'_>) -> Model {
     let major = maker.frame.edge() * maker.random.between(0.2, 0.6);
     let minor = major * maker.random.between(0.1, 0.9);
@@ -246,7 +245,7 @@ fn slim_torus(maker: &mut Maker<'_>) -> Model {
     Model::Placed(Box::new(Model::Torus(major, minor)), Affine::translation(to).unwrap_or(Affine::IDENTITY))
 }
 
-/// A quadric as a host knows it, by its gradient.
+/// A quadric as a host's gradient function.
 fn by_gradient(model: &Model, _: &Frame) -> Result<Csg, Error> {
     let &Model::Quadric([xx, yy, zz, xy, yz, zx, x, y, z, constant]) = model else { panic!("no quadric") };
     // The library's function is positive inside.
@@ -275,9 +274,9 @@ fn by_gradient(model: &Model, _: &Frame) -> Result<Csg, Error> {
     Ok(Csg::solid(AnySolid::new(callback)))
 }
 
-/// A ball or a torus as a host knows it, by its nearest point.
+/// A ball or a torus as a host's nearest-point function.
 fn by_tangent(model: &Model, _: &Frame) -> Result<Csg, Error> {
-    // The centre, the radius of the circle around it that is the middle of the torus, and that of its tube.
+    // The centre, the radius of the torus's middle circle, and the radius of its tube.
     let (centre, major, minor) = match model {
         &Model::Ellipsoid(centre, [radius, ..]) => (centre, 0.0, radius),
         Model::Placed(torus, to) => match **torus {
@@ -311,7 +310,7 @@ fn by_tangent(model: &Model, _: &Frame) -> Result<Csg, Error> {
     Ok(Csg::solid(AnySolid::new(callback)))
 }
 
-/// An extended tree of the solid, of few levels.
+/// An extended tree of the solid with few levels.
 fn by_tree(model: &Model, frame: &Frame) -> Result<Csg, Error> {
     let shallow = frame.with_depth(frame.depth().min(4))?;
     let tree = build_extended(&model.csg(frame)?, &shallow, &SurfaceOptions::default(), &alone())?;
@@ -391,8 +390,8 @@ fn a_million_points_of_each_producer() {
     every_producer(1_000_000);
 }
 
-/// What analysis says of a function at a point: its gradient, and a bound of the sum of the magnitudes of
-/// second derivatives over the cube of this half edge around it.
+/// Returns a function's gradient at a point, and a bound of the sum of the magnitudes of second derivatives
+/// over the cube of this half edge around the point.
 fn derivatives(model: &Model, p: [f64; 3], half: f64) -> ([f64; 3], f64) {
     match model {
         Model::Plane(normal, _) => (*normal, 0.0),
@@ -417,7 +416,7 @@ fn derivatives(model: &Model, p: [f64; 3], half: f64) -> ([f64; 3], f64) {
         Model::Torus(major, _) => {
             let rho = p[0].hypot(p[1]);
             let share = -2.0 * (rho - major) / rho;
-            // Of a curve around the axis it is 2 major / ρ − 2.
+            // For a curve around the axis it is 2 major / ρ − 2.
             let near = rho - 2f64.sqrt() * half;
             let around = if near > 2f64.sqrt() * half { 4.0 * major / near } else { f64::INFINITY };
             ([share * p[0], share * p[1], -2.0 * p[2]], 6.0 + around)
@@ -426,7 +425,7 @@ fn derivatives(model: &Model, p: [f64; 3], half: f64) -> ([f64; 3], f64) {
     }
 }
 
-/// The gradients at random points of a cell lie within the cone.
+/// Checks that the gradients at random points of a cell lie within the cone.
 fn cone_holds(model: &Model, enclosure: &Enclosure, centre: [f64; 3], half: f64, random: &mut Random) {
     let normal = enclosure.slabs[0].normal;
     let length = |v: [f64; 3]| v.iter().map(|c| c * c).sum::<f64>().sqrt();
@@ -444,8 +443,8 @@ fn cone_holds(model: &Model, enclosure: &Enclosure, centre: [f64; 3], half: f64,
     }
 }
 
-/// Slabs of single half-spaces are no wider than `share` of what the second derivatives allow, and than
-/// rounding.
+/// Checks that slabs of single half-spaces are at most `share` times as wide as the second derivatives allow,
+/// up to rounding.
 fn tight(name: &str, share: f64, make: impl Fn(&mut Maker<'_>) -> Model) {
     let mut asked = 0;
     for seed in 0..400 {
@@ -460,7 +459,7 @@ fn tight(name: &str, share: f64, make: impl Fn(&mut Maker<'_>) -> Model) {
             let centre = cell.at.map(|i| (2 * i + 1) as f64 * half - 1.0);
             let (gradient, second) = derivatives(&model, centre, half);
             let largest = |v: [f64; 3]| v.iter().fold(0.0, |m: f64, c| m.max(c.abs()));
-            // In units of the function, where it does not nearly stand still.
+            // In units of the function, where its gradient is not nearly zero.
             if largest(gradient) > 1e-3 * half * second && second.is_finite() {
                 let enclosure = way.worker.enclosure(cell, &way.part).unwrap().expect("a half-space");
                 let slab = enclosure.slabs[0];

@@ -1,5 +1,5 @@
-//! A host program whose functions take their time: how often it is called, by how many threads, and how soon
-//! a cancel is answered.
+//! A host program with slow functions: the number of calls, the number of calling threads, and the delay of a
+//! cancel.
 
 use crate::common::exact::Exact;
 use crate::common::{Random, Way};
@@ -18,7 +18,7 @@ use std::sync::{Arc, Mutex};
 use std::thread::{self, ThreadId};
 use std::time::{Duration, Instant};
 
-/// What was asked of the host.
+/// The recorded calls of the host.
 #[derive(Default)]
 struct Calls {
     boxes: AtomicU64,
@@ -26,7 +26,7 @@ struct Calls {
     largest: AtomicU64,
     points: AtomicU64,
     threads: Mutex<HashSet<ThreadId>>,
-    /// Calls that began after the cancel.
+    /// Number of calls that began after the cancel.
     late: AtomicU64,
     cancelled: AtomicBool,
     under_way: AtomicU64,
@@ -55,7 +55,7 @@ impl Calls {
 const CENTRE: [f64; 3] = [0.45, 0.5, 0.55];
 const RADIUS: f64 = 0.3;
 
-/// The ball, by the least and the greatest distance of a box, with some room for rounding.
+/// Classifies a box against the ball by its least and greatest distance, with some room for rounding.
 fn ball(min: [f64; 3], max: [f64; 3]) -> Verdict<()> {
     let (mut near, mut far) = (0.0, 0.0);
     for axis in 0..3 {
@@ -73,13 +73,13 @@ fn ball(min: [f64; 3], max: [f64; 3]) -> Verdict<()> {
     }
 }
 
-/// The signed distance from the ball's surface.
+/// Returns the signed distance from the ball's surface.
 fn distance(point: [f64; 3]) -> f64 {
     let square: f64 = (0..3).map(|axis| (point[axis] - CENTRE[axis]).powi(2)).sum();
     square.sqrt() - RADIUS
 }
 
-/// The host's ball; each call takes `pause`.
+/// The host's ball. Each call takes `pause`.
 fn host(calls: &Arc<Calls>, pause: Duration, many: bool) -> AnySolid {
     let rest = move || {
         if !pause.is_zero() {
@@ -120,7 +120,7 @@ fn unit(depth: u8) -> Frame {
     Frame::new([0.0; 3], 1.0, depth).unwrap()
 }
 
-/// Boxes of all cells that are split, and the universe.
+/// Returns the number of boxes of all split cells, and of the universe.
 fn needed(tree: &Octree) -> u64 {
     8 * tree.statistics().nodes() + 1
 }
@@ -188,13 +188,14 @@ fn deep_builds_ask_in_batches() {
     assert!((host.lower - exact.lower).abs() < 1e-6 && (host.upper - exact.upper).abs() < 1e-6);
 }
 
-/// Extended trees too are asked level by level: a call a level and thread, however many cells there are.
+/// Extended trees, too, query the host level by level: a call for each level and thread, however many cells
+/// there are.
 #[test]
 fn extended_builds_ask_level_by_level() {
     let plain =
         build(&host(&Arc::default(), Duration::ZERO, false), &unit(7), Rule::Certified, &Control::threads(1))
             .unwrap();
-    // What a host knows keeps no surface; of an expression the rest does.
+    // Solids of a host keep no surfaces; the other operands of an expression do.
     let block = Csg::cuboid([0.2, 0.21, 0.22], [0.95, 0.96, 0.97]).unwrap();
     let mut sizes = Vec::new();
     for threads in [1, 3] {
@@ -218,7 +219,7 @@ fn extended_builds_ask_level_by_level() {
         sizes.push(tree);
     }
     assert_eq!(sizes[0], sizes[1]);
-    // Deeper than what is asked at once.
+    // A tree deeper than a single batch of queries.
     let calls = Arc::new(Calls::default());
     let solid = host(&calls, Duration::ZERO, true);
     let tree = build_extended(&solid, &unit(9), &SurfaceOptions::default(), &Control::threads(2)).unwrap();
@@ -236,8 +237,8 @@ fn lazy_octrees_never_replay_and_use_threads() {
     assert_eq!(calls.boxes.load(Relaxed), 8 * lazy.splits() + 1);
     assert!(calls.threads() >= 4);
     assert_eq!(lazy.replays(), 0);
-    // The same cells as one thread splits, in the same octree; also under a budget.
-    // (A limit on bytes has it split cell by cell.)
+    // The same split cells as with one thread, in the same octree; also under a budget. (A limit on bytes
+    // makes it split cell by cell.)
     let serial = Control { max_bytes: Some(1 << 40), ..Control::threads(1) };
     let mut alone = LazyOctree::new(host(&Arc::default(), Duration::ZERO, false), &frame).unwrap();
     alone.refine(&Zone::Whole, 4, &serial).unwrap();
@@ -269,8 +270,7 @@ fn measures_use_threads() {
     assert_eq!(calls.boxes.load(Relaxed), 8 * found.splits + 1);
 }
 
-/// Runs work in another thread, cancels it once the host has been called some times, and returns what it came
-/// to.
+/// Runs work in another thread, cancels it after some calls of the host, and returns its result.
 fn cancelled(
     calls: &Arc<Calls>,
     work: impl FnOnce(&Control<'_>) -> Result<(), Error> + Send,
@@ -314,7 +314,7 @@ fn a_cancel_waits_for_the_calls_under_way() {
         let solid = host(&calls, pause, false);
         let done = cancelled(&calls, |control| work(solid, frame, control));
         assert!(matches!(done, Err(Error::Cancelled)), "{name}: {done:?}");
-        // Each of three threads may have looked at the flag just before, and then begins its last call.
+        // Each of three threads may have checked the flag just before, and then begins its last call.
         assert!(calls.late.load(Relaxed) <= 3, "{name}: {} calls", calls.late.load(Relaxed));
     }
 }
@@ -355,11 +355,10 @@ fn distances_decide_cells() {
     assert!(classified.load(Relaxed) < asked.load(Relaxed));
 }
 
-/// The ways in which a host's solid is part of another one that is just as large, or has a box in a corner
-/// besides.
+/// Wraps a host's solid in several solids of the same size, or of the same size plus a box in a corner.
 fn wrapped(solid: AnySolid) -> Vec<(&'static str, AnySolid)> {
     let corner = || Csg::cuboid([0.0625; 3], [0.125; 3]).unwrap();
-    // Turns about the ball's centre, by the angle whose cosine is 0.8, and by a quarter.
+    // Rotations about the ball's centre, by the angle with cosine 0.8 and by a quarter turn.
     let about = |[x, y]: [[f64; 2]; 2]| {
         let [a, b, _] = CENTRE;
         let moved = [x, y].map(|row| row[0] * a + row[1] * b);
@@ -385,8 +384,8 @@ fn wrapped(solid: AnySolid) -> Vec<(&'static str, AnySolid)> {
     ]
 }
 
-/// How many more boxes a turned shape may be asked about: cells of a turned lattice have larger boxes around
-/// them.
+/// The factor by which a rotated shape may receive more boxes. Cells of a rotated lattice have larger
+/// bounding boxes.
 const TURNED: u64 = 3;
 
 #[test]
@@ -405,9 +404,9 @@ fn wrappers_hand_on_many_questions_at_once() {
             let most =
                 if name.contains("turned") && !name.contains("quarter") { TURNED * alone } else { alone + 8 };
             assert!(alone / 2 < boxes && boxes <= most, "{name}: {boxes} boxes, {alone} alone");
-            // Two rounds a level for what is found by the way, and as many threads.
+            // Two rounds a level (some cells are found on the way), times the number of threads.
             assert!(!many || batches <= 2 * (1 + 5 * 3), "{name}: {boxes} boxes in {batches} calls");
-            // What comes out does not depend on how it was asked.
+            // The result does not depend on the way of the queries.
             let serial =
                 build(&solid(&Arc::default()), &frame, Rule::Certified, &Control::threads(1)).unwrap();
             assert_eq!(tree, serial, "{name}");
@@ -417,7 +416,7 @@ fn wrappers_hand_on_many_questions_at_once() {
             let truth =
                 if name.contains("united") || name.contains("expression") { ball + corner } else { ball };
             assert!(volume.contains(truth), "{name}: {volume:?}");
-            // Points are answered without cells, where nothing is rounded.
+            // Points are answered without cells if nothing is rounded.
             let calls = Arc::new(Calls::default());
             let mut answers = [Membership::Undecided; 3];
             let points = [CENTRE, [0.1; 3], [0.46875, 0.5, 0.953125]];
@@ -451,13 +450,13 @@ fn wrapped_hosts_are_asked_by_several_threads() {
             let (_, solid) = wrapped(host(&calls, Duration::from_millis(1), many)).swap_remove(k);
             let mut lazy = LazyOctree::new(solid, &frame).unwrap();
             lazy.refine(&Zone::Whole, 3, &Control::threads(4)).unwrap();
-            // (What is found on the way to a cell is found by one thread.)
+            // (One thread finds the cells on the way to a cell.)
             assert!(name.contains("transform") || calls.threads() >= 2, "{name}: {}", calls.threads());
         }
     }
 }
 
-/// A ball by its definition, moved, against exact arithmetic.
+/// A moved ball by its definition, against exact arithmetic.
 #[test]
 fn what_is_proven_of_a_moved_host_is_true() {
     let mut random = Random(77);
@@ -490,7 +489,7 @@ fn what_is_proven_of_a_moved_host_is_true() {
                     _ => continue,
                 };
                 decided += 1;
-                // Points of the inner part of the child, whatever its corners are rounded to.
+                // Points of the inner part of the child, however its corners are rounded.
                 let half = |axis: usize| 0.5 * (max[axis] - min[axis]);
                 for _ in 0..3 {
                     let point = [0, 1, 2].map(|axis| {
@@ -558,8 +557,7 @@ fn errors_and_cancels_pass_through_wrappers() {
     }
 }
 
-/// With a host of 50 ms a call, as `cargo test --release --test solids host:: -- --ignored --nocapture`
-/// prints it.
+/// A host with 50 ms a call. Printed by `cargo test --release --test solids host:: -- --ignored --nocapture`.
 #[test]
 #[ignore = "takes three minutes: prints calls, threads and times"]
 fn fifty_milliseconds_a_call() {

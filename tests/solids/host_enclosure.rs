@@ -1,5 +1,5 @@
-//! What a host program's functions say of where the surface lies in a cell: what measures, bounding boxes and
-//! adaptive octrees make of it, and of nonsense.
+//! The enclosures from a host program's functions, their use in measures, bounding boxes and adaptive
+//! octrees, and invalid values.
 
 use leafless::solid::{Adaptive, Ask, GradientRange, TangentBalls};
 use leafless::{
@@ -8,7 +8,7 @@ use leafless::{
 };
 use std::f64::consts::PI;
 
-/// More than what is rounded in any function here.
+/// A margin larger than the rounding errors of all functions here.
 const MARGIN: f64 = 1e-13;
 
 const CENTRE: [f64; 3] = [0.1, -0.05, 0.025];
@@ -18,7 +18,7 @@ fn about(value: f64) -> Interval {
     Interval::new(value - MARGIN, value + MARGIN).unwrap()
 }
 
-/// Decides boxes by the middle value and the greatest slopes of a function that is negative inside.
+/// Decides boxes by the middle value and the gradient's bounds of a function that is negative inside.
 fn decide(range: &GradientRange, min: [f64; 3], max: [f64; 3]) -> Verdict<()> {
     let spread: f64 = (0..3)
         .map(|axis| {
@@ -39,7 +39,8 @@ fn middle(min: [f64; 3], max: [f64; 3]) -> [f64; 3] {
     [0, 1, 2].map(|axis| 0.5 * (min[axis] + max[axis]))
 }
 
-/// A shape by a function and its gradient's range over boxes, with or without the latter's help.
+/// A shape by a function and its gradient's range over boxes. `helps` says whether the shape provides the
+/// gradient.
 fn shape(
     range: impl Fn([f64; 3], [f64; 3], [f64; 3]) -> GradientRange + Send + Sync + Copy + 'static,
     helps: bool,
@@ -51,7 +52,7 @@ fn shape(
     AnySolid::new(callback.with_gradient(move |min, max, middle| Ok(Some(range(min, max, middle)))))
 }
 
-/// |p − c|² − r².
+/// The function |p − c|² − r².
 fn ball(min: [f64; 3], max: [f64; 3], middle: [f64; 3]) -> GradientRange {
     let value = (0..3).map(|axis| (middle[axis] - CENTRE[axis]).powi(2)).sum::<f64>() - RADIUS * RADIUS;
     let gradient = [0, 1, 2].map(|axis| {
@@ -61,8 +62,8 @@ fn ball(min: [f64; 3], max: [f64; 3], middle: [f64; 3]) -> GradientRange {
     GradientRange { value: about(value), gradient }
 }
 
-/// sin x cos y + sin y cos z + sin z cos x, of which each product changes its slope by at most the edge of a
-/// box for each coordinate.
+/// The function sin x cos y + sin y cos z + sin z cos x. Each product changes its derivative by at most the
+/// edge of a box for each coordinate.
 fn gyroid(min: [f64; 3], max: [f64; 3], [x, y, z]: [f64; 3]) -> GradientRange {
     let value = x.sin() * y.cos() + y.sin() * z.cos() + z.sin() * x.cos();
     let slopes = [
@@ -71,13 +72,13 @@ fn gyroid(min: [f64; 3], max: [f64; 3], [x, y, z]: [f64; 3]) -> GradientRange {
         z.cos() * x.cos() - y.sin() * z.sin(),
     ];
     let half = (0..3).map(|axis| 0.5 * (max[axis] - min[axis])).fold(0.0, f64::max);
-    // Of x: |sin x cos y| + |sin z cos x|, |cos x sin y|, |cos z sin x|, and so on.
+    // For x: |sin x cos y| + |sin z cos x|, |cos x sin y|, |cos z sin x|, and so on.
     let spread = 4.0 * half * (1.0 + 1e-9) + MARGIN;
     let gradient = slopes.map(|slope| Interval::new(slope - spread, slope + spread).unwrap());
     GradientRange { value: about(value), gradient }
 }
 
-/// The ball by its nearest point. Outside of it a ball of this curvature is promised.
+/// The ball by its nearest point. It promises a touching ball of this curvature outside.
 fn touching(outer_curvature: f64) -> AnySolid {
     let callback = Callback::new(|min, max| Ok(decide(&ball(min, max, middle(min, max)), min, max)));
     AnySolid::new(callback.with_tangent(move |_, _, middle| {
@@ -101,8 +102,8 @@ fn one_thread() -> Control<'static> {
     Control::threads(1)
 }
 
-/// Relative widths of the volume times splits, at tolerances that fall by a factor of 10: about constant if
-/// the width goes down with 1/N.
+/// Returns the relative volume width times the number of splits, for tolerances that fall by factors of 10.
+/// The products are about constant if the width falls with 1/N.
 fn products(solid: &AnySolid, frame: &Frame, truth: f64, tolerances: &[f64]) -> Vec<f64> {
     let product = |&tolerance: &f64| {
         let found = measure(solid, frame, tolerance, &one_thread()).unwrap();
@@ -122,7 +123,7 @@ fn products(solid: &AnySolid, frame: &Frame, truth: f64, tolerances: &[f64]) -> 
 #[test]
 fn volumes_converge_with_the_number_of_splits() {
     let truth = 4.0 / 3.0 * PI * RADIUS.powi(3);
-    // The slabs that half-spaces give of the same ball, without their moments, make it that.
+    // The result equals that of the slabs of half-spaces for the same ball, without their moments.
     const HALF_SPACE: f64 = 6.8;
     for (name, solid) in [
         ("gradient", shape(ball, true)),
@@ -134,7 +135,7 @@ fn volumes_converge_with_the_number_of_splits() {
         let found = products(&solid, &universe(20), truth, &[1e-1, 1e-2, 1e-3]);
         assert!(found[2] < 3.0 * found[0] && found[2] < 6.0 * HALF_SPACE, "{name}: {found:?}");
     }
-    // Without help the width goes down with the square root of the splits.
+    // Without the gradient, the width falls with the square root of the splits.
     let alone = products(&shape(ball, false), &universe(20), truth, &[0.5, 0.1]);
     assert!(alone[1] > 3.0 * alone[0], "{alone:?}");
 }
@@ -177,8 +178,7 @@ fn bounding_boxes_and_adaptive_octrees_use_it() {
     }
 }
 
-/// Asks all PARTIAL cells of two levels.
-/// Slabs of a host's function in an extended tree, asked by any number of threads.
+/// The slabs of a host's function in an extended tree, for any number of threads.
 #[test]
 fn extended_octrees_keep_its_slabs() {
     let (frame, options) = (universe(9), SurfaceOptions { tolerance: Some(0.01) });
@@ -234,7 +234,7 @@ fn nonsense_says_nothing() {
     assert!(asked(&AnySolid::new(open().with_gradient(move |_, _, _| Ok(Some(good))))).unwrap() > 0);
     let (infinity, nan) = (f64::INFINITY, f64::NAN);
     let everything = Interval::ALL;
-    // Bounds the wrong way round, and those that are not numbers, cannot even be said.
+    // Reversed bounds and NaN cannot even be expressed.
     assert_eq!([Interval::new(1.0, -1.0), Interval::new(nan, 1.0), Interval::new(1.0, nan)], [None; 3]);
     let nonsense = Interval::new(1.0, -1.0).unwrap_or(everything);
     for range in [nonsense, Interval::exactly(nan), Interval::exactly(infinity), everything] {
@@ -279,7 +279,7 @@ fn nonsense_says_nothing() {
     ] {
         assert_eq!(told(bad), 0, "{bad:?}");
     }
-    // Extreme numbers are numbers.
+    // Extreme numbers are valid.
     for extreme in [1e-308, 1e-160, 1e160, 1e308] {
         told(TangentBalls { normal: [extreme, -extreme, 0.0], ..balls });
         told(TangentBalls { point: [extreme; 3], ..balls });
@@ -297,7 +297,7 @@ fn nonsense_says_nothing() {
     assert!(matches!(error, Error::Callback { code: 7 }), "{error:?}");
 }
 
-/// Where the gradient says nothing, the nearest point does; the cone contains the normals.
+/// Where the gradient is unknown, the nearest point serves. The cone contains the normals.
 #[test]
 fn one_function_makes_up_for_the_other() {
     let solid = Callback::new(|min, max| Ok(decide(&ball(min, max, middle(min, max)), min, max)))
@@ -316,7 +316,7 @@ fn one_function_makes_up_for_the_other() {
     for x in 0..16 {
         for y in 0..16 {
             let cell = leafless::Cell { level: 4, at: [x, y, 9] };
-            // (Cells that are decided are not asked about.)
+            // (Decided cells are not queried.)
             let (min, max) = leafless::lattice::Cube { frame: &universe(4), cell }.bounds();
             if !matches!(decide(&ball(min, max, middle(min, max)), min, max), Verdict::Partial(())) {
                 continue;

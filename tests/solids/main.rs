@@ -1,4 +1,4 @@
-//! Solids: half-spaces and expressions of them, transforms, volumes, shapes of a host program.
+//! Solids: half-spaces and expressions of them, transforms, volumes, and shapes of a host program.
 
 #[path = "../../fuzz/bodies/csg.rs"]
 mod any_bytes;
@@ -14,5 +14,5 @@ mod moments;
 mod transform;
 mod volume;
 
-// Where the body of the fuzz target expects the model.
+// The path at which the body of the fuzz target expects the model.
 use csg::{model, random};

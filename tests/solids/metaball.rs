@@ -1,5 +1,4 @@
-//! A solid that was made outside of the library: what it says of cells, in exact arithmetic, and how it
-//! converges.
+//! A solid defined outside the library: its cells in exact arithmetic, and its convergence.
 
 use crate::common::exact::Exact;
 use crate::common::slabs::told;
@@ -12,12 +11,12 @@ use std::f64::consts::PI;
 #[path = "../../examples/metaball.rs"]
 mod example;
 
-/// All coordinates of its planes and of points between them are doubles.
+/// A frame in which all coordinates of planes, and of points between them, are doubles.
 fn frame() -> Frame {
     Frame::new([-2.0; 3], 4.0, 20).unwrap()
 }
 
-/// 1 if a point lies in the solid, 0 on its boundary: the sign of Σ rᵢ² / dᵢ² − 1 times all dᵢ².
+/// Returns 1 if a point lies in the solid, 0 on its boundary: the sign of Σ rᵢ² / dᵢ² − 1, times all dᵢ².
 fn sign(balls: &[Ball], p: [f64; 3]) -> i32 {
     let squares: Vec<Exact> = balls
         .iter()
@@ -69,7 +68,7 @@ fn what_it_says_of_cells_is_true() {
             slabs += u32::from(known.is_some());
             for _ in 0..4 {
                 let x = [0; 3].map(|_| random.below(17) as f64 / 8.0 - 1.0);
-                // Slabs speak of the open cell.
+                // Slabs describe the open cell.
                 let x = x.map(|x| x.clamp(-0.96875, 0.96875));
                 let truth = sign(&solid.balls, point(way.cell, x));
                 let said = known.map_or(0, |known| told(&known, x));
@@ -80,7 +79,7 @@ fn what_it_says_of_cells_is_true() {
             if way.cell.level == 20 {
                 let inside = way.worker.sample(way.cell, &way.part).unwrap();
                 let truth = sign(&solid.balls, point(way.cell, [0.0; 3]));
-                // Within rounding of the boundary, doubles cannot tell.
+                // Within rounding of the boundary, doubles do not decide.
                 let near = (plain_sum(&solid.balls, point(way.cell, [0.0; 3])) - 1.0).abs() < 1e-9;
                 assert!(near || inside == Some(truth > 0), "{solid:?} {:?}", way.cell);
                 break;
@@ -100,7 +99,7 @@ fn what_it_says_of_cells_is_true() {
             }
         }
     }
-    // The law is not kept by silence.
+    // Silence is not enough to satisfy the law.
     assert!(
         slabs > 1000 && inner > 1000 && outer > 1000 && decided > 10_000,
         "{slabs} {inner} {outer} {decided}"
@@ -130,8 +129,8 @@ fn slabs_make_it_converge_by_an_order() {
         assert!(a.common(b).is_some(), "{a:?} {b:?}");
     }
     assert!(many > 20 * few, "{many} {few}");
-    // A hundred times as well: a hundred times the splits, where cells alone would take ten thousand times as
-    // many.
+    // A hundred times the precision takes a hundred times the splits, where cells alone would take ten
+    // thousand times as many.
     assert!(more < 400 * few, "{more} {few}");
     let sampled =
         build(&three_balls(Step::Slabs), &frame().with_depth(7).unwrap(), Rule::Sampled, &Control::default());

@@ -1,4 +1,4 @@
-//! What solids say of the moments of a cell, against what they say of cells far smaller.
+//! The moments that solids provide for a cell, against those of far smaller cells.
 
 use crate::common::{Random, Way, alone, lattice_frame};
 use crate::model::Model;
@@ -8,11 +8,11 @@ use leafless::lattice::{CellMoments, CubeMoments, MAX_DEPTH};
 use leafless::solid::Ask;
 use leafless::{Cell, Classifier, Csg, Frame, Solid, SurfaceOptions, Verdict, Worker, build_extended};
 
-/// The order of second moments.
+/// Index pairs of the second moments, in order.
 const PAIRS: [(usize, usize); 6] = [(0, 0), (1, 1), (2, 2), (0, 1), (0, 2), (1, 2)];
 
-/// 1, x, y, z and the second moments, with the greatest error, and the volume in cells of which nothing is
-/// known.
+/// Moments (1, x, y, z and the second moments), with the greatest error, including the volume of unknown
+/// cells.
 #[derive(Debug, Clone, Copy)]
 struct Sum {
     moments: [f64; 10],
@@ -25,7 +25,7 @@ impl Sum {
         Sum { moments: [moments.volume, x, y, z, a, b, c, d, e, f], error }
     }
 
-    /// Adds what is known of a child.
+    /// Adds the moments of a child.
     fn add(&mut self, octant: u8, child: &Sum) {
         let at = [0, 1, 2].map(|axis| (octant >> axis & 1) as f64 - 0.5);
         let [volume, first @ .., _, _, _, _, _, _] = child.moments;
@@ -42,8 +42,8 @@ impl Sum {
     }
 }
 
-/// The moments of a cell from cells some levels below: those that are decided, those that know their moments,
-/// and others, of which any part may be solid.
+/// Returns the moments of a cell from cells some levels below: decided cells, cells with known moments, and
+/// unknown cells, of which any part may be solid.
 fn below<W: Worker>(worker: &mut W, cell: Cell, part: &W::Part, levels: u32, fine: bool) -> Sum {
     let any = || {
         let mut half = Sum::of(&CubeMoments::FULL, 4.0);
@@ -63,7 +63,7 @@ fn below<W: Worker>(worker: &mut W, cell: Cell, part: &W::Part, levels: u32, fin
         let child = match verdict {
             Verdict::Empty => continue,
             Verdict::Full => Sum::of(&CubeMoments::FULL, 0.0),
-            // Of an extended tree, a cell that was given up.
+            // A cell of an extended tree that was given up.
             Verdict::Undecided => any(),
             Verdict::Partial(part) => below(worker, cell.child(octant), &part, levels - 1, fine),
         };
@@ -73,24 +73,24 @@ fn below<W: Worker>(worker: &mut W, cell: Cell, part: &W::Part, levels: u32, fin
     sum
 }
 
-/// The greatest difference.
+/// Returns the greatest difference.
 fn difference(a: &Sum, b: &Sum) -> f64 {
     (0..10).fold(0.0, |most, i| most.max((a.moments[i] - b.moments[i]).abs()))
 }
 
-/// Cells that were asked, those whose moments were known, and those of which the cells below know far more.
+/// Numbers of queried cells, of cells with known moments, and of cells whose descendants know far more.
 #[derive(Debug, Default)]
 struct Found {
     asked: u64,
     known: u64,
     strong: u64,
-    /// Of planes alone the moments are known to rounding.
+    /// Number of cells with planes only, whose moments are known up to rounding.
     exact: u64,
-    /// The greatest difference as a share of the error, of strong ones.
+    /// Greatest ratio of difference to error bound, over the strong cells.
     most: f64,
 }
 
-/// A solid and its complement.
+/// Checks a solid and its complement along a descent.
 fn walk<S: Solid>(
     model: &Model,
     frame: &Frame,
@@ -136,14 +136,14 @@ fn walk<S: Solid>(
     }
 }
 
-/// Random solids made by `make`, until `wanted` cells know their moments.
+/// Checks random solids made by `make`, until `wanted` cells have known moments.
 fn hold(name: &str, wanted: u64, make: impl Fn(&mut Maker<'_>) -> Model) {
     for extended in [false, true] {
         hold_as(name, wanted, extended, &make);
     }
 }
 
-/// Expressions, or extended trees of them.
+/// The same for expressions, or for extended trees of them.
 fn hold_as(name: &str, wanted: u64, extended: bool, make: impl Fn(&mut Maker<'_>) -> Model) {
     let mut found = Found::default();
     for seed in 0.. {
@@ -160,7 +160,7 @@ fn hold_as(name: &str, wanted: u64, extended: bool, make: impl Fn(&mut Maker<'_>
         let aligned = random.below(3) == 0;
         let mut maker = Maker { random: &mut random, frame, aligned, others: false };
         let model = make(&mut maker);
-        // What the ranges of arguments do not admit.
+        // The library refuses arguments out of range.
         let Ok(csg) = model.csg(&frame) else { continue };
         if extended {
             let tree = |csg: &Csg| {
@@ -177,7 +177,7 @@ fn hold_as(name: &str, wanted: u64, extended: bool, make: impl Fn(&mut Maker<'_>
     assert!(found.strong + found.exact > wanted / 4, "{name}: {found:?}");
 }
 
-/// A curved half-space with one or two planes.
+/// A curved half-space cut by one or two planes.
 fn cut(maker: &mut Maker<'_>) -> Model {
     let mixed = maker.below(2) == 0;
     let mut model = match maker.below(4) {

@@ -14,7 +14,7 @@ use leafless::{
 use proptest::prelude::*;
 use std::f64::consts::PI;
 
-/// A box under a map, exactly.
+/// The exact image of a box under a map.
 struct Placed {
     rows: [[Exact; 4]; 3],
     min: [f64; 3],
@@ -60,7 +60,7 @@ impl Placed {
             .collect()
     }
 
-    /// Whether a point lies in the box or on it: by Cramer's rule, without a division.
+    /// True if a point lies in the box or on it, by Cramer's rule without a division.
     fn contains(&self, point: &Vector) -> bool {
         let [a, b, c] = [self.column(0), self.column(1), self.column(2)];
         let determinant = dot(&a, &cross(&b, &c));
@@ -74,7 +74,7 @@ impl Placed {
         })
     }
 
-    /// Whether a plane lies between the box and these corners of a cube.
+    /// True if a plane separates the box from these corners of a cube.
     fn is_apart(&self, cube: &[Vector]) -> bool {
         let own = self.corners();
         let columns = [0, 1, 2].map(|j| self.column(j));
@@ -93,7 +93,7 @@ impl Placed {
         })
     }
 
-    /// Whether what is said of a cell is true.
+    /// True if a cell's tag agrees with the box.
     fn agrees(&self, frame: &Frame, at: [u32; 3], tag: Tag) -> bool {
         let corners: Vec<Vector> = (0..8u32)
             .map(|k| [0, 1, 2].map(|axis| Exact::plane(frame, axis, at[axis] + (k >> axis & 1))))
@@ -106,7 +106,7 @@ impl Placed {
     }
 }
 
-/// Maps that are anything, and maps of short numbers, under which faces meet lattice planes.
+/// Arbitrary maps, and maps of short numbers that take faces to lattice planes.
 fn placement(random: &mut Random) -> Affine {
     const TURNS: [[[f64; 3]; 3]; 4] = [
         [[0.6, -0.8, 0.0], [0.8, 0.6, 0.0], [0.0, 0.0, 1.0]],
@@ -214,7 +214,7 @@ fn volumes_contain_the_truth_and_close_in_on_it() {
     }
 }
 
-/// A map of the lattice onto itself: where cell `at` of a universe of 2^depth cells comes from, times
+/// A map of the lattice onto itself. It gives the source of cell `at` of a universe of 2^depth cells, times
 /// 2^scale.
 #[derive(Debug, Clone, Copy)]
 struct Move {
@@ -243,7 +243,7 @@ impl Move {
         .unwrap()
     }
 
-    /// The range of source coordinates, in quarters of a cell, of the cell at `at`.
+    /// Returns the range of source coordinates of the cell at `at`, in quarters of a cell.
     fn source(&self, at: [u32; 3]) -> [(i64, i64); 3] {
         let mut ranges = [(0, 0); 3];
         for i in 0..3 {
@@ -256,7 +256,8 @@ impl Move {
         ranges
     }
 
-    /// What a dense array becomes: undecided is only what touches cells that differ, or that are undecided.
+    /// Returns the image of a dense array. A cell is undecided only if it touches cells that differ or that
+    /// are undecided.
     fn apply(&self, dense: &Dense, exterior: Tag) -> Dense {
         Dense::from_fn(dense.depth, |at| {
             let ranges = self.source(at).map(|(low, high)| (low.div_euclid(4), (high + 3).div_euclid(4)));
@@ -294,7 +295,7 @@ proptest! {
 
     #[test]
     fn centres_are_where_they_were(shape in shapes(1..=4), seed: u64) {
-        // Binary trees: every centre can be decided, also one that a map puts onto a face.
+        // Binary trees: every centre can be decided, even if a map takes it onto a face.
         let dense = shape.dense().resolved(Tag::Full);
         let tree = dense.octree();
         let frame = lattice_frame(dense.depth);
@@ -304,8 +305,8 @@ proptest! {
             let moved = build(&Transform::new(&tree, &frame, &step.affine()), &frame, Rule::Sampled, &alone()).unwrap();
             let expected = Dense::from_fn(dense.depth, |at| {
                 let ranges = step.source(at);
-                // The middle, in eighths; on a plane it goes the way of the shift, which the signs may turn
-                // round.
+                // The middle, in eighths. On a plane it goes with the shift, whose direction the signs may
+                // reverse.
                 let middle = [0, 1, 2].map(|axis| ranges[axis].0 + ranges[axis].1);
                 let cell = [0, 1, 2].map(|axis| {
                     let sign = (0..3).find(|&i| step.axes[i] == axis).map(|i| step.signs[i]).unwrap();
@@ -330,11 +331,11 @@ fn an_offset_of_whole_cells_keeps_the_centres_of_any_solid() {
     let stored = build(&Transform::new(&tree, &own, &placement), &own, Rule::Certified, &alone()).unwrap();
     assert_eq!(Dense::of(moved.view()), Dense::of(stored.view()));
     assert_eq!(moved.statistics().volume(), tree.statistics().volume());
-    // A turned ball cannot tell.
+    // A rotated ball is undecided.
     let turn = Affine::new([[0.6, -0.8, 0.0, 0.0], [0.8, 0.6, 0.0, 0.0], [0.0, 0.0, 1.0, 0.0]]).unwrap();
     let solid = Transform::new(ball, &own, &turn);
     assert!(matches!(build(&solid, &own, Rule::Sampled, &alone()), Err(Error::NotSampled)));
-    // A turned octree without undecided cells can.
+    // A rotated octree without undecided cells decides.
     let solid = Transform::new(&tree, &own, &turn);
     let turned = build(&solid, &own, Rule::Sampled, &alone()).unwrap();
     let (before, after) = (tree.statistics().volume(), turned.statistics().volume());
@@ -365,7 +366,7 @@ fn threads_and_erasure_change_nothing() {
 fn what_lies_outside_of_the_own_universe_is_known_as_the_solid_tells() {
     let own = Frame::new([0.0; 3], 1.0, 4).unwrap();
     let frame = Frame::new([-2.0; 3], 4.0, 4).unwrap();
-    // A half-space goes on outside, which nobody knows there.
+    // A half-space continues outside, where nothing is known.
     let half = Csg::half_space([1.0, 0.0, 0.0], -0.5).unwrap();
     let tree =
         build(&Transform::new(half, &own, &Affine::IDENTITY), &frame, Rule::Certified, &alone()).unwrap();
@@ -379,7 +380,7 @@ fn what_lies_outside_of_the_own_universe_is_known_as_the_solid_tells() {
         build(&Transform::new(&cube, &own, &Affine::IDENTITY), &frame, Rule::Certified, &alone()).unwrap();
     assert_eq!(tree.statistics().volume(), leafless::Interval::exactly(0.125));
     assert_eq!(tree.view().exterior(), Tag::Empty);
-    // What sticks out of the frame is clipped by it.
+    // The frame clips the parts that stick out.
     let away = Affine::translation([1.5, 0.0, 0.0]).unwrap();
     let tree = build(&Transform::new(&cube, &own, &away), &frame, Rule::Certified, &alone()).unwrap();
     assert_eq!(tree.view().exterior(), Tag::Partial);
@@ -405,8 +406,8 @@ fn extreme_numbers_prove_nothing_wrong() {
     }
 }
 
-/// The universe's inverse image began beyond the numbers that a frame may have, and the error named an origin
-/// that nobody had given.
+/// The inverse image of the universe began beyond the numbers that a frame may have. The error once named an
+/// origin that no caller had given.
 #[test]
 fn a_universe_at_the_end_of_all_numbers_is_refused_for_the_placement() {
     let frame = Frame::new([-1.0, 2f64.powi(256), 2.5], 2f64.powi(-20), 1).unwrap();
@@ -417,7 +418,8 @@ fn a_universe_at_the_end_of_all_numbers_is_refused_for_the_placement() {
     assert!(matches!(found, Err(Error::Argument { name: "placement", .. })), "{:?}", found.err());
 }
 
-/// Rounding errors of thousands of cells took all memory: each cell that a centre may be in was gathered.
+/// Gathering each cell that may contain a centre once took all memory, because rounding errors spanned
+/// thousands of cells.
 #[test]
 fn cells_far_smaller_than_rounding_errors_are_not_gathered() {
     let own = Frame::new([-2.0; 3], 4.0, 20).unwrap();
@@ -457,7 +459,7 @@ fn centres_on_the_faces_of_the_own_universe_are_decided() {
     let own = Frame::new([0.0; 3], 1.0, 4).unwrap();
     let cube = Csg::cuboid([0.0; 3], [1.0; 3]).unwrap();
     let mirror = Affine::new([[-1.0, 0.0, 0.0, 1.0], [0.0, -1.0, 0.0, 1.0], [0.0, 0.0, 1.0, 0.0]]).unwrap();
-    // All the cells at the cube's surface have their centres on it.
+    // All cells at the cube's surface have their centres on it.
     let frame = Frame::new([-0.5625; 3], 2.0, 4).unwrap();
     for placement in [Affine::IDENTITY, mirror] {
         let tree = build(&Transform::new(&cube, &own, &placement), &frame, Rule::Sampled, &alone()).unwrap();
@@ -472,7 +474,7 @@ fn part() -> Csg {
     block.difference(&Csg::ball([0.4, 0.3, 0.2], 0.3).unwrap()).unwrap()
 }
 
-/// How many cells told of which: enclosures, moments, areas and crossings.
+/// Numbers of cells that provide enclosures, moments, areas and crossings.
 type Told = [u32; 4];
 
 #[test]
@@ -485,7 +487,7 @@ fn maps_of_the_lattice_hand_on_exactly_what_is_known_of_cells() {
     assert!(told.iter().all(|&told| told > 50), "{told:?}");
 }
 
-/// Walks down both ways at once: from cells to the cells of which they are the images.
+/// Descends a moved and an unmoved solid together, from cells to the cells whose images they are.
 fn handed_on<S: Solid + Clone>(solid: &S) -> Told {
     let mut told = [0; 4];
     let frame = Frame::new([-1.0; 3], 2.0, 5).unwrap();
@@ -502,7 +504,7 @@ fn handed_on<S: Solid + Clone>(solid: &S) -> Told {
         else {
             panic!("decided");
         };
-        // Where a child goes by the inverse of the map.
+        // The child that the inverse of the map gives.
         let source = |cell: Cell| {
             let last = (1i64 << cell.level) - 1;
             let at = [0, 1, 2].map(|j| {
@@ -541,7 +543,7 @@ fn handed_on<S: Solid + Clone>(solid: &S) -> Told {
             let known = inner.area(source(cell), &b).unwrap();
             told[2] += known.is_some() as u32;
             assert_eq!(outer.area(cell, &a).unwrap(), known, "{cell:?}");
-            // Along the diagonals of the cell, whose ends are doubles.
+            // Along the diagonals of the cell. The ends are doubles.
             let (min, max) = Cube { frame: &frame, cell }.bounds();
             for k in 0..4 {
                 let end =
@@ -598,7 +600,7 @@ fn measures_of_what_is_moved_converge_with_the_number_of_splits() {
     }
 }
 
-/// Octrees of samples, sampled again on lattices that are turned, coarser and finer.
+/// Octrees of samples, sampled again on rotated, coarser and finer lattices.
 #[test]
 fn nearest_cells_decide_every_centre() {
     let frame = lattice_frame(6);
@@ -626,7 +628,7 @@ fn nearest_cells_decide_every_centre() {
             assert!(moved.view().is_binary() && !moved.proof().full && !moved.proof().empty);
             let found = moved.statistics().volume().lower;
             assert!((found / volume - 1.0).abs() < 0.03, "{placement:?} {depth}: {found} {volume}");
-            // Where the plain transform tells, both tell the same.
+            // Where the plain transform decides, both give the same.
             match build(&plain, &onto, Rule::Sampled, &control) {
                 Ok(same) => assert_eq!(same, moved),
                 Err(error) => assert!(matches!(error, Error::NotSampled), "{error}"),
@@ -636,7 +638,7 @@ fn nearest_cells_decide_every_centre() {
             assert_eq!(certified(&nearest), certified(&plain));
         }
     }
-    // What failed: a lattice twice as coarse under a map that rounds.
+    // A failed case: a lattice twice as coarse under a map that rounds.
     let coarse = frame.with_depth(5).unwrap();
     let refused = build(&Transform::of(tree.clone(), &turned), &coarse, Rule::Sampled, &control);
     assert!(matches!(refused, Err(Error::NotSampled)));
@@ -646,7 +648,7 @@ fn nearest_cells_decide_every_centre() {
     assert!(matches!(build(&nearest, &coarse, Rule::Sampled, &control), Err(Error::NotSampled)));
 }
 
-/// Each centre by the cell that holds its inverse image, looked up one by one.
+/// Compares each centre with the cell that contains its inverse image, looked up one by one.
 #[test]
 fn nearest_cells_are_those_that_hold_the_inverse_image() {
     let own = Frame::new([0.0; 3], 8.0, 4).unwrap();
@@ -662,7 +664,7 @@ fn nearest_cells_are_those_that_hold_the_inverse_image() {
         let cell = [i & 15, i >> 4 & 15, i >> 8];
         let centre = [0, 1, 2].map(|axis| onto.origin()[axis] + f64::from(cell[axis]) + 0.5);
         let image = back.apply(centre);
-        // Of what lies in a plane of the lattice rounding decides.
+        // Rounding decides images in planes of the lattice.
         if image.iter().any(|x| (2.0 * x - (2.0 * x).round()).abs() < 1e-9) {
             continue;
         }

@@ -11,8 +11,8 @@ use leafless::{
 use std::sync::Arc;
 use std::sync::atomic::AtomicBool;
 
-/// For each plane of half cells of an axis: how many planes between voxels lie below or on it, and how many
-/// below. In exact arithmetic.
+/// Exact counts for each plane of half cells along an axis: the planes between voxels below or on it, and
+/// those below it.
 struct Oracle<'s> {
     sampled: &'s Sampled,
     band: Band,
@@ -39,11 +39,11 @@ impl<'s> Oracle<'s> {
         Oracle { sampled, band, frame: *frame, planes }
     }
 
-    /// The best verdict.
+    /// Returns the best possible verdict.
     fn tag(&self, cell: Cell) -> Tag {
         let shift = 1 + self.frame.depth() - cell.level;
-        // Voxel j lies between planes j and j + 1, here counted on by one: 0 is all below, n + 1 all above
-        // the grid.
+        // Voxel j lies between planes j and j + 1. The count here is one higher: 0 is below the grid, n + 1
+        // above it.
         let range = |axis: usize| {
             let [from, to] =
                 [cell.at[axis], cell.at[axis] + 1].map(|a| self.planes[axis][(a << shift) as usize]);
@@ -66,14 +66,14 @@ impl<'s> Oracle<'s> {
         }
     }
 
-    /// Whether a centre is inside, shifted upward.
+    /// True if a centre, shifted upward, is inside.
     fn sample(&self, at: [u32; 3]) -> bool {
         let voxel = [0, 1, 2].map(|axis| self.planes[axis][2 * at[axis] as usize + 1][0].wrapping_sub(1));
         self.sampled.contains(&self.band, voxel)
     }
 }
 
-/// Frames over a grid: the one that it offers and others on its lattice, and such as lie anyhow.
+/// Frames over a grid: its own frame, others on its lattice, and frames at arbitrary places.
 fn frames(random: &mut Random, grid: &VoxelGrid) -> Vec<Frame> {
     let mut frames = Vec::new();
     if let Ok(own) = grid.frame() {
@@ -97,7 +97,7 @@ fn frames(random: &mut Random, grid: &VoxelGrid) -> Vec<Frame> {
     frames
 }
 
-/// All that the worker says, at all levels, in both forms.
+/// Checks all verdicts of the worker, at all levels, in both forms.
 fn check_verdicts(volume: &Volume<'_>, oracle: &Oracle<'_>) {
     let classifier = volume.on(&oracle.frame, &alone()).unwrap();
     let mut worker = classifier.worker().unwrap();
@@ -183,7 +183,7 @@ fn long_and_flat_volumes() {
     }
 }
 
-/// The centre rule on the volume's own frame is the bitmap, and nothing is left open.
+/// The centre rule on the volume's own frame gives the bitmap, and no cell is open.
 #[test]
 fn own_frames_have_the_bitmap() {
     let mut random = Random(18);
@@ -191,7 +191,7 @@ fn own_frames_have_the_bitmap() {
         let extents = extents(&mut random, 70);
         let sampled = Sampled::random(&mut random, extents, round % KINDS);
         let band = sampled.band(&mut random);
-        // Corners that are multiples of nothing.
+        // Corners that are not multiples of the spacing.
         let grid = VoxelGrid::with_first_sample(extents, [0.1, 0.7, -3.3], [0.3; 3]).unwrap();
         let volume = Volume::new(sampled.samples(), &grid, band, &Control::default()).unwrap();
         let frame = grid.frame().unwrap();
@@ -267,7 +267,7 @@ fn the_complement_and_solids_made_of_volumes() {
         let tree = build(&volume, &frame, Rule::Sampled, &alone()).unwrap();
         let expected = complement(tree.view(), &alone()).unwrap();
         assert_eq!(inverse.statistics(), expected.statistics());
-        // Cut by a plane, on a frame that has neither.
+        // Cut by a plane, on a frame that belongs to neither.
         let half = Csg::half_space([1.0, 2.0, 0.5], 0.75).unwrap();
         let cut = Csg::intersection_of([solid, half]).unwrap();
         let other = Frame::around([-3.0; 3], [3.25; 3], 5).unwrap();
@@ -310,7 +310,7 @@ fn points() {
     }
 }
 
-/// Where the frame lies so far from the grid's corner that doubles cannot tell voxels apart.
+/// A frame so far from the grid's corner that doubles cannot distinguish voxels.
 #[test]
 fn far_away() {
     for corner in [1e16, -3e17, 1e22] {
@@ -358,7 +358,7 @@ fn interpolation_and_crossings() {
                 assert_eq!(t, 0.5);
                 continue;
             }
-            // The field has the end of the band there.
+            // The field reaches the end of the band there.
             let between = a + t * (b - a);
             let end = if (between - band.low()).abs() < (between - band.high()).abs() {
                 band.low()
@@ -419,7 +419,7 @@ fn fingerprints() {
     for (i, a) in all.iter().enumerate() {
         assert!(all.iter().skip(i + 1).all(|b| a != b), "{i}");
     }
-    // Bands that the kind of samples cannot tell apart.
+    // Bands that this kind of samples cannot distinguish.
     let [a, b] = [0.5, 1.0].map(|low| of(vec![1u8; 280].into(), &grid, Band::at_least(low).unwrap()));
     assert_eq!(a, b);
 }
@@ -478,7 +478,7 @@ fn what_is_refused() {
     assert_eq!(tree.statistics().volume().lower, f64::from(1 << 20));
 }
 
-/// A part as a tomograph sees it: noise, a casting with bores and a pore, in Hounsfield units.
+/// A part as in a tomograph: noise, a casting with bores and a pore, in Hounsfield units.
 #[test]
 fn a_scanned_part() {
     let extents = [96, 80, 64];
@@ -512,7 +512,7 @@ fn a_scanned_part() {
         (found.lower - exact).abs() < 1e-9 * exact && (found.upper - exact).abs() < 1e-9 * exact,
         "{found:?}"
     );
-    // Turned about an axis that is none of the lattice's, its bounds are still certain.
+    // Rotated about an axis that is no axis of the lattice, the solid still has certain bounds.
     let turned =
         leafless::Affine::new([[0.8, -0.6, 0.0, 3.0], [0.6, 0.8, 0.0, 2.0], [0.0, 0.0, 1.0, 2.0]]).unwrap();
     let moved = AnySolid::new(volume).placed(&turned).unwrap();

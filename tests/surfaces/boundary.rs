@@ -1,4 +1,4 @@
-//! Boundaries of solids that know their surfaces.
+//! Boundaries of solids that provide their surfaces.
 
 use crate::common::surfaces::euler_of_manifold;
 use crate::common::{Random, alone, repeated};
@@ -17,7 +17,7 @@ pub fn of<S: Solid>(solid: &S, depth: u8, tolerance: f64) -> Boundary {
     boundary(solid, &frame, tolerance, &alone()).unwrap()
 }
 
-/// Each edge has two triangles, which run along it in opposite directions.
+/// Asserts that each edge has two triangles, which use it in opposite directions.
 pub fn assert_manifold(mesh: &TriangleMesh, text: &str) {
     let mut edges: BTreeMap<(u32, u32), u32> = BTreeMap::new();
     for triangle in mesh.triangles() {
@@ -39,20 +39,21 @@ pub fn plate() -> Csg {
     Csg::cuboid([0.0; 3], [80.0, 60.0, 10.0]).unwrap().difference(&bore).unwrap()
 }
 
-/// How far a point is from the boundary of the plate with its bore: the least of the ways to its seven faces.
+/// Returns the distance of a point from the boundary of the plate with its bore: the least distance from its
+/// seven faces.
 fn away_from_plate([x, y, z]: [f64; 3]) -> f64 {
     let beside = |c: f64, most: f64| (-c).max(c - most).max(0.0);
     let away = |a: f64, b: f64, c: f64| a.hypot(b).hypot(c);
     let (bx, by, bz) = (beside(x, 80.0), beside(y, 60.0), beside(z, 10.0));
     let radius = (x - 40.0).hypot(y - 30.0);
-    // (The two faces with a hole: a place in the hole is nearest to its rim.)
+    // (For the two faces with a hole, the nearest point of a place in the hole is on the rim.)
     let plane = if radius < 5.0 { 5.0 - radius } else { bx.hypot(by) };
     let sides = [away(x.abs().min((x - 80.0).abs()), by, bz), away(y.abs().min((y - 60.0).abs()), bx, bz)];
     let ends = plane.hypot(z.abs().min((z - 10.0).abs()));
     sides.into_iter().fold((radius - 5.0).hypot(bz).min(ends), f64::min)
 }
 
-/// A point of the boundary of the plate: as many in each of the seven faces.
+/// A random point of the plate's boundary. The seven faces are equally likely.
 fn point_of_plate(random: &mut Random) -> [f64; 3] {
     let mut point = [80.0, 60.0, 10.0].map(|most| random.between(0.0, most));
     match random.below(7) {
@@ -66,7 +67,7 @@ fn point_of_plate(random: &mut Random) -> [f64; 3] {
             let (x, y) = (point[0] - 40.0, point[1] - 30.0);
             let radius = x.hypot(y);
             if axis == 2 && radius < 5.0 {
-                // What falls into the hole comes to lie around it.
+                // Points in the hole are moved out around it.
                 (point[0], point[1]) = (40.0 + x * 10.0 / radius - x, 30.0 + y * 10.0 / radius - y);
             }
         }
@@ -74,7 +75,7 @@ fn point_of_plate(random: &mut Random) -> [f64; 3] {
     point
 }
 
-/// What is proven of the plate holds at so many points of the mesh, and at as many of the boundary.
+/// Checks the proven deviation of the plate at `samples` points of the mesh, and at as many of the boundary.
 fn check_plate(shares: &[f64], samples: usize) {
     for share in shares {
         let tolerance = 80.0 * share;
@@ -93,7 +94,7 @@ fn check_plate(shares: &[f64], samples: usize) {
             inward = inward.max(away_from_mesh(point_of_plate(&mut random), mesh));
         }
         let most = outward.max(inward);
-        // (Next to what is the case: samples come near the worst point.)
+        // (The proven deviation is close to the real one: samples come near the worst point.)
         assert!(most <= proven && proven <= 1.5 * most, "{share}: {outward} {inward} {proven}");
     }
 }
@@ -110,7 +111,7 @@ fn samples_of_the_plate() {
     check_plate(&[1e-3, 1e-4], 4000);
 }
 
-/// A box has eight vertices, which are its corners to the last digits, however it lies.
+/// A box has eight vertices. They are its corners to the last digits, in any orientation.
 #[test]
 fn boxes_have_twelve_triangles() {
     let (low, high) = ([0.0, -1.0, 2.5], [10.0, 20.0, 32.0]);
@@ -135,7 +136,7 @@ fn boxes_have_twelve_triangles() {
     }
 }
 
-/// How far a point is from a triangle.
+/// Returns the distance of a point from a triangle.
 fn away_from_triangle(p: [f64; 3], [a, b, c]: [[f64; 3]; 3]) -> f64 {
     let minus = |p: [f64; 3], q: [f64; 3]| [0, 1, 2].map(|k| p[k] - q[k]);
     let dot = |p: [f64; 3], q: [f64; 3]| p[0] * q[0] + p[1] * q[1] + p[2] * q[2];
@@ -165,8 +166,7 @@ pub fn away_from_mesh(p: [f64; 3], mesh: &TriangleMesh) -> f64 {
         .fold(f64::INFINITY, f64::min)
 }
 
-/// What is said to be proven of a mesh holds for points of the mesh, and for points of the boundary that rays
-/// find.
+/// Checks the proven deviation of a mesh at points of the mesh, and at points of the boundary that rays find.
 pub fn assert_deviation(solid: &Csg, found: &Boundary, random: &mut Random, text: &str) {
     let (mesh, most) = (found.mesh(), found.report().deviation);
     if mesh.triangles().is_empty() {
@@ -210,7 +210,7 @@ pub fn assert_deviation(solid: &Csg, found: &Boundary, random: &mut Random, text
     }
 }
 
-/// The plate with one bore: few triangles, sharp edges, and what is proven of the deviation.
+/// The plate with one bore: few triangles, sharp edges, and the proven deviation.
 #[test]
 fn a_plate_with_a_bore() {
     for (share, most) in [(1e-3, 500), (1e-4, 1500), (1e-5, 5000)] {
@@ -235,7 +235,7 @@ fn a_plate_with_a_bore() {
     assert!(found.distance().upper <= 1.1 * tolerance, "{found:?}");
 }
 
-/// Solids of which the number of triangles, the genus and the volume are known.
+/// Solids with a known number of triangles, genus and volume.
 #[test]
 fn known_solids() {
     let cube = |x: f64, y: f64, z: f64| Csg::cuboid([x, y, z], [x + 1.0, y + 1.0, z + 1.0]).unwrap();
@@ -264,7 +264,7 @@ fn known_solids() {
     }
 }
 
-/// Curved solids: closed, without intersections, and as exact as they should be.
+/// Curved solids: closed, without intersections, and within the tolerance.
 #[test]
 fn curved_solids() {
     let crossed = Csg::cylinder(4.0, -9.0, 9.0).unwrap().placed(&turn()).unwrap();
@@ -329,7 +329,7 @@ fn primitive(random: &mut Random) -> Csg {
     shape.unwrap().placed(&Affine::new(rows).unwrap()).unwrap()
 }
 
-/// Two to five primitives.
+/// A random scene of two to five primitives.
 pub fn random_scene(random: &mut Random) -> Csg {
     let mut solid = primitive(random);
     for _ in 0..1 + random.below(4) {
@@ -343,7 +343,7 @@ pub fn random_scene(random: &mut Random) -> Csg {
     solid
 }
 
-/// Scenes of two to five primitives: closed, manifold, no intersecting pair, and the volume.
+/// Scenes of two to five primitives: closed, manifold, without intersecting pairs, and with the right volume.
 #[test]
 fn random_scenes() {
     check_scenes(0..repeated(3, 8));
@@ -368,7 +368,7 @@ fn check_scenes(scenes: std::ops::Range<usize>) {
         assert_manifold(mesh, &format!("scene {scene}"));
         assert_eq!(found.report().intersecting_pairs, 0, "scene {scene}");
         let proven = found.report().deviation;
-        // (Where surfaces nearly touch, more cells would be needed than are split for the proof.)
+        // (Where surfaces nearly touch, the proof would need more cells than the search splits.)
         beyond += usize::from(proven > tolerance);
         let is_empty = mesh.triangles().is_empty();
         assert!(proven <= 10.0 * tolerance || is_empty, "scene {scene}: {proven} of {tolerance}");
@@ -378,7 +378,7 @@ fn check_scenes(scenes: std::ops::Range<usize>) {
         let slack = tolerance * mesh.area() + 1e-9;
         let within = volume.lower - slack <= mesh.volume() && mesh.volume() <= volume.upper + slack;
         assert!(within, "scene {scene}: {} {volume:?}", mesh.volume());
-        // On both sides of each triangle is what should be there.
+        // Points on both sides of each triangle have the right membership.
         for triangle in mesh.triangles().iter().step_by(7) {
             let [a, b, c] = triangle.map(|v| mesh.vertices()[v as usize]);
             let (p, q) = ([0, 1, 2].map(|k| b[k] - a[k]), [0, 1, 2].map(|k| c[k] - a[k]));
@@ -390,7 +390,7 @@ fn check_scenes(scenes: std::ops::Range<usize>) {
             let at = |side: f64| {
                 [0, 1, 2].map(|k| (a[k] + b[k] + c[k]) / 3.0 + side * 1.5 * tolerance * normal[k] / size)
             };
-            // (Walls may be thinner than that: one of the sides is enough.)
+            // (Walls may be thinner than that. Then one of the sides is enough.)
             let points = [at(1.0), at(-1.0)];
             let mut sides = [Membership::Undecided; 2];
             contains(&solid, &frame, &points, &mut sides, &alone()).unwrap();
@@ -401,8 +401,8 @@ fn check_scenes(scenes: std::ops::Range<usize>) {
     assert!(beyond <= 1 + scenes.len() / 20, "{beyond}");
 }
 
-/// An octree that keeps its surfaces has the boundary of its source, also where faces lie in planes of its
-/// lattice.
+/// An octree that keeps its surfaces has its source's boundary, also where faces lie in planes of the
+/// octree's lattice.
 #[test]
 fn stored_octrees() {
     let frame = Frame::new([-10.0, -10.0, -20.0], 120.0, 9).unwrap();
@@ -432,7 +432,7 @@ fn threads() {
     assert_eq!(one.mesh().vertices(), other.mesh().vertices());
 }
 
-/// A stored octree with a cut of which no surface tells does not take minutes.
+/// A stored octree with a cut that no surface explains does not take minutes.
 #[test]
 fn an_octree_with_a_shared_cut() {
     let path = concat!(env!("CARGO_MANIFEST_DIR"), "/format_spec/vectors/valid/cut-shared.lfl");
@@ -458,7 +458,7 @@ fn refusals() {
     let cancelled = std::sync::atomic::AtomicBool::new(true);
     let control = Control { cancel: Some(&cancelled), ..alone() };
     assert!(matches!(boundary(&ball, &frame, 1e-3, &control), Err(Error::Cancelled)));
-    // A mesh with a bore: most of the boundary is none of a surface.
+    // A mesh with a bore. Most of its boundary belongs to no surface.
     let block = of(&Csg::cuboid([-0.4; 3], [0.4; 3]).unwrap(), 8, 0.01).into_mesh();
     let mesh = AnySolid::new(MeshSolid::new(block, FillRule::NonZero).unwrap());
     let mixed = Csg::solid(mesh).difference(&Csg::cylinder(0.1, -1.0, 1.0).unwrap()).unwrap();
@@ -469,13 +469,13 @@ fn refusals() {
         "{:?}",
         refused.map(|found| *found.report())
     );
-    // Solids of which no surfaces are known.
+    // Solids without known surfaces.
     let tree: Octree = build(&ball, &frame, Rule::Certified, &alone()).unwrap();
     assert!(matches!(boundary(&tree, &frame, 0.1, &alone()), Err(Error::Argument { name: "solid", .. })));
 }
 
-/// The boundary of a closed mesh is that mesh, with fewer triangles; what lies inside of another body is none
-/// of it.
+/// The boundary of a closed mesh is the mesh itself, with fewer triangles. Parts inside another body do not
+/// belong to it.
 #[test]
 fn meshes() {
     let frame = Frame::new([-1.0; 3], 2.0, 8).unwrap();
@@ -501,8 +501,8 @@ fn meshes() {
     assert!((0.001..0.0011).contains(&found.report().deviation), "{:?}", found.report());
 }
 
-/// A turned part whose surfaces meet three at a time in circles: a chamfer on a round, a countersink in a
-/// bore, a counterbore, on a flange with four holes.
+/// A lathe-turned part whose surfaces meet three at a time in circles: a chamfer on a round, a countersink in
+/// a bore, a counterbore, on a flange with four holes.
 fn turned_part() -> Csg {
     let about = |x: f64, y: f64, radii: [f64; 2], low: f64, high: f64| {
         Csg::frustum_between([x, y, low], [x, y, high], radii).unwrap()
@@ -524,7 +524,7 @@ fn turned_part() -> Csg {
     Csg::union_of(body).unwrap().difference(&Csg::union_of(tools).unwrap()).unwrap()
 }
 
-/// How far a point is from each of its surfaces.
+/// Returns the distances of a point from each of its surfaces.
 fn away_from_turned_part([x, y, z]: [f64; 3]) -> Vec<f64> {
     let (r, slope) = (x.hypot(y), 0.5f64.sqrt());
     let hole = (x.abs() - 24.0).hypot(y.abs() - 24.0) - 3.0;
@@ -563,7 +563,7 @@ fn sharp_edges_of_a_turned_part() {
             away.sort_by(f64::total_cmp);
             assert!(away[1] <= 1e-9 * length, "{vertex:?}: {away:?}");
         }
-        // Each circle is there.
+        // Each circle exists.
         for (radius, z) in [
             (8.0, 34.0),
             (12.0, 34.0),

@@ -16,7 +16,7 @@ fn turn() -> Affine {
     Affine::new([[0.36, 0.48, -0.8, 1.0], [-0.8, 0.6, 0.0, 2.0], [0.48, 0.64, 0.6, 3.0]]).unwrap()
 }
 
-/// The exact faces of a solid, as a mesh of which nothing else is known.
+/// The exact faces of a solid, as a plain mesh.
 fn meshed(solid: &Csg, tolerance: f64) -> MeshSolid {
     let bounds = solid.bounds().unwrap();
     let frame = Frame::around(bounds.min, bounds.max, 14).unwrap();
@@ -29,8 +29,7 @@ fn frame_of(mesh: &TriangleMesh, depth: u8) -> Frame {
     Frame::around(low, high, depth).unwrap()
 }
 
-/// A block with a pocket, turned: few triangles, vertices in its corners, and what is proven of the
-/// deviation.
+/// A rotated block with a pocket: few triangles, vertices in its corners, and the proven deviation.
 #[test]
 fn sharp_edges_of_meshes_stay() {
     let pocket = Csg::cuboid([2.0, 2.0, 3.0], [6.0, 4.0, 9.0]).unwrap();
@@ -47,8 +46,8 @@ fn sharp_edges_of_meshes_stay() {
         let least = found.mesh().vertices().iter().map(away).fold(f64::INFINITY, f64::min);
         assert!(least < 2.0 * tolerance, "{corner:?} {least:e}");
     }
-    // What is proven is what the search by itself finds, to a sixteenth of the tolerance, and no more than
-    // was asked for.
+    // The proven deviation is the result of a separate search, up to a sixteenth of the tolerance, and within
+    // the tolerance.
     let proven = found.report().deviation;
     let other = MeshSolid::new(found.into_mesh(), FillRule::NonZero).unwrap();
     let found = deviation(&solid, &other, &frame, 1e-3 * tolerance, &alone()).unwrap().distance();
@@ -56,8 +55,8 @@ fn sharp_edges_of_meshes_stay() {
     assert!(proven <= tolerance, "{proven}");
 }
 
-/// Of balls, of all kinds of solids, the true deviation is known at each vertex and each middle of a
-/// triangle: never more than is proven.
+/// For balls as solids of all kinds, the true deviation is known at each vertex and each triangle's middle.
+/// It never exceeds the proven deviation.
 #[test]
 fn what_is_proven_is_not_contradicted() {
     let (centre, radius, tolerance) = ([0.5, 0.25, 0.0], 4.0, 0.1);
@@ -76,8 +75,8 @@ fn what_is_proven_is_not_contradicted() {
     });
     let host = host.with_contains(move |point| Ok(away(point) < 0.0)).with_exterior(Tag::Empty);
     let tree = build(&ball, &frame.with_depth(4).unwrap(), Rule::Certified, &alone()).unwrap();
-    // What is known of each: slabs tell an expression well, cells of a size tell others about as well as they
-    // are large.
+    // Expected deviations: slabs describe an expression well; for other solids, cells are about as good as
+    // they are large.
     let solids: [(&str, AnySolid, f64); 4] = [
         ("expression", AnySolid::new(ball.clone()), 1.5 * tolerance),
         (
@@ -98,7 +97,7 @@ fn what_is_proven_is_not_contradicted() {
             [a, [0, 1, 2].map(|k| (a[k] + b[k] + c[k]) / 3.0)]
         });
         let true_one = points.map(|point| away(point).abs()).fold(0.0, f64::max);
-        // (The mesh in the expression is a thousandth beside the ball.)
+        // (The mesh in the expression is a thousandth away from the ball.)
         assert!(true_one <= proven + 2e-3, "{name}: {true_one} {proven}");
     }
     // An octree of samples proves nothing.
@@ -107,8 +106,8 @@ fn what_is_proven_is_not_contradicted() {
     assert_eq!(found.report().deviation, f64::INFINITY);
 }
 
-/// Hosts whose functions are no numbers, say different things of one place, or end in the middle: closed
-/// manifolds, or their own error.
+/// Hosts whose functions return NaN, give different answers for one place, or end in the middle. The result
+/// is a closed manifold, or the host's error.
 #[test]
 fn hosts_that_contradict_themselves() {
     let frame = Frame::new([-8.0; 3], 16.0, 5).unwrap();
@@ -145,7 +144,7 @@ fn hosts_that_contradict_themselves() {
             Err(error) => assert!(matches!(error, Error::Limit { .. }), "{seed}: {error}"),
         }
     }
-    // All is full up to the faces of the universe, which have no other side; and all is empty.
+    // All is full up to the universe's faces, which have no other side; and all is empty.
     for verdict in [Verdict::Full, Verdict::Empty] {
         let host = Callback::new(move |_, _| Ok(verdict)).with_exterior(Tag::Empty);
         let found = contour(&host, &frame, 0.2, &control).unwrap();
@@ -153,13 +152,13 @@ fn hosts_that_contradict_themselves() {
         let is_empty = matches!(verdict, Verdict::Empty);
         assert_eq!(found.report().deviation, if is_empty { 0.0 } else { f64::INFINITY });
     }
-    // Nobody decides points: all that is undecided counts as outside.
+    // Points without a decision count as outside.
     let host = Callback::new(|_, _| Ok(Verdict::Partial(()))).with_exterior(Tag::Empty);
     let found = contour(&host, &frame, 0.2, &control);
     assert!(
         matches!(found, Err(Error::Limit { .. })) || found.is_ok_and(|found| found.report().undecided > 0)
     );
-    // An error in the middle, and a panic of nobody.
+    // An error in the middle is returned.
     let count = AtomicU64::new(0);
     let host = Callback::new(|_, _| match count.fetch_add(1, Relaxed) {
         500.. => Err(Error::Callback { code: 7 }),
@@ -167,14 +166,14 @@ fn hosts_that_contradict_themselves() {
     });
     let refused = contour(&host.with_exterior(Tag::Empty), &frame, 0.2, &control);
     assert!(matches!(refused, Err(Error::Callback { code: 7 })));
-    // Somebody cancels.
+    // A cancel.
     let cancel = AtomicBool::new(true);
     let control = Control { cancel: Some(&cancel), ..alone() };
     let cube = Csg::cuboid([0.0; 3], [1.0; 3]).unwrap();
     assert!(matches!(contour(&cube, &frame, 0.1, &control), Err(Error::Cancelled)));
 }
 
-/// Expressions, expressions with meshes in them, volumes and stored octrees: closed manifolds of about the
+/// Expressions, expressions that contain meshes, volumes and stored octrees: closed manifolds of about the
 /// right volume.
 #[test]
 fn solids_of_all_kinds() {
@@ -205,7 +204,7 @@ fn solids_of_all_kinds() {
     }
 }
 
-/// Random expressions of meshes: manifolds, whatever they look like.
+/// Random expressions of meshes always give manifolds.
 #[test]
 fn random_scenes_give_manifolds() {
     let mut random = Random(11);
@@ -247,7 +246,7 @@ fn nothing_and_what_is_refused() {
     }
     let control = Control { max_nodes: Some(3), ..alone() };
     assert!(matches!(contour(&cube, &frame, 0.1, &control), Err(Error::Limit { .. })));
-    // With its splits spent the mesh is coarse, and still a manifold.
+    // Without remaining splits, the mesh is coarse, and still a manifold.
     for splits in [0, 1, 10, 100] {
         let control = Control { max_splits: Some(splits), ..alone() };
         let found = contour(&cube, &frame, 0.01, &control).unwrap();

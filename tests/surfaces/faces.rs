@@ -1,4 +1,4 @@
-//! Faces of boundaries: polygons, regions, shells, and the surfaces that they lie on.
+//! Faces of boundaries: polygons, regions, shells, and their underlying surfaces.
 
 use crate::boundary::{of, plate, random_scene, turn};
 use crate::common::{Random, alone, repeated};
@@ -20,7 +20,7 @@ fn faces_of(solid: &Csg, tolerance: f64) -> (Boundary, BoundaryFaces) {
     (found, faces)
 }
 
-/// The corners of each loop of a face.
+/// Returns the corners of each loop of a face.
 fn loops(arrays: &PolyhedronArrays, face: usize) -> Vec<Vec<u32>> {
     let part = |offsets: &[u32], k: usize| offsets[k] as usize..offsets[k + 1] as usize;
     part(arrays.faces, face).map(|k| arrays.corners[part(arrays.loops, k)].to_vec()).collect()
@@ -38,7 +38,7 @@ fn dot(a: [f64; 3], b: [f64; 3]) -> f64 {
     (0..3).map(|k| a[k] * b[k]).sum()
 }
 
-/// Half the sum of the cross products of a loop's corners: its area, along its normal.
+/// Returns half the sum of the cross products of a loop's corners: its area, along its normal.
 fn vector_area(vertices: &[[f64; 3]], corners: &[u32]) -> [f64; 3] {
     let origin = vertices[corners[0] as usize];
     let mut sum = [0.0; 3];
@@ -49,8 +49,8 @@ fn vector_area(vertices: &[[f64; 3]], corners: &[u32]) -> [f64; 3] {
     sum
 }
 
-/// What must hold of all faces: loops are paired, a region has the area of its triangles, holes run against
-/// their outer loop, plane faces have no corner that no third face has, and each region lies on one surface.
+/// Checks all faces: loops are paired, a region has the area of its triangles, holes run against their outer
+/// loop, each corner of a plane face belongs to a third face, and each region lies on one surface.
 fn assert_faces(found: &Boundary, faces: &BoundaryFaces, text: &str) {
     let (mesh, arrays) = (found.mesh(), faces.arrays());
     assert_eq!(arrays.vertices, mesh.vertices());
@@ -68,8 +68,8 @@ fn assert_faces(found: &Boundary, faces: &BoundaryFaces, text: &str) {
         }
     }
     assert!(sides.keys().all(|&(from, to)| sides.contains_key(&(to, from))), "{text}");
-    // (Two faces alone have a corner where a piece of a third, smaller than the tolerance, was taken out:
-    // their edge has a bend there.)
+    // (An edge of only two faces has a corner where a piece of a third face, smaller than the tolerance, was
+    // removed. The edge bends there.)
     for corners in (0..count).flat_map(|face| loops(&arrays, face)) {
         for (k, corner) in corners.iter().enumerate().filter(|(_, corner)| uses[corner] == 2) {
             let others = [corners.len() - 1, 1].map(|step| corners[(k + step) % corners.len()]);
@@ -114,7 +114,7 @@ fn assert_faces(found: &Boundary, faces: &BoundaryFaces, text: &str) {
     assert_eq!(faces.region_of(end), None);
 }
 
-/// The polyhedron of the faces has the volume of the mesh.
+/// Checks that the polyhedron of the faces has the volume of the mesh.
 fn assert_polyhedron(found: &Boundary, faces: &BoundaryFaces) -> Polyhedron {
     let polyhedron = Polyhedron::new(&faces.arrays()).unwrap();
     let (own, mesh) = (polyhedron.mesh().volume(), found.mesh().volume());
@@ -185,7 +185,7 @@ fn a_plate_with_a_bore() {
         let back = leafless::exchange::read_mesh(&file, &Default::default()).unwrap().mesh;
         assert!((back.volume() - found.mesh().volume()).abs() < 1e-9);
     }
-    // Of an octree that keeps its surfaces, too.
+    // The same for an octree that keeps its surfaces.
     let frame = Frame::new([-10.0, -10.0, -20.0], 120.0, 9).unwrap();
     let stored = build_extended(&plate(), &frame, &SurfaceOptions::default(), &alone()).unwrap();
     let own = boundary(&stored, &frame, 0.008, &alone()).unwrap();
@@ -194,7 +194,7 @@ fn a_plate_with_a_bore() {
     assert_eq!(faces.regions().len(), 7);
 }
 
-/// Faces of several solids in one plane are one, and a corner stays where a third face ends.
+/// Faces of several solids in one plane are one face. A corner stays where a third face ends.
 #[test]
 fn solids_in_the_shape_of_an_l_and_a_t() {
     let arm = cuboid([0.0, 0.0, 0.0], [3.0, 1.0, 1.0]);
@@ -204,7 +204,7 @@ fn solids_in_the_shape_of_an_l_and_a_t() {
     sizes.sort_unstable();
     assert_eq!((faces.regions().len(), sizes), (8, vec![4, 4, 4, 4, 4, 4, 6, 6]));
     assert!((assert_polyhedron(&found, &faces).mesh().volume() - 6.0).abs() < 1e-13);
-    // A lower post, whose top ends within a face: the face behind goes on above it.
+    // A lower post whose top ends within a face. The face behind continues above it.
     let post = cuboid([1.0, 0.5, 0.0], [2.0, 3.0, 0.5]);
     let (found, faces) = faces_of(&Csg::union_of([arm, post]).unwrap(), 0.1);
     let mut sizes: Vec<_> = (0..10).map(|face| loops(&faces.arrays(), face)[0].len()).collect();
@@ -231,7 +231,7 @@ fn voids_belong_to_their_solids() {
     assert!((polyhedron.mesh().volume() - 2.0 * (1000.0 - 512.0) - (216.0 - 64.0)).abs() < 1e-9);
 }
 
-/// Boxes that touch in an edge, and in a corner.
+/// Boxes that touch in an edge, and boxes that touch in a corner.
 #[test]
 fn solids_that_touch_themselves() {
     let first = cuboid([0.0; 3], [1.0, 1.0, 2.0]);

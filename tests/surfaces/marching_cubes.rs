@@ -1,4 +1,4 @@
-//! Surfaces of octrees: closed, two triangles on every edge, and of the topology that the samples have.
+//! Surfaces of octrees: closed, with two triangles on every edge, and with the topology of the samples.
 
 use crate::aligned::Aligned;
 use crate::common::surfaces::{components, euler_of_manifold};
@@ -10,7 +10,7 @@ use leafless::{
 };
 use proptest::prelude::*;
 
-/// Samples with a margin of two outside ones.
+/// Samples with a margin of two outside samples.
 struct Samples {
     n: i64,
     bits: Vec<bool>,
@@ -34,7 +34,8 @@ impl Samples {
         (0..end * end * end).map(move |i| [i % end, i / end % end, i / end / end])
     }
 
-    /// Components of the samples of a kind, neighbours differing in so many coordinates at the most.
+    /// Returns the number of connected components of the samples of a kind. Neighbours differ in at most
+    /// `axes` coordinates.
     fn components(&self, kind: bool, axes: usize) -> usize {
         let mut seen = vec![false; self.bits.len()];
         let mut count = 0;
@@ -61,10 +62,9 @@ impl Samples {
         count
     }
 
-    /// The Euler characteristic of the inside for the connectivity pair (6, 18): of the complex whose
-    /// vertices are the inside samples, whose edges, squares and cubes are those with all corners inside; and
-    /// where all corners of a cube but two, at the ends of a body diagonal, are inside, their ring of edges
-    /// is filled.
+    /// Returns the Euler characteristic of the inside for the connectivity pair (6, 18). The complex has the
+    /// inside samples as vertices, and the edges, squares and cubes with all corners inside. If all corners
+    /// of a cube are inside except two at the ends of a body diagonal, their ring of edges is filled.
     fn euler(&self) -> i64 {
         let mut sum = 0;
         for at in self.positions(self.n - 1) {
@@ -78,7 +78,7 @@ impl Samples {
         sum
     }
 
-    /// Dual cells with different samples.
+    /// Returns the number of dual cells with different samples.
     fn mixed(&self) -> usize {
         let mixed = |at: &[i64; 3]| {
             let corner = |k: i64| self.at([at[0] + (k & 1), at[1] + (k >> 1 & 1), at[2] + (k >> 2)]);
@@ -88,13 +88,13 @@ impl Samples {
     }
 }
 
-/// All that is promised of a mesh of marching cubes.
+/// Checks all promises of a marching-cubes mesh.
 #[track_caller]
 fn check(mesh: &TriangleMesh, dense: &Dense) {
     let samples = Samples::of(dense);
     assert_eq!(euler_of_manifold(mesh), 2 * samples.euler(), "{dense:?}");
-    // Each component of the surface separates one of the inside from one of the outside, and these form a
-    // tree.
+    // Each component of the surface separates a component of the inside from one of the outside. Together
+    // they form a tree.
     let (inside, outside) = (samples.components(true, 1), samples.components(false, 2));
     assert_eq!(components(mesh), inside + outside - 1, "{dense:?}");
     let difference = mesh.volume() - dense.count(Tag::Full) as f64;
@@ -146,7 +146,7 @@ fn a_hundred_thousand_bitmaps() {
 proptest! {
     #![proptest_config(cases(200))]
 
-    /// Undecided cells count as they are told to, and threads change nothing.
+    /// Undecided cells count as the call says, and threads change nothing.
     #[test]
     fn undecided_cells(shape in shapes(1..=5)) {
         let dense = shape.dense();
@@ -197,7 +197,7 @@ fn whole_universes() {
         let mesh = marching_cubes(full.view(), None, &alone()).unwrap();
         assert_eq!(euler_of_manifold(&mesh), 2);
         assert_eq!(mesh.bounds(), ([0.0; 3], [n; 3]));
-        // Without what is cut from the edges and corners.
+        // Without the volume cut off at the edges and corners.
         let expected = n.powi(3) - 12.0 * (n - 1.0) / 8.0 - 8.0 * (1.0 / 8.0 - 1.0 / 48.0);
         assert!((mesh.volume() - expected).abs() < 1e-6, "{} {expected}", mesh.volume());
         let partial = Octree::uniform(frame, Tag::Partial, Tag::Partial).unwrap();
@@ -241,7 +241,7 @@ fn what_a_control_asks_for() {
     assert!(most > 0.9 && most <= 1.0, "{most}");
 }
 
-/// Balls, tori and models: closed, and of the genus that they have.
+/// Balls, tori and models: closed, with their known genus.
 #[test]
 fn solids_and_models() {
     let frame = Frame::new([-1.0; 3], 2.0, 7).unwrap();
@@ -274,7 +274,7 @@ fn solids_and_models() {
     }
 }
 
-/// Damage that nobody has looked for ends the work, or makes another mesh, which is closed too.
+/// Undetected damage ends the work, or gives another mesh, which is closed too.
 #[test]
 fn damaged_trees() {
     let frame = Frame::new([-1.0; 3], 2.0, 7).unwrap();
@@ -309,7 +309,7 @@ fn damaged_trees() {
     }
 }
 
-/// The memory of another mesh, larger or smaller, changes nothing; a large one is kept.
+/// The memory of another mesh, larger or smaller, changes nothing. Larger memory is kept.
 #[test]
 fn memory_is_reused() {
     let frame = lattice_frame(5);

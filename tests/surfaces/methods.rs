@@ -1,5 +1,4 @@
-//! All methods of surfaces on one list of solids: closed, outward, of the right volume, and fit to each
-//! other.
+//! All surface methods on one list of solids: closed, outward, of the right volume, and consistent.
 
 use crate::aligned::Aligned;
 use crate::common::surfaces::{assert_balanced, euler_of_manifold, outlines};
@@ -13,7 +12,7 @@ use leafless::{
     exchange, file, marching_cubes,
 };
 
-/// Four normals that together point nowhere: the faces of a tetrahedron. All 13 directions are among them.
+/// Sets of four normals that add up to zero: the faces of a tetrahedron. All 13 directions occur.
 const TETRAHEDRA: [[[f64; 3]; 4]; 10] = [
     [[1., 1., 1.], [-1., 0., 0.], [0., -1., 0.], [0., 0., -1.]],
     [[1., 1., 1.], [1., -1., -1.], [-1., 1., -1.], [-1., -1., 1.]],
@@ -27,7 +26,7 @@ const TETRAHEDRA: [[[f64; 3]; 4]; 10] = [
     [[1., 0., -1.], [-1., 1., 0.], [0., -1., 0.], [0., 0., 1.]],
 ];
 
-/// Solids in the first `size` of 2^depth cells to an axis.
+/// Solids within the first `size` of 2^depth cells along each axis.
 fn solids(depth: u8, size: f64) -> Vec<(String, Octree)> {
     let frame = lattice_frame(depth);
     let sampled = |solid: &Csg| build(solid, &frame, Rule::Sampled, &alone()).unwrap();
@@ -60,14 +59,14 @@ fn solids(depth: u8, size: f64) -> Vec<(String, Octree)> {
     list
 }
 
-/// Like the tomography of a cast part: a body with two bores and a pore, blurred, with noise.
+/// A volume like the tomography of a cast part: a body with two bores and a pore, blurred, with noise.
 fn scan(frame: &Frame, size: f64) -> Octree {
     let n = size as u32;
     let mut random = Random(6);
     let mut samples = Vec::new();
     for i in 0..n * n * n {
         let [x, y, z] = [i % n, i / n % n, i / (n * n)].map(|a| (f64::from(a) + 0.5) / size - 0.5);
-        // Distances in the whole, negative inside.
+        // Distances in the whole universe, negative inside.
         let body = (x.abs() - 0.4).max(y.abs() - 0.3).max(z.abs() - 0.25);
         let bores = [-0.2, 0.2].map(|at| 0.1 - (x - at).hypot(y)).into_iter().fold(f64::MIN, f64::max);
         let pore = 0.07 - (x * x + (y - 0.2) * (y - 0.2) + z * z).sqrt();
@@ -80,7 +79,7 @@ fn scan(frame: &Frame, size: f64) -> Octree {
     build(&volume, frame, Rule::Sampled, &alone()).unwrap()
 }
 
-/// The dual cells that have samples of both kinds, in the middle of others that lie outside.
+/// Returns the number of dual cells with samples of both kinds. The surroundings are outside.
 fn mixed(tree: &OctreeRef<'_>) -> u64 {
     let n = tree.frame().cells();
     let words = n.div_ceil(64) as usize;
@@ -119,7 +118,7 @@ fn check(name: &str, octree: &Octree) {
         let few = coplanar_shrink(tree, snap, None, &alone()).unwrap();
         assert_balanced(&all);
         assert_balanced(&few);
-        // Nothing is left over of differences in any plane, so that area and volume are the same.
+        // In every plane the differences cancel, so that area and volume are the same.
         let close = |a: f64, b: f64| (a - b).abs() <= 1e-9 * a.abs().max(cell);
         assert!(close(few.volume(), all.volume()) && close(few.area(), all.area()), "{name}");
         assert!((all.volume() - voxels).abs() <= tolerance && all.volume() > 0.0, "{name}");
@@ -172,7 +171,7 @@ fn models(depth: u8) {
     }
 }
 
-/// Damage that nobody has looked for ends the work, or makes another mesh, which fits together, too.
+/// Undetected damage ends the work, or gives another consistent mesh.
 #[test]
 fn damaged_trees() {
     let frame = Frame::new([-1.0; 3], 2.0, 6).unwrap();
@@ -205,7 +204,7 @@ fn damaged_trees() {
     assert!(seen[0] > 5 && seen[1] > 5, "{seen:?}");
 }
 
-/// What is told of the progress of each method rises, and ends with all of it.
+/// The reported progress of each method rises, and ends with the whole.
 #[test]
 fn progress_ends_with_all() {
     let frame = lattice_frame(6);

@@ -1,4 +1,4 @@
-//! Surface nets beside marching cubes, which have the same samples and so the same topology.
+//! Surface nets beside marching cubes. Both have the same samples, and so the same topology.
 
 use crate::common::surfaces::{components, euler_of_manifold};
 use crate::common::{Dense, Random, alone, cases, repeated, shapes};
@@ -8,8 +8,8 @@ use leafless::{
 };
 use proptest::prelude::*;
 
-/// The vertices of cubes between eight samples that one sheet passes through, by definition: means of the
-/// middles of crossed edges.
+/// Returns, by definition, the vertices of cubes between eight samples that one sheet passes through: means
+/// of the crossed edges' middles.
 fn means(dense: &Dense) -> Vec<[f64; 3]> {
     let n = 1i64 << dense.depth;
     let inside =
@@ -86,7 +86,7 @@ fn two_hundred_thousand_bitmaps() {
 proptest! {
     #![proptest_config(cases(100))]
 
-    /// Octrees with cells of several sizes: undecided cells count as they are told to, and threads change
+    /// Octrees with cells of several sizes. Undecided cells count as the call says, and threads change
     /// nothing.
     #[test]
     fn undecided_cells(shape in shapes(1..=4)) {
@@ -107,7 +107,7 @@ proptest! {
     }
 }
 
-/// A ball: smoother than by marching cubes between the same samples, and as near to it.
+/// A ball: smoother than marching cubes between the same samples, and equally near.
 #[test]
 fn a_ball() {
     let (centre, radius) = ([0.1, 0.0, -0.05], 0.8);

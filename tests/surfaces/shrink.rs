@@ -1,5 +1,5 @@
-//! Coplanar shrink: the same surface as that of simple marching cubes, in far fewer triangles, without
-//! cracks; and the published form beside it.
+//! Coplanar shrink: the surface of simple marching cubes in far fewer triangles, without cracks; and the
+//! published form.
 
 use crate::common::surfaces::{Point, assert_balanced, components, euler_of_manifold, outlines, sample};
 use crate::common::{Dense, Random, alone, cases, lattice_frame, repeated, shapes};
@@ -13,7 +13,7 @@ use std::collections::{BTreeSet, HashMap};
 
 const SNAPS: [Snap; 2] = [Snap::Fat, Snap::Thin];
 
-/// The vertices at which some outline turns, or outlines of different directions meet.
+/// Returns the vertices at which an outline changes direction, or outlines of different directions meet.
 fn corners(mesh: &TriangleMesh) -> BTreeSet<Point> {
     let mut directions: HashMap<Point, BTreeSet<Point>> = HashMap::new();
     for (a, b) in outlines(mesh).values().flat_map(|outline| outline.keys()) {
@@ -25,7 +25,7 @@ fn corners(mesh: &TriangleMesh) -> BTreeSet<Point> {
     directions.into_iter().filter(|(_, ways)| ways.len() > 1).map(|(point, _)| point).collect()
 }
 
-/// The law: the same surface as that of simple marching cubes, balanced, with vertices at corners only.
+/// Checks the law: the surface of simple marching cubes, balanced, with vertices only at corners.
 #[track_caller]
 fn check(tree: &OctreeRef<'_>) {
     for snap in SNAPS {
@@ -97,7 +97,7 @@ fn a_hundred_thousand_bitmaps() {
     torture(11, 8, 20_000);
 }
 
-/// Plates with random holes, which touch in corners: one plane region with hundreds of outlines. In steps of
+/// Plates with random holes that touch in corners: one plane region with hundreds of outlines. In steps of
 /// two cells nothing else touches.
 #[test]
 fn plates_with_holes() {
@@ -118,7 +118,7 @@ fn plates_with_holes() {
     }
 }
 
-/// Solids without thin parts stay 2-manifold, and keep their Euler characteristic.
+/// Solids without thin parts stay 2-manifolds, and keep their Euler characteristic.
 #[test]
 fn manifold_where_cells_are() {
     let frame = lattice_frame(6);
@@ -140,7 +140,7 @@ fn manifold_where_cells_are() {
     }
 }
 
-/// A block has six faces, twelve edges cut off and eight corners.
+/// A block has six faces, twelve cut-off edges and eight cut-off corners.
 #[test]
 fn a_block() {
     for depth in [4, 7, 9] {
@@ -158,8 +158,8 @@ fn a_block() {
 }
 
 /// The tetrahedron of the published figures (see `surface_smc`), three samples from the corner of the volume.
-/// The source has 3 123 vertices and 5 147 triangles for it, 6.4 times fewer than before, and cracks. The
-/// vertices are these; two digits of the other figure may have changed places.
+/// The source reports 3 123 vertices and 5 147 triangles, 6.4 times fewer than before, and cracks. The test
+/// finds the same number of vertices; two digits of the number of triangles may have been swapped.
 #[test]
 fn the_published_tetrahedron() {
     let frame = lattice_frame(7);
@@ -179,7 +179,7 @@ fn the_published_tetrahedron() {
     assert!((few.volume() - all.volume()).abs() < 1e-9 * all.volume());
 }
 
-/// Where nothing can be merged the published form is simple marching cubes; where all can, one cell.
+/// If nothing can be merged, the published form is simple marching cubes. If everything can, it is one cell.
 #[test]
 fn published_cells() {
     let frame = lattice_frame(4);
@@ -191,7 +191,8 @@ fn published_cells() {
     );
     assert_eq!(outlines(&all), outlines(&merged));
     assert_eq!((merged.vertices().len(), merged.triangles().len()), (6, 8));
-    // Half of the universe: the cells from sample 0 on lie in one plane each, but for those at its faces.
+    // Half of the universe. From sample 0 on, each cell lies in one plane, except the cells at the universe's
+    // faces.
     let half = Csg::cuboid([0.0; 3], [16.0, 16.0, 8.0]).unwrap();
     let tree = build(&half, &frame, Rule::Sampled, &alone()).unwrap();
     let merged = published_shrink(tree.view(), Snap::Fat, None, &alone()).unwrap();

@@ -1,4 +1,4 @@
-//! Simple marching cubes: balanced, with vertices at samples, and of the sizes that were published.
+//! Simple marching cubes: balanced, with vertices at samples, and of the published sizes.
 
 use crate::common::surfaces::{assert_balanced, components, euler_of_manifold};
 use crate::common::{Dense, Random, alone, cases, lattice_frame, shapes};
@@ -11,7 +11,7 @@ const SNAPS: [Snap; 2] = [Snap::Fat, Snap::Thin];
 
 type Facet = [[i64; 3]; 3];
 
-/// The triangles in half cells, those that cancel each other taken away, each as often as it is there.
+/// Returns the triangles in half cells with their multiplicity. Opposite triangles cancel.
 fn chain(facets: impl Iterator<Item = Facet>) -> HashMap<Facet, i64> {
     let mut chain = HashMap::new();
     for mut facet in facets {
@@ -31,7 +31,7 @@ fn facets(mesh: &TriangleMesh) -> impl Iterator<Item = Facet> {
     mesh.triangles().iter().map(|t| t.map(|v| mesh.vertices()[v as usize].map(|x| (2.0 * x) as i64)))
 }
 
-/// The same by moving the vertices of marching cubes.
+/// Returns the same triangles by moving the vertices of marching cubes.
 fn moved(mesh: &TriangleMesh, dense: &Dense, snap: Snap) -> impl Iterator<Item = Facet> {
     let n = 2i64 << dense.depth;
     let inside = |at: [i64; 3]| {
@@ -107,8 +107,8 @@ fn random_bitmaps() {
     }
 }
 
-/// Where no two inside cells meet in less than a face, nor outside ones, and nothing is one cell thick, the
-/// mesh is a 2-manifold.
+/// Suppose that no two inside cells meet in less than a face, nor two outside cells, and that nothing is one
+/// cell thick. Then the mesh is a 2-manifold.
 #[test]
 fn manifold_where_cells_are() {
     let frame = lattice_frame(6);
@@ -125,9 +125,9 @@ fn manifold_where_cells_are() {
     }
 }
 
-/// The tetrahedron of the published figures, in a volume of 100³: 16 471 vertices and 32 938 triangles. They
-/// are those of x + y + z ≤ 89 between three planes of the lattice, with vertices at the outer ends: (m + 2)
-/// (2 m + 3) of them for m = 89.
+/// The tetrahedron of the published figures, in a volume of 100³: 16 471 vertices and 32 938 triangles. These
+/// are the figures of x + y + z ≤ 89 between three planes of the lattice, with vertices at the outer ends:
+/// (m + 2) (2 m + 3) of them for m = 89.
 #[test]
 fn the_published_tetrahedron() {
     let frame = lattice_frame(7);
@@ -150,7 +150,7 @@ fn the_published_tetrahedron() {
 fn corners_of_the_lattice() {
     let frame = Frame::new([0.0; 3], 8.0, 3).unwrap();
     let block = Csg::cuboid([2.0; 3], [5.0; 3]).unwrap();
-    // The corners at the lower faces lie inside, by the shift of all samples, those at the upper ones
+    // By the shift of all samples, the corners at the lower faces lie inside, and those at the upper faces
     // outside.
     let mesh = simple_marching_cubes_solid(&block, &frame, Snap::Thin, &alone()).unwrap();
     assert_eq!((mesh.bounds(), mesh.volume()), (([2.0; 3], [4.0; 3]), 8.0));

@@ -16,7 +16,8 @@ fn dot(a: [f64; 3], b: [f64; 3]) -> f64 {
     a[0] * b[0] + a[1] * b[1] + a[2] * b[2]
 }
 
-/// How far a point is from a triangle (Ericson, *Real-time collision detection*, 2005, section 5.1.5).
+/// Returns the distance of a point from a triangle (Ericson, *Real-time collision detection*, 2005, section
+/// 5.1.5).
 fn from_triangle(p: [f64; 3], [a, b, c]: [[f64; 3]; 3]) -> f64 {
     let (ab, ac) = (minus(b, a), minus(c, a));
     let at = |s: f64, t: f64| {
@@ -37,7 +38,7 @@ fn from_triangle(p: [f64; 3], [a, b, c]: [[f64; 3]; 3]) -> f64 {
     if s >= 0.0 && t >= 0.0 && s + t <= 1.0 { edges.min(at(s, t)) } else { edges }
 }
 
-/// The greatest distance of points all over one mesh from another one, triangle by triangle.
+/// Returns the greatest distance of points all over one mesh from another mesh, triangle by triangle.
 fn sampled(from: &TriangleMesh, to: &TriangleMesh, random: &mut Random, count: usize) -> f64 {
     let corners =
         |mesh: &TriangleMesh, k: usize| mesh.triangles()[k].map(|vertex| mesh.vertices()[vertex as usize]);
@@ -53,7 +54,7 @@ fn sampled(from: &TriangleMesh, to: &TriangleMesh, random: &mut Random, count: u
     most
 }
 
-/// Simplifies, and checks what is promised of closed manifolds; how many triangles are left.
+/// Simplifies a mesh, checks the promises for closed manifolds, and returns the result.
 #[track_caller]
 fn check(mesh: &TriangleMesh, tolerance: f64, random: &mut Random) -> TriangleMesh {
     let found = simplify(mesh, tolerance, &alone()).unwrap();
@@ -75,7 +76,7 @@ fn check(mesh: &TriangleMesh, tolerance: f64, random: &mut Random) -> TriangleMe
     found.into_mesh()
 }
 
-/// A closed mesh: a cube whose faces are lattices, moved by a function.
+/// A closed mesh: a cube with lattice faces, moved by a function.
 fn lattice_cube(side: u32, f: impl Fn([f64; 3]) -> [f64; 3]) -> TriangleMesh {
     let mut vertices = Vec::new();
     let mut triangles = Vec::new();
@@ -116,7 +117,7 @@ fn plane_faces_become_triangles_between_corners() {
     assert_eq!(cube.triangles().len(), 12 * 12 * 12);
     let simple = check(&cube, 1e-9, &mut random);
     assert_eq!((simple.triangles().len(), simple.volume()), (12, 8.0));
-    // Turned, its coordinates are rounded.
+    // After a rotation, its coordinates are rounded.
     let turned = lattice_cube(9, |[x, y, z]| [0.6 * x - 0.8 * y, 0.8 * x + 0.6 * y, z + 0.3 * x]);
     assert_eq!(check(&turned, 1e-9, &mut random).triangles().len(), 12);
 }
@@ -133,7 +134,7 @@ fn round_bodies_within_the_tolerance() {
     assert!(counts[0] > 3000 && counts[3] < 900 && counts[5] < 100, "{counts:?}");
 }
 
-/// Whatever is allowed, a body stays a body, and a hole a hole.
+/// With any tolerance, a body stays a body, and a hole stays a hole.
 #[test]
 fn tolerances_larger_than_the_mesh() {
     let mut random = Random(3);
@@ -147,7 +148,7 @@ fn tolerances_larger_than_the_mesh() {
     assert_eq!(euler_of_manifold(&check(&mesh, 1e3, &mut random)), 0);
 }
 
-/// Random bodies, some of several parts and with holes, from marching cubes.
+/// Random bodies from marching cubes. Some have several parts and holes.
 #[test]
 fn random_bodies() {
     let mut random = Random(4);
@@ -172,7 +173,7 @@ fn random_bodies() {
 
 #[test]
 fn edges_of_open_meshes_stay() {
-    // A lattice in a plane: its inner vertices go, those on its rim stay.
+    // A lattice in a plane. Its inner vertices are removed, and those on its rim stay.
     let side = 10u32;
     let at = |i: u32, j: u32| j * (side + 1) + i;
     let vertices = (0..(side + 1) * (side + 1))
@@ -189,7 +190,7 @@ fn edges_of_open_meshes_stay() {
     assert!(found.report().deviation < 1e-9);
 }
 
-/// Values of triangles go with these, and what bears different values is not merged.
+/// Per-triangle values are kept, and triangles with different values are not merged.
 #[test]
 fn values_stay_where_they_are() {
     let mut mesh = lattice_cube(10, |p| p);
@@ -211,14 +212,13 @@ fn values_stay_where_they_are() {
     }
 }
 
-/// Flat triangles, vertices where bodies touch, edges of many triangles, nothing at all: no harm is done.
+/// Flat triangles, vertices where bodies touch, edges with many triangles, and empty meshes do no harm.
 #[test]
 fn meshes_that_are_no_manifolds() {
     let empty = TriangleMesh::new(Vec::new(), Vec::new()).unwrap();
     let found = simplify(&empty, 1.0, &alone()).unwrap();
     assert!(found.mesh().triangles().is_empty() && found.report().deviation == 0.0);
-    // Two cubes with an edge in common, which four triangles have; flat triangles; three triangles at one
-    // edge.
+    // Two cubes with a common edge of four triangles; flat triangles; three triangles at one edge.
     let one = lattice_cube(3, |p| p);
     let other = one.translated([2.0, 2.0, 0.0]).unwrap();
     let mut vertices = [one.vertices(), other.vertices()].concat();
@@ -241,7 +241,7 @@ fn meshes_that_are_no_manifolds() {
     }
 }
 
-/// Real meshes: how many triangles are left, and that what is promised of them holds.
+/// Real meshes: the number of triangles left, and the promises.
 #[test]
 fn real_meshes() {
     for (name, part, most) in

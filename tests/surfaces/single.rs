@@ -1,4 +1,5 @@
-//! Meshes in single precision: what rounding breaks is mended, and how far that moves the surface.
+//! Meshes in single precision: repairs of what rounding breaks, and the resulting displacement of the
+//! surface.
 
 use crate::boundary::{away_from_mesh, plate};
 use crate::common::surfaces::euler_of_manifold;
@@ -8,7 +9,7 @@ use leafless::mesh::SinglePrecision;
 use leafless::surface::{VertexPlacement, marching_cubes_solid};
 use leafless::{Affine, Csg, Error, Frame, Solid, TriangleMesh};
 
-/// Marching cubes with vertices on the surface, on a lattice that lies beside the faces.
+/// Marching cubes with vertices on the surface, on a lattice slightly off the faces.
 fn cubes(solid: &Csg, depth: u8) -> TriangleMesh {
     let bounds = solid.bounds().unwrap();
     let longest = (0..3).map(|k| bounds.max[k] - bounds.min[k]).fold(0.0, f64::max);
@@ -17,14 +18,16 @@ fn cubes(solid: &Csg, depth: u8) -> TriangleMesh {
     marching_cubes_solid(solid, &frame, VertexPlacement::Crossing, &alone()).unwrap()
 }
 
-/// What an STL loses of a mesh: degenerate triangles, triangles without area, intersecting pairs.
+/// Returns the losses of a mesh in an STL: degenerate triangles, triangles without area, and intersecting
+/// pairs.
 fn lost(mesh: &TriangleMesh) -> (u64, u64, u64) {
     let kept = written_form(mesh, MeshFormat::Stl, &WriteOptions::default()).unwrap();
     let flat = kept.mesh.report().unwrap().flat;
     (kept.degenerate, flat, kept.mesh.intersecting_pairs(0, &alone()).unwrap().count)
 }
 
-/// All coordinates are 32-bit numbers, an STL loses nothing, and nothing is further away than what is told.
+/// Asserts that all coordinates are 32-bit numbers, an STL loses nothing, and the reported deviation is
+/// small.
 fn assert_single(mesh: &TriangleMesh, single: &SinglePrecision) {
     let coordinates = single.mesh.vertices().as_flattened();
     assert!(coordinates.iter().all(|&c| f64::from(c as f32) == c));
@@ -38,8 +41,8 @@ fn assert_single(mesh: &TriangleMesh, single: &SinglePrecision) {
     assert!(single.rounding <= far * 2f64.powi(-24) && single.rounding <= single.deviation);
 }
 
-/// The plate by marching cubes, on lattices in whose planes its faces nearly lie: triangles are lost to
-/// rounding and intersect, and nothing is and does once the mesh is mended.
+/// The plate by marching cubes, on lattices whose planes nearly contain the plate's faces. Rounding loses
+/// triangles and makes some intersect. The repaired mesh has neither defect.
 #[test]
 fn a_plate_by_marching_cubes() {
     let mut all = (0, 0);
@@ -57,7 +60,7 @@ fn a_plate_by_marching_cubes() {
     assert!(all.0 >= 10 && all.1 >= 6, "{all:?}");
 }
 
-/// Triangles that are no larger than what is rounded, of balls and bores far from the origin.
+/// Triangles no larger than the rounding, on balls and bores far from the origin.
 #[test]
 fn small_triangles_far_away() {
     let mut random = Random(41);
@@ -96,7 +99,7 @@ fn what_is_single_stays_as_it_is() {
     assert_eq!((again.deviation, again.rounding, again.collapsed, again.moved), (0.0, 0.0, 0, 0));
 }
 
-/// What is stated of a mesh grows by what rounding adds, and a mesh that vanishes is told.
+/// The stated deviation of a mesh grows by the rounding, and a mesh that vanishes is reported.
 #[test]
 fn deviations_and_losses() {
     let vertices = vec![[0.1, 0.0, 0.0], [1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]];
@@ -105,7 +108,7 @@ fn deviations_and_losses() {
     let single = mesh.in_single_precision(0.05, &alone()).unwrap();
     assert!(single.deviation > 1e-9 && single.deviation < 2e-9);
     assert!(single.mesh.deviation() >= 0.25 + single.deviation);
-    // A tetrahedron that is a point in single precision cannot be mended.
+    // A tetrahedron that collapses to a point in single precision cannot be repaired.
     let tiny = [[0.0; 3], [1e-6, 0.0, 0.0], [0.0, 1e-6, 0.0], [0.0, 0.0, 1e-6]];
     let tiny = tiny.map(|p| p.map(|c| 1e6 + c)).to_vec();
     let tiny = TriangleMesh::new(tiny, triangles.clone()).unwrap();

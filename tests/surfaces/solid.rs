@@ -1,4 +1,4 @@
-//! Surfaces of solids that are no octrees: samples at corners, vertices on the surface.
+//! Surfaces of solids other than octrees: samples at corners, vertices on the surface.
 
 use crate::common::surfaces::{assert_balanced, components, euler_of_manifold};
 use crate::common::{Random, alone, lattice_frame, model};
@@ -13,7 +13,7 @@ fn crossings<S: Solid>(solid: &S, frame: &Frame) -> TriangleMesh {
     marching_cubes_solid(solid, frame, VertexPlacement::Crossing, &alone()).unwrap()
 }
 
-/// Vertices of a ball lie on it, and area and volume converge with second order.
+/// Vertices of a ball lie on the ball, and area and volume converge to second order.
 #[test]
 fn balls_of_second_order() {
     let (centre, radius) = ([0.03, -0.02, 0.01], 0.8);
@@ -47,7 +47,7 @@ fn boxes() {
     assert_eq!(mesh.bounds(), ([2.0, 3.0, 4.0], [9.0, 8.0, 12.0]));
     assert_eq!(euler_of_manifold(&mesh), 2);
     assert!((mesh.volume() - 7.0 * 5.0 * 8.0).abs() < 7.0 * 3.0 * 8.0, "{}", mesh.volume());
-    // Turned about z, and moved.
+    // Rotated about z, and moved.
     let (sin, cos) = 0.7f64.sin_cos();
     let turn = [[cos, -sin, 0.0, 5.0], [sin, cos, 0.0, -1.0], [0.0, 0.0, 1.0, 0.1]];
     let turned = block.placed(&Affine::new(turn).unwrap()).unwrap();
@@ -64,7 +64,7 @@ fn boxes() {
     }
 }
 
-/// The mesh of a solid within a solid's own mesh: every vertex lies on one of its triangles.
+/// Returns the distance of a point from a mesh. Every vertex of a solid's surface lies on the solid's mesh.
 fn distance_to(mesh: &TriangleMesh, p: [f64; 3]) -> f64 {
     let minus = |a: [f64; 3], b: [f64; 3]| [a[0] - b[0], a[1] - b[1], a[2] - b[2]];
     let dot = |a: [f64; 3], b: [f64; 3]| a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
@@ -111,7 +111,7 @@ fn bumped() -> MeshSolid {
     MeshSolid::new(TriangleMesh::new(corners, triangles).unwrap(), FillRule::NonZero).unwrap()
 }
 
-/// Segments cross a mesh where they first meet a triangle, and the normal leads out there.
+/// Segments cross a mesh where they first meet a triangle. The normal there points outward.
 #[test]
 fn segments_cross_meshes() {
     let solid = bumped();
@@ -126,7 +126,7 @@ fn segments_cross_meshes() {
             [u[1] * v[2] - u[2] * v[1], u[2] * v[0] - u[0] * v[2], u[0] * v[1] - u[1] * v[0]]
         };
         let dot = |u: [f64; 3], v: [f64; 3]| u[0] * v[0] + u[1] * v[1] + u[2] * v[2];
-        // Möller and Trumbore 1997: parameters of the meeting point, and whether the way leads out.
+        // Möller and Trumbore 1997: parameters of the meeting point, and whether the segment leaves there.
         let hits = solid.mesh().triangles().iter().filter_map(|triangle| {
             let [a, b, c] = triangle.map(|v| solid.mesh().vertices()[v as usize]);
             let minus = |p: [f64; 3], q: [f64; 3]| [0, 1, 2].map(|k| p[k] - q[k]);
@@ -158,7 +158,7 @@ fn vertices_of_meshes_lie_on_them() {
     assert!(solid.mesh().volume() > 0.0);
     for depth in [4, 6] {
         let surface = crossings(&solid, &Frame::new([0.0; 3], 1.0, depth).unwrap());
-        // Tips may be samples of their own.
+        // Tips may contain isolated samples.
         assert_eq!(euler_of_manifold(&surface), 2 * components(&surface) as i64);
         let worst = surface.vertices().iter().map(|&v| distance_to(solid.mesh(), v)).fold(0.0, f64::max);
         assert!(worst < 1e-9, "{worst:e}");
@@ -226,7 +226,7 @@ fn midpoints_and_threads() {
     }
 }
 
-/// Solids without slabs: verdicts narrow a crossing down.
+/// Without slabs, verdicts narrow a crossing down.
 #[test]
 fn verdicts_alone() {
     let size = |p: [f64; 3]| p.iter().map(|x| x.abs()).sum::<f64>();

@@ -1,5 +1,4 @@
-//! Surfaces that touch each other and go over into one another: a ball at the end of a round bar, the round
-//! ends of a slot.
+//! Surfaces that touch and merge smoothly: a ball at the end of a round bar, the round ends of a slot.
 
 use super::boundary::{assert_deviation, assert_manifold, of, turn};
 use crate::common::surfaces::euler_of_manifold;
@@ -23,8 +22,8 @@ fn slot() -> Csg {
     Csg::union_of([middle, end(-3.0), end(3.0)]).unwrap()
 }
 
-/// Solids with a name, the curves in which their surfaces touch (as a measure of how far a point is from all
-/// of them), the genus as Euler's number, and the volume.
+/// Solids with a name, the distance of a point from all curves in which their surfaces touch, the Euler
+/// number for the genus, and the volume.
 type Case = (&'static str, Csg, fn([f64; 3]) -> f64, i64, f64);
 
 fn cases() -> Vec<Case> {
@@ -73,7 +72,7 @@ fn cases() -> Vec<Case> {
     ]
 }
 
-/// The mesh is closed and near, has an edge where the surfaces touch, and few triangles.
+/// The mesh is closed and near, has an edge where the surfaces touch, and has few triangles.
 #[test]
 fn one_surface_goes_over_into_another() {
     let mut random = Random(39);

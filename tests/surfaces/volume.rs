@@ -10,7 +10,7 @@ use leafless::{
 use std::f64::consts::PI;
 use std::sync::atomic::AtomicBool;
 
-/// The radius less the distance from a centre, at the centres of voxels.
+/// Returns the radius minus the distance from a centre, at the centres of voxels.
 fn distances(grid: &VoxelGrid, centre: [f64; 3], radius: f64) -> Vec<f32> {
     let [nx, ny, nz] = grid.extents();
     let places = (0..nz).flat_map(|z| (0..ny).flat_map(move |y| (0..nx).map(move |x| [x, y, z])));
@@ -22,7 +22,8 @@ fn volume<'a>(samples: &'a [f32], grid: &VoxelGrid) -> Volume<'a> {
     Volume::new(samples.into(), grid, Band::at_least(0.0).unwrap(), &alone()).unwrap()
 }
 
-/// Vertices of a ball's distances lie on it to second order, and area and volume converge with second order.
+/// Vertices from a ball's distances lie on the ball to second order, and area and volume converge to second
+/// order.
 #[test]
 fn balls_of_second_order() {
     let (centre, radius) = ([0.53, 0.48, 0.51], 0.4f64);
@@ -56,7 +57,7 @@ fn balls_of_second_order() {
     }
 }
 
-/// Octrees of a volume: as the volume itself, and half-way where they were cut.
+/// Octrees of a volume: vertices as in the volume itself, and halfway where the octree was cut.
 #[test]
 fn octrees_with_their_volumes() {
     let grid = VoxelGrid::new([40, 37, 33], [-2.5, 1.0, 0.25], [0.125; 3]).unwrap();
@@ -79,10 +80,10 @@ fn octrees_with_their_volumes() {
     let mesh = marching_cubes_with_volume(shifted.view(), &volume, None, &alone()).unwrap();
     assert_eq!(mesh.vertices().len(), own.vertices().len());
     assert!((mesh.volume() - own.volume()).abs() < 1e-9 && (mesh.area() - own.area()).abs() < 1e-9);
-    // The same topology as half-way, and nearer to the ball.
+    // The same topology as with midpoints, and nearer to the ball.
     let half_way = marching_cubes(tree.view(), None, &alone()).unwrap();
     assert_eq!(half_way.triangles(), own.triangles());
-    // Cut by a block, whose faces lie half-way between samples.
+    // Cut by a block whose faces lie halfway between samples.
     let block = Csg::cuboid([-9.0, -9.0, -9.0], [0.0, 9.0, 9.0]).unwrap();
     let block = build(&block, &frame, Rule::Sampled, &alone()).unwrap();
     let cut = difference(tree.view(), block.view(), &alone()).unwrap();
@@ -97,7 +98,7 @@ fn octrees_with_their_volumes() {
     let flat = mesh.vertices().iter().filter(|v| v[0] == 0.0).count();
     let round = mesh.vertices().iter().filter(on_ball).count();
     assert!(flat > 400 && round > 800 && flat + round >= mesh.vertices().len(), "{flat} {round}");
-    // What PARTIAL cells count as is asked of the caller.
+    // The caller chooses how PARTIAL cells count.
     let certified: Octree =
         build(&Csg::ball(centre, radius).unwrap(), &frame, Rule::Certified, &alone()).unwrap();
     assert!(marching_cubes_with_volume(certified.view(), &volume, None, &alone()).is_err());
@@ -110,7 +111,7 @@ fn octrees_with_their_volumes() {
     assert!((of_source.volume() / own.volume() - 1.0).abs() < 1e-3);
 }
 
-/// Few values, so that samples lie on the surface; all kinds of samples, up to the border.
+/// Few different values, so that samples lie on the surface; all kinds of samples, up to the border.
 #[test]
 fn samples_on_the_surface() {
     let mut random = Random(5);
@@ -156,14 +157,14 @@ fn what_is_refused() {
     let flag = AtomicBool::new(true);
     let control = Control { cancel: Some(&flag), ..alone() };
     assert!(matches!(marching_cubes_volume(&volume, &control), Err(Error::Cancelled)));
-    // Cells that are no voxels.
+    // Cells that are not voxels.
     for (origin, edge, depth) in [(0.0, 1.0, 1), (0.0, 1.0, 3), (0.1, 1.0, 2)] {
         let frame = Frame::new([origin; 3], edge, depth).unwrap();
         let tree = build(&volume, &frame, Rule::Sampled, &alone()).unwrap();
         let found = marching_cubes_with_volume(tree.view(), &volume, None, &alone());
         assert!(matches!(found, Err(Error::Argument { name: "volume", .. })), "{frame:?}");
     }
-    // Nothing inside.
+    // An empty inside.
     let none = volume.with_band(Band::at_least(2.0).unwrap(), &alone()).unwrap();
     assert!(marching_cubes_volume(&none, &alone()).unwrap().triangles().is_empty());
 }

@@ -1,4 +1,5 @@
-//! What the comparisons share: medians, processor time, a peer that answers line by line, cells for its grid.
+//! Shared parts of the comparisons: medians, processor time, a peer that answers line by line, and cells for
+//! its grid.
 
 use leafless::octree::Cursor;
 use leafless::{FillRule, MeshSolid, TriangleMesh, exchange};
@@ -12,7 +13,7 @@ pub fn median(mut values: Vec<f64>) -> f64 {
     values[values.len() / 2]
 }
 
-/// Processor time of this thread in milliseconds, and its page faults.
+/// Returns the processor time of this thread in milliseconds, and its page faults.
 pub fn spent() -> (f64, f64) {
     // SAFETY: plain structs, filled in by the system.
     unsafe {
@@ -24,13 +25,13 @@ pub fn spent() -> (f64, f64) {
     }
 }
 
-/// The mesh of a file, sewn.
+/// Reads the mesh of a file, sewn.
 pub fn read(path: &str) -> Result<TriangleMesh, Box<dyn Error>> {
     let file = exchange::read_mesh(&std::fs::read(path)?, &exchange::MeshOptions::default())?;
     Ok(file.mesh.sewn()?)
 }
 
-/// A mesh of which nothing is known yet, as a solid.
+/// Returns a mesh as a solid, without anything computed in advance.
 pub fn solid(mesh: &TriangleMesh) -> Result<MeshSolid, leafless::Error> {
     let mesh = TriangleMesh::new(mesh.vertices().into(), mesh.triangles().into())?;
     MeshSolid::new(Arc::new(mesh), FillRule::NonZero)
@@ -52,7 +53,7 @@ pub fn write_full(cursor: &mut Cursor<'_>, depth: u8, out: &mut impl Write) -> s
     Ok(())
 }
 
-/// Another program that answers a line of words with a line of numbers.
+/// Another program. It answers each line of words with a line of numbers.
 pub struct Peer {
     child: Child,
     ask: Option<ChildStdin>,
@@ -90,7 +91,7 @@ fn share(state: &mut u64) -> f64 {
     (z >> 11) as f64 / (1u64 << 53) as f64
 }
 
-/// Rows of [R | t]: rotations, all equally likely, and offsets of up to `reach` along each axis.
+/// Returns rows of [R | t]: uniformly distributed rotations, and offsets of up to `reach` along each axis.
 pub fn random_poses(count: usize, reach: [f64; 3]) -> Vec<[[f64; 4]; 3]> {
     let mut state = 1;
     let mut pose = || {

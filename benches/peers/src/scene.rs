@@ -14,7 +14,7 @@ pub fn along_x() -> impl Iterator<Item = (f64, f64)> {
     (0..4).map(|i| 0.7 + i as f64 * FRAC_PI_2).map(|angle| (0.5 * angle.cos(), 0.5 * angle.sin()))
 }
 
-/// The ball of radius 0.9 around the origin, less three bars of width 0.4 along the axes and twelve
+/// The ball of radius 0.9 around the origin, minus three bars of width 0.4 along the axes and twelve
 /// cylinders.
 pub fn solid() -> Result<Csg, Error> {
     let mut parts = vec![Csg::ball([0.0; 3], 0.9)?];

@@ -1,6 +1,6 @@
-//! Files changed by somebody who knows what a file is, mostly with good checksums, through every command of
-//! the program: each run ends by itself with code 0, 1 or 2 and says in one line what is wrong. What is made
-//! of a file that `verify` calls good is good.
+//! Files changed by a mutator that knows the format, mostly with good checksums, through every command of the
+//! program. Each run ends by itself with code 0, 1 or 2, and reports a problem in one line. A result made
+//! from a file that `verify` accepts is good.
 
 #[path = "../../../fuzz/bodies/layout.rs"]
 #[allow(dead_code)]
@@ -12,7 +12,7 @@ mod mutator;
 use crate::commands::{COMMANDS, attempt, vectors};
 use crate::place::Place;
 
-/// Numbers that only look random (splitmix64), as the mutator takes them.
+/// Pseudo-random numbers (splitmix64), as the mutator takes them.
 struct Random(u64);
 
 impl Random {
@@ -33,7 +33,7 @@ impl Random {
     }
 }
 
-/// No input of these tests has two parts.
+/// Returns `None`: no input of these tests has two parts.
 fn halves(_: &[u8]) -> Option<(&[u8], &[u8])> {
     None
 }
@@ -42,7 +42,7 @@ fn joined(first: &[u8], _: &[u8]) -> Vec<u8> {
     first.to_vec()
 }
 
-/// A change that knows nothing: one byte.
+/// A blind change of one byte.
 fn blind(random: &mut Random, data: &mut [u8], size: usize) -> usize {
     if size > 0 {
         data[random.below(size)] = random.next() as u8;
@@ -50,7 +50,8 @@ fn blind(random: &mut Random, data: &mut [u8], size: usize) -> usize {
     size
 }
 
-/// Runs some commands on changed files of each vector.
+/// Runs commands on `files` changed files of the vectors. Returns the numbers of changed files, of good ones
+/// among them, and of good results.
 fn change(files: usize, seed: u64) -> [usize; 3] {
     let vectors: Vec<Vec<u8>> = vectors().iter().map(|path| std::fs::read(path).unwrap()).collect();
     let place = Place::new();

@@ -47,7 +47,8 @@ fn contains(interval: &Value, value: f64) -> bool {
     interval["lower"].as_f64().unwrap() <= value && value <= interval["upper"].as_f64().unwrap()
 }
 
-/// Boxes in the universe [0, 8]³ of 16³ cells: whole, its left half and its right half with some overlap.
+/// Boxes in the universe [0, 8]³ of 16³ cells: the whole box, its left half and its right half, with some
+/// overlap.
 fn files(path: &Path) {
     let frame = Frame::new([0.0; 3], 8.0, 4).unwrap();
     for (name, min, max) in [
@@ -89,7 +90,7 @@ fn a_channel_of_a_function_is_sampled_and_summed_up() {
     assert_eq!(sample(path, &["block.lfl", "--name", "heat"], points), ["36", "68", "none", "none"]);
     assert_eq!(sample(path, &["block.lfl", "--everywhere"], "2 2 3.5\n-1 0 0\n"), ["44", "none"]);
     let found = told(path, &["summary", "block.lfl"]);
-    // Layers of 36 from z = 1 to 7: 28, 36, …, 68.
+    // Layers of area 36 from z = 1 to 7: 28, 36, …, 68.
     assert_eq!(found["values"][0]["least"], 28.0);
     assert_eq!(found["values"][0]["greatest"], 68.0);
     assert!(
@@ -103,7 +104,7 @@ fn a_channel_of_a_function_is_sampled_and_summed_up() {
     let text = String::from_utf8(run(path, &["info", "block.lfl"]).stdout).unwrap();
     assert!(text.contains("channel         heat in K: 1 x u16, depth 4"), "{text}");
     assert!(run(path, &["verify", "block.lfl"]).status.success());
-    // Taken away, the file is what it was.
+    // Without the channel, the file is the old one.
     told(path, &["attribute", "block.lfl", "--name", "heat", "--remove", "-o", "plain.lfl"]);
     files(path);
     assert_eq!(
@@ -155,7 +156,7 @@ fn set_operations_carry_channels() {
         2,
         "the rules are",
     );
-    // Of another type there is no rule.
+    // Channels of different types have no rule.
     told(path, &["attribute", "right.lfl", "--name", "n", "--value", "3", "--store", "u8"]);
     refused(path, &["union", "left.lfl", "right.lfl", "-o", "x.lfl"], 1, "of one type");
 }
@@ -290,7 +291,7 @@ fn voxels_follow_channels() {
     let (adaptive, text) = listed(&["--coarse", "2", "--fine", "0.5", "--tolerance", "0"]);
     let fine = listed(&["--coarse", "0.5"]).0;
     assert!(coarse < adaptive && adaptive < fine, "{coarse} {adaptive} {fine}");
-    // No value is listed that the function does not have there.
+    // The list contains only values that the function has there.
     assert!(text.lines().next().unwrap().contains("value"), "{}", text.lines().next().unwrap());
     told(path, &["attribute", "block.lfl", "--name", "b", "--value", "1"]);
     refused(path, &["voxels", "block.lfl", "-o", "x.csv", "--channel", "c"], 1, "It has a, b");

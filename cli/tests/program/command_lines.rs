@@ -1,6 +1,6 @@
-//! Command lines that nobody thought of: options of each subcommand in any number and order, with values that
-//! fit, that nearly fit, and that do not, on good files, damaged ones and none. Each run ends by itself with
-//! code 0, 1 or 2, says in one line what is wrong, and leaves no temporary file.
+//! Unexpected command lines: options of each subcommand in any number and order, with values that fit, nearly
+//! fit or do not fit, on good, damaged and missing files. Each run ends by itself with code 0, 1 or 2,
+//! reports a problem in one line, and leaves no temporary file.
 
 use crate::place::{Place, Run, block, stl};
 use std::collections::BTreeMap;
@@ -8,13 +8,13 @@ use std::io::Write;
 use std::process::{Command, Stdio};
 use std::time::{Duration, Instant};
 
-/// Runs of the default suite, and of the long one.
+/// Numbers of runs in the default suite, and in the long one.
 const FEW: u64 = 400;
 const MANY: u64 = 7000;
-/// What ends a command that hangs.
+/// Time after which a hanging command is ended.
 const PATIENCE: Duration = Duration::from_secs(100);
 
-/// Numbers that are as random as the tests need, from a seed.
+/// Pseudo-random numbers from a seed, good enough for the tests.
 struct Random(u64);
 
 impl Random {
@@ -28,7 +28,7 @@ impl Random {
     }
 }
 
-/// An option of a subcommand, and the values that its help names.
+/// An option of a subcommand, with the values that its help names.
 #[derive(Debug)]
 struct Choice {
     name: String,
@@ -36,7 +36,7 @@ struct Choice {
     values: Vec<String>,
 }
 
-/// All subcommands with their options, as the program's help tells them.
+/// Returns all subcommands with their options, as listed by the program's help.
 fn subcommands(place: &Place) -> BTreeMap<String, Vec<Choice>> {
     let help = place.run("--help").good();
     let list = help.text().split("Commands:\n").nth(1).unwrap().split("\n\n").next().unwrap().to_owned();
@@ -120,7 +120,7 @@ fn files(place: &Place) -> Vec<String> {
     names
 }
 
-/// Values for options of any kind.
+/// Values for all kinds of options.
 const VALUES: [&str; 46] = [
     "0",
     "1",
@@ -170,7 +170,7 @@ const VALUES: [&str; 46] = [
     "name=left",
 ];
 
-/// Values that some options take.
+/// Values that fit certain options.
 const FITTING: [(&str, &str); 33] = [
     ("--bounds", "-2,-2,-2,4"),
     ("--threads", "1"),
@@ -207,7 +207,7 @@ const FITTING: [(&str, &str); 33] = [
     ("--rounds", "1"),
 ];
 
-/// What a subcommand cannot do without.
+/// Options that a subcommand requires.
 const NEEDED: [(&str, &str); 6] = [
     ("heights", "--axis z"),
     ("within", "--ball 0.2,0,0,0.9"),
@@ -217,7 +217,7 @@ const NEEDED: [(&str, &str); 6] = [
     ("dexelize", "--resolution 16"),
 ];
 
-/// One line, without the program's name.
+/// Returns a random command line, without the program's name.
 fn line(random: &mut Random, name: &str, choices: &[Choice], files: &[String]) -> Vec<String> {
     let file = |random: &mut Random| files[random.below(files.len())].clone();
     let mut words = vec![name.to_owned()];
@@ -303,7 +303,7 @@ fn run(place: &Place, words: &[String], input: &str) -> Run {
     let start = Instant::now();
     let mut child = command.spawn().unwrap();
     let id = child.id();
-    // (The program may not care for its input.)
+    // (The program may not read its input.)
     let _ = child.stdin.take().unwrap().write_all(input.as_bytes());
     let (sender, receiver) = std::sync::mpsc::channel();
     let waiting = std::thread::spawn(move || {
@@ -348,7 +348,7 @@ fn attack(seed: u64, runs: u64) {
             done.errors.lines().filter(|line| !line.contains(": warning: ") && !line.contains(": note: "));
         assert!(!done.errors.contains("panicked") && !done.errors.contains("os error"), "{done:?}");
         if code != 0 {
-            // The last line says why.
+            // The last line gives the reason.
             assert!(
                 lines.next_back().is_some_and(|line| line.starts_with("leafless: ") && line.len() > 20),
                 "{done:?}"
@@ -358,7 +358,7 @@ fn attack(seed: u64, runs: u64) {
         assert!(left.is_none(), "{left:?} after {done:?}");
     }
     println!("{codes:?} ended with the codes 0, 1 and 2");
-    // The lines are not so wild that none does anything.
+    // The lines are moderate enough that some succeed.
     assert!(codes.iter().all(|&count| count > runs / 50), "{codes:?}");
 }
 
@@ -367,7 +367,7 @@ fn wild_command_lines_end_with_a_sentence() {
     attack(1, FEW);
 }
 
-/// Minutes: `--test program command_lines:: -- --ignored`. `LEAFLESS_SEED` chooses other lines.
+/// Takes minutes: `--test program command_lines:: -- --ignored`. `LEAFLESS_SEED` chooses other lines.
 #[test]
 #[ignore = "minutes"]
 fn thousands_of_command_lines() {

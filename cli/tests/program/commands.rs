@@ -1,4 +1,4 @@
-//! All commands on a file, and how a run ends.
+//! All commands on a file, and checks of how a run ends.
 
 // Each test program uses its own part of this.
 #![allow(dead_code)]
@@ -9,10 +9,10 @@ use std::path::{Path, PathBuf};
 use std::process::{Command, Stdio};
 use std::time::{Duration, Instant};
 
-/// What ends a command that hangs. (They take ten seconds at most on a machine with nothing else to do.)
+/// Time after which a hanging command is ended. (Commands take at most ten seconds on an idle machine.)
 const PATIENCE: Duration = Duration::from_secs(100);
 
-/// The commands that take a solid, `F`, with what they read behind `<`; those that write, to `out`.
+/// The commands that take a solid, `F`. Their input follows `<`. Commands that write a file write to `out`.
 pub const COMMANDS: [&str; 53] = [
     "info F",
     "verify F",
@@ -69,7 +69,7 @@ pub const COMMANDS: [&str; 53] = [
     "layout F F*2 -o out.json --rounds 1 --cells 8 --tests 20 --splits 2000",
 ];
 
-/// Runs the program under a limit of addresses, with twice what it is allowed: what it takes for threads
+/// Runs the program with an address-space limit of twice what it is allowed, because the memory of threads
 /// counts, too.
 pub fn run(place: &Place, allowed: &str, line: &str, input: &[u8]) -> Run {
     let words: Vec<&str> = line.split_whitespace().collect();
@@ -84,7 +84,7 @@ pub fn run(place: &Place, allowed: &str, line: &str, input: &[u8]) -> Run {
     command.stdin(Stdio::piped()).stdout(Stdio::piped()).stderr(Stdio::piped());
     let start = Instant::now();
     let mut child = command.spawn().unwrap();
-    // (The program may not care for its input.)
+    // (The program may not read its input.)
     let _ = child.stdin.take().unwrap().write_all(input);
     let (sender, receiver) = std::sync::mpsc::channel();
     let id = child.id();
@@ -103,7 +103,7 @@ pub fn run(place: &Place, allowed: &str, line: &str, input: &[u8]) -> Run {
     Run::new(line, waiting.join().unwrap().unwrap())
 }
 
-/// Commands on a file end by themselves: with success, or with one sentence.
+/// Runs commands on a file. Each must end by itself, with success or with one sentence.
 pub fn attempt(place: &Place, allowed: &str, path: &Path, commands: impl Iterator<Item = &'static str>) {
     for command in commands {
         let (line, input) = command.split_once('<').unwrap_or((command, ""));
@@ -113,7 +113,7 @@ pub fn attempt(place: &Place, allowed: &str, path: &Path, commands: impl Iterato
         let is_error = |line: &&str| !line.contains("warning") && !line.contains(": note: ");
         let errors = done.errors.lines().filter(is_error).count();
         assert_eq!(errors, usize::from(done.code != Some(0)), "{done:?}");
-        // The limit was kept by the program itself.
+        // The program itself kept the limit.
         let is_kept =
             !done.errors.contains("the system has no memory left") && !done.errors.contains("panicked");
         assert!(is_kept, "{done:?}");

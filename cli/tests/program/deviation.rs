@@ -26,12 +26,12 @@ fn scenes_and_meshes() {
     holds(&found["a_to_b"], 0.5, 0.02);
     assert_eq!((&found["verdict"], &found["measured"]), (&Value::Null, &"tolerance".into()), "{found}");
     assert_eq!(found["a_to_b"]["point"].as_array().map(Vec::len), Some(3), "{found}");
-    // A mesh beside itself, moved, and turned by a quarter.
+    // A mesh against itself, moved, and rotated by a quarter turn.
     let found = place.run("deviation cube.stl cube.stl --within 0 --json").good().json();
     assert_eq!((found["verdict"].as_str(), found["upper"].as_f64()), (Some("within"), Some(0.0)));
     let moved = "deviation cube.stl cube.stl --translate 0.25,0,0 --tolerance 1e-9 --json";
     holds(&place.run(moved).good().json(), 0.25, 1e-9);
-    // For people.
+    // The text output.
     let text =
         place.run("deviation cube.stl cube.stl --translate 0.25,0,0 --within 0.5").good().text().to_owned();
     for (line, name) in text.lines().zip(["verdict", "distance", "a to b", "b to a", "splits"]) {

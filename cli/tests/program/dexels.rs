@@ -1,4 +1,4 @@
-//! Tri-dexel models with the program `leafless`: made, combined, converted, and their surfaces.
+//! Tri-dexel models with the program `leafless`: construction, combination, conversion and surfaces.
 
 use crate::place::{Place, block, stl};
 use leafless::dexel::{DexelEnds, DexelNormals};
@@ -21,7 +21,7 @@ fn json(place: &Place, line: &str) -> Value {
 const BOUNDS: &str = "--bounds 0,0,0,8";
 
 /// `cube.stl`, the cube [1.1, 3.3]³, `bar.stl`, the box [2.2, 6.2] × [1.7, 2.7] × [0.6, 2.6], and models of
-/// both of 64 cells to an axis.
+/// both with 64 cells along an axis.
 fn models() -> Place {
     let place = Place::new();
     place.write("cube.stl", stl(&block([1.1f32; 3].map(f64::from), [3.3f32; 3].map(f64::from))));
@@ -64,7 +64,7 @@ fn a_mesh_is_dexelised() {
         assert_eq!(direction["intervals"], side * side);
         assert_eq!(direction["odd_rays"], 0);
         assert!(direction["bytes"].as_u64().unwrap() >= 8 * side * side);
-        // Rays are exact along themselves.
+        // Rays are exact in their own direction.
         let volume = direction["volume"].as_f64().unwrap();
         let exact = (17.0f64 / 8.0).powi(2) * 2.2;
         assert!((volume - exact).abs() < 1e-5, "{volume}, not {exact}");
@@ -146,7 +146,7 @@ fn octrees_are_dexelised_exactly() {
     place
         .run("dexelize sampled.lfl -o no.lfl --resolution 128")
         .bad(2, &["--resolution contradicts sampled.lfl", "64 cells"]);
-    // On a coarser lattice the cells from 9 to 25 are those from 5 to 12, with what is cut those from 4 to 12.
+    // On a coarser lattice, the cells 9 to 25 become the cells 5 to 12; with the cut cells, 4 to 12.
     let noted = place
         .run("dexelize sampled.lfl -o cells.lfl --resolution 32 --json")
         .noted(&["undecided", "--rule inner"]);
@@ -163,7 +163,7 @@ fn octrees_are_dexelised_exactly() {
         "--rule inner",
     ]);
     assert_eq!(noted.json()["metadata"]["rule"], "outer");
-    // Cells that the faces at 1.1 and 3.3 cut are those of 8 and 26.
+    // The faces at 1.1 and 3.3 cut the cells 8 and 26.
     for (rule, side) in [("inner", 17.0), ("outer", 19.0f64)] {
         let report = json(&place, &format!("dexelize bounds.lfl -o cells.lfl --rule {rule}"));
         assert_eq!(report["volume"], (side / 8.0).powi(3), "{rule}");
@@ -175,7 +175,7 @@ fn octrees_are_dexelised_exactly() {
 #[test]
 fn rays_through_a_hole_are_odd() {
     let place = Place::new();
-    // Without one of the two triangles of a side that looks along x, and of it nothing else.
+    // A side that faces along x lacks one of its two triangles; all else is complete.
     let whole = block([1.0; 3], [7.0; 3]);
     let open = TriangleMesh::new(whole.vertices().to_vec(), whole.triangles()[1..].to_vec()).unwrap();
     place.write("open.stl", stl(&open));
@@ -183,7 +183,7 @@ fn rays_through_a_hole_are_odd() {
     assert_eq!(run.code, Some(0));
     assert!(run.errors.contains("does not bound a solid"), "{run:?}");
     let report = run.json();
-    // Half of a square of 6 × 6 rays; those on its diagonal lie on one side.
+    // Half of a square of 6 × 6 rays. The rays on its diagonal lie on one side.
     let odd = report["directions"][0]["odd_rays"].as_u64().unwrap();
     assert!(odd == 15 || odd == 21, "{odd}");
     assert_eq!(report["odd_rays"], odd);
@@ -206,7 +206,7 @@ fn what_is_cut_off_is_told() {
         let run = place.run(&format!("dexelize {line} -o out.lfl --resolution 8 --json"));
         assert_eq!(run.code, Some(0), "{run:?}");
         assert!(run.errors.contains(words) && run.errors.lines().count() == 1, "{run:?}");
-        // Of the cube 4 × 4 rays in each direction, beside each other by 1/4, from 1.1 to the upper face at 2.
+        // The cube has 4 × 4 rays in each direction, 1/4 apart, from 1.1 to the upper face at 2.
         let exact = if line.starts_with("half") { 256.0 } else { 0.9 };
         let volume = run.json()["volume"].as_f64().unwrap();
         assert!((volume - exact).abs() < 1e-5, "{run:?}");
@@ -248,7 +248,7 @@ fn models_are_combined() {
         };
         assert_eq!(model(&place, "out.lfl"), expected.unwrap(), "{operation}");
     }
-    // Of three: an odd number of them, and the first without both others.
+    // With three operands: the points in an odd number of them, and the first without both others.
     place.run("xor cube.lfl bar.lfl bar.lfl -o out.lfl").good();
     assert_eq!(model(&place, "out.lfl"), model(&place, "cube.lfl"));
     place.run("difference cube.lfl bar.lfl cube.lfl -o out.lfl").good();
@@ -257,7 +257,7 @@ fn models_are_combined() {
     place.run("complement rest.lfl -o out.lfl").good();
     let again = model(&place, "out.lfl");
     assert_eq!(again.view().interval_count(), model(&place, "cube.lfl").view().interval_count());
-    // Facts of both; and a model through a pipe.
+    // Metadata of both; and a model through a pipe.
     let info = json(&place, "info rest.lfl");
     assert_eq!((&info["metadata"]["name"], &info["metadata"]["rule"]), (&"cube".into(), &"sampled".into()));
     assert!(info["metadata"].get("source").is_none());
@@ -289,7 +289,7 @@ fn what_does_not_go_together_is_refused() {
             .bad(1, &["flat.lfl", "cube.lfl", "rays along z", "xyz", "--directions"]);
         place.run(&format!("{operation} cube.lfl bar.lfl {to} --carry t=max")).bad(2, &["--carry"]);
     }
-    // Commands for octrees say what makes one.
+    // The errors of octree commands say how to make an octree.
     for line in [
         "contains cube.lfl",
         "measure cube.lfl",
@@ -354,7 +354,7 @@ fn surfaces_are_closed() {
     }
     let text = place.run("mesh cube.lfl -o out.stl --method dual").good();
     assert!(text.text().contains("\n1,734 crossings"), "{text:?}");
-    // Only one direction: half of the crossings lie anywhere.
+    // With only one direction, half of the crossings are arbitrary.
     place.run(&format!("dexelize cube.stl -o flat.lfl --resolution 64 {BOUNDS} --directions z")).good();
     let flat = json(&place, "mesh flat.lfl -o out.stl");
     assert_eq!((&flat["crossings"], &flat["without_rays"]), (&(6 * 17 * 17).into(), &(4 * 17 * 17).into()));
@@ -370,7 +370,8 @@ fn surfaces_are_closed() {
     assert!(!place.files().contains(&"no.stl".into()));
 }
 
-/// Dual contouring of what is no tri-dexel model yet keeps the edges of a cube and lies on a ball.
+/// Dual contouring of meshes and scenes, by way of a tri-dexel model, keeps the edges of a cube and lies on a
+/// ball.
 #[test]
 fn dual_contouring_of_meshes_and_scenes() {
     let place = models();
@@ -381,8 +382,8 @@ fn dual_contouring_of_meshes_and_scenes() {
     let report = json(&place, "mesh ball.csg -o out.ply --method dual --depth 6 --bounds -4,-4,-4,8");
     assert_eq!((&report["closed"], &report["euler"]), (&true.into(), &2.into()));
     for [x, y, z] in mesh(&place, "out.ply").vertices() {
-        // The ball falls below its tangent planes by r²/4 within r of where they touch it; a cube of edge 1/8
-        // is not wider.
+        // The ball falls below its tangent planes by r²/4 within r of the point of contact. A cube of edge
+        // 1/8 is no wider.
         assert!(((x * x + y * y + z * z).sqrt() - 2.0).abs() < 3.0 / 64.0 / 4.0);
     }
     place.run(&format!("voxelize cube.stl -o octree.lfl --depth 5 {BOUNDS}")).good();
@@ -390,7 +391,7 @@ fn dual_contouring_of_meshes_and_scenes() {
         .run("mesh octree.lfl -o no.ply --method dual --resolve inner")
         .bad(1, &["octree.lfl", "octree", "normals", "leafless dexelize"]);
     place.run("mesh cube.stl -o no.ply --method dual --resolve inner").bad(2, &["--resolve", "dual"]);
-    // Other methods tell of no rays.
+    // Other methods report no rays.
     let plain = json(&place, &format!("mesh cube.stl -o out.ply --depth 5 {BOUNDS}"));
     assert!(plain.get("crossings").is_none());
 }
@@ -412,7 +413,7 @@ fn each_kind_becomes_each_other() {
     assert!(mesh(&place, "out.stl").report().unwrap().is_closed());
     place.run("mesh cube.lfl -o direct.stl").good();
     assert_eq!(place.bytes("out.stl"), place.bytes("direct.stl"));
-    // From an octree: its cells, exactly, there and back.
+    // From an octree: exactly its cells, there and back.
     let dexels = json(&place, "convert octree.lfl -o dexels.lfl --to dexels");
     assert_eq!((&dexels["volume"], &dexels["resolution"]), (&cells.into(), &64.into()));
     place.run("convert dexels.lfl -o again.lfl --to octree").good();
@@ -424,7 +425,7 @@ fn each_kind_becomes_each_other() {
     assert_eq!(place.bytes("open.lfl"), place.bytes("dexels.lfl"));
     place.run("convert bounds.lfl -o out.ply --resolve inner").good();
     place.run("convert bounds.lfl -o open.ply").noted(&["bounds.lfl", "--resolve"]);
-    // From meshes and scenes as the subcommands for them do it.
+    // From meshes and scenes, like the subcommands for them.
     place.run(&format!("convert cube.stl -o out.lfl --to dexels --resolution 64 {BOUNDS}")).good();
     place.run(&format!("dexelize cube.stl -o direct.lfl --resolution 64 {BOUNDS}")).good();
     assert_eq!(place.bytes("out.lfl"), place.bytes("direct.lfl"));
@@ -436,7 +437,7 @@ fn each_kind_becomes_each_other() {
     place.run("convert ball.csg -o out.ply --resolution 16").good();
     place.run("mesh ball.csg -o direct.ply --method mc --depth 4").good();
     assert_eq!(place.bytes("out.ply"), place.bytes("direct.ply"));
-    // The unit has another name here.
+    // The unit has another name in this format.
     place.run("convert cube.stl -o out.lfl --to dexels --unit in --to-unit mm --resolution 16").good();
     assert_eq!(model(&place, "out.lfl").metadata().get("units"), Some("mm"));
     let (inches, extent) = (model(&place, "out.lfl"), 2.2 * 25.4);
@@ -498,7 +499,8 @@ fn damage_is_told_as_what_it_is() {
     }
 }
 
-/// A file of three short intervals at depth 20 takes no time, and what is not seen of it is told.
+/// A file with three short intervals at depth 20 takes almost no time. The output says what the commands
+/// cannot see of it.
 #[test]
 fn depth_20_takes_no_time() {
     let file = concat!(env!("CARGO_MANIFEST_DIR"), "/../format_spec/vectors/valid/dexel-depth-20.lfl");
@@ -547,7 +549,7 @@ fn materials_travel_to_octrees_records_samples_and_pictures() {
     let records = place.bytes("both.csv");
     let records = String::from_utf8(records).unwrap();
     assert!(records.lines().next().unwrap().contains("material") || records.lines().count() > 2, "{records}");
-    // In a picture each has its colour.
+    // In a picture each material has its colour.
     place.run("render both.dex -o both.png --size 160x120 --samples 1 --no-legend").good();
     place.run("render low.dex -o low.png --size 160x120 --samples 1 --no-legend").good();
     assert_ne!(place.bytes("both.png"), place.bytes("low.png"));
@@ -605,7 +607,7 @@ fn a_model_with_normals_becomes_an_octree_with_surfaces() {
     assert_eq!(report["metadata"]["certified of"], "surface reconstructed from a tri-dexel model");
     let (lower, upper) =
         (report["volume"]["lower"].as_f64().unwrap(), report["volume"]["upper"].as_f64().unwrap());
-    // Ends and normals of a cube are exact but for the rounding of places.
+    // Ends and normals of a cube are exact up to the rounding of places.
     let exact = f64::from(3.3f32 - 1.1).powi(3);
     assert!(
         upper - lower < 1e-2 * exact && lower < 1.001 * exact && upper > 0.999 * exact,
@@ -614,7 +616,7 @@ fn a_model_with_normals_becomes_an_octree_with_surfaces() {
     assert!(report["surfaces"].as_f64().unwrap() > 0.0, "{report}");
     let cut = place.run("voxelize cube.lfl -o moved.lfl --surfaces=1e-2 --translate 1,0,0").good();
     assert!(cut.text().contains("moved.lfl"));
-    // What is missing is told.
+    // Missing data are reported.
     place.run(&format!("dexelize cube.stl -o plain.lfl --resolution 16 {BOUNDS}")).good();
     place.run("voxelize plain.lfl -o never.lfl --surfaces=1e-2").bad(1, &["no normals", "--normals 32"]);
     place.run("voxelize cube.lfl -o never.lfl --surfaces").bad(2, &["--surfaces=1e-4"]);

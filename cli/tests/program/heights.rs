@@ -6,7 +6,7 @@ fn rows(run: &Run) -> Vec<Vec<f64>> {
     run.text().lines().map(|line| line.split(',').map(|x| x.parse().unwrap()).collect()).collect()
 }
 
-/// The slab is [2, 6] × [2, 6] × [0, 2] in [0, 8]³, with 32 cells an axis: four a unit.
+/// The slab is [2, 6] × [2, 6] × [0, 2] in [0, 8]³, with 32 cells along an axis: four to a unit.
 #[test]
 fn every_axis_and_side() {
     let place = solids();
@@ -49,8 +49,8 @@ fn files_and_doubles() {
     place.run("heights none.lfl --axis x").bad(1, &["none.lfl"]);
 }
 
-/// Of a ball, the proven and the possible height enclose the true one; a solid's file is asked on coarser
-/// cells, too.
+/// For a ball, the proven and the possible height enclose the true height. A solid's file is also queried on
+/// coarser cells.
 #[test]
 fn meshes_and_scenes() {
     let place = solids();
@@ -75,7 +75,7 @@ fn meshes_and_scenes() {
     assert!(met > 1000 && (10..400).contains(&open), "{met} {open}");
     assert_eq!(rows(&place.run("heights cube.stl --axis z --depth 4").good()).len(), 16);
     assert_eq!(rows(&place.run("heights cube.lfl --axis z --depth 3").good())[2][2], 3.0);
-    // What is sampled proves nothing, but its cells may be taken for the solid.
+    // Samples prove nothing, but their cells may be taken for the solid.
     place.run("voxelize cube.stl -o sampled.lfl --depth 5 --bounds 0,0,0,8 --rule sampled").good();
     let open = rows(&place.run("heights sampled.lfl --axis z --on full").good());
     assert!(open.concat().iter().all(|x| x.is_nan()));

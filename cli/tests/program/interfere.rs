@@ -42,7 +42,7 @@ fn solids_and_meshes() {
     file::save(&tree, path.join("a.lfl")).unwrap();
     for a in ["a.lfl", "a.stl"] {
         for b in ["a.lfl", "a.stl"] {
-            // In place: the whole of it. The frame around the meshes has no planes where their faces are.
+            // In place: the whole mesh. The frame around the meshes has no planes at their faces.
             let found = json(path, &[a, b]);
             assert_eq!(found["verdict"], "overlapping", "{a} {b}");
             assert!(contains(&found["overlap"], 16.0), "{found}");
@@ -53,14 +53,15 @@ fn solids_and_meshes() {
             assert!(found["splits"].as_u64().unwrap() <= 80, "{found}");
             assert!(found["witness"]["min"][0].as_f64().unwrap() >= 0.0);
             assert!(found["witness"]["max"][0].as_f64().unwrap() <= 4.0);
-            // Beside it, and turned by a quarter so that y goes to −x.
+            // Beside it, and rotated by a quarter turn that takes y to −x.
             let found = json(path, &[a, b, "--place-b", "1 0 0 6.5 0 1 0 0 0 0 1 0"]);
             assert_eq!((&found["verdict"], &found["witness"]), (&"disjoint".into(), &Value::Null), "{a} {b}");
             assert!(contains(&found["clearance"], 2.5) && contains(&found["overlap"], 0.0), "{found}");
             assert_eq!(found["clipped"], false);
             let found = json(path, &[a, b, "--place-b", "0,-1,0,0, 1,0,0,1, 0,0,1,0, 0,0,0,1"]);
             assert!(contains(&found["clearance"], 0.0) && contains(&found["overlap"], 0.0), "{found}");
-            // Turned by the angle whose cosine is 0.8 about the z axis: analytic by clipping the polygon.
+            // Rotated about the z axis by the angle with cosine 0.8. The truth comes from clipping the
+            // polygon.
             let found =
                 json(path, &[a, b, "--place-b", "[[0.8,-0.6,0,1],[0.6,0.8,0,0],[0,0,1,1]]", "--depth", "6"]);
             assert_eq!(found["verdict"], "overlapping");
@@ -72,17 +73,17 @@ fn solids_and_meshes() {
     let found = json(path, &["a.lfl", "a.lfl", "--place-b", "1 0 0 4 0 1 0 0.5 0 0 1 0"]);
     assert_eq!(found["verdict"], "disjoint");
     assert_eq!((&found["clearance"]["lower"], &found["clearance"]["upper"]), (&0.0.into(), &0.0.into()));
-    // For people.
+    // The text output.
     let text = String::from_utf8(run(path, &["interfere", "a.lfl", "a.lfl"]).stdout).unwrap();
     for (line, name) in text.lines().zip(["verdict", "overlap", "clearance", "witness", "splits"]) {
         assert!(line.starts_with(name), "{text}");
     }
-    // A budget of none.
+    // A budget of zero.
     let found = json(path, &["a.stl", "a.stl", "--splits", "0"]);
     assert_eq!((&found["verdict"], &found["clearance"]["upper"]), (&"undecided".into(), &Value::Null));
 }
 
-/// Whether two solids are far enough apart, by the exit code; and the points that are nearest.
+/// The exit code says whether two solids are far enough apart. The nearest points are printed.
 #[test]
 fn gaps_and_points() {
     let folder = tempfile::tempdir().unwrap();
@@ -108,7 +109,7 @@ fn gaps_and_points() {
     assert!(text.lines().any(|line| line.starts_with("nearest")), "{text}");
 }
 
-/// Clearances and gaps in the places of a file.
+/// Clearances and gaps at the places of a file.
 #[test]
 fn many_places() {
     let folder = tempfile::tempdir().unwrap();
@@ -137,7 +138,7 @@ fn many_places() {
     let text = String::from_utf8(output.stdout).unwrap();
     assert!(text.lines().count() == 4 && text.contains("clearance") && text.contains(" and "), "{text}");
 
-    // Far enough apart in the first place only.
+    // Far enough apart only at the first place.
     let gap = [&["interfere"], &command[..], &["--gap-at-least", "1.5"]].concat();
     let output = run(path, &[&gap[..], &["--json"]].concat());
     let told: Value = serde_json::from_slice(&output.stdout).unwrap();
@@ -152,11 +153,11 @@ fn many_places() {
     assert!(text.contains("at least 1.5") && text.lines().count() == 4, "{text}");
     std::fs::write(path.join("places.txt"), "1 0 0 7 0 1 0 0 0 0 1 0\n").unwrap();
     assert!(run(path, &gap).status.success());
-    // A clearance of one place is told anyway.
+    // The clearance of a single place is reported anyway.
     assert_eq!(run(path, &["interfere", "a.csg", "b.csg", "--clearance"]).status.code(), Some(2));
 }
 
-/// The area that a polygon has in [0, w] × [0, h], counter-clockwise.
+/// Returns the area of a counter-clockwise polygon in [0, w] × [0, h].
 fn clipped_area(polygon: [[f64; 2]; 4], size: [f64; 2]) -> f64 {
     let mut points = polygon.to_vec();
     for (axis, limit, sign) in [(0, 0.0, 1.0), (1, 0.0, 1.0), (0, size[0], -1.0), (1, size[1], -1.0)] {

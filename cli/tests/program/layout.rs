@@ -4,7 +4,7 @@ use crate::place::{Place, Run, block, stl};
 use serde_json::{Value, json};
 use std::io::Cursor;
 
-/// A cube of 10 as a scene, as a mesh and as a solid, a ring, and a slab.
+/// A cube of edge 10 as a scene, as a mesh and as a solid, a ring, and a slab.
 fn parts() -> Place {
     let place = Place::new();
     place.write("cube.csg", "cube([10, 10, 10]);");
@@ -31,7 +31,7 @@ fn layout(place: &Place, name: &str) -> Value {
     serde_json::from_slice(&place.bytes(name)).unwrap()
 }
 
-/// All that is said on standard error is one line with these words; the report is there all the same.
+/// Asserts that standard error is one line with these words, and that the report is printed all the same.
 #[track_caller]
 fn left(run: &Run, words: &[&str]) {
     assert!(run.code == Some(1) && run.errors.lines().count() == 1 && !run.bytes.is_empty(), "{run:?}");
@@ -62,7 +62,7 @@ fn boxes_fill_a_box() {
     let told = place.run("layout --check full.json --json").good().json();
     assert_eq!((&told["copies"], &told["proven"], &told["conflicts"]), (&json!(8), &json!(8), &json!([])));
 
-    // What is heavy, and how heavy.
+    // Densities and masses.
     let told = place.run("layout box:10,10,20 cube.csg*2 -o d.json --density 2.5 --json").good().json();
     holds(&told["mass"], 5000.0, 1.0);
     let heavy = "layout box:20,20,12 slab.csg cube.csg*2 -o d.json --density 2.5,1e-3 --json";
@@ -78,7 +78,7 @@ fn boxes_fill_a_box() {
     let run = place.run(steel).good();
     assert!(run.text().lines().any(|line| line.starts_with("mass") && line.ends_with(" g")), "{run:?}");
 
-    // With a distance between them there is less room; what goes in is written.
+    // With a distance between the cubes there is less room. The placed cubes are written.
     let run = place.run("layout box:20,20,20 cube.csg*8 -o some.json --clearance 0.5 --rounds 1");
     left(&run, &["7 copies are left", "7 of cube.csg"]);
     assert!(run.text().contains("placed          1 of 8\n"), "{run:?}");
@@ -116,7 +116,7 @@ fn boxes_fill_a_box() {
     holds(&place.run("measure o.csg --json").good().json()["volume"], 4800.0, 100.0);
 }
 
-/// What all three files say is the same, and other commands read them.
+/// All three output files agree, and other commands read them.
 #[test]
 fn outputs_are_read_back() {
     let place = parts();
@@ -154,7 +154,7 @@ fn outputs_are_read_back() {
         ["../cube.stl", "../in side/a \"b\".stl", "../in side/far.csg", "../cube.lfl", "../ring.csg"];
     assert_eq!(files, expected);
     place.run("layout --check out/a.json").good();
-    // From another folder, and as a whole tree that was moved.
+    // From another folder, and as a whole tree after a move.
     let run = place.command(["layout", "--check", "a.json"]).current_dir(place.path("out")).output().unwrap();
     Run::new("check", run).good();
 
@@ -167,10 +167,10 @@ fn outputs_are_read_back() {
     place.run("render out/a.csg -o out/a.png --size 32x32").good();
     let mesh = place.run("info out/a.3mf --json").good().json();
     let own = mesh["volume"].as_f64().unwrap();
-    // (Surface nets take the corners of the solid that is no more than its cells.)
+    // (Surface nets cut off the corners of the solid that consists only of cells.)
     assert!((own - volume).abs() < 1e-2 * volume, "{own} {volume}");
     assert_eq!(mesh["closed"], true, "{mesh}");
-    // The copies of the mesh stand where the JSON says, to the last digit.
+    // The copies of the mesh stand at the JSON's places, to the last digit.
     let bytes = leafless::exchange::read_mesh(&place.bytes("out/a.3mf"), &Default::default()).unwrap().mesh;
     for copy in told["placed"].as_array().unwrap().iter().filter(|copy| copy["item"] == 0) {
         let row = |i: usize| -> Vec<f64> {
@@ -184,14 +184,14 @@ fn outputs_are_read_back() {
         assert!(bytes.vertices().iter().any(|v| near(&v)), "{corner:?}");
     }
 
-    // On standard output: the layout, and the report beside it.
+    // The layout on standard output, and the report beside it.
     let run = place.run("layout box:10,10,10 cube.csg -o -");
     assert!(run.code == Some(0) && run.errors.contains("placed          1 of 1\n"), "{run:?}");
     place.write("piped.json", &run.bytes);
     place.run("layout --check piped.json").good();
 }
 
-/// A name that ends like a number of copies, a container that is a mesh, turns, and aims.
+/// A name that ends like a number of copies, a mesh as a container, rotations, and objectives.
 #[test]
 fn options() {
     let place = parts();
@@ -223,7 +223,7 @@ fn options() {
         let [lower, upper] = ends(&layout(&place, "a.json")["measures"]["centroid"][axis]);
         assert!(lower > aim - 1.5 && upper < aim + 1.5, "{axis} {lower} {upper}");
     }
-    // Budgets end a search, and what is known by then is written.
+    // Budgets end a search, and the placements so far are written.
     let run = place.run("layout tub.stl cube.stl*4 -o a.json --tests 1 --json");
     left(&run, &["--tests or --splits"]);
     assert_eq!((&run.json()["end"], &run.json()["tests"]), (&json!("budget"), &json!(1)));
@@ -247,7 +247,7 @@ fn the_same_seed_gives_the_same_bytes() {
     assert!(seen[0] == seen[1] && seen[0] == seen[2]);
 }
 
-/// Copies that are moved into each other, into an obstacle, and out of the container.
+/// Copies moved into each other, into an obstacle, and out of the container.
 #[test]
 fn what_is_changed_is_seen() {
     let place = parts();
@@ -295,10 +295,10 @@ fn what_is_changed_is_seen() {
     });
     assert!(told["conflicts"].as_array().unwrap().iter().any(|c| c["other"] == "wall"), "{told}");
     assert!(text.contains("the wall"), "{text}");
-    // More distance is asked for than there is.
+    // The requested distance is greater than the real one.
     let (told, _) = changed(&|value| value["clearance"] = json!(50));
     assert!(told["conflicts"].as_array().unwrap().len() >= 2, "{told}");
-    // And another part.
+    // Also another part.
     place.write("cube.stl", stl(&block([-5.0; 3], [50.0; 3])));
     left(&place.run("layout --check a.json"), &["a.json: of 3 copies", "in conflict"]);
     std::fs::remove_file(place.path("cube.stl")).unwrap();
@@ -399,7 +399,7 @@ fn hostile_layouts_are_refused() {
         place.run("layout --check b.json").bad(1, &["/dev/zero", "is no regular file"]);
     }
     place.run("layout --check none.json").bad(1, &["none.json", "No such file"]);
-    // Nothing that is placed is proven.
+    // No placement is proven.
     let mut empty = value.clone();
     (empty["placed"], empty["items"]) = (json!([]), json!([]));
     place.write("b.json", empty.to_string());
@@ -477,7 +477,7 @@ fn what_is_refused() {
         place.run(&format!("layout {line}")).bad(code, words);
     }
     assert_eq!(place.files(), before);
-    // A volume has no place in a scene, which is told before anything is sought.
+    // A volume cannot stand in a scene. This is reported before the search.
     place.write(
         "grid.nrrd",
         b"NRRD0004\ntype: uint8\ndimension: 3\nsizes: 2 2 2\nencoding: raw\n\n\xFF\xFF\xFF\xFF\xFF\xFF\xFF\xFF",

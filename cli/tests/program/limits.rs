@@ -1,5 +1,5 @@
-//! Small inputs do not take everything: every command ends soon, within the memory that it is given, or
-//! refuses at once and says what it would take.
+//! Small inputs take limited resources. Every command ends soon and within its memory limit, or refuses at
+//! once and says what it would need.
 
 use crate::commands::{COMMANDS, attempt, run, vectors};
 use crate::place;
@@ -10,10 +10,10 @@ use leafless::{
 };
 use std::path::PathBuf;
 
-/// What every command is allowed, and what some are that take longer for it.
+/// The memory limit of every command, and a smaller limit for commands that then take longer.
 const ALLOWED: &str = "1G";
 const LITTLE: &str = "160M";
-/// A universe that is one cell, or that has one finest cell, of a tag.
+/// A universe of one tag, or an EMPTY universe with one finest cell of a tag.
 #[derive(Clone)]
 struct One {
     frame: Frame,
@@ -93,7 +93,7 @@ impl Worker for One {
     }
 }
 
-/// Trees of one cell at depths 1, 10 and 20, and the same with all around it turned inside out.
+/// Trees of one cell at depths 1, 10 and 20, and complements of some.
 fn trees(place: &Place) -> Vec<PathBuf> {
     let mut paths = vec![];
     let mut save = |name: String, tree: &Octree| {
@@ -118,8 +118,8 @@ fn trees(place: &Place) -> Vec<PathBuf> {
     paths
 }
 
-/// Files in turn, on as many threads as there are processors: of each one command in so many, another one for
-/// each file.
+/// Runs commands on files, on as many threads as there are processors. Each file gets every `every`-th
+/// command, starting from a different one.
 fn in_turn(paths: &[PathBuf], allowed: &str, every: usize) {
     let next = std::sync::atomic::AtomicUsize::new(0);
     std::thread::scope(|scope| {
@@ -147,7 +147,7 @@ fn test_vectors_take_little() {
     in_turn(&vectors(), LITTLE, 17);
 }
 
-/// Minutes: `--test program limits:: -- --ignored`.
+/// Takes minutes: `--test program limits:: -- --ignored`.
 #[test]
 #[ignore = "minutes"]
 fn every_command_on_every_file_takes_little() {
@@ -161,7 +161,7 @@ fn every_command_is_among_them() {
     let place = Place::new();
     let help = place.run("--help").good();
     let commands = help.text().split("Commands:\n").nth(1).unwrap().split("\n\n").next().unwrap();
-    // These do not read a solid, or make one of their own.
+    // These commands do not read a solid, or make one of their own.
     let others = ["csg", "demo", "help"];
     for name in commands.lines().filter_map(|line| line.split_whitespace().next()) {
         let is_listed = COMMANDS.iter().any(|command| command.split(' ').next() == Some(name));
@@ -182,7 +182,7 @@ fn what_is_too_large_is_said_with_its_size_and_the_option() {
         run(&place, ALLOWED, &line, b"").bad(1, &[what, "--max-memory"]);
     }
     assert!(!place.files().iter().any(|name| name.starts_with("out")));
-    // A limit that is generous enough changes nothing.
+    // A sufficient limit changes nothing.
     let small = trees.iter().find(|path| path.ends_with("cell-full-20.lfl")).unwrap().display();
     let model = run(&place, ALLOWED, &format!("dexelize {small} -o out.lfl"), b"").good();
     assert!(model.text().contains("3 intervals"), "{model:?}");
@@ -197,13 +197,13 @@ fn endless_inputs_are_refused() {
         let (name, rest) = command.split_once(' ').unwrap_or((command, ""));
         run(&place, ALLOWED, &format!("{name} /dev/zero {rest}"), b"").bad(1, &["/dev/zero", "--max-memory"]);
     }
-    // Nor are those that a scene names.
+    // Endless files that a scene names are refused, too.
     std::os::unix::fs::symlink("/dev/zero", place.path("zero.stl")).unwrap();
     std::fs::write(place.path("zero.csg"), "import(file = \"zero.stl\");").unwrap();
     run(&place, ALLOWED, "csg zero.csg -o out.lfl --depth 3", b"")
         .bad(1, &["line 1", "zero.stl: is no regular file"]);
     std::fs::write(place.path("long.csg"), "import(file = \"long.stl\");").unwrap();
-    // A regular file says how long it is, and nothing of it is read.
+    // A regular file states its length, and none of it is read.
     std::fs::File::create(place.path("long.stl")).unwrap().set_len(1 << 40).unwrap();
     run(&place, ALLOWED, "info long.stl", b"").bad(1, &["long.stl: has 1 TB", "--max-memory"]);
     run(&place, ALLOWED, "csg long.csg -o out.lfl --depth 3", b"")

@@ -1,4 +1,4 @@
-//! The program as its users run it: every subcommand, its output, its files, its signals.
+//! The program as its users run it: every subcommand, its output, its files, and its signals.
 
 #[path = "../../../tests/common/models.rs"]
 mod models;

@@ -1,9 +1,9 @@
-//! What is read is moved: by each option, in the order of the command line, at each command that reads.
+//! Inputs are moved: by each option, in the order of the command line, at each command that reads them.
 
 use crate::place::{Place, block, meshes, solids, stl};
 use serde_json::Value;
 
-/// The ends of the volume that a report tells.
+/// Returns the bounds of the volume in a report.
 fn volume(report: &Value) -> (f64, f64) {
     let end = |name: &str| report["volume"][name].as_f64().unwrap();
     (end("lower"), end("upper"))
@@ -15,7 +15,7 @@ fn holds(report: &Value, truth: f64, width: f64) {
     assert!(lower <= truth && truth <= upper && upper - lower <= width, "{lower} to {upper}, not {truth}");
 }
 
-/// The corners of the mesh in a file.
+/// Returns the lowest and highest corner of a file's mesh.
 fn corners(place: &Place, file: &str) -> [Vec<f64>; 2] {
     let info = place.run(&format!("info {file} --json")).good().json();
     ["min", "max"].map(|end| {
@@ -40,13 +40,13 @@ fn moves_act_in_the_order_of_the_command_line() {
             [7.0, 4.0, 1.0],
         ),
     ] {
-        // A mesh becomes a mesh by its own triangles.
+        // A mesh becomes a mesh with its own triangles.
         let report = place.run(&format!("convert slab.stl -o out.obj {moves} --json")).good().json();
         assert_eq!((&report["triangles"], &report["method"]), (&12.into(), &"copy".into()), "{moves}");
         assert!(report["closed"] == true && report["volume"].as_f64().unwrap() > 0.0, "{moves}: {report}");
         assert_eq!(corners(&place, "out.obj"), [min.to_vec(), max.to_vec()], "{moves}");
     }
-    // Turned by thirty degrees and back.
+    // Rotated by thirty degrees and back.
     place.run("convert slab.stl -o out.obj --rotate 1,1,0,30 --rotate 1,1,0,-30").good();
     let [min, max] = corners(&place, "out.obj");
     let off = min.iter().zip([2.0, 2.0, 0.0]).chain(max.iter().zip([6.0, 6.0, 2.0]));
@@ -59,7 +59,7 @@ fn quarter_turns_are_exact() {
     place.write("slab.stl", stl(&block([2.0, 3.0, 0.0], [6.0, 6.0, 2.0])));
     place.write("cube.stl", stl(&block([-2.0; 3], [2.0; 3])));
     place.write("cube.csg", "cube(4, center = true);");
-    // The cube is itself again, and so are the bytes.
+    // The cube maps onto itself, and the bytes stay the same.
     for line in ["voxelize cube.stl -o out.lfl --depth 6", "csg cube.csg -o out.lfl --depth 6"] {
         place.run(line).good();
         let direct = place.bytes("out.lfl");
@@ -68,7 +68,7 @@ fn quarter_turns_are_exact() {
             assert!(place.bytes("out.lfl") == direct, "{line} {moves}");
         }
     }
-    // The cells of what is turned are those of what is made turned.
+    // Rotated octree cells equal the cells of the rotated mesh.
     place.run("voxelize slab.stl -o slab.lfl --depth 5 --bounds -8,-8,-8,16").good();
     place.run("convert slab.lfl -o moved.lfl --rotate z,90 --translate 1,0,0").good();
     place.run("convert slab.stl -o turned.stl --rotate z,90 --translate 1,0,0").good();
@@ -91,7 +91,7 @@ fn volumes_hold_the_truth_where_things_are_moved() {
         ("measure cube.stl --rotate 1,2,3,40 --translate 0.1,0.2,0.3", 8.0, 1e-9),
         ("measure cube.stl --scale 1,2,0.5", 8.0, 1e-9),
         ("measure ball.csg --scale 1,2,3 --rotate z,30", 6.0 * ball, 0.3),
-        // Of a solid from a file no more is known than its cells say, which is enough here.
+        // A solid from a file is known only by its cells, which is enough here.
         ("measure cube.lfl --rotate z,30", 8.0, 0.1),
         ("measure cube.lfl --rotate z,90 --translate 3,0,0", 8.0, 0.0),
         ("measure cube.lfl --scale 2,2,2", 64.0, 0.0),
@@ -104,7 +104,7 @@ fn volumes_hold_the_truth_where_things_are_moved() {
     ] {
         holds(&place.run(&format!("{line} --json")).good().json(), truth, width);
     }
-    // A mesh of the moved surface, whose volume is that of the solid.
+    // A mesh of the moved surface. Its volume is the solid's.
     for line in
         ["mesh cube.lfl -o out.ply --rotate z,30", "mesh ball.csg -o out.ply --depth 5 --translate 9,0,0"]
     {
@@ -137,14 +137,14 @@ fn set_operations_move_the_file_before_the_option() {
         made("intersection cube.lfl cube.lfl --translate -2,-2,0 --rotate z,45 --translate 2,2,0");
     let octagon = 8.0 * (2f64.sqrt() - 1.0) * 2.0;
     assert!(lower < octagon && octagon < upper, "{lower} to {upper}");
-    // Onto the frame of the first, whatever its own is.
+    // Onto the frame of the first file, whatever its own frame is.
     place.run("voxelize cube.stl -o other.lfl --depth 4 --bounds -4,-4,-4,16").good();
     place.run("union cube.lfl other.lfl -o out.lfl").bad(1, &["other.lfl", "another frame"]);
     assert_eq!(made("union cube.lfl other.lfl --translate 2,0,0"), (16.0, 16.0));
     place
         .run("union --translate 1,0,0 cube.lfl slab.lfl -o no.lfl")
         .bad(2, &["--translate", "before the files"]);
-    // What is moved out of the frame is missing, which is told.
+    // Parts moved out of the frame are missing, and the program reports it.
     let run = place.run("union cube.lfl slab.lfl --translate 4,0,0 -o out.lfl");
     assert!(run.code == Some(0) && run.errors.contains("slab.lfl: warning"), "{run:?}");
 }
@@ -186,12 +186,12 @@ fn volumes_are_moved() {
     assert!(!mesh.text().is_empty() && corners(&place, "out.ply")[0][2] >= 4.0);
 }
 
-/// A mesh whose undecided cells keep layers of its surface, moved or not.
+/// Undecided cells of a mesh keep layers of its surface, moved or not.
 #[test]
 fn meshes_keep_surfaces() {
     let place = Place::new();
     place.write("cube.stl", stl(&block([-1.1; 3], [2.2; 3])));
-    // (As the file has them.)
+    // (In single precision, as in the file.)
     let truth = (f64::from(2.2f32) + f64::from(1.1f32)).powi(3);
     for moves in ["", "--rotate 1,1,0,30 --scale 1,1,2"] {
         let made =
@@ -219,7 +219,7 @@ fn meshes_keep_surfaces() {
         .bad(2, &["--surfaces", "full.raw"]);
 }
 
-/// A scene whose cells keep surfaces, moved when it is made.
+/// The cells of a scene keep surfaces. The scene is moved when the octree is made.
 #[test]
 fn scenes_keep_surfaces_where_they_are_moved() {
     let place = Place::new();

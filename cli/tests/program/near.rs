@@ -6,7 +6,7 @@ use leafless::query::DistanceTo;
 use leafless::{Tag, file};
 use serde_json::{Value, json};
 
-/// The numbers on each line.
+/// Returns the numbers on each line.
 fn intervals(run: &Run) -> Vec<[f64; 2]> {
     let line = |line: &str| {
         let numbers: Vec<f64> = line.split(' ').map(|x| x.parse().unwrap()).collect();
@@ -71,7 +71,7 @@ fn distances_agree_with_the_library() {
     }
 }
 
-/// Of meshes and scenes cells are split until the distance is known well enough.
+/// For meshes and scenes, cells are split until the distance is known to the tolerance.
 #[test]
 fn distances_from_meshes_and_scenes() {
     let place = solids();
@@ -86,7 +86,7 @@ fn distances_from_meshes_and_scenes() {
     let run = place.run_with("distance cube.stl", b"0 2 2\n").good();
     let [lower, upper] = intervals(&run)[0];
     assert!(lower <= 1.0 && 1.0 <= upper && upper - lower < 1e-4, "{run:?}");
-    // Nothing of a ball is proven without a split.
+    // Without a split, nothing about a ball is proven.
     let run = place.run_with("distance ball.csg --splits 0", points.as_bytes()).good();
     assert!(run.text().lines().all(|line| line.ends_with(" inf")), "{run:?}");
 }
@@ -125,7 +125,7 @@ fn neighbours_line_by_line() {
                         cursor.neighbour(direction).into_iter().for_each(&mut tell);
                     }
                 }
-                // An empty line ends an answer; that of the universe is empty.
+                // An empty line ends an answer. The universe's answer is empty.
                 let answer: Vec<&str> = told.by_ref().take_while(|line| !line.is_empty()).collect();
                 assert_eq!(answer, wanted);
                 let line: Vec<Value> = serde_json::from_str(line).unwrap();

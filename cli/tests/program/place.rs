@@ -1,4 +1,4 @@
-//! A folder to run the program in, what a run comes to, and small meshes.
+//! A folder in which the program runs, the result of a run, and small meshes.
 
 // Each test program uses its own part of this.
 #![allow(dead_code)]
@@ -31,7 +31,7 @@ impl Place {
         std::fs::write(self.path(name), bytes).unwrap();
     }
 
-    /// Names of all files, sorted: temporary ones would show.
+    /// Returns the names of all files, sorted. Temporary files would show.
     pub fn files(&self) -> Vec<String> {
         let entries = std::fs::read_dir(self.0.path()).unwrap();
         let mut names: Vec<_> =
@@ -46,7 +46,7 @@ impl Place {
         command
     }
 
-    /// Runs a command line whose words are separated by blanks.
+    /// Runs a command line. Blanks separate its words.
     pub fn run(&self, line: &str) -> Run {
         Run::new(line, self.command(line.split_whitespace()).output().unwrap())
     }
@@ -65,12 +65,12 @@ impl Place {
     }
 }
 
-/// What was told, but for the lines that a slow machine gets while the program is at work.
+/// Returns the messages without the progress lines that the program prints on a slow machine.
 pub fn without_progress(errors: &str) -> String {
     errors.split_inclusive('\n').filter(|line| !line.contains(": at work for ")).collect()
 }
 
-/// What a run of the program came to.
+/// The result of a run of the program.
 pub struct Run {
     line: String,
     pub code: Option<i32>,
@@ -99,14 +99,14 @@ impl Run {
         std::str::from_utf8(&self.bytes).unwrap()
     }
 
-    /// Success without a word on standard error.
+    /// Asserts success without output on standard error.
     #[track_caller]
     pub fn good(self) -> Run {
         assert!(self.code == Some(0) && self.errors.is_empty(), "{self:?}");
         self
     }
 
-    /// Success with one line on standard error, a note or a warning, with these words in it.
+    /// Asserts success with one line on standard error, a note or a warning, which contains these words.
     #[track_caller]
     pub fn noted(self, words: &[&str]) -> Run {
         assert_eq!((self.code, self.errors.lines().count()), (Some(0), 1), "{self:?}");
@@ -117,7 +117,7 @@ impl Run {
         self
     }
 
-    /// One line on standard error, with these words in it, and nothing on standard output.
+    /// Asserts one line on standard error, which contains these words, and nothing on standard output.
     #[track_caller]
     pub fn bad(self, code: i32, words: &[&str]) {
         assert_eq!(self.code, Some(code), "{self:?}");
@@ -157,7 +157,7 @@ pub fn meshes() -> Place {
     place
 }
 
-/// The same as solids in [0, 8]³ at depth 5: their faces lie on planes of the lattice.
+/// The same as solids in [0, 8]³ at depth 5. Their faces lie on planes of the lattice.
 pub fn solids() -> Place {
     let place = meshes();
     for name in ["cube", "slab"] {

@@ -1,19 +1,19 @@
-//! What the files that the program writes say is proven: one table of all subcommands that make a solid of
-//! another.
+//! The proofs in files that the program writes: one table of all subcommands that make a solid of another.
 //!
-//! A ball by each of the four rules goes in. Each way says which bits come out, and what they speak of; where
-//! FULL or EMPTY is claimed, the cells are held against that, point by point and exactly. Subcommands that
-//! are neither in the table nor in the list of those that write no solid fail the test.
+//! The input is a ball, built by each of the four rules. Each way states which bits its result has, and the
+//! truth that they describe. Where FULL or EMPTY is claimed, the cells are compared with the truth, point by
+//! point and exactly. A subcommand that is neither in the table nor in the list of those that write no solid
+//! fails the test.
 
 use crate::place::Place;
 use leafless::{Octree, Tag, file};
 use std::collections::BTreeSet;
 use std::io::{Cursor, Read, Write};
 
-/// The rules that go in, in the order of the columns of the table.
+/// The rules of the inputs, in the order of the table's columns.
 const RULES: [&str; 4] = ["certified", "inner", "outer", "sampled"];
 
-/// The ball, another one, and a placed file, on the cube [0, 16]³ in 16 cells to an axis.
+/// Scenes of the ball, another ball, and a placed file, in the cube [0, 16]³ with 16 cells along an axis.
 const SCENES: [(&str, &str); 6] = [
     ("ball.csg", "multmatrix([[1,0,0,7.25],[0,1,0,8],[0,0,1,6.5],[0,0,0,1]]) { sphere(r = 5.25, $fn = 0); }"),
     (
@@ -67,7 +67,7 @@ fn not(p: [f64; 3]) -> Option<bool> {
     ball(p).map(|inside| !inside)
 }
 
-/// Of a solid of its own, as a mesh or a bitmap is: its cells are all that there is to tell.
+/// The truth of a solid defined by its own cells, such as a mesh or a bitmap: unknown everywhere.
 fn itself(_: [f64; 3]) -> Option<bool> {
     None
 }
@@ -78,8 +78,8 @@ const NOTHING: [&str; 4] = ["00", "00", "00", "00"];
 const IF_BOTH: [&str; 4] = ["11", "00", "00", "00"];
 const ITSELF: [&str; 4] = ["11", "11", "11", "11"];
 
-/// Command lines from `in.lfl` to `out.lfl`, what the result speaks of, and FULL and EMPTY for each rule of
-/// [`RULES`], `1` if it is proven. `RULE` is the rule that goes in, `FRAME` the cube.
+/// Command lines from `in.lfl` to `out.lfl`, the truth of the result, and the proofs of FULL and EMPTY for
+/// each rule of [`RULES`] (`1` if proven). `RULE` stands for the input's rule, `FRAME` for the cube.
 const WAYS: &[(&[&str], Truth, [&str; 4])] = &[
     (&["csg ball.csg -o out.lfl FRAME --rule RULE"], ball, SAME),
     (&["csg ball.csg -o out.lfl FRAME --adaptive 0.1"], ball, ITSELF),
@@ -111,7 +111,7 @@ const WAYS: &[(&[&str], Truth, [&str; 4])] = &[
         NOTHING,
     ),
     (&["convert ball.csg -o out.lfl --to octree --bounds 0,0,0,16 --resolution 16"], ball, ITSELF),
-    // Solids of their own: what was proven of what they were made from is not told.
+    // Solids of their own. They do not repeat the proofs of their sources.
     (
         &["mesh ball.csg -o out.stl --method mc --depth 4", "voxelize out.stl -o out.lfl FRAME --rule RULE"],
         itself,
@@ -121,7 +121,8 @@ const WAYS: &[(&[&str], Truth, [&str; 4])] = &[
     (&["bitmap in.lfl -o out.nrrd --resolve outer", "voxelize out.nrrd -o out.lfl FRAME"], itself, ITSELF),
     // Records, and back.
     (&["voxels in.lfl -o r.npz", "voxels r.npz --import -o out.lfl"], ball, SAME),
-    // Without more words, the boundary voxels of a binary octree are inside cells that touch outside ones.
+    // Without further information, the boundary voxels of a binary octree are inside cells that touch outside
+    // cells.
     (
         &["voxels in.lfl -o r.npz", "voxels r.npz --import -o out.lfl --boundary-as full"],
         ball,
@@ -160,7 +161,7 @@ const WAYS: &[(&[&str], Truth, [&str; 4])] = &[
         SAME,
     ),
     (&["voxels ball.csg -o r.npz FRAME", "voxels r.npz --import -o out.lfl"], ball, ITSELF),
-    // What cells are taken for is not what they prove.
+    // Taking cells for the solid is no proof.
     (&["voxels in.lfl --cells -o r.npz", "voxels r.npz --import -o out.lfl"], ball, SAME),
     (&["voxels in.lfl --cells --depth 3 -o r.npz", "voxels r.npz --import -o out.lfl"], ball, SAME),
     (
@@ -170,7 +171,7 @@ const WAYS: &[(&[&str], Truth, [&str; 4])] = &[
     ),
 ];
 
-/// Subcommands that write no solid that was made of another.
+/// Subcommands that write no solid made from another.
 const OTHERS: [&str; 15] = [
     "info",
     "verify",
@@ -189,14 +190,14 @@ const OTHERS: [&str; 15] = [
     "summary",
 ];
 
-/// Makes solids of what it makes itself, and `help` none.
+/// `demo` makes solids of its own, and `help` makes none.
 const BY_THEMSELVES: [&str; 2] = ["demo", "help"];
 
-/// Subcommands that can take cells for the solid. Of these, `voxels` alone writes what a solid is made of.
+/// Subcommands that can take cells for the solid. Only `voxels` writes data from which a solid can be made.
 const WITH_CELLS: [&str; 8] =
     ["deviation", "distance", "heights", "interfere", "measure", "ray", "voxels", "within"];
 
-/// The ball, and the other one, by a rule.
+/// Writes the ball and the other ball, built by a rule.
 fn given(rule: &str) -> Place {
     let place = Place::new();
     for (name, text) in SCENES {
@@ -212,7 +213,7 @@ fn bits(octree: &Octree) -> String {
     format!("{}{}", u8::from(octree.proof().full), u8::from(octree.proof().empty))
 }
 
-/// How many points of FULL cells are outside, and how many of EMPTY cells inside.
+/// Counts the points of FULL cells that are outside, and the points of EMPTY cells that are inside.
 fn lies(octree: &Octree, truth: Truth) -> [usize; 2] {
     let (view, frame) = (octree.view(), octree.frame());
     let mut lies = [0; 2];
@@ -258,15 +259,15 @@ fn what_is_written_is_what_the_table_says_and_true() {
             std::fs::remove_file(place.path("out.lfl")).unwrap();
         }
     }
-    // Lies are seen.
+    // The check notices lies.
     assert!(seen > WAYS.len(), "{seen} of {}", WAYS.len());
 }
 
-/// Words that a help text lists below a heading.
+/// Returns the words that a help text lists below a heading.
 fn listed(help: &str) -> BTreeSet<String> {
     let rest = help.lines().skip_while(|line| *line != "Commands:").skip(1);
     let lines = rest.take_while(|line| !line.is_empty());
-    // A line that goes on is indented further.
+    // A continued line is indented further.
     let names = lines.filter(|line| line.starts_with("  ") && !line.starts_with("   "));
     names.filter_map(|line| line.split_whitespace().next()).map(String::from).collect()
 }
@@ -292,7 +293,7 @@ fn every_subcommand_is_in_the_table() {
     assert_eq!(found, WITH_CELLS, "what is written with --cells must prove what the cells did before");
 }
 
-/// The arrays of an NPZ, changed.
+/// Returns an NPZ with changed arrays.
 fn changed(bytes: &[u8], change: impl Fn(&str, Vec<u8>) -> Option<Vec<u8>>) -> Vec<u8> {
     let mut archive = zip::ZipArchive::new(Cursor::new(bytes)).unwrap();
     let mut out = zip::ZipWriter::new(Cursor::new(vec![]));
@@ -310,8 +311,7 @@ fn changed(bytes: &[u8], change: impl Fn(&str, Vec<u8>) -> Option<Vec<u8>>) -> V
     out.finish().unwrap().into_inner()
 }
 
-/// Arrays are easily changed by any program that knows NumPy. What was proven of others is not proven of
-/// them.
+/// Any program with NumPy can change arrays. A proof of the original arrays is no proof of changed ones.
 #[test]
 fn changed_records_prove_nothing() {
     let place = given("certified");
@@ -323,7 +323,7 @@ fn changed_records_prove_nothing() {
         bits(&file::open(place.path("out.lfl")).unwrap())
     };
     assert_eq!(imported(changed(&bytes, |_, array| Some(array))), "11");
-    // A boundary voxel becomes an inside one.
+    // Change a boundary voxel to an inside voxel.
     let kinds = |name: &str, mut array: Vec<u8>| {
         if name == "kinds.npy" {
             *array.iter_mut().rev().find(|kind| **kind == 2).unwrap() = 1;
@@ -331,7 +331,7 @@ fn changed_records_prove_nothing() {
         Some(array)
     };
     assert_eq!(imported(changed(&bytes, kinds)), "00");
-    // The cube is another one: the last byte of its edge.
+    // Change the universe: the last byte of its edge.
     let edge = |name: &str, mut array: Vec<u8>| {
         if name == "edge.npy" {
             let last = array.len() - 2;
@@ -340,7 +340,7 @@ fn changed_records_prove_nothing() {
         Some(array)
     };
     assert_eq!(imported(changed(&bytes, edge)), "00");
-    // No seal, no word of what is proven, or of what boundary voxels are.
+    // A file without a seal, without the proof, or without the meaning of boundary voxels.
     for missing in ["seal.npy", "proof.npy", "boundary.npy", "exterior.npy"] {
         let without = |name: &str, array: Vec<u8>| (name != missing).then_some(array);
         let expected = if missing == "boundary.npy" { "11" } else { "00" };

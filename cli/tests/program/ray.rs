@@ -7,7 +7,7 @@ use serde_json::Value;
 use std::io::{Read, Write};
 use std::process::Stdio;
 
-/// The numbers on each line; none on that of a miss.
+/// Returns the numbers on each line; `None` for the line of a miss.
 fn hits(run: &Run) -> Vec<Option<Vec<f64>>> {
     let line = |line: &str| (line != "miss").then(|| line.split(' ').map(|x| x.parse().unwrap()).collect());
     run.text().lines().map(line).collect()
@@ -45,12 +45,12 @@ fn json_lines() {
     let hit = &lines[0];
     assert_eq!((&hit["t_lower"], &hit["t_upper"]), (&1.0.into(), &1.0.into()));
     assert_eq!(hit["normal"], serde_json::json!([-1.0, 0.0, 0.0]));
-    // The cube is 2 of 8 units: on no level beyond the second is that less than a cell.
+    // The cube is 2 of 8 units long, at least a cell on every level from the second on.
     let (level, cell) = (hit["level"].as_u64().unwrap(), hit["cell"][0].as_u64().unwrap());
     assert_eq!(cell << (5 - level), 4, "{hit}");
 }
 
-/// A closed mesh answers itself, and tells the triangle; cells have none.
+/// A closed mesh answers directly, and reports the triangle. Cells have no triangle.
 #[test]
 fn triangles_of_meshes() {
     let place = solids();
@@ -73,7 +73,7 @@ fn triangles_of_meshes() {
     assert_eq!(run.json()["surface"], Value::Null);
 }
 
-/// Meshes and scenes are split as deep as it takes; what may be missed has no upper bound.
+/// Meshes and scenes are split as deep as needed. A hit that may be a miss has no upper bound.
 #[test]
 fn meshes_and_scenes() {
     let place = solids();
@@ -95,7 +95,7 @@ fn meshes_and_scenes() {
         assert!(first[0] <= wanted && wanted <= first[1] && first[1] - first[0] < 1e-4, "{run:?}");
         assert!(first[2] < -0.9 && found[1].is_none(), "{run:?}");
     }
-    // Nothing of a ball is proven without a split.
+    // Without a split, nothing about a ball is proven.
     let few = place.run_with("ray ball.csg --splits 0", b"-5 0.3 0.4 1 0 0\n").good();
     assert!(few.text().contains(" inf "), "{few:?}");
     let few = place.run_with("ray ball.csg --splits 0 --json", b"-5 0.3 0.4 1 0 0\n").good();
@@ -106,7 +106,7 @@ fn meshes_and_scenes() {
     );
 }
 
-/// A sampled solid proves nothing; its cells are the solid if that is asked for.
+/// A sampled solid proves nothing. With the option, its cells are the solid.
 #[test]
 fn cells_that_prove_nothing() {
     let place = solids();
@@ -150,7 +150,7 @@ fn agrees_with_the_library() {
     many(&solids(), 30_000);
 }
 
-/// In bounded memory: 10^6 rays.
+/// A million rays in bounded memory.
 #[test]
 #[ignore = "takes ten seconds"]
 fn agrees_with_the_library_on_a_million_rays() {

@@ -44,7 +44,7 @@ fn every_kind_of_file_is_shown_in_every_view() {
             let marked = pixels.iter().filter(|pixel| **pixel != [255; 3]).count();
             // A fitted cube or ball covers a good part of the picture.
             assert!(marked > 3000, "{file} {view}: {marked}");
-            // (What is EMPTY is faint in a slice.)
+            // (EMPTY cells are faint in a slice.)
             assert!(view == "slice" || pixels[0] == [255; 3], "{file} {view}");
         }
     }
@@ -65,7 +65,7 @@ fn the_hole_is_seen_from_in_front() {
     };
     assert_eq!(middle("--from 0,0"), 0);
     assert_eq!(middle("--from 90,0"), 255);
-    // Cut open above the bar's middle, one looks into it from above, and through nothing.
+    // Cut open above the bar's middle, the picture shows its inside from above, and no background.
     assert_eq!(middle("--from 0,90 --clip 0,0,-1,4"), 255);
     assert_eq!(middle("--from 0,90 --clip-box 0,0,3,8,8,5"), 0);
 }
@@ -88,7 +88,7 @@ fn the_same_picture_by_any_number_of_threads() {
 #[test]
 fn a_picture_goes_to_standard_output() {
     let place = parts();
-    // What was done is told on standard error.
+    // Messages go to standard error.
     let out = place.run("render cube.stl -o - --size 64x64");
     assert_eq!(out.code, Some(0));
     assert!(out.bytes.starts_with(b"\x89PNG\r\n\x1a\n"));
@@ -158,15 +158,15 @@ fn cameras_and_legends_fit_what_is_shown() {
         "v 0 0 0\nv 1 0 0\nv 0 1 0\nv 0 0 1\nv 1000 1000 1000\nf 1 3 2\nf 1 2 4\nf 2 3 4\nf 1 4 3\n",
     );
     assert!(covered("stray.obj") > 3000);
-    // What is cut away in a hybrid view is the skin alone.
+    // The hybrid view cuts only the skin away.
     let whole = covered("part.lfl --view hybrid --no-legend");
     assert!(covered("part.lfl --view hybrid --no-legend --clip-box 3,3,3,5,5,5") > whole / 2);
-    // An eye beside the slice is heeded.
+    // An eye beside the slice is used.
     assert_ne!(
         covered("part.lfl --view slice --eye 4,-9,30"),
         covered("part.lfl --view slice --eye 4,-30,9")
     );
-    // Values that are all the same, and large.
+    // Values that are all equal, and large.
     place.run("attribute part.lfl --name big --value 1e17 -o big.lfl").good();
     assert!(covered("big.lfl") > 3000);
     for (line, option) in [
@@ -179,7 +179,7 @@ fn cameras_and_legends_fit_what_is_shown() {
     }
 }
 
-/// Which quarter of a slice of a corner with three arms is empty: of the box around what is FULL.
+/// Returns the empty quarter of the FULL cells' bounding box, in a slice through a corner with three arms.
 fn empty_quarter(place: &Place, line: &str) -> String {
     place
         .run(&format!("render {line} -o out.png --view slice --no-legend --size 200x200 --samples 1"))
@@ -253,7 +253,7 @@ fn slices_have_a_scale_and_may_do_without_cells() {
         assert!(count(&cells, outline) > 100, "{file}: {}", count(&cells, outline));
         assert_eq!(count(&plain, outline), 0, "{file}");
         assert!(count(&plain, [0, 114, 178]) > 5000, "{file}");
-        // The scale is ink in the lower left corner.
+        // The scale is drawn in the lower left corner.
         let corner = |pixels: &[[u8; 3]]| {
             let ink = |i: usize| pixels[i] == [20, 20, 20] && i % 400 < 200 && i / 400 > 250;
             (0..pixels.len()).filter(|&i| ink(i)).count()
@@ -261,7 +261,7 @@ fn slices_have_a_scale_and_may_do_without_cells() {
         assert_eq!(corner(&plain), 0, "{file}");
         assert!(corner(&pixels(file)) > 100, "{file}");
     }
-    // A surface is a line, and next to nothing of the picture.
+    // A surface is a line, and covers almost nothing of the picture.
     let line = count(&pixels("scene.csg --no-cells --no-legend"), [35, 40, 45]);
     assert!((200..3000).contains(&line), "{line}");
     place.run("render part.lfl -o never.png --no-cells").bad(2, &["--no-cells", "slice"]);
@@ -282,28 +282,28 @@ fn closed_meshes_are_capped_and_cameras_fit_what_is_left() {
     place.write("block.csg", "multmatrix([[1,0,0,1],[0,1,0,1],[0,0,1,1],[0,0,0,1]]) cube([6, 6, 6]);");
     let view = "--size 200x200 --samples 1 --from 0,60";
     let picture = |line: &str| {
-        // (Of an open mesh there is a warning.)
+        // (An open mesh causes a warning.)
         let run = place.run(&format!("render {line} -o out.png {view}"));
         assert_eq!(run.code, Some(0), "{run:?}");
         png(&place, "out.png").2
     };
-    // From above one sees where it is cut, in the colour of a solid that is cut.
+    // From above the cut is visible, in the colour of a cut solid.
     let cut = "--clip 0,0,-1,4";
     let solid = picture(&format!("block.csg {cut}"));
     let colour = solid[100 * 200 + 100];
     let cap = |pixels: &[[u8; 3]]| pixels.iter().filter(|pixel| **pixel == colour).count() as f64;
     let expected = cap(&solid);
     assert!((cap(&picture(&format!("cube.stl {cut}"))) / expected - 1.0).abs() < 0.02, "{expected}");
-    // Its triangles have no inside, and neither has a mesh that is open: one sees walls from within.
+    // Its triangles have no inside, and neither has an open mesh: the walls are visible from within.
     assert!(cap(&picture(&format!("cube.stl {cut} --edges all"))) < 0.8 * expected, "{expected}");
     let closed = block([1.0; 3], [7.0; 3]);
     let open = leafless::TriangleMesh::new(closed.vertices().to_vec(), closed.triangles()[..11].to_vec());
     place.write("open.stl", stl(&open.unwrap()));
     assert!(cap(&picture(&format!("open.stl {cut}"))) < 0.8 * expected, "{expected}");
-    // A slice of a sixth of the block fills the picture as the block does.
+    // A slice of a sixth of the block fills the picture like the block.
     for file in ["cube.stl", "block.csg", "cube.lfl", "dexels.lfl", "open.stl"] {
         for cut in ["--clip 0,1,0,-6 --clip 1,0,0,-6", "--clip-box 3,3,3,4,4,4"] {
-            // (An open mesh has nothing inside.)
+            // (An open mesh has no inside.)
             if file == "open.stl" && cut.starts_with("--clip-box") {
                 continue;
             }
@@ -324,7 +324,7 @@ fn a_constant_channel_has_a_legend_of_one_value() {
     let place = parts();
     place.run("attribute part.lfl --name heat --value 7 -o constant.lfl").good();
     place.run("attribute part.lfl --name heat --expr z -o rising.lfl").good();
-    // Rows of the picture that the legend changes.
+    // The rows of the picture that the legend changes.
     let rows = |file: &str| {
         let [with, without] = ["", "--no-legend"].map(|more| {
             let line = format!("render {file} -o out.png --size 400x300 --samples 1 --from 0,0 {more}");
@@ -341,7 +341,7 @@ fn a_constant_channel_has_a_legend_of_one_value() {
 #[test]
 fn what_is_full_is_seen_among_what_is_undecided() {
     let place = Place::new();
-    // Two revisions, one of which is shorter by a slab; their surfaces lie in cells.
+    // Two revisions. One is shorter by a slab, and their surfaces lie within cells.
     place.write("old.stl", stl(&block([1.03; 3], [6.97; 3])));
     place.write("new.stl", stl(&block([1.03; 3], [6.97, 6.97, 5.03])));
     for name in ["old", "new"] {
@@ -356,7 +356,7 @@ fn what_is_full_is_seen_among_what_is_undecided() {
         (report["covered"].as_u64().unwrap(), run.errors.clone(), png(&place, "out.png").2)
     };
     let (shown, note, _) = render("rest.lfl");
-    // A slab of two by six by six is FULL; the skin of the rest is larger.
+    // A slab of two by six by six is FULL. The skin of the other part is larger.
     assert!(note.is_empty() || note.contains("--undecided"), "{note}");
     let (hidden, _, slab) = render("rest.lfl --undecided hidden");
     let (faint, _, both) = render("rest.lfl --undecided faint");

@@ -1,4 +1,4 @@
-//! The program on scenes: how curves are drawn, and what is told of the meshes in them.
+//! The program on scenes: the drawing of curves, and the reports about meshes in scenes.
 
 use crate::place::Place;
 
@@ -21,7 +21,7 @@ fn curves_are_drawn_as_asked_for() {
         }
         place.run(&format!("interfere nut.csg nut.csg --depth 4 {option}")).good();
     }
-    // 6 × 10² sin 60° / 2 × 4 − π × 5² × 4, and a round one.
+    // 6 × 10² sin 60° / 2 × 4 − π × 5² × 4, and with exact curves.
     let volume = |option: &str| {
         let volume = place.run(&format!("measure nut.csg --json {option}")).good().json()["volume"].clone();
         (volume["lower"].as_f64().unwrap(), volume["upper"].as_f64().unwrap())

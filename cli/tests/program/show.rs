@@ -1,4 +1,4 @@
-//! Pictures on terminals: what `render --show` writes, decoded.
+//! Pictures on terminals: the output of `render --show`, decoded.
 
 use crate::place::{Place, Run, block, stl};
 use base64::Engine;
@@ -7,7 +7,7 @@ use std::collections::HashMap;
 use std::io::Cursor;
 use std::process::Command;
 
-/// An image of pixels with red, green and blue, where there is anything.
+/// An image with red, green and blue for each pixel that is not empty.
 #[derive(PartialEq)]
 struct Image {
     width: usize,
@@ -19,7 +19,8 @@ impl Image {
         [self.width, self.pixels.len() / self.width]
     }
 
-    /// The greatest and the mean difference of what both show; nothing if they do not show the same pixels.
+    /// Returns the greatest and the mean difference of the two images; `None` if they do not show the same
+    /// pixels.
     fn difference(&self, other: &Image) -> Option<(u8, f64)> {
         assert_eq!(self.size(), other.size());
         let (mut greatest, mut sum) = (0, 0.0);
@@ -53,13 +54,14 @@ fn opaque([r, g, b, a]: [u8; 4]) -> Option<[u8; 3]> {
     (a >= 128).then_some([r, g, b])
 }
 
-/// A picture as a terminal shows it in its own size.
+/// Decodes a picture that a terminal shows in its own size.
 fn image(png: &[u8]) -> Image {
     let (width, pixels) = rgba(png);
     Image { width, pixels: pixels.into_iter().map(opaque).collect() }
 }
 
-/// The picture at 3/8 of its size: each pixel is repeated thrice each way, and the mean of 8 × 8 is taken.
+/// Returns the picture at 3/8 of its size: each pixel is repeated three times in each direction, and blocks
+/// of 8 × 8 are averaged.
 fn three_eighths(png: &[u8]) -> Vec<[f64; 4]> {
     let (width, pixels) = rgba(png);
     let height = pixels.len() / width;
@@ -89,7 +91,7 @@ fn three_eighths(png: &[u8]) -> Vec<[f64; 4]> {
     found
 }
 
-/// Half blocks as a terminal shows them; of 256 colours the numbers are told instead, as grey values.
+/// Decodes half blocks. Numbers of 256 colours are returned as grey values.
 fn blocks(text: &str) -> Image {
     let (mut width, mut pixels) = (0, Vec::new());
     for line in text.lines() {
@@ -128,7 +130,7 @@ fn blocks(text: &str) -> Image {
     Image { width, pixels }
 }
 
-/// Sixels as a terminal shows them, and how many colours they have.
+/// Decodes sixels. Returns the number of their colours, too.
 fn sixels(text: &str) -> (Image, usize) {
     let body = text.strip_prefix("\x1bP7;1q\"1;1;").and_then(|body| body.strip_suffix("\x1b\\\n")).unwrap();
     let mut rest = body.as_bytes();
@@ -171,7 +173,7 @@ fn sixels(text: &str) -> (Image, usize) {
     (Image { width, pixels }, palette.len())
 }
 
-/// The file that comes by kitty's protocol.
+/// Returns the file that was sent by kitty's protocol.
 fn kitty(text: &str) -> Vec<u8> {
     let pieces: Vec<&str> = text.strip_suffix('\n').unwrap().split_inclusive("\x1b\\").collect();
     let mut data = String::new();
@@ -196,7 +198,7 @@ fn part() -> Place {
     place
 }
 
-/// The program in an environment that tells nothing but this of a terminal.
+/// Returns the program with an environment that describes the terminal only by `environment`.
 fn command(place: &Place, line: &str, environment: &[(&str, &str)]) -> Command {
     let mut command = place.command(line.split_whitespace());
     command.args(["--samples", "1"]);
@@ -210,7 +212,7 @@ fn command(place: &Place, line: &str, environment: &[(&str, &str)]) -> Command {
     command
 }
 
-/// What a successful run writes to a pipe; what was done is told on standard error.
+/// Returns the output of a successful run to a pipe. Messages go to standard error.
 fn shown(place: &Place, line: &str, environment: &[(&str, &str)]) -> String {
     let run = Run::new(line, command(place, line, environment).output().unwrap());
     assert!(run.code == Some(0) && run.errors.contains("shown"), "{run:?}");
@@ -224,13 +226,13 @@ fn half_blocks_have_the_colours_of_the_picture() {
     let place = part();
     for looks in ["", "--background none", "--background none --view volume", "--view slice"] {
         let line = format!("render ball.csg -o out.png --depth 5 --show=blocks {looks}");
-        // As it is, with an odd number of rows: the last line has one row of them only.
+        // At its own size, with an odd number of rows: the last line shows only one row.
         let text = shown(&place, &format!("{line} --size 70x41"), &[TRUE]);
         let mut found = blocks(&text);
         assert_eq!(found.size(), [70, 42]);
         assert!(found.pixels.drain(70 * 41..).all(|pixel| pixel.is_none()));
         assert!(found == image(&place.bytes("out.png")), "{looks}");
-        // Smaller, because a terminal has 63 columns, of which 60 make the picture as high as 25 rows.
+        // Smaller, because the terminal has 63 columns; 60 of them make the picture as high as 25 rows.
         let environment = [TRUE, ("COLUMNS", "63"), ("LINES", "28")];
         let found = blocks(&shown(&place, &format!("{line} --size 160x136"), &environment));
         assert_eq!(found.size(), [59, 50]);
@@ -293,7 +295,7 @@ fn kitty_and_iterm_get_the_file() {
         let found = file(name, "-o out.png");
         assert!(found.len() > 8192, "one piece only");
         assert!(found == place.bytes("out.png"));
-        // Without a file it is the same: a pipe has no size.
+        // Without a file the output is the same: a pipe has no size.
         assert!(file(name, "") == found);
         assert_eq!(image(&file(name, "--size 30x20")).size(), [30, 20]);
     }
@@ -356,15 +358,15 @@ mod terminal {
     use std::io::{Read, Write};
     use std::process::Stdio;
 
-    /// What a run wrote to a terminal.
+    /// The output of a run on a terminal.
     struct Session {
         code: Option<i32>,
         text: String,
         errors: String,
     }
 
-    /// Runs the program on a terminal of 100 × 30 cells of 8 × 16 pixels, which answers so when it is asked
-    /// what it is.
+    /// Runs the program on a terminal of 100 × 30 cells of 8 × 16 pixels. The terminal sends `answer` when
+    /// the program queries its kind.
     fn session(place: &Place, line: &str, environment: &[(&str, &str)], answer: &str) -> Session {
         let mut master = File::from(openpt(OpenptFlags::RDWR | OpenptFlags::NOCTTY).unwrap());
         grantpt(&master).unwrap();
@@ -377,8 +379,7 @@ mod terminal {
         assert!(before.local_modes.contains(LocalModes::ECHO | LocalModes::ICANON));
         let mut command = command(place, line, environment);
         if !answer.is_empty() {
-            // The program waits longer for terminals far away: this one may be slow where there is much else
-            // to do.
+            // The program waits longer for distant terminals. This terminal may be slow on a busy machine.
             command.env("SSH_TTY", "/dev/pts/0");
         }
         // (A progress bar would come in between.)
@@ -391,7 +392,7 @@ mod terminal {
             let code = child.wait().unwrap().code();
             let after = tcgetattr(&slave).unwrap();
             assert_eq!(modes(&before), modes(&after), "the terminal's mode was changed");
-            // What no line ends is there to read only in this mode.
+            // Input without a line's end is readable only in this mode.
             let mut raw = after.clone();
             raw.local_modes.remove(LocalModes::ICANON);
             tcsetattr(&slave, OptionalActions::Now, &raw).unwrap();
@@ -400,7 +401,7 @@ mod terminal {
         });
         let (mut bytes, mut buffer) = (Vec::new(), [0; 4096]);
         let mut is_asked = false;
-        // Fails when nobody has the terminal any more.
+        // This fails when no process holds the terminal any more.
         while let Ok(count @ 1..) = master.read(&mut buffer) {
             bytes.extend_from_slice(&buffer[..count]);
             if !is_asked && bytes.windows(3).any(|window| window == b"\x1b[c") {
@@ -423,7 +424,7 @@ mod terminal {
         )
     }
 
-    /// The picture, without the question before it.
+    /// Returns the picture without the query before it.
     fn picture(session: &Session) -> &str {
         assert!(session.code == Some(0) && session.errors.contains("shown"), "{}", session.errors);
         let wipe = "\x1b8\x1b[K";
@@ -439,7 +440,7 @@ mod terminal {
         assert_eq!(blocks(picture(&run)).size(), [100, 26]);
         let run = session(&place, "render ball.csg --show --size 50x20 -o out.png", &[TRUE], "");
         assert!(blocks(picture(&run)) == image(&place.bytes("out.png")));
-        // The file is not made for the terminal.
+        // The file does not depend on the terminal.
         session(&place, "render ball.csg --show -o out.png", &[TRUE], "");
         assert_eq!(image(&place.bytes("out.png")).size(), [1024, 768]);
     }
@@ -452,7 +453,7 @@ mod terminal {
         assert_eq!(found.size(), [800, 432]);
         assert!(colours > 20);
         assert!(!run.text.contains("62;4;22"), "the answer was shown");
-        // One that has few colours, and little space for them.
+        // A terminal with few colours, and little space for them.
         let answer = "\x1b[4;480;800t\x1b[?1;0;16S\x1b[?2;0;300;400S\x1b[?63;1;2;4;6c";
         let run = session(&place, "render ball.csg --show --size 600x200 -o out.png", &[], answer);
         let (found, colours) = sixels(picture(&run));
@@ -461,7 +462,7 @@ mod terminal {
         let (found, colours) = sixels(picture(&run));
         let (greatest, mean) = found.difference(&image(&place.bytes("out.png"))).unwrap();
         assert!(colours == 16 && greatest < 40 && mean < 3.0, "{greatest} {mean}");
-        // What is named needs no question.
+        // A named protocol needs no query.
         let run = session(&place, "render ball.csg --show=blocks", &[TRUE], "\x1b[?62;4;22c");
         assert!(!run.text.contains("\x1b[c"));
         assert_eq!(blocks(picture(&run)).size(), [100, 54]);
@@ -472,7 +473,7 @@ mod terminal {
         let place = part();
         let run = session(&place, "render ball.csg --show", &[], "\x1b_Gi=31;OK\x1b\\\x1b[?62;4c");
         assert_eq!(image(&kitty(picture(&run))).size(), [800, 432]);
-        // Larger ones are made smaller.
+        // Larger pictures are made smaller.
         let run = session(
             &place,
             "render ball.csg --show --size 1600x160 -o out.png",
@@ -480,7 +481,7 @@ mod terminal {
             "\x1b_Gi=31;OK\x1b\\\x1b[?62c",
         );
         assert_eq!(image(&kitty(picture(&run))).size(), [800, 80]);
-        // Where the terminal does not answer, its name is believed; inside of tmux, it is not.
+        // If the terminal does not answer, its name decides; inside tmux, the name does not count.
         for (environment, is_kitty) in [
             (&[("TERM", "xterm-kitty")][..], true),
             (&[("TERM_PROGRAM", "WezTerm")], true),

@@ -1,5 +1,5 @@
-//! Signals and limits of the system: the program ends wherever it waits, by the signal that came, and leaves
-//! nothing behind.
+//! Signals and limits of the system. Wherever the program waits, the signal ends it, and nothing is left
+//! behind.
 #![cfg(unix)]
 
 use crate::place::{Place, Run, solids};
@@ -10,9 +10,9 @@ use std::os::unix::process::{CommandExt, ExitStatusExt};
 use std::process::{Child, Command, ExitStatus, Stdio};
 use std::time::{Duration, Instant};
 
-/// How long the program may take to end on a machine that has much else to do.
+/// The time that the program may take to end on a busy machine.
 const BOUND: Duration = Duration::from_secs(10);
-/// After this the program waits, as a rule. If not, it ends all the same.
+/// The time after which the program normally waits. If it does not wait yet, it ends all the same.
 const SOON: Duration = Duration::from_millis(300);
 const SIGNALS: [Signal; 3] = [Signal::SIGHUP, Signal::SIGINT, Signal::SIGTERM];
 
@@ -24,7 +24,7 @@ impl Running {
         kill(Pid::from_raw(self.0.id() as i32), signal).unwrap();
     }
 
-    /// Waits for the end, which must come soon.
+    /// Waits for the end. It must come soon.
     #[track_caller]
     fn end(&mut self) -> ExitStatus {
         let start = Instant::now();
@@ -45,10 +45,10 @@ impl Drop for Running {
     }
 }
 
-/// Starts the program where signals do what they do by default, but for one that is ignored. (A shell may
-/// ignore some for what it runs in the background, such as the tests.)
+/// Starts the program with the default handling of signals, except for one ignored signal. (A shell may
+/// ignore some signals for background processes, such as the tests.)
 fn start(mut command: Command, ignored: Option<Signal>) -> Running {
-    // SAFETY: between fork and exec only `sigaction` is called, which may be called there.
+    // SAFETY: between fork and exec only `sigaction` is called, which is allowed there.
     unsafe {
         command.pre_exec(move || {
             for signal in SIGNALS {
@@ -61,7 +61,7 @@ fn start(mut command: Command, ignored: Option<Signal>) -> Running {
     Running(command.spawn().unwrap())
 }
 
-/// The program with standard input that never ends, and standard output that nobody reads.
+/// Returns the program with endless standard input, and with standard output that nobody reads.
 fn waiting(place: &Place, line: &str) -> Command {
     let mut command = place.command(line.split_whitespace());
     command.stdin(Stdio::piped()).stdout(Stdio::piped()).stderr(Stdio::null());
@@ -83,8 +83,8 @@ fn place() -> Place {
     place
 }
 
-/// Runs a command line that waits for ever, and ends it by each signal. What it waits for, if not for
-/// standard input or output, is a pipe of this name; a reader that does not read may have it open.
+/// Runs a command line that waits for ever, and ends it by each signal. The program waits for standard input
+/// or output, or for a pipe of this name. A reader may have the pipe open without reading.
 fn ends_by_signals(line: &str, pipe: Option<&str>, is_read: bool) {
     let place = place();
     pipe.into_iter().for_each(|name| make_pipe(&place, name));
@@ -147,7 +147,7 @@ fn signals_end_the_program_at_work() {
     ends_by_signals("csg ball.csg -o out.lfl --depth 14", None, false);
 }
 
-/// At any moment of a save there is the old file or the new one, and nothing else.
+/// At every moment of a save, either the old file or the new one exists, and no other.
 #[test]
 fn signals_while_the_program_saves() {
     let place = Place::new();
@@ -164,9 +164,9 @@ fn signals_while_the_program_saves() {
     for attempt in 0..30 {
         let signal = SIGNALS[attempt as usize % 3];
         let mut running = start(waiting(&place, line), None);
-        // Mostly near the end, where it saves.
+        // Mostly near the end, during the save.
         std::thread::sleep(whole * (attempt % 10 + 2) / 12);
-        // It may have ended by itself meanwhile.
+        // The program may have ended by itself in the meantime.
         running.signal(signal);
         let status = running.end();
         assert_eq!(place.files(), ["flange.stl", "out.lfl"], "{status}");
@@ -179,7 +179,7 @@ fn signals_while_the_program_saves() {
     assert!(stopped > 0, "no attempt met the program at work");
 }
 
-/// `nohup` ignores the signal that a terminal sends when it is closed.
+/// `nohup` ignores the signal that a closing terminal sends.
 #[test]
 fn signals_that_are_ignored_stay_so() {
     for ignored in SIGNALS {
@@ -197,7 +197,7 @@ fn signals_that_are_ignored_stay_so() {
     }
 }
 
-/// The limit on the size of files is told, instead of ending the program by its signal.
+/// The program reports the limit on the size of files. It is not ended by the limit's signal.
 #[test]
 fn files_beyond_the_limit_are_refused() {
     let place = place();
@@ -246,7 +246,7 @@ fn files_of_all_kinds_are_replaced_alike() {
     }
 }
 
-/// Terminals that are being asked, or shown a picture.
+/// Signals while the program queries a terminal, or shows a picture on it.
 #[cfg(target_os = "linux")]
 mod terminal {
     use super::*;
@@ -256,7 +256,7 @@ mod terminal {
     use std::fs::File;
     use std::io::Read;
 
-    /// Both ends of a terminal of 100 × 30 cells.
+    /// Returns both ends of a terminal of 100 × 30 cells.
     fn terminal() -> [File; 2] {
         let master = File::from(openpt(OpenptFlags::RDWR | OpenptFlags::NOCTTY).unwrap());
         grantpt(&master).unwrap();
@@ -280,7 +280,7 @@ mod terminal {
         for name in ["TMUX", "TERM_PROGRAM", "LC_TERMINAL", "COLORTERM"] {
             command.env_remove(name);
         }
-        // A terminal far away is waited for longer.
+        // The program waits longer for a distant terminal.
         start(
             {
                 command.env("TERM", "xterm").env("SSH_TTY", "/dev/pts/0");
@@ -344,7 +344,7 @@ mod terminal {
             let is_ended = text.ends_with(b"\x1b\\\x1b[0m\r\n");
             running.end().signal() == Some(signal as i32) && is_ended
         };
-        // On a busy machine the program may wait longer for this reader than it does.
+        // On a busy machine, the program may wait longer for this reader.
         assert!(SIGNALS.into_iter().any(cut));
     }
 }

@@ -1,4 +1,4 @@
-//! The program `leafless`, from outside: every subcommand, what it prints, what it leaves behind.
+//! The program `leafless`, from outside: every subcommand, its output, and the files it leaves.
 
 use crate::place::{Place, Run, block, meshes, solids, stl};
 use crate::{models, zip};
@@ -116,7 +116,7 @@ fn wrong_usage_is_one_line_and_code_2() {
     ] {
         place.run(line).bad(2, words);
     }
-    // Without any command the help stands on standard error.
+    // Without a command, the help goes to standard error.
     let nothing = place.run("");
     assert!(nothing.code == Some(2) && nothing.bytes.is_empty() && nothing.errors.contains("voxelize"));
     assert_eq!(place.files(), before);
@@ -172,7 +172,7 @@ fn voxelize_reports_and_records() {
     assert_eq!((json["edge"].as_f64(), json["origin"][0].as_f64()), (Some(2.0), Some(1.0)));
     assert_eq!(volume(&json), (8.0, 8.0));
 
-    // All that `info` tells is in it.
+    // The report contains everything that `info` prints.
     let info = place.run("info cube.lfl --json").good().json();
     for (key, value) in info.as_object().unwrap() {
         assert_eq!(json[key], *value, "{key}");
@@ -213,7 +213,7 @@ fn the_four_rules_and_both_fills() {
     assert!(lower < 8.0 && 8.0 < upper && upper < 12.0 + 4.0, "{lower} {upper}");
     let (_, (sampled, _)) = run("--fill evenodd --rule sampled");
     assert!((7.0..9.0).contains(&sampled), "{sampled}");
-    // The other ways to ask go by the same rules.
+    // The other queries follow the same rules.
     for (fill, volume) in
         [("", 12.0), ("--fill nonzero", 12.0), ("--fill positive", 12.0), ("--fill evenodd", 8.0)]
     {
@@ -240,12 +240,12 @@ fn a_mesh_that_sticks_out_is_reported() {
     assert!(!run.errors.contains("z from"), "{run:?}");
     let json = run.json();
     assert_eq!(json["clipped"], true);
-    // Of the slab [2, 4] × [2, 4] × [0, 2] is left.
+    // The remaining part of the slab is [2, 4] × [2, 4] × [0, 2].
     let (lower, upper) = volume(&json);
     assert!(lower <= 8.0 && 8.0 <= upper);
     assert_eq!(place.run("info out.lfl --json").good().json()["clipped"], true);
     assert!(place.run("info out.lfl").good().text().contains("may go on outside"));
-    // Nothing of it left is no error either.
+    // An empty result is no error, either.
     let run = place.run("voxelize slab.stl -o out.lfl --depth 4 --bounds=-9,-9,-9,1 --json");
     assert_eq!((run.code, volume(&run.json())), (Some(0), (0.0, 0.0)));
     assert!(run.errors.contains("warning"), "{run:?}");
@@ -295,7 +295,7 @@ fn meshes_that_are_refused() {
     place.run("voxelize turned.stl -o out.lfl --depth 4 --fill evenodd").good();
 }
 
-/// The figures that were published for the sphere, from a scene.
+/// The published figures of the sphere, from a scene.
 #[test]
 fn a_scene_becomes_a_solid() {
     let place = Place::new();
@@ -326,7 +326,7 @@ fn a_scene_becomes_a_solid() {
     assert_eq!(info["clipped"], false);
     assert_eq!((&info["metadata"]["name"], &info["metadata"]["touch"]), (&"sphere".into(), &"paper".into()));
 
-    // Without bounds, in words, from standard input, with files beside it.
+    // Without bounds, with text output, from standard input, and with files beside the scene.
     place.write("cube.stl", stl(&block([1.0; 3], [3.0; 3])));
     let scene = b"difference() { cube(4); mesh(\"cube.stl\"); octree(\"small.lfl\"); }";
     place.run_with("csg - -o small.lfl --depth 4 --bounds 0,0,0,8", b"cube([2, 1, 1]);").good();
@@ -336,7 +336,7 @@ fn a_scene_becomes_a_solid() {
         assert!(told.text().contains(word), "{told:?}");
     }
     let report = place.run("csg part.csg -o part.lfl --depth 5 --bounds 0,0,0,8 --json").good().json();
-    // What a mesh and an octree do in bulk is not counted.
+    // Bulk work of a mesh and an octree is not counted.
     assert!(report["splits"].is_null() && report["evaluations"].as_u64().unwrap() > 0);
     assert!(report["levels"].as_array().unwrap().iter().all(|level| level.get("splits").is_none()));
     let (lower, upper) = volume(&report);
@@ -350,7 +350,7 @@ fn a_scene_becomes_a_solid() {
         place.run("csg sphere.csg -o inner.lfl --depth 4 --bounds 0,0,0,128 --rule inner --json").good();
     assert_eq!(volume(&inner.json()), (802_816.0, 802_816.0));
 
-    // What is wrong with scenes.
+    // Errors in scenes.
     let before = place.files();
     place.write("bad.csg", "group() {\n  cube(size = [1, 2]);\n}\n");
     place.run("csg bad.csg -o out.lfl --depth 4").bad(1, &["bad.csg: line 2, column 15: expected 3 items"]);
@@ -363,13 +363,13 @@ fn a_scene_becomes_a_solid() {
     place.run("csg none.csg -o out.lfl --depth 4").bad(1, &["none.csg"]);
     std::fs::remove_file(place.path("bad.csg")).unwrap();
     assert_eq!(place.files(), before);
-    // A scene that sticks out is told of.
+    // The program reports a scene that sticks out.
     let out = place.run("csg sphere.csg -o out.lfl --depth 4 --bounds 0,0,0,100");
     assert!(out.code == Some(0) && out.errors.contains("outside of the bounds"), "{out:?}");
 }
 
-/// Cells in which the surface is known well enough are left whole, by any number of threads, and in scenes of
-/// which not all is half-spaces.
+/// Cells with a well-known surface are left whole, with any number of threads, and also in scenes with other
+/// solids than half-spaces.
 #[test]
 fn adaptive_octrees_of_scenes_are_coarse() {
     let place = Place::new();
@@ -394,14 +394,14 @@ fn adaptive_octrees_of_scenes_are_coarse() {
     let bytes = place.bytes("coarse.lfl");
     place.run("csg part.csg -o coarse.lfl --depth 8 --adaptive 0.05 --threads 3").good();
     assert_eq!(place.bytes("coarse.lfl"), bytes);
-    // Beside an octree, which knows no layers.
+    // Beside an octree, which has no layers.
     place.run_with("csg - -o small.lfl --depth 4 --bounds 0,0,0,64", b"cube([2, 1, 1]);").good();
     place.write("both.csg", format!("union() {{ {turn} {{ {part} }} octree(\"small.lfl\"); }}"));
     let line = "csg both.csg -o both.lfl --depth 4 --bounds 0,0,0,64 --adaptive 1 --json";
     assert!(place.run(line).good().json()["splits"].is_null());
 }
 
-/// A solid whose cells keep surfaces is asked, shown and meshed as its scene is, and gives cells of any
+/// A solid whose cells keep surfaces is queried, shown and meshed like its scene, and gives cells of any
 /// level.
 #[test]
 fn octrees_that_keep_surfaces_are_taken_as_solids() {
@@ -414,7 +414,7 @@ fn octrees_that_keep_surfaces_are_taken_as_solids() {
     let (truth, area) = (6000.0 - pi * 160.0, 2.0 * (600.0 + 300.0 + 200.0) + 80.0 * pi - 32.0 * pi);
     let close = |found: f64, truth: f64, share: f64| (found - truth).abs() < share * truth;
     let number = |report: &Value, name: &str| report[name].as_f64().unwrap();
-    // Surfaces: that of marching cubes and of dual contouring are closed, and near; of cells they have steps.
+    // The surfaces by marching cubes and by dual contouring are closed, and near. Those of cells have steps.
     for (line, share) in [
         ("", 0.002),
         ("--method mc", 0.01),
@@ -434,7 +434,7 @@ fn octrees_that_keep_surfaces_are_taken_as_solids() {
     let (least, most) = (&measured["area"]["lower"], &measured["area"]["upper"]);
     let (least, most) = (least.as_f64().unwrap(), most.as_f64().unwrap());
     assert!(least < area && area < most && most - least < 1e-2 * area, "{measured}");
-    // Pictures cover as much as those of the scene.
+    // Pictures cover as much as the scene's pictures.
     for view in ["", "--view slice", "--view volume", "--view hybrid", "--faces"] {
         let [own, source] = ["lfl", "csg"].map(|kind| {
             let line = format!("render part.{kind} -o part.png --size 160x120 --samples 1 {view} --json");
@@ -444,7 +444,7 @@ fn octrees_that_keep_surfaces_are_taken_as_solids() {
     }
     let dexels = place.run("dexelize part.lfl -o dexels.lfl --json").good().json();
     assert!(close(number(&dexels, "volume"), truth, 1e-3) && dexels["resolution"] == 256, "{dexels}");
-    // Cells, of the level that is asked for.
+    // Cells of the requested level.
     let plain = place.run("convert part.lfl -o plain.lfl --to octree --resolution 64 --json").good().json();
     assert_eq!((&plain["depth"], &plain["cuts"]), (&Value::from(6), &Value::Null));
     place.run("convert plain.lfl -o other.lfl --to octree").bad(1, &["is an octree already"]);
@@ -458,8 +458,8 @@ fn octrees_that_keep_surfaces_are_taken_as_solids() {
     assert!(first[2] <= 4.0 && first[3] >= 4.0 && first[3] - first[2] < 1e-3, "{first:?}");
 }
 
-/// Undecided cells keep the surfaces that cross them: a small file, which knows the volume and the points as
-/// the scene does.
+/// Undecided cells keep the surfaces that cross them. The file is small, and gives volume and points like the
+/// scene.
 #[test]
 fn octrees_of_scenes_keep_their_surfaces() {
     let place = Place::new();
@@ -490,13 +490,13 @@ fn octrees_of_scenes_keep_their_surfaces() {
     let points = b"14.000001 10 5\n13.999999 10 5\n29.999999 1 1\n30.000001 1 1\n";
     let answers = place.run_with("contains part.lfl", points).good();
     assert_eq!(answers.text(), "inside\noutside\ninside\noutside\n");
-    // The same bytes by any number of threads, and with a depth of one's own.
+    // The same bytes with any number of threads, and with a chosen depth.
     let bytes = place.bytes("part.lfl");
     place.run("csg part.csg -o part.lfl --surfaces --threads 3").good();
     assert_eq!(place.bytes("part.lfl"), bytes);
     let coarse = place.run("csg part.csg -o coarse.lfl --surfaces --depth 6 --json").good().json();
     assert_eq!(coarse["depth"], 6);
-    // A mesh, of which planes of a coordinate are kept exactly: six beside those of the scene's own block.
+    // A mesh. Axis-aligned planes are kept exactly: six, besides those of the scene's own block.
     place.write("cube.stl", stl(&block([-3.1; 3], [-1.2; 3])));
     place.write("both.csg", format!("union() {{ {part} import(file = \"cube.stl\"); }}"));
     let both = place.run("csg both.csg -o both.lfl --surfaces=1e-3 --json").good().json();
@@ -528,7 +528,7 @@ fn open_meshes_are_taken_with_a_warning() {
             assert_eq!(run.code, Some(0), "{run:?}");
             let start = format!("leafless: {name}: warning: ");
             assert!(run.errors.lines().all(|line| line.starts_with(&start)), "{run:?}");
-            // What is inside before the hole may reach beyond the bounds.
+            // The part enclosed in front of the hole may reach beyond the bounds.
             let clipped = run.json()["clipped"].as_bool().unwrap();
             assert_eq!(run.errors.contains("go on outside of the bounds"), clipped, "{run:?}");
             assert_eq!(run.errors.lines().count(), 1 + usize::from(clipped), "{run:?}");
@@ -541,14 +541,14 @@ fn open_meshes_are_taken_with_a_warning() {
             assert!((undecided - (upper - lower)).abs() < 1e-12, "{undecided} {lower} {upper}");
             assert_eq!(json["mesh"]["boundary_edges"], boundary);
             assert_eq!(json["mesh"]["misoriented_edges"], misoriented);
-            // A twelfth of the surface is missing, and most of the cube decided nevertheless.
+            // A twelfth of the surface is missing, and yet most of the cube is decided.
             assert!(lower > 2.0 && lower < 8.0 && (8.0..14.0).contains(&upper), "{lower} {upper}");
         }
         let info = place.run(&format!("info {name} --json")).good().json();
         assert_eq!((&info["closed"], &info["volume"]), (&false.into(), &Value::Null));
         let text = place.run(&format!("info {name}")).good();
         assert!(text.text().contains(words[1]) && text.text().contains("defect"), "{text:?}");
-        // The triangle that is missing or turned, on the upper side.
+        // The missing or inverted triangle, on the upper side.
         let defects = info["mesh"]["defects"].as_array().unwrap();
         let kind = if boundary > 0 { "hole" } else { "misoriented" };
         assert_eq!(defects.len(), 1);
@@ -563,7 +563,7 @@ fn open_meshes_are_taken_with_a_warning() {
 /// `part.3mf`: in inches, a tetrahedron of edge 1 and its mirror image, and a support.
 fn package() -> Vec<u8> {
     let resources = zip::tetrahedron(1, "") + &zip::tetrahedron(2, "type=\"support\"");
-    // Properties that are not there would be warned of.
+    // Missing properties would cause a warning.
     let resources = resources.replace(" pid=\"1\" p1=\"0\"", "");
     let items = "<item objectid=\"1\"/><item objectid=\"2\"/>
         <item objectid=\"1\" transform=\"-1 0 0 0 1 0 0 0 1 -1 0 0\"/>";
@@ -636,7 +636,7 @@ fn all_formats_give_the_same_solid() {
     let expected = file::open(place.path("stl.lfl")).unwrap();
     for (format, text) in texts(&block([1.0; 3], [3.0; 3])) {
         place.write(&format!("cube.{format}"), &text);
-        // By name, by content, and because the user says so.
+        // By name, by content, and by the user's option.
         place.write("nameless", &text);
         for line in [format!("cube.{format}"), "nameless".into(), format!("nameless --format {format}")] {
             let json = place.run(&format!("voxelize {line} -o out.lfl --depth 5 --json")).good().json();
@@ -661,7 +661,7 @@ fn units_and_scale() {
         let metadata = json["metadata"].get("units").cloned();
         (json["edge"].as_f64().unwrap(), json["unit"].clone(), metadata)
     };
-    // The edge of the frame is the power of two that holds the cube's, which is 2.
+    // The edge of the frame is the power of two that contains the cube's edge, 2.
     assert_eq!(run(""), (2.0, Value::Null, None));
     assert_eq!(run("--unit cm"), (2.0, "cm".into(), Some("cm".into())));
     assert_eq!(run("--unit cm --to-unit Millimetres"), (32.0, "mm".into(), Some("mm".into())));
@@ -718,7 +718,7 @@ fn info_of_meshes() {
     place.run("info notes.txt").bad(1, &["notes.txt: ", "solid (.lfl)", "mesh (STL", "scene (.csg)"]);
 }
 
-/// A cube, and in its corner a sixth of one that counts twice.
+/// A cube, and a sixth of another cube in its corner, which counts twice.
 #[test]
 fn info_of_bodies_that_overlap() {
     let place = Place::new();
@@ -751,7 +751,7 @@ fn info_of_bodies_that_overlap() {
     }
     let text = place.run("info cube.obj").good().text().to_owned();
     assert!(!text.contains("by the rule") && !text.contains("not flat"), "{text}");
-    // A face that is not flat: of two triangulations one was taken.
+    // A face that is not flat. One of two triangulations is chosen.
     place.write("bent.obj", cube.replacen("v 1 1 1", "v 1 1 1.25", 1));
     let info = place.run("info bent.obj --json").good().json();
     assert_eq!((&info["mesh"]["polygons"], &info["mesh"]["bent_polygons"]), (&6.into(), &1.into()));
@@ -762,7 +762,7 @@ fn info_of_bodies_that_overlap() {
     }
 }
 
-/// What departs from its format is read, and said on standard error and in JSON.
+/// Files that depart from their format are read, with a warning on standard error and in JSON.
 #[test]
 fn warnings_about_files() {
     let place = Place::new();
@@ -990,12 +990,12 @@ fn what_cells_do_not_prove_is_not_said() {
     for name in ["sampled.lfl", "copy.lfl"] {
         let info = place.run(&format!("info {name} --json")).good().json();
         assert_eq!(info["proof"], serde_json::json!({ "full": false, "empty": false, "displacement": 0.0 }));
-        // What was sampled is known to lie in the universe, and no more.
+        // A sampled solid lies in the universe; nothing more is known.
         let told = place.run(&format!("measure {name} --json")).good().json();
         let edge = told["edge"].as_f64().unwrap();
         assert_eq!(volume(&told), (0.0, edge * edge * edge));
         assert!(place.run(&format!("measure {name}")).good().text().contains("nothing: cells are called"));
-        // The cells themselves are what they are.
+        // The cells themselves are known exactly.
         let told = place.run(&format!("measure {name} --cells --json")).good().json();
         assert!(volume(&told).0 > 0.0 && told["proof"]["full"] == true);
         let found = place.run(&format!("interfere {name} {name} --json")).good().json();
@@ -1083,8 +1083,7 @@ fn measure_tells_what_is_proven() {
     let clipped = place.run("measure cube.stl --bounds 2,2,2,2 --json").good().json();
     assert_eq!((&clipped["exact"], &clipped["clipped"]), (&false.into(), &true.into()));
 
-    // One whose triangles intersect, here because each is there twice, is measured as well as is asked for,
-    // and no better.
+    // A mesh whose triangles intersect (here each occurs twice) is measured to the tolerance, and no better.
     let cube = place.bytes("cube.stl");
     let (head, facets) = cube.split_at(84);
     let count = 2 * u32::from_le_bytes(head[80..].try_into().unwrap());
@@ -1117,7 +1116,7 @@ fn measure_tells_what_is_proven() {
         place.run("measure double.stl --bounds 0.9,0.9,0.9,2.2 --tolerance 0.1 --threads 2 --json").good();
     assert_eq!(one.text(), two.text());
 
-    // A scene is measured as well as is asked for.
+    // A scene is measured to the tolerance.
     place.write("ball.csg", "sphere(2);");
     let truth = 32.0 / 3.0 * std::f64::consts::PI;
     let mut last = f64::INFINITY;
@@ -1140,7 +1139,7 @@ fn measure_tells_what_is_proven() {
     let two = place.run("measure ball.csg --tolerance 1e-3 --threads 2 --json").good();
     assert_eq!(one.text(), two.text());
 
-    // A file knows no more than it was made with, and says so.
+    // A file is only as good as its construction, and reports this.
     place.run("voxelize cube.stl -o rough.lfl --depth 4 --bounds 0.9,0.9,0.9,2.2").good();
     let text = place.run("measure rough.lfl --tolerance 0.001").good();
     assert!(text.text().contains("and the file knows no more"), "{text:?}");
@@ -1164,7 +1163,7 @@ fn verify_tells_good_from_bad() {
     assert!(good.text().starts_with("cube.lfl: good"), "{good:?}");
     assert_eq!(good.text().lines().count(), 1);
     let bytes = place.bytes("cube.lfl");
-    // One bit of every 7th byte, and of the last ones.
+    // One bit of every 7th byte, and of the last bytes.
     for at in (0..bytes.len()).step_by(7).chain(bytes.len() - 3..bytes.len()) {
         let mut damaged = bytes.clone();
         damaged[at] ^= 1 << (at % 8);
@@ -1190,7 +1189,7 @@ fn verify_tells_good_from_bad() {
 #[test]
 fn booleans_are_those_of_the_library() {
     let place = solids();
-    // Cube: 8, slab: 32, in common: 1. The faces lie on the lattice but certified cells touch them.
+    // Volumes: cube 8, slab 32, in common 1. The faces lie on the lattice, but certified cells touch them.
     for (line, truth) in [
         ("union cube.lfl slab.lfl", 39.0),
         ("intersection cube.lfl slab.lfl", 1.0),
@@ -1222,7 +1221,7 @@ fn booleans_are_those_of_the_library() {
     rule.insert("rule", "certified");
     let expected = leafless::difference(cube.view(), slab.view(), &control).unwrap().with_metadata(rule);
     assert_eq!(place.bytes("out.lfl"), file::to_bytes(&expected).unwrap());
-    // Of operands by different rules the result says so.
+    // If the operands have different rules, the result says so.
     place.run("voxelize slab.stl -o sampled.lfl --depth 5 --bounds 0,0,0,8 --rule sampled").good();
     place.run("union cube.lfl sampled.lfl -o sampled.lfl").good();
     let info = place.run("info sampled.lfl --json").good().json();
@@ -1240,8 +1239,7 @@ fn booleans_are_those_of_the_library() {
     );
 }
 
-/// A plate, a bore and a pin of the bore's own radius, whose cells keep surfaces: what comes of them is as
-/// sharp.
+/// A plate, a bore and a pin of the bore's radius, whose cells keep surfaces. Results are equally sharp.
 #[test]
 fn set_operations_keep_surfaces() {
     let place = Place::new();
@@ -1262,7 +1260,7 @@ fn set_operations_keep_surfaces() {
     let measured = place.run("measure part.lfl --tolerance 1e-6 --json").good().json();
     let (lower, upper) = volume(&measured);
     assert!(lower <= truth && truth <= upper && upper - lower < 1.01e-6 * truth, "{lower} {upper}");
-    // One after the other is the same solid, and what is filled again is the plate.
+    // One operation after the other gives the same solid, and the refilled bore gives the plate.
     place.run("difference plate.lfl bore.lfl -o one.lfl").good();
     place.run("difference one.lfl slot.lfl -o one.lfl").good();
     let told = place.run("xor one.lfl part.lfl -o none.lfl").good();
@@ -1275,7 +1273,7 @@ fn set_operations_keep_surfaces() {
     place.run("complement other.lfl -o other.lfl").good();
     let [own, other] = ["part.lfl", "other.lfl"].map(|name| file::open(place.path(name)).unwrap());
     assert!(own == other && own.view().cuts().unwrap().given_up == 0);
-    // The pin touches the bore all around, and shares nothing with the part; of the scenes that is proven
+    // The pin touches the bore all around, and shares no volume with the part. For the scenes this is proven
     // likewise.
     let told = place.run("intersection part.lfl pin.lfl -o common.lfl").good();
     assert!(told.text().contains("volume 0, 0 nodes"), "{told:?}");
@@ -1313,7 +1311,7 @@ fn set_operations_keep_surfaces() {
         place.run(&line).good().json()["covered"].as_f64().unwrap()
     });
     assert!(own > 1000.0 && source > own, "{own} {source}");
-    // Without surfaces: the cells that there are, or those of a level.
+    // Without surfaces: the existing cells, or those of a level.
     place.run("difference plate.lfl bore.lfl slot.lfl -o cells.lfl --plain").good();
     let cells = file::open(place.path("cells.lfl")).unwrap();
     assert!(cells.view().cuts().is_none() && cells.frame().depth() == 20);
@@ -1346,7 +1344,7 @@ fn booleans_need_one_frame_and_sound_operands() {
             place.run(&format!("{operation} cube.lfl slab.lfl other.lfl -o out.lfl")).bad(1, &words);
         }
     }
-    // Damage that only the checksums can tell.
+    // Damage that only the checksums show.
     let mut bytes = place.bytes("slab.lfl");
     let probe = file::probe_bytes(&bytes).unwrap();
     let section = probe.sections.iter().find(|section| section.name == Some("planes")).unwrap();
@@ -1365,7 +1363,7 @@ fn contains_answers_line_by_line() {
     assert_eq!(run.text(), "inside\ninside\noutside\noutside\nundecided\nundecided\n");
     assert_eq!(place.run("contains cube.lfl").good().text(), "");
     assert_eq!(place.run_with("contains cube.lfl", b"\n# nothing\n").good().text(), "");
-    // A point on the surface may be anything, but never proven wrongly beside it.
+    // A point on the surface may have any answer, but points beside it never have a wrong one.
     for (input, number, found) in [
         ("2 2 2\n1 2\n2 2 2\n", 2, "\"1 2\""),
         ("2 2 2\n\n# x\nx y z\n", 4, "\"x y z\""),
@@ -1386,7 +1384,7 @@ fn contains_answers_line_by_line() {
     assert!(run.errors.contains("line 200001:"), "{}", run.errors);
     let run = place.run_with("contains cube.lfl", b"2 2 2\n\xff\xfe\n");
     assert_eq!((run.code, run.text()), (Some(1), "inside\n"), "{run:?}");
-    // A line without end is refused before it fills the memory.
+    // An endless line is refused before it fills the memory.
     let run = place.run_with("contains cube.lfl", &vec![b'1'; 2_000_000]);
     assert!(run.code == Some(1) && run.errors.contains("line 1") && run.errors.len() < 200, "{run:?}");
 }
@@ -1418,7 +1416,7 @@ fn contains_agrees_with_the_library_on_many_points() {
     assert!(met.iter().all(|&n| n > 100), "{met:?}");
 }
 
-/// Starts the program with pipes to talk through.
+/// Starts the program with pipes to communicate through.
 fn start(place: &Place, line: &str) -> Child {
     let mut command = place.command(line.split_whitespace());
     command.stdin(Stdio::piped()).stdout(Stdio::piped()).stderr(Stdio::piped()).spawn().unwrap()
@@ -1451,7 +1449,7 @@ fn a_reader_that_leaves_is_no_error() {
     drop(child.stdout.take());
     let mut stdin = child.stdin.take().unwrap();
     let lines = b"2 2 2\n".repeat(10_000);
-    // Until the program has noticed.
+    // Until the program notices.
     while stdin.write_all(&lines).is_ok() {}
     drop(stdin);
     let output = child.wait_with_output().unwrap();
@@ -1462,7 +1460,7 @@ fn a_reader_that_leaves_is_no_error() {
         let output = child.wait_with_output().unwrap();
         assert!(output.status.success() && output.stderr.is_empty(), "{line}: {output:?}");
     }
-    // But a solid that did not arrive is a failure, if a quiet one.
+    // A solid that did not arrive is a failure, if a quiet one.
     place.run("voxelize cube.stl -o large.lfl --depth 9 --bounds 0.9,0.9,0.9,2.2").good();
     assert!(place.bytes("large.lfl").len() > 1 << 17);
     let mut child = start(&place, "complement large.lfl -o -");
@@ -1535,10 +1533,10 @@ fn demo_does_what_it_says() {
         .collect();
     names.sort();
     assert_eq!(names, ["cutter.stl", "drilled.lfl", "flange.stl"]);
-    // What the folder holds can be made again, and a file cannot be a folder.
+    // The folder's content can be made again. A file cannot be a folder.
     place.run("demo new/folder").good();
     place.run("demo new/folder/flange.stl").bad(1, &["flange.stl"]);
-    // Without a folder: in that for temporary files.
+    // Without a folder, the folder for temporary files is used.
     let output = place.command(["demo"]).env("TMPDIR", place.0.path()).output().unwrap();
     if cfg!(unix) {
         assert!(output.status.success() && place.path("leafless-demo/drilled.lfl").is_file(), "{output:?}");
@@ -1580,7 +1578,7 @@ fn the_volume_of_a_machined_part() {
     }
 }
 
-/// Name and unit of a result are those that all operands have; units that differ are told.
+/// The result has the name and unit that all operands share. Different units are reported.
 #[test]
 fn set_operations_keep_what_the_operands_agree_on() {
     let place = Place::new();

@@ -18,7 +18,7 @@ fn mesh(place: &Place, name: &str) -> TriangleMesh {
 
 fn json(place: &Place, line: &str) -> Value {
     let run = place.run(line);
-    // (Surfaces whose vertices are samples say that they are too large.)
+    // (The program warns that surfaces with samples as vertices are too large.)
     if run.errors.contains("has a volume") { run.noted(&["--method"]) } else { run.good() }.json()
 }
 
@@ -53,7 +53,7 @@ fn every_format_has_the_same_mesh() {
     assert_eq!(mesh(&place, "piped.ply").triangles(), mesh(&place, "ball.off").triangles());
 }
 
-/// Vertices lie on the ball, and area and volume come near its own from below.
+/// Vertices lie on the ball, and area and volume approach the ball's from below.
 #[test]
 fn vertices_lie_on_the_surface() {
     let place = ball();
@@ -142,7 +142,7 @@ fn what_is_refused() {
     place.run("mesh slab.lfl").bad(2, &["--output"]);
 }
 
-/// Shrink leaves few triangles, without cracks; its published form has cracks.
+/// Shrink leaves few triangles and no cracks. Its published form has cracks.
 #[test]
 fn plane_parts_are_shrunk() {
     let place = solids();
@@ -194,7 +194,7 @@ fn normals_are_written_if_asked_for() {
     let body = text.split_once("end_header\n").unwrap().1;
     for (line, vertex) in body.lines().zip(mesh(&place, "plain.ply").vertices()) {
         let numbers: Vec<f64> = line.split(' ').map(|x| x.parse().unwrap()).collect();
-        // On a ball around the origin the normal is the vertex's direction, nearly.
+        // On a ball around the origin, the normal is approximately the vertex's direction.
         for axis in 0..3 {
             assert_eq!(numbers[axis], vertex[axis]);
             assert!((numbers[3 + axis] - vertex[axis] / 2.0).abs() < 0.05, "{line}");
@@ -203,7 +203,7 @@ fn normals_are_written_if_asked_for() {
     assert_eq!(mesh(&place, "ball.ply").triangles(), mesh(&place, "plain.ply").triangles());
 }
 
-/// The report is the one of the mesh that is read back.
+/// Checks that the report describes the mesh that is read back.
 #[track_caller]
 fn same_as_read(place: &Place, report: &Value) {
     let name = report["output"].as_str().unwrap();
@@ -223,7 +223,7 @@ fn same_as_read(place: &Place, report: &Value) {
     assert_eq!(report["euler"], found.euler_characteristic);
     assert_eq!(report["closed"], found.is_closed() && found.triangles > 0);
     assert_eq!(report["manifold"], found.is_manifold() && found.triangles > 0);
-    // (Numbers may be read from JSON with an error of one unit in the last place.)
+    // (Numbers read from JSON may be wrong by one unit in the last place.)
     for (key, value) in [("area", back.area()), ("volume", back.volume())] {
         let told = report[key].as_f64().unwrap();
         assert!((told - value).abs() <= 2.0 * f64::EPSILON * value.abs(), "{key}: {told} {value}");
@@ -234,7 +234,7 @@ fn moved(by: f64, what: &str) -> String {
     format!("multmatrix([[1,0,0,{by}],[0,1,0,{by}],[0,0,1,{by}],[0,0,0,1]]) {what}")
 }
 
-/// What single precision breaks is not written as STL, unless one asks for it.
+/// A mesh that single precision breaks is not written as STL, unless `--lossy` allows it.
 #[test]
 fn losses_are_said() {
     let place = Place::new();
@@ -263,7 +263,7 @@ fn losses_are_said() {
             assert_eq!((&report["rounding"], &report["broken"]), (&Value::from(0.0), &Value::Bool(false)));
         }
     }
-    // A ball whose triangles are hardly larger than what is rounded is mended.
+    // A ball with triangles hardly larger than the rounding is repaired.
     for text in ["", "--text"] {
         let report = json(
             &place,
@@ -282,7 +282,7 @@ fn losses_are_said() {
     assert!(lines[3].contains("1,696 triangles collapsed, 46 triangles turned"), "{text:?}");
     let text = place.run("mesh cube.csg -o cube.stl --method mc --depth 5 --lossy");
     assert!(text.text().contains("empty: rounding leaves no triangle"), "{text:?}");
-    // Nothing is written on standard output, and nothing takes the place of an older file.
+    // Nothing is written on standard output, and no older file is replaced.
     place.write("old.stl", "old");
     for line in ["mesh cube.csg -o - --write stl --depth 5", "mesh cube.csg -o old.stl --method mc"] {
         place.run(line).bad(1, &["32-bit"]);
@@ -301,7 +301,7 @@ fn losses_are_said() {
     assert!(!place.files().contains(&"new.stl".to_owned()));
 }
 
-/// A cube in one axis far away is flat, whose front and back stay.
+/// A cube far away along one axis becomes flat; its front and back remain.
 #[test]
 fn flat_figures_are_refused() {
     let place = Place::new();
@@ -313,7 +313,7 @@ fn flat_figures_are_refused() {
     assert_eq!((&report["volume"], &report["broken"]), (&Value::from(0.0), &Value::Bool(true)));
 }
 
-/// What rounding makes degenerate is mended, and how that was done is told.
+/// Triangles that become degenerate by rounding are repaired, and the repairs are reported.
 #[test]
 fn degenerate_triangles_are_mended() {
     let place = Place::new();
@@ -342,7 +342,7 @@ fn degenerate_triangles_are_mended() {
 const PLATE: &str = "difference() { cube(size = [80, 60, 10]); multmatrix([[1,0,0,40],[0,1,0,30],[0,0,1,-1],[0,0,0,1]]) \
                      cylinder(h = 12, r1 = 5, r2 = 5, $fn = 0); }";
 
-/// Plane faces as polygons, and what the surfaces are.
+/// Plane faces as polygons, and the kinds of the surfaces.
 #[test]
 fn faces_are_told() {
     let place = Place::new();
@@ -373,7 +373,7 @@ fn faces_are_told() {
     json(&place, "mesh plate.csg -o plate.off --method faces --polygons --json");
     let [off, obj] = ["off", "obj"].map(|kind| mesh(&place, &format!("plate.{kind}")).volume());
     assert!((off - obj).abs() < 1e-9, "{off} {obj}");
-    // Triangles tell the same regions.
+    // Triangles give the same regions.
     let plain = json(&place, "mesh plate.csg -o plate.ply --method faces --json");
     assert_eq!(plain["regions"], report["regions"]);
     place.run("csg plate.csg -o plate.lfl --surfaces").good();
@@ -395,7 +395,7 @@ fn faces_are_told() {
     assert!(!place.files().iter().any(|name| name.starts_with("x.")));
 }
 
-/// Values on triangles: of channels of octrees, of materials of tri-dexel models, and of colours of meshes.
+/// Values on triangles: from channels of octrees, materials of tri-dexel models, and colours of meshes.
 #[test]
 fn triangles_bear_values() {
     let place = Place::new();
@@ -474,8 +474,8 @@ fn solids_from_files_are_meshed_at_coarser_levels() {
     place.run("mesh cube.lfl -o no.ply --depth 6").bad(2, &["--depth 6", "cube.lfl", "5"]);
 }
 
-/// A plate with a bore: few triangles, sharp edges, and within the tolerance by proof, from a scene and from
-/// a solid that keeps its surfaces.
+/// A plate with a bore, from a scene and from a solid that keeps its surfaces: few triangles, sharp edges,
+/// and provably within the tolerance.
 #[test]
 fn faces_of_a_plate_with_a_bore() {
     let place = solids();
@@ -500,18 +500,18 @@ fn faces_of_a_plate_with_a_bore() {
         assert_eq!(report["intersecting"], 0);
         assert!(report["deviation"].as_f64().unwrap() <= tolerance.parse().unwrap(), "{report}");
     }
-    // The file says so, and a person is told.
+    // The file states the deviation, and the text output does, too.
     let said = place.run("mesh plate.csg -o told.3mf --method faces").good();
     assert!(said.text().contains("of the solid: proven"), "{}", said.text());
     let told = json(&place, "info told.3mf --json");
     assert!((told["told_deviation"].as_f64().unwrap() - proven).abs() < 1e-5, "{told}");
-    // The volume of the true plate lies within what is measured of the file that is believed.
+    // Measured from the file with the stated deviation, the interval contains the true plate's volume.
     let line = format!("measure plate.stl --deviation {proven} --tolerance 1e-3 --json");
     let volume = &json(&place, &line)["volume"];
     let truth = 48000.0 - 250.0 * std::f64::consts::PI;
     let [least, most] = ["lower", "upper"].map(|end| volume[end].as_f64().unwrap());
     assert!(least <= truth && truth <= most, "{volume}");
-    // Whatever has a shape, in cells of several sizes.
+    // All inputs that have a shape, in cells of several sizes.
     let adaptive = json(&place, "mesh plate.stl -o adaptive.ply --method adaptive --json");
     assert!(adaptive["closed"] == true && adaptive["manifold"] == true, "{adaptive}");
     let proven = adaptive["deviation"].as_f64().unwrap();
@@ -521,7 +521,7 @@ fn faces_of_a_plate_with_a_bore() {
     place.run("csg plate.csg -o plate.lfl --surfaces").good();
     let stored = json(&place, "mesh plate.lfl -o stored.ply --method faces --json");
     assert!(stored["triangles"].as_u64().unwrap() <= 400 && stored["euler"] == 0, "{stored}");
-    // What knows no surfaces, and options that do not fit.
+    // Inputs without surfaces, and options that do not fit.
     place.run("csg plate.csg -o cells.lfl --depth 5 --rule sampled").good();
     place.run("mesh cells.lfl -o out.ply --method faces").bad(1, &["cells.lfl", "--method faces"]);
     // A mesh has its own triangles, merged.
@@ -536,8 +536,8 @@ fn faces_of_a_plate_with_a_bore() {
     place.run("mesh plate.csg -o out.ply --method faces --tolerance 0").bad(1, &["tolerance"]);
 }
 
-/// Where nobody says how, the method is the one that knows most of the shape, and the report says which it
-/// was.
+/// Without `--method`, the program chooses the method that uses the most knowledge of the shape, and reports
+/// it.
 #[test]
 fn what_is_known_of_the_shape_decides() {
     let place = solids();
@@ -564,11 +564,11 @@ fn what_is_known_of_the_shape_decides() {
         assert_eq!(report["closed"], true, "{file}");
         assert_eq!(report.get("deviation").is_some(), is_proven, "{file}: {report}");
     }
-    // Layers of a mesh are none of a few surfaces.
+    // The layers of a mesh are not a few surfaces.
     place.run("voxelize cube.stl -o layers.lfl --surfaces=1e-2 --rotate 1,1,0,30").good();
     let layers = json(&place, "mesh layers.lfl -o out.ply --json");
     assert!(layers["method"] == "mc" && layers["closed"] == true, "{layers}");
-    // Options that belong to a method choose it, and say so.
+    // Options that belong to a single method choose it, and the report names it.
     for (line, method) in [
         ("mesh plate.csg --depth 4 --vertices midpoint", "mc"),
         ("mesh plate.csg --depth 4 --resolve outer", "nets"),
@@ -585,7 +585,7 @@ fn what_is_known_of_the_shape_decides() {
         assert_eq!(run.json()["method"], method, "{line}");
     }
     place.run("mesh cells.lfl -o out.ply --tolerance 0.1").bad(2, &["--tolerance", "--method nets"]);
-    // What goes on outside of the cube is cut off.
+    // Parts outside the cube are cut off.
     let cut = place.run("mesh plate.csg -o out.ply --bounds -1,-1,-1,6 --depth 4 --json");
     assert!(cut.code == Some(0) && cut.errors.contains("cut off"), "{cut:?}");
     assert_eq!(cut.json()["method"], "mc");
@@ -594,7 +594,7 @@ fn what_is_known_of_the_shape_decides() {
         .bad(1, &["hold all of the solid"]);
 }
 
-/// Triangles are taken out of any surface; what is told of the distance from the solid stays true.
+/// Triangles of any surface are removed. The reported distance from the solid stays true.
 #[test]
 fn triangles_are_taken_out() {
     let place = ball();
@@ -603,10 +603,10 @@ fn triangles_are_taken_out() {
     let few = json(&place, &format!("{cubes} -o few.ply --simplify 0.05"));
     let count = |report: &Value| report["triangles"].as_u64().unwrap();
     assert!(4 * count(&few) < count(&full) && few["manifold"] == true, "{few} {full}");
-    // Nobody knows how far marching cubes was from the ball.
+    // The distance of marching cubes from the ball is unknown.
     assert!(few.get("deviation").is_none(), "{few}");
 
-    // A mesh that is copied is the solid.
+    // A mesh copied to the output is the solid.
     let copy = json(&place, "convert full.ply -o simple.ply --simplify 0.05 --json");
     assert_eq!((count(&copy), &copy["method"]), (count(&few), &"copy".into()));
     let proven = copy["deviation"].as_f64().unwrap();
@@ -614,7 +614,7 @@ fn triangles_are_taken_out() {
     let within = format!("deviation full.ply simple.ply --within {proven} --json");
     assert_ne!(place.run(&within).json()["verdict"], "beyond");
 
-    // What was proven before is added.
+    // The earlier proven deviation is added.
     let faces = "mesh ball.csg --method faces --tolerance 0.02 --json";
     let near = json(&place, &format!("{faces} -o near.ply"))["deviation"].as_f64().unwrap();
     let both = json(&place, &format!("{faces} -o both.ply --simplify 0.05"));

@@ -1,4 +1,4 @@
-//! The program tells the truth about what it was given: kinds of files, bounds, proof, digits.
+//! The program reports truthfully about its inputs: kinds of files, bounds, proofs, digits.
 
 use crate::place::{Place, Run, block, meshes, solids, stl};
 use serde_json::Value;
@@ -14,7 +14,7 @@ fn warned(run: Run) -> Run {
     run
 }
 
-/// Whether what is printed of a number contains `truth`.
+/// True if the printed interval or number contains `truth`.
 fn told(text: &str, truth: f64) -> bool {
     let number = |text: &str| text.parse::<f64>().unwrap_or_else(|_| panic!("{text:?}"));
     if let Some((middle, doubt)) = text.split_once(" ± ") {
@@ -26,13 +26,13 @@ fn told(text: &str, truth: f64) -> bool {
     }
 }
 
-/// Whether bounds hold a number, and nothing much else.
+/// True if bounds contain a number, and little else.
 fn near(bounds: &Value, truth: f64) -> bool {
     let [lower, upper] = ["lower", "upper"].map(|end| bounds[end].as_f64().unwrap());
     lower <= truth && truth <= upper && upper - lower < 1e-8 * truth
 }
 
-/// The value of a line of a report.
+/// Returns the value of a line of a report.
 fn line<'t>(text: &'t str, name: &str) -> &'t str {
     let found = text.lines().find_map(|line| line.strip_prefix(name)?.strip_prefix(' '));
     found.unwrap_or_else(|| panic!("no {name}:\n{text}")).trim()
@@ -52,7 +52,7 @@ fn content_decides_what_a_file_is() {
         let found = place.run_with(line, input.as_bytes()).good().json();
         assert_eq!(found["volume"], expected["volume"], "{line}");
     }
-    // What a solid and a mesh are is told by content, too.
+    // Solids and meshes are recognised by content, too.
     let cube = place.bytes("cube.stl");
     let found = place.run_with("measure - --json", &cube).good().json();
     assert!(near(&found["volume"], 8.0), "{found}");
@@ -124,11 +124,11 @@ fn what_lies_outside_of_the_bounds_is_not_disjoint() {
             assert_eq!((&json[number]["lower"], &json[number]["upper"]), (&Value::Null, &Value::Null));
         }
     }
-    // An overlap that is seen is one, and as large as what is seen at least.
+    // A visible overlap is an overlap, at least as large as its visible part.
     let json = place.run("interfere cube.stl cube.stl --bounds 0,0,0,2 --json").good().json();
     assert_eq!((&json["verdict"], &json["overlap"]["lower"]), (&"overlapping".into(), &1.0.into()), "{json}");
     assert_eq!(json["overlap"]["upper"], Value::Null);
-    // If one of them lies inside of the bounds, all that they have in common does.
+    // If one of the two lies inside the bounds, all of the intersection does.
     place.write("far.stl", stl(&block([4.0; 3], [20.0; 3])));
     let json = place.run("interfere cube.stl far.stl --bounds 0,0,0,8 --json").good().json();
     assert_eq!((&json["verdict"], &json["reason"]), (&"disjoint".into(), &Value::Null), "{json}");
@@ -137,7 +137,7 @@ fn what_lies_outside_of_the_bounds_is_not_disjoint() {
 #[test]
 fn undecided_has_a_reason() {
     let place = meshes();
-    // Meshes that touch in a face: of scenes that is decided.
+    // Meshes that touch in a face. For scenes the contact is decided.
     place.write("left.stl", stl(&block([0.0; 3], [2.1, 2.0, 2.0])));
     place.write("right.stl", stl(&block([2.1, 0.5, 0.25], [4.3, 2.5, 2.25])));
     let reason = |line: &str| place.run(line).good().json()["reason"].clone();
@@ -173,7 +173,7 @@ fn what_cells_do_not_prove_is_not_told() {
             assert_eq!(proof["full"], rule == "certified" || rule == "inner", "{command} {rule}");
             assert_eq!(proof["empty"], rule == "certified" || rule == "outer", "{command} {rule}");
         }
-        // An octree in a scene that is built says it likewise.
+        // An octree in a scene has the same effect.
         let made = place.run("csg stored.csg -o again.lfl --depth 5 --json").good().json();
         assert_eq!(made["proof"]["full"], rule == "certified" || rule == "inner", "{rule}");
     }
@@ -230,16 +230,16 @@ fn frames_of_round_parts_are_aligned() {
     place.write("box.stl", stl(&block([0.0; 3], [100.0, 60.0, 30.0])));
     let made = place.run("voxelize box.stl -o box.lfl --depth 7 --json").good().json();
     assert_eq!((&made["edge"], &made["volume"]["lower"]), (&128.0.into(), &180_000.0.into()));
-    // Both lie on one frame, unasked.
+    // Both are on one frame, without an option.
     place.run("difference box.lfl part.lfl -o rest.lfl").good();
-    // Nothing of a scan is round.
+    // A scan has no round dimensions.
     place.write("scan.stl", stl(&block([0.0617; 3], [0.7, 0.31, 0.5])));
     let made = place.run("voxelize scan.stl -o scan.lfl --depth 5 --json").good().json();
     let edge = made["edge"].as_f64().unwrap();
     assert!((edge - (0.7 - 0.0617) * 33.0 / 32.0).abs() < 1e-7, "{edge}");
 }
 
-/// Four bores along z, four rounded edges.
+/// A plate with four bores along z and four rounded edges.
 fn rounded_plate() -> String {
     let at = |x: i32, y: i32, shape: &str| {
         format!("multmatrix([[1, 0, 0, {x}], [0, 1, 0, {y}], [0, 0, 1, 0], [0, 0, 0, 1]]) {shape}")
@@ -272,8 +272,8 @@ fn a_part_with_round_dimensions_is_cheap() {
     // The cube around the middle, its edge 33/32 of the longest extent.
     let centred = run("--bounds -1.5625,-21.5625,-36.5625,103.125");
     println!("splits to 2 % and nodes at depth 9: {aligned:?}, and {centred:?} around the middle");
-    // (Of cells that several surfaces cross the volume is known without a split, on any frame: before, the
-    // two took 419 and 2177. Planes and cylinders of several primitives are one.)
+    // (In cells that several surfaces cross, the volume is known without a split, on any frame. Without this,
+    // the two took 419 and 2177. Planes and cylinders shared by several primitives are one.)
     assert!(aligned.0 < centred.0 && centred.0 < 419, "{aligned:?} {centred:?}");
     assert!(6 * aligned.1 < centred.1, "{aligned:?} {centred:?}");
 }
@@ -300,7 +300,7 @@ fn an_empty_scene_has_no_volume() {
         let json = place.run("interfere empty.csg cube.csg --json").good().json();
         assert_eq!(json["verdict"], "disjoint", "{text}");
     }
-    // What has no bounds is another thing.
+    // An unbounded scene is another case.
     place.write("half.csg", "halfspace([1, 0, 0, 0]);");
     place.run("measure half.csg").bad(1, &["half.csg", "--bounds"]);
 }
@@ -344,7 +344,7 @@ fn a_reader_that_has_seen_enough_is_no_failure() {
         let mut child = command.stdout(Stdio::piped()).stderr(Stdio::piped()).spawn().unwrap();
         drop(child.stdout.take());
         let run = Run::new(line, child.wait_with_output().unwrap());
-        // Half a solid is none. (A small one may be through before the reader is gone.)
+        // Half a solid is not a solid. (A small one may be complete before the reader is gone.)
         let is_solid = line.contains(" -o -");
         let quiet =
             run.errors.is_empty() || is_solid && run.code == Some(0) && run.errors.contains(": union of");
@@ -364,7 +364,7 @@ fn an_open_mesh_is_told_of_wherever_it_is_read() {
     warned(place.run("voxelize open.stl -o open.lfl --depth 4"));
 }
 
-/// A cylinder in chords: the volume of the true one is 12000 π, and the mesh has less.
+/// A faceted cylinder. The true volume is 12000 π, and the mesh's is smaller.
 #[test]
 fn a_stated_deviation_is_believed() {
     use std::f64::consts::PI;
@@ -391,7 +391,7 @@ fn a_stated_deviation_is_believed() {
     let truth = PI * 400.0 * 30.0;
     assert!(!holds("chords.stl", truth) && !holds("chords.stl --deviation 0", truth));
     assert!(holds("chords.stl --deviation 0.5", truth));
-    // It is told after units, and moves and grows with the mesh.
+    // The deviation follows the units, and moves and grows with the mesh.
     assert!(holds("chords.stl --unit mm --to-unit cm --deviation 0.05", truth / 1000.0));
     assert!(holds("chords.stl --deviation 0.5 --scale 2 ", 8.0 * truth));
     assert!(holds(
@@ -428,7 +428,7 @@ fn a_stated_deviation_is_believed() {
     place.write("open.csg", "mesh(\"open.off\", deviation = 0.1);");
     place.run("measure open.csg").bad(1, &["`deviation` needs a mesh that bounds a solid"]);
 
-    // A file that was written with it says so, and is not believed.
+    // A file states its deviation, and the program does not rely on it.
     place.run("convert chords.stl -o chords.ply --deviation 0.5").good();
     place.run("convert chords.stl -o chords.3mf --deviation 0.5 --scale 2").good();
     assert!(!holds("chords.ply", truth) && holds("chords.ply --deviation 0.5", truth));

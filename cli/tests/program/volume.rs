@@ -1,4 +1,4 @@
-//! Volumes on the command line: NRRD and MetaImage, wherever solids are asked or made.
+//! Volumes on the command line: NRRD and MetaImage, wherever solids are queried or made.
 
 use crate::place::Place;
 use serde_json::Value;
@@ -60,12 +60,12 @@ fn voxels_become_cells() {
         assert_eq!((report["depth"].as_u64(), volume(&report)), (Some(4), wanted), "{report}");
         assert_eq!(volume(&json(&place, "info ball.lfl --json")), wanted);
     }
-    // All samples are at least 10, and none is 201.
+    // All samples are at least 10, and no sample is 201.
     let all = json(&place, "voxelize ball.nrrd -o all.lfl --threshold 10 --json");
     assert_eq!(volume(&all), (16.0 * 14.0 * 12.0, 16.0 * 14.0 * 12.0));
     let none = json(&place, "voxelize ball.nrrd -o none.lfl --threshold 201 --json");
     assert_eq!(volume(&none), (0.0, 0.0));
-    // Coarser cells, and a cube of one's own.
+    // Coarser cells, and a chosen cube.
     let (lower, upper) = volume(&json(&place, "voxelize ball.nrrd -o c.lfl --depth 3 --json"));
     assert!(lower < wanted.0 && wanted.0 < upper);
     let half = json(&place, "voxelize ball.nrrd -o h.lfl --bounds 0,0,0,16 --depth 5 --json");
@@ -87,7 +87,7 @@ fn booleans_take_volumes() {
         assert_eq!(volume(&rest), (count, count), "{operand}");
     }
     place.run("complement ball.nrrd -o outside.lfl").good();
-    // Voxels that are no cubes are sampled on the cells of the solid, whose cube they leave.
+    // Voxels that are no cubes are sampled on the cells of the solid. They reach out of the solid's cube.
     place
         .run("union ball.lfl flat.nrrd -o both.lfl")
         .noted(&["flat.nrrd", "reach beyond the frame of ball.lfl"]);
@@ -104,7 +104,7 @@ fn volumes_answer_like_solids() {
     let crossing = json(&place, "mesh ball.nrrd -o ball.ply --json");
     let report = json(&place, "mesh ball.nrrd -o ball.ply --method mc --vertices midpoint --json");
     assert_eq!(report["triangles"], crossing["triangles"]);
-    // The threshold lies nearer to the samples inside.
+    // The threshold is nearer to the samples inside.
     assert!(crossing["volume"].as_f64().unwrap() < 0.97 * report["volume"].as_f64().unwrap(), "{crossing}");
     // Voxels need not be cubes.
     let flat = json(&place, "mesh flat.nrrd -o flat.off --json");
@@ -122,7 +122,7 @@ fn volumes_answer_like_solids() {
     assert_eq!(json(&place, "info ball.mhd --json")["extents"], serde_json::json!([16, 14, 12]));
 }
 
-/// The same samples without a header, as bytes and as big-endian numbers of 16 bits behind a header of five
+/// The same samples without a header: as bytes, and as big-endian numbers of 16 bits behind a header of five
 /// bytes.
 #[test]
 fn raw_volumes() {
@@ -159,7 +159,7 @@ fn raw_volumes() {
     place.run("info ball.lfl --extents 16,14,12").bad(2, &["--extents", "ball.lfl"]);
 }
 
-/// Cells become voxels, and these the same cells.
+/// Cells become voxels, and the voxels become the same cells.
 #[test]
 fn bitmaps() {
     let place = place();
@@ -218,7 +218,7 @@ fn what_is_refused() {
     assert!(!place.files().contains(&"b.lfl".to_owned()));
 }
 
-/// A data file that cannot be had is named, and a link leads to none outside of the header's folder.
+/// A missing data file is named in the error. A link cannot lead outside the header's folder.
 #[cfg(unix)]
 #[test]
 fn data_files() {
@@ -236,7 +236,7 @@ fn data_files() {
     place.run("info in/way.mhd").good();
 }
 
-/// What a header cannot mean is refused in words.
+/// Meaningless values in a header are refused with a clear message.
 #[test]
 fn nonsense_in_headers() {
     let place = place();
@@ -252,7 +252,7 @@ fn nonsense_in_headers() {
     }
 }
 
-/// A corner that no origin of a NRRD leads back to is warned of.
+/// The program warns if a corner cannot be restored from any origin in a NRRD.
 #[test]
 fn a_rounded_corner_is_said() {
     let place = Place::new();

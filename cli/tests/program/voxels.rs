@@ -2,7 +2,7 @@
 
 use crate::place::solids;
 
-/// The slab is [2, 6] × [2, 6] × [0, 2] in [0, 8]³, with 32 cells an axis: four a unit.
+/// The slab is [2, 6] × [2, 6] × [0, 2] in [0, 8]³, with 32 cells along an axis: four to a unit.
 #[test]
 fn records_as_lines() {
     let place = solids();
@@ -24,7 +24,7 @@ fn records_as_lines() {
         .run("voxels slab.lfl -o slab.csv --coarse 1 --boundary-depth 3 --outside --refined --json")
         .good();
     let told: serde_json::Value = serde_json::from_str(json.text()).unwrap();
-    // Of 4 × 4 × 2 cells of edge 1 all touch the outside: those above, beside, and below, where the universe
+    // All of the 4 × 4 × 2 cells of edge 1 touch the outside: above, beside, and below, where the universe
     // ends.
     assert_eq!((told["boundary"].as_u64(), told["inside"].as_u64()), (Some(32), Some(0)));
     assert!(told["refined"].as_u64() > Some(4) && told["outside"].as_u64() > Some(4), "{told}");
@@ -57,7 +57,7 @@ fn there_and_back() {
     place.run("voxels ball.lfl -o a.npz --threads 1").good();
     place.run("voxels ball.lfl -o b.npz --threads 4").good();
     assert_eq!(place.bytes("a.npz"), place.bytes("b.npz"));
-    // With its own surface.
+    // With a chosen surface.
     place.run("mesh ball.csg -o ball.stl --depth 5").good();
     let text = place.run("voxels ball.lfl -o ball.csv --triangles ball.stl --json").good();
     let told: serde_json::Value = serde_json::from_str(text.text()).unwrap();
@@ -75,7 +75,7 @@ fn there_and_back() {
         let mut changed = bytes.clone();
         changed[place_of] ^= 0x55;
         place.write("changed.npz", &changed);
-        // Good or bad, but no crash.
+        // Good or bad, but without a crash.
         let run = place.run("voxels --import changed.npz -o changed.lfl");
         assert!(matches!(run.code, Some(0 | 1)), "{place_of}");
     }

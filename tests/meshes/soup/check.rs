@@ -1,11 +1,11 @@
-//! What must hold of any solid that claims to be a soup, checked against the soup's winding numbers.
+//! Checks that a solid represents a soup, against the soup's winding numbers.
 
 use super::winding::{Boundary, Soupy, Winding};
 use crate::common::{Random, alone};
 use crate::shapes::Soup;
 use leafless::{FillRule, Frame, Octree, Rule, Solid, Tag, build};
 
-/// How far inside the truth a winding number lies: from 0 on it is in the solid.
+/// Returns the winding number's distance beyond the threshold: 0 or more is inside the solid.
 pub fn margin(fill: FillRule, winding: f64) -> f64 {
     match fill {
         FillRule::NonZero => winding.abs() - 0.5,
@@ -14,7 +14,7 @@ pub fn margin(fill: FillRule, winding: f64) -> f64 {
     }
 }
 
-/// Whether the solid contains a point; `None` too near to its boundary to tell.
+/// True if the solid contains a point; `None` if the point is too near the boundary to decide.
 pub fn is_inside(fill: FillRule, at: Winding, least: f64) -> Option<bool> {
     let margin = margin(fill, at.value);
     (margin.abs() > at.error.max(least)).then_some(margin > 0.0)
@@ -26,11 +26,11 @@ pub struct Case<'a> {
     pub soup: &'a Soup,
     pub frame: Frame,
     pub fill: FillRule,
-    /// Cell centres are doubles, and corners too, where they are meant to be on planes or centres.
+    /// True if cell centres are doubles, and likewise corners that are meant to lie on planes or centres.
     pub aligned: bool,
 }
 
-/// How many points of each kind are asked for.
+/// Numbers of examined points, by kind.
 #[derive(Clone, Copy)]
 pub struct Effort {
     pub points: usize,
@@ -39,17 +39,18 @@ pub struct Effort {
     pub shares: usize,
 }
 
-/// What was found.
+/// The results of the checks.
 #[derive(Default, Debug)]
 pub struct Findings {
     pub faults: Vec<String>,
-    /// Answers that were held against the oracle, and how many it could not tell.
+    /// Numbers of answers compared with the oracle, and of answers that the oracle could not decide.
     pub asked: usize,
     pub skipped: usize,
-    /// Cells that a plain bound of the gradient decides, and how many of them the solid left open.
+    /// Number of cells that a plain bound of the gradient decides, and number of these that the solid left
+    /// open.
     pub decidable: usize,
     pub left_open: usize,
-    /// Cells that no triangle meets, and how many of them are open.
+    /// Number of cells that no triangle meets, and number of these that are open.
     pub clear: usize,
     pub clear_open: usize,
 }
@@ -65,11 +66,11 @@ impl Findings {
         self.clear_open += other.clear_open;
     }
 
-    /// Panics with the first faults, if there is one.
+    /// Panics with the first faults, if there are any.
     pub fn judge(&self) {
         let first = &self.faults[..self.faults.len().min(10)];
         assert!(first.is_empty(), "{} faults, such as\n{}", self.faults.len(), first.join("\n"));
-        // An oracle that cannot tell shows nothing.
+        // An oracle that decides too little proves nothing.
         assert!(self.skipped * 50 <= self.asked, "{} of {} skipped", self.skipped, self.asked);
         // The plain bound is taken with a margin of SLACK, so a solid that uses the same law decides all of
         // them.
@@ -82,20 +83,21 @@ impl Findings {
     }
 }
 
-/// By how much a solid's bound of the gradient may be worse than the oracle's.
+/// The factor by which a solid's bound of the gradient may exceed the oracle's.
 const SLACK: f64 = 2.0;
 
 pub fn centre(frame: &Frame, at: [u32; 3]) -> [f64; 3] {
     [0, 1, 2].map(|axis| frame.origin()[axis] + (at[axis] as f64 + 0.5) * frame.cell_size())
 }
 
-/// The winding number that decides a sampled cell. If lattice and soup are `aligned`, centres may lie on the
-/// soup.
+/// Returns the winding number that decides a sampled cell. If lattice and soup are `aligned`, centres may lie
+/// on the soup.
 pub fn around_centre(truth: &mut Soupy, frame: &Frame, at: [u32; 3], aligned: bool) -> Winding {
     let p = centre(frame, at);
     let mut winding = truth.at(p);
     if winding.error > 1e-3 && aligned {
-        // On an edge or a vertex of the soup: what a small step along (ε, ε², ε³) finds, to first order.
+        // On an edge or a vertex of the soup, take the winding number a small step along (ε, ε², ε³), to
+        // first order.
         let shift = [2f64.powi(-12), 2f64.powi(-24), 2f64.powi(-36)];
         winding = truth.at([0, 1, 2].map(|axis| p[axis] + frame.cell_size() * shift[axis]));
         winding.error = winding.error.max(0.02);
@@ -105,12 +107,12 @@ pub fn around_centre(truth: &mut Soupy, frame: &Frame, at: [u32; 3], aligned: bo
     winding
 }
 
-/// One of a list.
+/// Returns a random item of a list.
 fn pick<T: Copy>(random: &mut Random, list: &[T]) -> Option<T> {
     (!list.is_empty()).then(|| list[random.below(list.len() as u64) as usize])
 }
 
-/// The four trees of a solid by one thread.
+/// Builds the four trees of a solid with one thread.
 pub fn trees<S: Solid>(solid: &S, frame: &Frame) -> [Octree; 4] {
     [Rule::Certified, Rule::Sampled, Rule::Inner, Rule::Outer].map(|rule| {
         let tree = build(solid, frame, rule, &alone()).unwrap();
@@ -119,7 +121,7 @@ pub fn trees<S: Solid>(solid: &S, frame: &Frame) -> [Octree; 4] {
     })
 }
 
-/// All claims of `trees` about `case`.
+/// Checks all claims of `trees` about `case`.
 pub fn examine(case: &Case<'_>, trees: &[Octree; 4], effort: Effort, seed: u64) -> Findings {
     let mut examiner = Examiner {
         case,
@@ -137,10 +139,10 @@ pub fn examine(case: &Case<'_>, trees: &[Octree; 4], effort: Effort, seed: u64) 
     examiner.findings
 }
 
-/// Finest cells by what is to be learned of them.
+/// Finest cells, grouped by use.
 struct Cells {
     open: Vec<[u32; 3]>,
-    /// Decided, and next to one that is not.
+    /// Decided cells with an undecided neighbour.
     margin: Vec<[u32; 3]>,
 }
 
@@ -166,7 +168,7 @@ impl Examiner<'_> {
         [0; 3].map(|_: i32| self.random.below(self.case.frame.cells() as u64) as u32)
     }
 
-    /// Inner ⊆ sampled ⊆ outer, cell by cell, and the cells that are of interest.
+    /// Checks inner ⊆ sampled ⊆ outer, cell by cell. Returns the interesting cells.
     fn cells(&mut self) -> Cells {
         let n = self.case.frame.cells();
         let mut cells = Cells { open: Vec::new(), margin: Vec::new() };
@@ -209,8 +211,8 @@ impl Examiner<'_> {
         cells
     }
 
-    /// Points anywhere, near the surface, and near its boundary never contradict a verdict; and the volume's
-    /// interval holds what the first of them estimate.
+    /// Checks that points anywhere, near the surface and near its boundary never contradict a verdict, and
+    /// that the volume's interval contains the estimate from the points anywhere.
     fn points(&mut self, count: usize) {
         let frame = self.case.frame;
         let boundary = Boundary::of(self.case.soup);
@@ -258,7 +260,7 @@ impl Examiner<'_> {
         [0, 1, 2].map(|axis| a[axis] + u * (b[axis] - a[axis]) + v * (c[axis] - a[axis]))
     }
 
-    /// Holds the verdict of the cell around `p` against the truth, which is returned if it is plain.
+    /// Checks the verdict of the cell around `p` against the truth. Returns the truth if it is certain.
     fn probe(&mut self, p: [f64; 3], least: f64) -> Option<bool> {
         let at = self.case.frame.cell_of(p);
         let tag = at.map(|at| self.certified(at));
@@ -279,7 +281,7 @@ impl Examiner<'_> {
         truth
     }
 
-    /// Sampled cells are decided by the winding number of their centre.
+    /// Checks that the winding number of their centre decides sampled cells.
     fn centres(&mut self, cells: &Cells, count: usize) {
         let Case { frame, fill, aligned, .. } = *self.case;
         for i in 0..count {
@@ -301,8 +303,8 @@ impl Examiner<'_> {
         }
     }
 
-    /// A decided cell is right up to its corners. The winding number is harmonic, so it is extreme on the
-    /// cell's boundary; cells whose centres are nearest to the threshold are looked at.
+    /// Checks that a decided cell is right up to its corners. The winding number is harmonic, so its extremes
+    /// are on the cell's boundary. The cells with centres nearest to the threshold are examined.
     fn corners(&mut self, cells: &Cells, count: usize) {
         let Case { frame, fill, .. } = *self.case;
         let mut ranked: Vec<(f64, [u32; 3])> = Vec::new();
@@ -315,7 +317,7 @@ impl Examiner<'_> {
         for &(_, at) in ranked.iter().take(count.div_ceil(4)) {
             let p = centre(&frame, at);
             for corner in 0..8 {
-                // A hair inside: contact with the surface is no overlap.
+                // Slightly inside: contact with the surface is no overlap.
                 let half = 0.499_999 * frame.cell_size();
                 let p = [0, 1, 2].map(|axis| p[axis] + if corner >> axis & 1 != 0 { half } else { -half });
                 self.probe(p, 1e-8);
@@ -323,11 +325,11 @@ impl Examiner<'_> {
         }
     }
 
-    /// Whether cells are left open that need not be.
+    /// Counts the cells that the solid leaves open without need.
     fn shares(&mut self, cells: &Cells, count: usize) {
         let Case { frame, fill, .. } = *self.case;
         let boundary = Boundary::of(self.case.soup);
-        // The half diagonal, and a little.
+        // Slightly more than the half diagonal.
         let radius = 0.866_026 * frame.cell_size();
         for i in 0..count {
             let at = match i % 2 {
@@ -356,7 +358,7 @@ impl Examiner<'_> {
         }
     }
 
-    /// If the solid is said to end within the universe, it does.
+    /// Checks that a solid reported to end within the universe does so.
     fn outside(&mut self, count: usize) {
         let frame = self.case.frame;
         let exterior = self.trees[0].view().exterior();

@@ -1,4 +1,4 @@
-//! What happens to meshes: on purpose, and the same in every run.
+//! Damage to meshes, the same in every run.
 
 use crate::common::Random;
 use crate::shapes::*;
@@ -9,7 +9,7 @@ pub enum Damage {
     RemoveOne,
     RemoveFew,
     RemoveFifth,
-    /// All facets around a place.
+    /// Removes all facets around a place.
     RemovePatch,
     RemoveHalf,
     FlipOne,
@@ -17,26 +17,26 @@ pub enum Damage {
     FlipHalf,
     DuplicateOne,
     DuplicateFifth,
-    /// Every facet twice: winding numbers are doubled.
+    /// Doubles every facet, and hence all winding numbers.
     DuplicateAll,
-    /// Some facets once more in the other sense, which cancels them.
+    /// Adds some facets with reversed orientation, which cancel them.
     Cancel,
-    /// A facet many times over.
+    /// Repeats a facet many times.
     Stack,
-    /// Hair cracks.
+    /// Opens hair cracks.
     JitterSlightly,
-    /// Gaps that are as wide as cells.
+    /// Opens gaps as wide as cells.
     JitterWidely,
-    /// Vertices in the middle of edges, of one facet only, and slightly beside.
+    /// Inserts vertices slightly beside the middle of edges, in one facet only.
     TJunctions,
-    /// Facets without area added.
+    /// Adds facets without area.
     Degenerate,
-    /// A copy of the body beside itself.
+    /// Adds a moved, overlapping copy of the body.
     Overlap,
-    /// A smaller copy inside, inside out, with a hole.
+    /// Adds a smaller, inside-out copy with a hole inside.
     Nest,
     InsideOut,
-    /// Facets scattered around.
+    /// Scatters facets around.
     Debris,
     Everything,
 }
@@ -76,7 +76,7 @@ fn bounds(soup: &Soup) -> ([f64; 3], [f64; 3]) {
     (fold(f64::min, f64::INFINITY), fold(f64::max, f64::NEG_INFINITY))
 }
 
-/// The longest extent.
+/// Returns the longest extent.
 pub fn extent(soup: &Soup) -> f64 {
     let (low, high) = bounds(soup);
     (0..3).map(|axis| high[axis] - low[axis]).fold(0.0, f64::max)
@@ -97,7 +97,7 @@ pub fn remove(soup: &mut Soup, random: &mut Random, count: usize) {
     }
 }
 
-/// Keeps what `keep` says, but not less than one facet.
+/// Keeps the facets that `keep` selects, but at least one facet.
 fn keep(soup: &mut Soup, keep: impl FnMut(&[[f64; 3]; 3]) -> bool) {
     let last = *soup.last().unwrap();
     soup.retain(keep);
@@ -106,8 +106,8 @@ fn keep(soup: &mut Soup, keep: impl FnMut(&[[f64; 3]; 3]) -> bool) {
     }
 }
 
-/// The damaged soup. `grain` is the edge of a cell: how far things are moved goes by it; if `aligned`,
-/// corners stay on planes and centres of the lattice where the soup's are.
+/// Returns the damaged soup. `grain` is the edge of a cell and scales all displacements. If `aligned`,
+/// corners on planes and centres of the lattice stay on them.
 pub fn damaged(soup: &Soup, damage: Damage, random: &mut Random, grain: f64, aligned: bool) -> Soup {
     let mut soup = soup.clone();
     let size = extent(&soup);
@@ -140,7 +140,7 @@ pub fn damaged(soup: &Soup, damage: Damage, random: &mut Random, grain: f64, ali
         }
         DuplicateOne | DuplicateFifth | Cancel => {
             for _ in 0..if damage == DuplicateOne { 1 } else { some } {
-                // Other corners first, as exporters have it.
+                // Start triangles at other corners, as exporters do.
                 let [a, b, c] = *any(&soup, random);
                 soup.push(if damage == Cancel { [b, a, c] } else { [b, c, a] });
             }
@@ -203,7 +203,7 @@ pub fn damaged(soup: &Soup, damage: Damage, random: &mut Random, grain: f64, ali
             for step in
                 [RemoveFew, FlipOne, DuplicateFifth, TJunctions, Degenerate, JitterSlightly, Overlap, Debris]
             {
-                // What is aligned stays so, but for the one step that would spoil it.
+                // An aligned soup stays aligned, except for the one step that breaks it.
                 if !(aligned && step == JitterSlightly) {
                     soup = damaged(&soup, step, random, grain, aligned);
                 }

@@ -1,12 +1,12 @@
-//! Shapes to be damaged, and shapes that are open from the first. A `detail` of one more means twice as many
-//! facets each way.
+//! Shapes to be damaged, and shapes that are open by themselves. Raising `detail` by one doubles the number
+//! of facets in each direction.
 
 use crate::common::Random;
 use crate::shapes::*;
 use std::f64::consts::{PI, TAU};
 
-/// Every facet cut into four by the middles of its edges, `times` over. Exact where the corners are short
-/// numbers.
+/// Cuts every facet into four at the middles of its edges, `times` over. The result is exact for corners with
+/// short numbers.
 pub fn refined(soup: &Soup, times: usize) -> Soup {
     let middle = |a: [f64; 3], b: [f64; 3]| [0, 1, 2].map(|axis| (a[axis] + b[axis]) / 2.0);
     let cut = |&[a, b, c]: &[[f64; 3]; 3]| {
@@ -27,14 +27,15 @@ pub fn sphere(centre: [f64; 3], radius: f64, times: usize) -> Soup {
     moved(&unit, |p| [0, 1, 2].map(|axis| centre[axis] + radius * p[axis]))
 }
 
-/// A prism over an L, of three unit squares scaled by `scale`.
+/// A prism over an L-shape of three unit squares, scaled by `scale`.
 pub fn ell(corner: [f64; 3], scale: f64, height: f64) -> Soup {
     let polygon = [[0.0, 0.0], [2.0, 0.0], [2.0, 1.0], [1.0, 1.0], [1.0, 2.0], [0.0, 2.0]];
     let at = |[x, y]: [f64; 2]| [corner[0] + scale * x, corner[1] + scale * y];
     prism(&polygon.map(at), at([0.5, 0.5]), corner[2], corner[2] + height)
 }
 
-/// A block from `low` to `high` with a square hole along z, `margin` away from its four sides.
+/// A block from `low` to `high` with a square hole along z. The hole is `margin` away from the block's four
+/// sides.
 pub fn tube(low: [f64; 3], high: [f64; 3], margin: f64) -> Soup {
     let ring = |inset: f64| {
         let (x, y) = ([low[0] + inset, high[0] - inset], [low[1] + inset, high[1] - inset]);
@@ -75,10 +76,10 @@ pub fn sheet(centre: [f64; 3], size: f64, wave: f64, detail: usize) -> Soup {
     })
 }
 
-/// A Möbius strip: no orientation fits its seam.
+/// A Möbius strip. No orientation is consistent across its seam.
 pub fn moebius(centre: [f64; 3], radius: f64, width: f64, detail: usize) -> Soup {
     grid(24 << detail, 4, |u, v| {
-        // The last row of vertices is the first one turned over, to the bit.
+        // The last row of vertices is the first row reversed, to the bit.
         let (u, v) = if u == 1.0 { (0.0, 1.0 - v) } else { (u, v) };
         let (turn, side) = (TAU * u, (v - 0.5) * width);
         let r = radius + side * (turn / 2.0).cos();
@@ -86,7 +87,8 @@ pub fn moebius(centre: [f64; 3], radius: f64, width: f64, detail: usize) -> Soup
     })
 }
 
-/// Klein's bottle as a twisted figure of eight: closed, it intersects itself, and no orientation fits.
+/// A Klein bottle as a twisted figure of eight. It is closed, intersects itself, and has no consistent
+/// orientation.
 pub fn klein(centre: [f64; 3], radius: f64, detail: usize) -> Soup {
     // The parameters are dyadic, so that the seams meet to the bit.
     grid(16 << detail, 8 << detail, |u, v| {
@@ -100,15 +102,15 @@ pub fn klein(centre: [f64; 3], radius: f64, detail: usize) -> Soup {
     })
 }
 
-/// Half a ball without its lid.
+/// Half a ball without a lid.
 pub fn bowl(centre: [f64; 3], radius: f64, times: usize) -> Soup {
     let whole = sphere([0.0; 3], radius, times);
     let lower = whole.into_iter().filter(|facet| facet.iter().all(|p| p[2] <= 1e-12 * radius)).collect();
     moved(&lower, |p| [0, 1, 2].map(|axis| centre[axis] + p[axis]))
 }
 
-/// A band that winds around its axis several times, so that the winding number within is large, and
-/// fractional nearly everywhere.
+/// A band that winds around its axis several times. The winding number inside is large, and fractional nearly
+/// everywhere.
 pub fn spiral(centre: [f64; 3], radius: f64, turns: f64, height: f64, detail: usize) -> Soup {
     grid(36 << detail, 4, |u, v| {
         let angle = TAU * turns * u;
@@ -117,7 +119,7 @@ pub fn spiral(centre: [f64; 3], radius: f64, turns: f64, height: f64, detail: us
     })
 }
 
-/// A pipe without its ends.
+/// A pipe without ends.
 pub fn pipe(centre: [f64; 3], radius: f64, height: f64, detail: usize) -> Soup {
     grid(12 << detail, 3 << detail, |u, v| {
         let angle = if u == 1.0 { 0.0 } else { TAU * u };
@@ -125,19 +127,19 @@ pub fn pipe(centre: [f64; 3], radius: f64, height: f64, detail: usize) -> Soup {
     })
 }
 
-/// Triangles that have nothing to do with each other.
+/// Unrelated triangles.
 pub fn rubble(random: &mut Random, count: usize, low: f64, high: f64) -> Soup {
     let mut corner = || [0; 3].map(|_: i32| random.between(low, high));
     (0..count).map(|_| [corner(), corner(), corner()]).collect()
 }
 
-/// The same with corners on the lattice's planes and centres.
+/// Unrelated triangles with corners on the lattice's planes and centres.
 pub fn lattice_rubble(random: &mut Random, count: usize, cells: u64) -> Soup {
     let mut corner = || [0; 3].map(|_: i32| random.below(2 * cells + 1) as f64 / 2.0);
     (0..count).map(|_| [corner(), corner(), corner()]).collect()
 }
 
-/// A turn that fits no lattice, around the origin.
+/// Rotates a soup around the origin by an angle that fits no lattice.
 pub fn turned(soup: &Soup) -> Soup {
     let (s, c) = (PI / 5.0).sin_cos();
     let (t, d) = 0.6f64.sin_cos();

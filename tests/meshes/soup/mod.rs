@@ -1,5 +1,4 @@
-//! Open and dirty meshes: shapes, damage, the winding number by its definition, and what must hold of a
-//! solid.
+//! Open and dirty meshes: shapes, damage, the winding number by its definition, and checks of a solid.
 
 pub mod check;
 pub mod damage;

@@ -1,5 +1,5 @@
-//! The truth as a solid, by the shortest way: slow, and used to see that the checks pass on what is right and
-//! fail on what is not.
+//! The truth as a solid, in the simplest way. It is slow, and serves to show that the checks pass on a right
+//! solid and fail on a wrong one.
 
 use super::check::{centre, margin};
 use super::winding::{Boundary, Soupy};
@@ -13,25 +13,25 @@ use std::sync::{Arc, Mutex};
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Lie {
     Nothing,
-    /// Cells are decided by their centres.
+    /// Decides cells by their centres.
     NoGradient,
-    /// Cells that a triangle passes through beside the centre are taken for clear.
+    /// Takes a cell for clear although a triangle passes through it beside the centre.
     SmallReach,
-    /// The threshold is not a half.
+    /// Uses a threshold other than one half.
     Threshold,
-    /// Winding numbers are rounded up to whole ones.
+    /// Rounds winding numbers up to integers.
     Closed,
-    /// Negative winding numbers count under any rule.
+    /// Counts negative winding numbers under any rule.
     Unsigned,
-    /// Triangles that were seen before are forgotten.
+    /// Ignores repeated triangles.
     Unique,
-    /// Samples are taken at the lowest corner.
+    /// Takes samples at the lowest corner.
     Corner,
-    /// Facets are taken for turned whichever way.
+    /// Ignores the orientation of facets.
     Unoriented,
-    /// Nothing near a hole is ever decided.
+    /// Never decides anything near a hole.
     Coward,
-    /// The solid ends with its mesh.
+    /// Ends the solid where its mesh ends.
     Ends,
 }
 
@@ -108,7 +108,7 @@ impl Cubes for Reference {
         if self.lie == Lie::Corner {
             p = p.map(|x| x - 0.49 * cube.frame.cell_size());
         }
-        // Nothing is promised on edges here: step to where there is a winding number.
+        // Edges have no defined result here. Step to a place with a winding number.
         if self.truth.lock().unwrap().at(p).error > 1e-3 {
             let shift = [2f64.powi(-12), 2f64.powi(-24), 2f64.powi(-36)];
             p = [0, 1, 2].map(|axis| p[axis] + cube.frame.cell_size() * shift[axis]);

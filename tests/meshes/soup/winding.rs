@@ -1,8 +1,8 @@
 //! The winding number of any triangle soup by its definition: the sum of the solid angles of all triangles,
-//! after van Oosterom and Strackee, each with a bound of its error.
+//! after van Oosterom and Strackee, each with an error bound.
 //!
-//! Nothing is welded, closed or sorted, and no triangle is left out. The only decisions are which side of a
-//! triangle that is seen under almost a half-space a point lies on, and these are made in integers.
+//! No facet is welded, closed, sorted or left out. The only decision is the side of a triangle on which a
+//! point lies, where the triangle covers nearly a half-space. This decision is made in integers.
 
 use crate::oracle;
 use crate::shapes::Soup;
@@ -27,29 +27,30 @@ fn length(a: Point) -> f64 {
     dot(a, a).sqrt()
 }
 
-/// A winding number, and how far it may be off.
+/// A winding number and its error bound.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Winding {
     pub value: f64,
-    /// Infinite on an edge or a vertex of the soup, where there is no winding number.
+    /// Error bound; infinite on an edge or a vertex of the soup, where no winding number exists.
     pub error: f64,
-    /// The point lies on a triangle: the winding number is the limit from where (ε, ε², ε³) leads.
+    /// True if the point lies on a triangle. The winding number is then the limit from the direction (ε, ε²,
+    /// ε³).
     pub on_surface: bool,
 }
 
-/// An upper bound of what rounding leaves in a sum of solid angles none of which is hard; the sum of 100 000
-/// of them is far better than this.
+/// An upper bound of the rounding error in a sum of solid angles without difficult triangles. The sum of 100
+/// 000 solid angles is far better.
 const REST: f64 = 1e-9;
 
-/// A soup, ready to be looked at from many points.
+/// A soup, prepared for evaluation at many points.
 pub struct Soupy {
     vertices: Vec<Point>,
     triangles: Vec<[u32; 3]>,
-    /// Vertices seen from the point: directions and distances.
+    /// The vertices relative to the point: directions and distances.
     seen: Vec<[f64; 4]>,
     /// Largest magnitude of a coordinate.
     reach: f64,
-    /// Least and greatest coordinates.
+    /// Least coordinates; `high` has the greatest.
     pub low: Point,
     pub high: Point,
 }
@@ -101,12 +102,12 @@ impl Soupy {
                 }
                 continue;
             }
-            // Rounding of the differences and of the products, as a part of the number whose argument is
+            // Rounding of the differences and of the products, relative to the number whose argument is
             // taken.
             let noise = f64::EPSILON * (16.0 * size + 8.0 * reach * (la * lb + lb * lc + lc * la));
             let modulus = x.hypot(y);
             if modulus <= noise {
-                // (Of a triangle whose corners coincide everything is zero, and so is its share.)
+                // (For a triangle with coincident corners, all terms and its solid angle are zero.)
                 if !self.is_point(t) {
                     error = f64::INFINITY;
                 }
@@ -118,7 +119,7 @@ impl Soupy {
                 let side = oracle::over(corners, p);
                 on_surface |= side == 0;
                 let side = if side != 0 { side } else { oracle::facing(corners) };
-                // Behind the triangle, where its normal does not point, it winds around once more.
+                // Behind the triangle, opposite to its normal, the winding number is greater by one.
                 sum.add(-side as f64 * y.abs().atan2(x));
             } else {
                 sum.add(y.atan2(x));
@@ -132,7 +133,7 @@ impl Soupy {
         t[0] == t[1] && t[1] == t[2]
     }
 
-    /// The corners of triangle `t`.
+    /// Returns the corners of triangle `t`.
     pub fn corners(&self, t: usize) -> [Point; 3] {
         self.triangles[t].map(|v| self.vertices[v as usize])
     }
@@ -141,7 +142,7 @@ impl Soupy {
         self.triangles.len()
     }
 
-    /// Whether any triangle comes within `radius` of `p`.
+    /// True if any triangle comes within `radius` of `p`.
     pub fn is_near(&self, p: Point, radius: f64) -> bool {
         self.triangles.iter().any(|t| {
             let corners = t.map(|v| self.vertices[v as usize]);
@@ -156,7 +157,7 @@ impl Soupy {
     }
 }
 
-/// A sum that carries what was rounded away (Neumaier).
+/// A compensated sum, which carries the rounded-off part (Neumaier).
 #[derive(Default)]
 struct Sum {
     sum: f64,
@@ -175,7 +176,7 @@ impl Sum {
     }
 }
 
-/// The distance from a triangle.
+/// Returns the distance of a point from a triangle.
 pub fn distance(corners: [Point; 3], p: Point) -> f64 {
     let [a, b, c] = corners;
     let normal = cross(sub(b, a), sub(c, a));
@@ -190,7 +191,7 @@ pub fn distance(corners: [Point; 3], p: Point) -> f64 {
     [(a, b), (b, c), (c, a)].map(|edge| distance_from_edge(edge, p)).into_iter().fold(f64::INFINITY, f64::min)
 }
 
-/// The distance from a line segment.
+/// Returns the distance of a point from a line segment.
 pub fn distance_from_edge((a, b): (Point, Point), p: Point) -> f64 {
     let (along, to) = (sub(b, a), sub(p, a));
     let square = dot(along, along);
@@ -223,8 +224,8 @@ impl Boundary {
         Boundary(edges.into_iter().map(|([a, b], n)| ((point(a), point(b)), n.abs() as f64)).collect())
     }
 
-    /// A bound of the gradient of the winding number within `radius` of `p`, if no triangle is there: by Biot
-    /// and Savart's law, ∇w = ±(1/4π) ∮ dl × r / |r|³.
+    /// Returns a bound of the gradient of the winding number within `radius` of `p`, if no triangle is there.
+    /// By the Biot–Savart law, ∇w = ±(1/4π) ∮ dl × r / |r|³.
     pub fn gradient(&self, p: Point, radius: f64) -> f64 {
         let share = |&(edge, times): &((Point, Point), f64)| {
             let far = (distance_from_edge(edge, p) - radius).max(0.0);

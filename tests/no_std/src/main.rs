@@ -1,6 +1,6 @@
-//! A program that has no standard library: only an allocator and a way to stop.
+//! A program without the standard library. It has only an allocator and a way to stop.
 //!
-//! It builds two solids, combines them and asks for points. Its exit code says which step was wrong.
+//! It builds two solids, combines them and queries points. Its exit code says which step was wrong.
 
 #![no_std]
 #![no_main]
@@ -20,11 +20,11 @@ unsafe extern "C" {
 
 struct Heap;
 
-// SAFETY: `aligned_alloc` returns memory of the size and alignment asked for, or null, and `free` takes it
+// SAFETY: `aligned_alloc` returns memory of the requested size and alignment, or null, and `free` takes it
 // back.
 unsafe impl GlobalAlloc for Heap {
     unsafe fn alloc(&self, layout: Layout) -> *mut u8 {
-        // The alignment must be at least that of a pointer, and the size a multiple of it.
+        // The alignment must be at least that of a pointer, and the size a multiple of the alignment.
         let align = layout.align().max(size_of::<usize>());
         // SAFETY: a power of two, and a size rounded up to its multiple.
         unsafe { aligned_alloc(align, layout.size().next_multiple_of(align)).cast() }
@@ -74,7 +74,7 @@ fn run() -> Result<c_int, Error> {
     if !(volume.lower < 0.68187 && 0.68187 < volume.upper) {
         return Ok(6);
     }
-    // 42 rather than 0, which a program that did nothing would return as well.
+    // 42 rather than 0: a program that did nothing would return 0 as well.
     Ok(42)
 }
 

@@ -12,7 +12,7 @@ use leafless::{
     xor,
 };
 
-/// A solid twice: as a model, and as an octree.
+/// A solid in two forms: a model and an octree.
 #[derive(Clone)]
 struct Pair {
     model: Model,
@@ -25,7 +25,7 @@ impl Pair {
     }
 }
 
-/// Solids that have something to do with each other: some are parts of others, or touch them.
+/// Solids that interact: some are parts of others, or touch them.
 fn pool(maker: &mut Maker<'_>, count: usize) -> Vec<Pair> {
     let frame = maker.frame;
     let mut pool: Vec<Pair> = Vec::new();
@@ -51,7 +51,7 @@ fn pool(maker: &mut Maker<'_>, count: usize) -> Vec<Pair> {
     pool
 }
 
-/// A random operation of some solids of the pool.
+/// Applies a random operation to some solids of the pool.
 fn operation(pool: &[Pair], random: &mut Random, threads: usize) -> Pair {
     let mut pick = |_| pool[random.below(pool.len() as u64) as usize].clone();
     let [a, b] = [0, 1].map(&mut pick);
@@ -83,7 +83,7 @@ fn operation(pool: &[Pair], random: &mut Random, threads: usize) -> Pair {
     Pair { model, tree: tree.unwrap() }
 }
 
-/// Whether a tree, or one that it was made of, gave up somewhere.
+/// True if a tree has cells that were given up.
 fn gave_up(tree: &Octree) -> bool {
     match tree.view().cuts() {
         Some(cuts) => cuts.given_up > 0,
@@ -134,7 +134,7 @@ fn no_lies(rounds: u64, height: usize, count: usize) {
     println!(
         "{decided} points decided, {undecided} not; {cells} cells, {given_up} given up, {empty} of {rounds} trees empty or full"
     );
-    // (Operands that keep nothing give up all along their boundary, where most points are.)
+    // (Operands without surfaces give up all cells along their boundary, where most points are.)
     assert!(decided > undecided && cells > rounds && 3 * empty < 2 * rounds);
 }
 
@@ -153,14 +153,14 @@ fn a_million_points_of_combined_trees() {
     no_lies(3000, 6, 120);
 }
 
-/// Equal bytes: whatever is stored.
+/// Asserts that all stored data are equal.
 fn assert_same(a: &Octree, b: &Octree, what: &str) {
     assert_eq!(a.view().cuts(), b.view().cuts(), "{what}");
     assert_eq!((a, Solid::fingerprint(a)), (b, Solid::fingerprint(b)), "{what}");
     assert_eq!(a.proof(), b.proof(), "{what}");
 }
 
-/// The laws of sets; those that hold byte for byte, and those that hold where nothing was given up.
+/// The laws of sets: laws that hold byte for byte, and laws that hold where no cell was given up.
 #[test]
 fn laws_of_sets() {
     let (mut whole, mut cells, mut compared) = (0, 0, 0);
@@ -224,7 +224,7 @@ fn laws_of_sets() {
         ] {
             same_bytes("nothing and everything", &own, other);
         }
-        // As sets, where nothing was given up.
+        // As sets, where no cell was given up.
         if gave_up(&pool[0].tree) {
             continue;
         }
@@ -243,8 +243,8 @@ fn laws_of_sets() {
         let mut same = |law: &str, a: Octree, b: Octree| {
             if !gave_up(&a) && !gave_up(&b) {
                 let odd = xor(a.view(), b.view(), &alone()).unwrap();
-                // Cells may be left in which the functions differ for combinations of signs that do not occur
-                // there, which shows in smaller ones.
+                // Some cells may have functions that differ for combinations of signs that do not occur
+                // there. Smaller cells show this.
                 let control = Control { max_splits: Some(4000), ..alone() };
                 let volume = measure(&odd, &frame, 0.0, &control).map(|m| m.volume);
                 let size = frame.edge().powi(3);
@@ -294,7 +294,7 @@ fn threads_do_not_show() {
         (some, others, both)
     };
     let one = of(1);
-    // So many that threads are worth it.
+    // So many that threads pay off.
     assert!(one.2.view().cuts().unwrap().cells > 8192, "{:?}", one.2.view().cuts());
     for threads in [2, 3] {
         assert!(of(threads) == one);
@@ -315,17 +315,17 @@ fn memory_does_not_grow_with_history() {
         let bore = extended(&bore, &frame);
         let before = part.clone();
         part = difference(part.view(), bore.view(), &alone()).unwrap();
-        // What the bore took of the part comes back.
+        // The part removed by the bore comes back.
         let chip = intersection(before.view(), bore.view(), &alone()).unwrap();
         part = union(part.view(), chip.view(), &alone()).unwrap();
         assert_same(&part, &fresh, &format!("round {round}"));
     }
-    // The same all at once.
+    // The same in one operation.
     let whole = union(part.view(), blank.view(), &alone()).unwrap();
     assert_same(&whole, &blank, "all bores are filled");
 }
 
-/// The example of the documentation: a plate, and twenty bores one by one.
+/// The documentation's example: a plate, and twenty bores one by one.
 #[test]
 fn twenty_bores_one_by_one() {
     let frame = Frame::around([0.0; 3], [80.0, 60.0, 10.0], 20).unwrap();
@@ -348,7 +348,7 @@ fn twenty_bores_one_by_one() {
     assert!(volume.contains(truth) && volume.width() < 1.01e-6 * truth);
 }
 
-/// Forty balls out of a block, one of which touches it and another cuts nothing.
+/// Forty balls cut out of a block. One touches the block, and one cuts nothing.
 fn cut_block() -> (Frame, Vec<Octree>) {
     let frame = Frame::new([-1.0; 3], 2.0, 9).unwrap();
     let block = extended(&Csg::cuboid([-0.75; 3], [0.75; 3]).unwrap(), &frame);
@@ -362,8 +362,7 @@ fn cut_block() -> (Frame, Vec<Octree>) {
     (frame, [block].into_iter().chain(balls).chain(others).collect())
 }
 
-/// Limits and a cancel end the work with an error, at any point, and what is made afterwards is the same as
-/// before.
+/// Limits and cancels end the work with an error, at any point. A tree made afterwards is the same as before.
 #[test]
 fn limits_and_cancels_are_errors() {
     use core::sync::atomic::{AtomicBool, AtomicUsize, Ordering::Relaxed};
@@ -402,8 +401,8 @@ fn limits_and_cancels_are_errors() {
         assert!(ended > 3, "{ended}");
         assert_eq!(difference_of(&views, &Control::threads(threads)).unwrap(), whole);
     }
-    // Surfaces that nearly coincide, of which bounds tell no more, and that cross more than three at a time
-    // all along a curve, are no way around the limit.
+    // Surfaces that nearly coincide, so that bounds do not separate them, and that cross more than three at a
+    // time along a whole curve, do not circumvent the limit.
     let frame = Frame::new([-1.0; 3], 2.0, 20).unwrap();
     let lens = |off: f64| {
         let [one, other] = [-0.3, 0.3].map(|x| {
@@ -421,7 +420,7 @@ fn limits_and_cancels_are_errors() {
     );
 }
 
-/// Whatever takes a tree with surfaces and gives one keeps them, or says that it does not.
+/// Every function from trees with surfaces to trees keeps the surfaces, or reports that it does not.
 #[test]
 fn nothing_drops_surfaces_in_silence() {
     use leafless::attribute::{
@@ -433,7 +432,8 @@ fn nothing_drops_surfaces_in_silence() {
     let views: Vec<_> = trees.iter().map(|tree| *tree.view()).collect();
     let (part, control) = (difference_of(&views, &alone()).unwrap(), alone());
     let [nothing, everything] = [Tag::Empty, Tag::Full].map(|tag| Octree::uniform(frame, tag, tag).unwrap());
-    // A large plain tree and a small one that keeps surfaces: of the one runs are copied, of the other cells.
+    // A large plain tree and a small tree that keeps surfaces: runs of the large one and cells of the small
+    // one are copied.
     let far = Csg::ball([0.0, 0.0, -0.2], 0.7).unwrap();
     let plain = build(&far, &frame, Rule::Certified, &control).unwrap();
     let folder = std::env::temp_dir().join(format!("leafless-combined-{}", std::process::id()));
@@ -492,7 +492,7 @@ fn nothing_drops_surfaces_in_silence() {
         tree.view().check().unwrap();
         let cuts = tree.view().cuts().unwrap_or_default();
         assert_eq!(cuts.surfaces, part.view().cuts().unwrap().surfaces, "{name}");
-        // (Of an equal tree the same is told.)
+        // (An equal tree gives the same answers.)
         if tree == &part && repeated(true, false) {
             continue;
         }
@@ -514,8 +514,7 @@ fn nothing_drops_surfaces_in_silence() {
     std::fs::remove_dir_all(&folder).unwrap();
 }
 
-/// Slabs are one only where they have the same origin: what lies in the width of two is not known to be the
-/// same.
+/// Slabs are equal only if they have the same origin. The sets within the widths of two slabs may differ.
 #[test]
 fn meshes_that_differ_within_a_slab() {
     let frame = Frame::new([-1.013, -1.017, -1.009], 2.0, 7).unwrap();
@@ -533,9 +532,9 @@ fn meshes_that_differ_within_a_slab() {
     let rest = |a: &Octree, b: &Octree| difference(a.view(), b.view(), &alone()).unwrap();
     let none = rest(&a, &same);
     let given_up = |tree: &Octree| tree.view().cuts().map_or(0, |cuts| cuts.given_up);
-    // Of the same origin all but the cells that were given up is gone.
+    // With the same origin, all cells vanish except those that were given up.
     assert!(none.view().cuts().is_none_or(|cuts| cuts.cells == 0) && given_up(&none) <= given_up(&a));
-    // Between the two tips nothing is known.
+    // Between the two tips, the set is unknown.
     let tip = [0.0, 0.0, 0.7 + 1e-14];
     for (a, b, truth) in [(&a, &b, Membership::Outside), (&b, &a, Membership::Inside)] {
         let rest = rest(a, b);
@@ -546,7 +545,7 @@ fn meshes_that_differ_within_a_slab() {
         assert!(answers[0] == truth || answers[0] == Membership::Undecided, "{answers:?}");
         assert_eq!(answers[1], Membership::Undecided);
     }
-    // Trees of one table share its slabs, even of solids that cannot be told from others.
+    // Trees of one table share its slabs, even for solids without a fingerprint.
     let itself = union(a.view(), a.view(), &alone()).unwrap();
     assert_same(&itself, &a, "A ∪ A is A");
 }

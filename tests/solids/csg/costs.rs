@@ -1,4 +1,4 @@
-//! Constructive solid geometry: the published tables, and what costs what.
+//! Constructive solid geometry: the published tables, and the costs of operations.
 
 use crate::common::cubes::Plain;
 use leafless::solid::{HalfSpace, Parts, Touch, Transform};
@@ -10,8 +10,8 @@ use leafless::{
 type CsgWorker = <<Csg as Solid>::Classifier as Classifier>::Worker;
 type CsgPart = <CsgWorker as Parts>::Part;
 
-/// Cells that were split above each level and the volumes of FULL, and of FULL and PARTIAL cells, of a full
-/// descent.
+/// Returns, for each level of a full descent, the number of cells split above it, the volume of the FULL
+/// cells, and the volume of the FULL and PARTIAL cells.
 fn table(solid: &Csg, frame: &Frame) -> Vec<(u64, f64, f64)> {
     struct Descent {
         worker: CsgWorker,
@@ -72,7 +72,8 @@ fn cone() -> Result<Csg, Error> {
     Csg::intersection_of([mantle.into(), Csg::half_space([0.0, -1.0, 0.0], 128.0)?])
 }
 
-/// (x − 64)² − 0.64 (y − 64)² + (z − 64)² ≤ 576, 0 ≤ y ≤ 128, times 25, so that the coefficients are exact.
+/// (x − 64)² − 0.64 (y − 64)² + (z − 64)² ≤ 576, 0 ≤ y ≤ 128, scaled by 25, so that the coefficients are
+/// exact.
 fn hyperboloid() -> Result<Csg, Error> {
     let mantle = HalfSpace::quadric([
         -25.0,
@@ -90,7 +91,7 @@ fn hyperboloid() -> Result<Csg, Error> {
     Csg::intersection_of([mantle.into(), low, high])
 }
 
-/// The published levels 2 to 5 are levels 3 to 6 here: cells of edge 128/2^level.
+/// Compares with the published levels 2 to 5, which are levels 3 to 6 here: cells of edge 128/2^level.
 fn check(solid: Csg, touch: Touch, published: [(u64, f64, f64); 4]) {
     let frame = Frame::new([0.0; 3], 128.0, 6).unwrap();
     let rows = table(&solid.with_touch(touch), &frame);
@@ -127,7 +128,7 @@ fn published_cone() {
 
 #[test]
 fn published_hyperboloid() {
-    // Of the printed lower bounds and counts of levels 3 to 5 those are exact arithmetic's; see
+    // The printed lower bounds and counts of levels 3 to 5 are replaced by those of exact arithmetic; see
     // `printed_hyperboloid`.
     let lower = [229376.0, 385024.0, 479232.0, 529984.0];
     let rows = |nodes: [u64; 4], upper: [f64; 4]| [0, 1, 2, 3].map(|i| (nodes[i], lower[i], upper[i]));
@@ -157,7 +158,7 @@ fn what_is_known_around_the_universe() {
     assert_eq!(outside(&Csg::ball([64.0; 3], 64.1).unwrap()), Tag::Partial);
     assert_eq!(outside(&Csg::half_space([1.0, 0.0, 0.0], -1.0).unwrap()), Tag::Partial);
     assert_eq!((outside(&Csg::empty()), outside(&Csg::everything())), (Tag::Empty, Tag::Full));
-    // Another solid knows more than its bounds.
+    // Another solid knows more than its bounding box.
     let other = Csg::solid(AnySolid::new(Plain::cuboid([1.0; 3], [2.0; 3]).unwrap()));
     assert_eq!((outside(&other), outside(&other.complement())), (Tag::Empty, Tag::Full));
     let unknown = Csg::half_space([0.1, 0.2, 0.3], 0.0).unwrap();
@@ -200,11 +201,11 @@ fn solids_within_each_other_have_an_end() {
     assert_eq!((csg.nesting(), volume(&csg).unwrap()), (1, Interval::exactly(1.0)));
 }
 
-/// Why the source prints other lower bounds, and 1129 and 4577 nodes: vertices that lie in the surface, as
-/// those with y - 64 = ±40 and at 40 from the axis, lie outside once 0.64 is rounded to single precision,
-/// which is less. The printed lower bounds are the ones that follow. The printed upper bounds are those of
-/// exact arithmetic, where these vertices are inside: the source's test seems strict in one direction. The
-/// printed counts are those of the cells that lie between the printed bounds.
+/// The reason why the source prints other lower bounds, and 1129 and 4577 nodes. Some vertices lie on the
+/// surface, such as those with y - 64 = ±40 at distance 40 from the axis. They lie outside once 0.64 is
+/// rounded to single precision, which is less. The printed lower bounds follow from this. The printed upper
+/// bounds are those of exact arithmetic, where these vertices are inside: the source's test seems strict in
+/// one direction. The printed counts are those of the cells between the printed bounds.
 #[test]
 fn printed_hyperboloid() {
     let k = f64::from(0.64f32);

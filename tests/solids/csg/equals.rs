@@ -1,4 +1,4 @@
-//! Operands of expressions that are equal are one: the same solid, without the doubt of coincident faces.
+//! Equal operands of an expression are one solid, without the doubt of coincident faces.
 
 use leafless::query::surface_area;
 use leafless::{Affine, Control, Csg, Frame, Rule, build, measure};
@@ -20,7 +20,7 @@ fn what_is_left_is_the_same_solid() {
     let built = |csg: Csg| build(&csg, &frame(), Rule::Certified, &Control::default()).unwrap();
     assert_eq!(built(Csg::union_of(parts()).unwrap()), built(Csg::union_of(once()).unwrap()));
     assert_eq!(built(Csg::intersection_of(parts()).unwrap()), built(Csg::intersection_of(once()).unwrap()));
-    // Of two nothing is left, and of three one.
+    // Two equal operands cancel, and three leave one.
     let odd = Csg::xor_of([ball(0.5), ball(-0.5)]).unwrap();
     assert_eq!(built(Csg::xor_of(parts()).unwrap()), built(odd));
 }
@@ -35,14 +35,14 @@ fn a_thousand_cubes_have_the_area_of_one() {
     assert!(volume.contains(6.0) && volume.width() < 1e-9);
 }
 
-/// The volume, and how many cells were split for it.
+/// Returns the volume's bounds, and the number of cells split for it.
 fn volume(csg: &Csg) -> (f64, f64, u64) {
     let control = Control { max_splits: Some(2_000), ..Control::threads(1) };
     let measured = measure(csg, &frame(), 0.0, &control).unwrap();
     (measured.volume.lower, measured.volume.upper, measured.splits)
 }
 
-/// Surfaces are one from both sides, whatever factor their coefficients have, wherever they come from.
+/// Equal surfaces are one: from both sides, with any factor of their coefficients, and from any source.
 #[test]
 fn what_coincides_leaves_no_doubt() {
     let ball = || Csg::ball([0.1, 0.2, 0.3], 0.7).unwrap();
@@ -64,7 +64,7 @@ fn what_coincides_leaves_no_doubt() {
     assert_eq!(volume(&Csg::intersection_of([lid, below]).unwrap()).1, 0.0);
 }
 
-/// Solids that touch have nothing in common, straight and turned.
+/// Touching solids have no common points, in place and rotated.
 #[test]
 fn contact_is_no_overlap() {
     let (sine, cosine) = 0.7f64.sin_cos();
@@ -87,7 +87,7 @@ fn contact_is_no_overlap() {
             assert!((lower, upper) == (0.0, 0.0) && splits < 500, "{lower} to {upper}, {splits} splits");
         }
     }
-    // What overlaps by a little does.
+    // A slight overlap is an overlap.
     let into = Csg::cuboid([high[0] - 1e-9, -0.375, -0.5], [1.0, 0.25, 0.5]).unwrap();
     let (lower, upper, _) = volume(&Csg::intersection_of([block(), into]).unwrap());
     assert!(lower > 0.0 && upper < 1e-9, "{lower} to {upper}");

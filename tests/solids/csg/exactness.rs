@@ -1,4 +1,4 @@
-//! Of planes and quadrics without mixed products the verdicts are the best possible ones, at every level.
+//! For planes and quadrics without mixed products, the verdicts are the best possible ones at every level.
 
 use super::extremes::{Powers, Separable, Torus, Truth};
 use crate::common::exact::Exact;
@@ -6,8 +6,8 @@ use crate::common::{Random, alone};
 use leafless::solid::HalfSpace;
 use leafless::{Affine, Cell, Classifier, Csg, Frame, Solid, Verdict, Worker};
 
-/// Descends towards `target` (in finest cells) and away from it, and compares all verdicts on the way;
-/// returns how many levels were reached.
+/// Descends towards `target` (in finest cells) and away from it, and compares all verdicts on the way.
+/// Returns the number of levels reached.
 fn compare(solid: &Csg, truth: &Truth, frame: &Frame, target: [u32; 3], random: &mut Random) -> u8 {
     let mut worker = solid.on(frame, &alone()).unwrap().worker().unwrap();
     let mut verdict = worker.root().unwrap();
@@ -25,7 +25,7 @@ fn compare(solid: &Csg, truth: &Truth, frame: &Frame, target: [u32; 3], random: 
                 cell.child(k)
             );
         }
-        // A target on a lattice plane belongs to the cells on both sides: the first that is cut.
+        // A target on a lattice plane belongs to the cells on both sides. The first cut cell is chosen.
         let shift = frame.depth() - cell.level - 1;
         let near = |k: u8| {
             let child = cell.child(k);
@@ -44,7 +44,8 @@ fn compare(solid: &Csg, truth: &Truth, frame: &Frame, target: [u32; 3], random: 
     cell.level
 }
 
-/// Frames of all depths: integers, no doubles, far from the origin, enormous, tiny.
+/// Frames of all depths: with integer planes, with planes that are no doubles, far from the origin, enormous,
+/// tiny.
 fn frame(random: &mut Random) -> Frame {
     let depth = if random.below(2) == 0 { 20 } else { 1 + random.below(20) as u8 };
     let power = |e: i32| 2f64.powi(e);
@@ -60,7 +61,7 @@ fn frame(random: &mut Random) -> Frame {
     Frame::new(origin, edge, depth).unwrap()
 }
 
-/// A lattice vertex, mostly one of a coarse lattice, which cells of many levels touch.
+/// A lattice vertex, mostly from a coarse lattice, so that cells of many levels touch it.
 fn vertex(frame: &Frame, random: &mut Random) -> [u32; 3] {
     let level = random.below(frame.depth() as u64 + 1) as u32;
     [0; 3].map(|_| (random.below((1 << level) + 1) as u32) << (frame.depth() as u32 - level))
@@ -110,7 +111,7 @@ fn planes(frame: &Frame, target: [u32; 3], random: &mut Random) -> Option<(Csg, 
     half_space(c)
 }
 
-/// About a centre on the lattice, touching or nearly touching a vertex.
+/// Quadrics about a centre on the lattice that touch or nearly touch a vertex.
 fn quadrics(frame: &Frame, target: [u32; 3], random: &mut Random) -> Option<(Csg, Truth)> {
     let p = model(frame, target);
     let centre = model(frame, vertex(frame, random));
@@ -121,7 +122,7 @@ fn quadrics(frame: &Frame, target: [u32; 3], random: &mut Random) -> Option<(Csg
             1 => random.between(-1.0, 1.0),
             _ => random.below(5) as f64 - 2.0,
         };
-        // Without a square: a paraboloid's axis, or a cylinder's.
+        // Without a square term: a paraboloid's axis, or a cylinder's.
         c[6 + axis] = match c[axis] {
             0.0 => (random.below(3) as f64 - 1.0) * frame.edge(),
             square => -2.0 * square * centre[axis],
@@ -139,10 +140,10 @@ fn quadrics(frame: &Frame, target: [u32; 3], random: &mut Random) -> Option<(Csg
     half_space(c)
 }
 
-/// Any ten numbers of magnitudes between 2^-256 and 2^256.
+/// Quadrics with any ten numbers of magnitudes between 2^-256 and 2^256.
 fn anything(frame: &Frame, _: [u32; 3], random: &mut Random) -> Option<(Csg, Truth)> {
     let mut c = [0.0; 10];
-    // Not so wild that no surface meets the universe: the terms are of like magnitudes there, more or less.
+    // Moderate numbers, so that some surfaces meet the universe: there, all terms have similar magnitudes.
     let size = frame.origin().iter().fold(frame.edge(), |size, c| size.max(c.abs()));
     for i in [0, 1, 2, 6, 7, 8, 9] {
         let degree = [2, 2, 2, 0, 0, 0, 1, 1, 1, 0][i];
@@ -155,7 +156,7 @@ fn anything(frame: &Frame, _: [u32; 3], random: &mut Random) -> Option<(Csg, Tru
     half_space(c)
 }
 
-/// The named ones, whose coefficients are no doubles.
+/// Named ellipsoids, whose coefficients are no doubles.
 fn ellipsoids(frame: &Frame, target: [u32; 3], random: &mut Random) -> Option<(Csg, Truth)> {
     let p = model(frame, target);
     let middle = vertex(frame, random);
@@ -181,12 +182,12 @@ fn ellipsoids(frame: &Frame, target: [u32; 3], random: &mut Random) -> Option<(C
     Some((solid, Truth::Separable(truth)))
 }
 
-/// About a centre on the lattice, through a vertex of it or nearly so.
+/// Powers about a centre on the lattice, through or nearly through a vertex.
 fn powers(frame: &Frame, target: [u32; 3], random: &mut Random) -> Option<(Csg, Truth)> {
     let p = model(frame, target);
     let centre = model(frame, vertex(frame, random));
     let largest = [4, 10, 64][random.below(3) as usize];
-    // Of a magnitude of one in the universe.
+    // The powers have magnitude one in the universe.
     let size = 2f64.powi(frame.edge().log2().ceil() as i32);
     let terms = [0, 1, 2].map(|axis| {
         let exponent = 1 + random.below(largest) as u32;
@@ -206,7 +207,7 @@ fn powers(frame: &Frame, target: [u32; 3], random: &mut Random) -> Option<(Csg, 
     Some((half_space.into(), Truth::Powers(Powers { terms, constant })))
 }
 
-/// About a centre on the lattice, touching a vertex or an edge of it.
+/// Tori about a centre on the lattice that touch a vertex or an edge.
 fn tori(frame: &Frame, target: [u32; 3], random: &mut Random) -> Option<(Csg, Truth)> {
     let p = model(frame, target);
     let centre = model(frame, vertex(frame, random));

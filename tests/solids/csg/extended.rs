@@ -1,4 +1,4 @@
-//! Extended octrees: what they keep of surfaces against exact arithmetic.
+//! Extended octrees: the surfaces that they keep, against exact arithmetic.
 
 use super::model::Model;
 use super::oracle::frames;
@@ -19,7 +19,7 @@ pub(super) fn extended(csg: &Csg, frame: &Frame) -> Octree {
     through_a_file(&tree)
 }
 
-/// What is written is read again, and written again as it was. The tree that was read.
+/// Writes a tree, reads it, and checks that writing it again gives the same bytes. Returns the tree read.
 pub(super) fn through_a_file(tree: &Octree) -> Octree {
     let bytes = file::to_bytes(tree).unwrap();
     let read = file::from_bytes(&bytes).unwrap();
@@ -29,14 +29,14 @@ pub(super) fn through_a_file(tree: &Octree) -> Octree {
     read
 }
 
-/// Which side of a model a point of doubles is on.
+/// Returns the side of a model on which a point of doubles lies.
 pub(super) fn sign(model: &Model, p: [f64; 3]) -> i32 {
     let [x, y, z] = p.map(Exact::from);
     model.sign(&[x, y, z, Exact::from(1.0)])
 }
 
-/// Points anywhere, and ever closer to the surface between two that are on different sides of it; with their
-/// sides.
+/// Points anywhere, and points ever closer to the surface by bisection between two points on different sides;
+/// with their sides.
 pub(super) fn points(
     model: &Model,
     frame: &Frame,
@@ -71,7 +71,7 @@ pub(super) fn points(
     found
 }
 
-/// Whether a point lies in a cell of which nothing is known, or outside of the universe.
+/// True if a point lies in a cell that was given up, or outside the universe.
 pub(super) fn is_given_up(tree: &Octree, p: [f64; 3]) -> bool {
     let frame = tree.view().frame();
     let Some(at) = frame.cell_of(p) else { return true };
@@ -89,8 +89,7 @@ pub(super) fn is_given_up(tree: &Octree, p: [f64; 3]) -> bool {
     matches!(verdict, Verdict::Undecided)
 }
 
-/// Random points in `models` random models each, made by `make`: what was found out of points in the
-/// universe.
+/// Checks random points of the universe in `models` random models, each made by `make`.
 fn no_lies(models: u64, count: usize, make: impl Fn(&mut Maker<'_>) -> Model) {
     let (mut decided, mut undecided, mut made, mut kept, mut given_up) = (0u64, 0u64, 0, 0, 0);
     let (mut compared, mut ratios) = (0, 0.0);
@@ -112,7 +111,7 @@ fn no_lies(models: u64, count: usize, make: impl Fn(&mut Maker<'_>) -> Model) {
         let tree = through_a_file(&tree);
         let cuts = tree.view().cuts().unwrap_or_default();
         (kept, given_up) = (kept + cuts.cells, given_up + cuts.given_up);
-        // The planes, and those of a tree that is made of it.
+        // The source's planes, and those of a tree made from the tree.
         let plain = build(&tree, &frame, Rule::Certified, &alone()).unwrap();
         let direct = build(&csg, &frame, Rule::Certified, &alone()).unwrap();
         for tree in [&tree, &plain] {
@@ -120,8 +119,8 @@ fn no_lies(models: u64, count: usize, make: impl Fn(&mut Maker<'_>) -> Model) {
             judge.ask(count as u64 / 4, &mut random);
             found = judge.found;
         }
-        // Cells are decided by the same surfaces; groups of an expression may decide some by the boxes around
-        // them.
+        // Cells are decided by the same surfaces. Groups of an expression may decide some cells by their
+        // bounding boxes.
         let width = |tree: &Octree| tree.statistics().volume().width();
         if cuts.given_up == 0 && width(&direct) > 0.0 {
             (compared, ratios) = (compared + 1, ratios + width(&plain) / width(&direct));
@@ -199,7 +198,7 @@ pub(super) fn plate() -> Csg {
     Csg::cuboid([0.0; 3], [80.0, 60.0, 10.0]).unwrap().difference(&Csg::union_of(bores).unwrap()).unwrap()
 }
 
-/// The example of the design: a plate of 80 × 60 × 10 with twenty bores.
+/// The design's example: a plate of 80 × 60 × 10 with twenty bores.
 #[test]
 fn a_plate_with_twenty_bores_is_small_and_sharp() {
     let turn = Affine::new([[0.36, 0.48, -0.8, 0.0], [-0.8, 0.6, 0.0, 0.0], [0.48, 0.64, 0.6, 0.0]]).unwrap();
@@ -210,7 +209,7 @@ fn a_plate_with_twenty_bores_is_small_and_sharp() {
         let tree = extended(&csg, &frame);
         let (cuts, planes) = (tree.view().cuts().unwrap(), tree.statistics());
         assert!(planes.nodes() <= nodes, "{}", planes.nodes());
-        // Six planes and twenty cylinders: the ends of those lie outside.
+        // Six planes and twenty cylinders. The cylinders' ends lie outside.
         assert_eq!((cuts.surfaces, cuts.given_up), (26, 0));
         assert!(cuts.bytes < bytes, "{cuts:?}");
         assert!(planes.volume().contains(truth));
@@ -221,8 +220,8 @@ fn a_plate_with_twenty_bores_is_small_and_sharp() {
     }
 }
 
-/// A tree is split on a finer frame by signs that are exact there: a plane whose values are doubles on the
-/// tree's lattice, and which misses a vertex of the finest one by 2^-64.
+/// A tree is split on a finer frame by signs that are exact there. The plane's values are doubles on the
+/// tree's lattice, and the plane misses a vertex of the finest lattice by 2^-64.
 #[test]
 fn signs_are_exact_below_the_depth_of_a_tree() {
     const BITS: u32 = 44;
@@ -246,7 +245,7 @@ fn signs_are_exact_below_the_depth_of_a_tree() {
     }
 }
 
-/// The verdicts of all cells around a place, from the universe down.
+/// Returns the verdicts of all cells around a place, from the universe down.
 fn verdicts_at<S: Solid>(solid: &S, frame: &Frame, at: [f64; 3]) -> Vec<[Tag; 8]> {
     let mut worker = solid.on(frame, &alone()).unwrap().worker().unwrap();
     let (mut verdict, mut cell, mut found) = (worker.root().unwrap(), Cell::ROOT, Vec::new());
@@ -264,7 +263,7 @@ fn verdicts_at<S: Solid>(solid: &S, frame: &Frame, at: [f64; 3]) -> Vec<[Tag; 8]
     found
 }
 
-/// Rays through cell centres: intervals as the source has them.
+/// Rays through cell centres have the same intervals as rays of the source.
 #[test]
 fn rays_of_cut_cells_begin_and_end_where_those_of_the_source_do() {
     let (mut rays, mut intervals) = (0, 0);
@@ -311,7 +310,7 @@ fn rays_of_cut_cells_begin_and_end_where_those_of_the_source_do() {
     assert!(intervals > 1000);
 }
 
-/// What is equal is one surface, however it was written.
+/// Equal surfaces are one surface, however they are written.
 #[test]
 fn equal_surfaces_are_one() {
     let frame = Frame::new([-2.0; 3], 4.0, 10).unwrap();
@@ -329,14 +328,14 @@ fn equal_surfaces_are_one() {
         // A universe that one surface crosses is one cell.
         assert_eq!((tree.statistics().nodes(), tree.view().root_tag() == Tag::Partial), (0, count > 0));
     }
-    // A plane that was given with other numbers, and on the other side.
+    // The same plane with other numbers, and from the other side.
     let plane = |scale: f64| Csg::half_space([0.3 * scale, -0.7 * scale, 0.2 * scale], 0.25 * scale).unwrap();
     let tree = extended(&Csg::intersection_of([plane(1.0), plane(-4.0)]).unwrap(), &frame);
     assert!(tree.statistics().nodes() == 0 && tree.view().root_tag() == Tag::Empty);
 }
 
-/// An extended tree within an expression hands on its surfaces: the tree of that is as sharp as if it were
-/// made at once.
+/// An extended tree in an expression passes its surfaces on. The expression's tree is as sharp as a tree
+/// built in one step.
 #[test]
 fn trees_of_trees() {
     let frame = Frame::new([-1.0; 3], 2.0, 12).unwrap();
@@ -345,7 +344,7 @@ fn trees_of_trees() {
     let at_once = extended(&block.difference(&ball).unwrap(), &frame);
     let stored = Csg::solid(leafless::AnySolid::new(extended(&block, &frame)));
     let after = extended(&stored.difference(&ball).unwrap(), &frame);
-    // (Two faces of the block lie in planes of the lattice: cells say all of these.)
+    // (Two faces of the block lie in planes of the lattice, where cells describe them completely.)
     let [once, later] = [&at_once, &after].map(|tree| tree.view().cuts().unwrap());
     assert_eq!((once.given_up, later.given_up, once.surfaces, later.surfaces), (0, 0, 5, 5));
     let [once, later] = [&at_once, &after].map(|tree| measure(tree, &frame, 1e-5, &alone()).unwrap().volume);
@@ -359,7 +358,7 @@ fn trees_of_trees() {
     );
 }
 
-/// A cube of edge 1 as a mesh, of which an extended tree keeps slabs; less a ball, whose surface is exact.
+/// A cube of edge 1 as a mesh, for which an extended tree keeps slabs, minus a ball, whose surface is exact.
 #[test]
 fn meshes_are_kept_to_a_tolerance() {
     let vertices = (0..8).map(|k| [0, 1, 2].map(|axis| f64::from(k >> axis & 1))).collect();
@@ -370,7 +369,7 @@ fn meshes_are_kept_to_a_tolerance() {
     let (cube, frame) = (Csg::solid(AnySolid::new(mesh)), Frame::new([-0.77; 3], 2.7, 9).unwrap());
     let part = cube.difference(&ball).unwrap();
     let truth = |p: [f64; 3]| {
-        // How far a point lies inside, at the least.
+        // A lower bound of a point's depth inside.
         let cube = p.iter().map(|&c| c.min(1.0 - c)).fold(f64::INFINITY, f64::min);
         let [x, y, z] = [p[0] - 1.0, p[1] - 0.9, p[2] - 0.8];
         cube.min((x * x + y * y + z * z).sqrt() - 0.6)
@@ -409,7 +408,7 @@ fn meshes_are_kept_to_a_tolerance() {
             }
             known += 1;
         }
-        // What is given up at edges is thinner than a finest cell.
+        // Regions given up at edges are thinner than a finest cell.
         assert!(known > 10_000 && far == 0, "{known} {far}");
         let volume = measure(&tree, &frame, 1e-2, &alone()).unwrap().volume;
         let source = measure(&part, &frame, 1e-2, &alone()).unwrap().volume;
@@ -418,7 +417,7 @@ fn meshes_are_kept_to_a_tolerance() {
     }
 }
 
-/// What cannot be: a tolerance that is none, cancelled work, bytes that are too many, a file.
+/// Refused calls: an invalid tolerance, cancelled work, too many bytes, a file.
 #[test]
 fn refusals() {
     let frame = Frame::new([-1.0; 3], 2.0, 12).unwrap();

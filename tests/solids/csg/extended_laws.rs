@@ -1,4 +1,4 @@
-//! Laws of extended octrees that do not depend on what they are made of.
+//! Laws of extended octrees that do not depend on their sources.
 
 use super::oracle::frames;
 use crate::common::{Random, alone};
@@ -17,7 +17,7 @@ fn cuboid_mesh(min: [f64; 3], max: [f64; 3]) -> TriangleMesh {
     TriangleMesh::new((0..8).map(corner).collect(), triangles).unwrap()
 }
 
-/// A pyramid over the square [−1, 1]², with its tip at a height.
+/// A pyramid over the square [−half, half]², with its tip at a height.
 fn pyramid_mesh(half: f64, height: f64) -> TriangleMesh {
     let vertices = vec![
         [-half, -half, 0.0],
@@ -34,13 +34,13 @@ fn of_mesh(mesh: TriangleMesh) -> Csg {
     Csg::solid(AnySolid::new(MeshSolid::new(mesh, FillRule::NonZero).unwrap()))
 }
 
-/// How far a point lies inside of a box, at the least; how far outside, negative, at the least.
+/// Returns a lower bound of a point's depth in a box; outside, the negative of a lower bound of its distance.
 fn depth(p: [f64; 3], [min, max]: [[f64; 3]; 2]) -> f64 {
     (0..3).map(|axis| (p[axis] - min[axis]).min(max[axis] - p[axis])).fold(f64::INFINITY, f64::min)
 }
 
-/// A rib, a groove and a tip that are thinner than the tolerance: slabs on both sides of a cell overlap, and
-/// no point is told wrong. Further than twice the tolerance from the faces all points are told.
+/// A rib, a groove and a tip thinner than the tolerance. Slabs on both sides of a cell overlap, and no point
+/// is decided wrongly. All points further than twice the tolerance from the faces are decided.
 #[test]
 fn what_is_thinner_than_the_tolerance_does_not_vanish() {
     let block = [[0.0; 3], [1.0, 1.0, 0.5]];
@@ -90,7 +90,7 @@ fn what_is_thinner_than_the_tolerance_does_not_vanish() {
             assert!(known > 5_000, "{name} {tolerance}: {known}");
         }
     }
-    // A tip, whose sides come closer than any tolerance.
+    // A tip whose sides come closer than any tolerance.
     let (half, height) = (0.2, 1.0);
     let tip = of_mesh(pyramid_mesh(half, height));
     for tolerance in [0.1, 0.02] {
@@ -117,7 +117,7 @@ fn what_is_thinner_than_the_tolerance_does_not_vanish() {
     }
 }
 
-/// Threads and the order of work do not show, in no bit.
+/// The number of threads and the order of work change no bit.
 #[test]
 fn any_number_of_threads_makes_the_same_tree() {
     let (mut made, mut cells) = (0, 0);
@@ -145,7 +145,7 @@ fn any_number_of_threads_makes_the_same_tree() {
     assert!(cells > 20, "{cells}");
 }
 
-/// Limits and a cancel end the work with an error, at any point, and what is built afterwards is the same as
+/// Limits and cancels end the work with an error, at any point. A tree built afterwards is the same as
 /// before.
 #[test]
 fn limits_and_cancels_are_errors() {
@@ -188,8 +188,8 @@ fn limits_and_cancels_are_errors() {
     }
 }
 
-/// Of a solid: whether it has a list of surfaces, and whether open cells, on ways down, told surfaces, an
-/// enclosure, moments, and an area.
+/// The data that a solid provides: a list of surfaces, and in open cells on random descents, surfaces, an
+/// enclosure, moments and an area.
 #[derive(Debug, Default, PartialEq)]
 struct Told {
     list: bool,
@@ -235,7 +235,7 @@ fn told<S: Solid>(solid: &S, frame: &Frame) -> Told {
     told
 }
 
-/// Which questions about cells each kind of solid answers.
+/// The questions about cells that each kind of solid answers.
 #[test]
 fn every_kind_of_solid_answers_its_questions() {
     let frame = Frame::new([-1.0; 3], 2.0, 7).unwrap();
@@ -246,7 +246,7 @@ fn every_kind_of_solid_answers_its_questions() {
     let tree = |csg: &Csg| build_extended(csg, &frame, &SurfaceOptions::default(), &alone()).unwrap();
     let mesh = || MeshSolid::new(cuboid_mesh([-0.51; 3], [0.52; 3]), FillRule::NonZero).unwrap();
     let exact = Told { list: true, surfaces: true, enclosure: true, moments: true, area: true };
-    // Half-spaces, and whatever hands on what they say.
+    // Half-spaces, and solids that pass their answers on.
     let union = Csg::union_of([ball.clone(), block.clone()]).unwrap();
     let of_trees = Csg::solid(AnySolid::new(tree(&ball))).difference(&block).unwrap();
     let solids: [(&str, AnySolid); 10] = [
@@ -263,7 +263,7 @@ fn every_kind_of_solid_answers_its_questions() {
     ];
     for (name, solid) in solids {
         let mut found = told(&solid, &frame);
-        // (Nothing but slabs is known of planes.)
+        // (Planes provide only slabs.)
         if name == "block" {
             found.moments = true;
         }
@@ -277,13 +277,13 @@ fn every_kind_of_solid_answers_its_questions() {
     let mixed = Csg::solid(AnySolid::new(mesh())).difference(&ball).unwrap();
     let found = told(&mixed, &frame);
     assert!(found.list && found.surfaces && found.enclosure, "{found:?}");
-    // Slabs in a tree: surfaces, and enclosures, but no area, because they have no normals.
+    // Slabs in a tree: surfaces and enclosures, but no area, because they have no normals.
     let options = SurfaceOptions { tolerance: Some(0.05) };
     let turned = mesh().placed(&turn).unwrap();
     let slabs = build_extended(&turned, &frame, &options, &alone()).unwrap();
     let found = told(&slabs, &frame);
     assert_eq!(found, Told { moments: false, area: false, ..exact }, "{found:?}");
-    // Nothing at all.
+    // No answers at all.
     let plain: Octree = build(&ball, &frame, Rule::Certified, &alone()).unwrap();
     assert_eq!(told(&plain, &frame), Told::default());
     let callback = Callback::new(|min: [f64; 3], max: [f64; 3]| {
@@ -294,13 +294,13 @@ fn every_kind_of_solid_answers_its_questions() {
         })
     });
     assert_eq!(told(&callback, &frame), Told::default());
-    // A tree of such a solid keeps nothing, and is the plain tree.
+    // A tree of such a solid keeps no surfaces, and is the plain tree.
     let kept = build_extended(&callback, &frame, &SurfaceOptions::default(), &alone()).unwrap();
     assert_eq!(kept.view().cuts().unwrap_or_default().surfaces, 0);
     assert_eq!(kept.without_cuts(), build(&callback, &frame, Rule::Certified, &alone()).unwrap());
 }
 
-/// No eight siblings that were written say the same of the same surfaces: they would be one cell.
+/// No eight stored siblings have the same function of the same surfaces: they would be one cell.
 #[test]
 fn no_eight_siblings_have_the_same_cut() {
     let (mut splits, mut cuts) = (0, 0);
@@ -336,7 +336,7 @@ fn no_eight_siblings_have_the_same_cut() {
     assert!(splits > 100 && cuts > 100, "{splits} {cuts}");
 }
 
-/// The order of operands, what is there twice, and two complements do not show.
+/// The order of operands, repeated operands and double complements change nothing.
 #[test]
 fn equal_expressions_make_equal_trees() {
     let (mut made, mut cuts) = (0, 0);

@@ -1,4 +1,4 @@
-//! The least and the greatest value of a polynomial without mixed products over a box, exactly.
+//! The exact least and greatest value over a box of a polynomial without mixed products.
 
 use crate::common::exact::Exact;
 use leafless::{Cell, Frame, Tag};
@@ -43,7 +43,7 @@ impl Separable {
         self.square[axis].times(t).plus(&self.linear[axis]).times(t)
     }
 
-    /// The extreme in the direction of `way` (−1 least, 1 greatest) along an axis.
+    /// Returns the extreme value along an axis: the least for `way` −1, the greatest for 1.
     fn extreme_along(&self, axis: usize, ends: &[Exact; 2], way: i32) -> Ratio {
         let one = || Exact::from(1.0);
         let square = &self.square[axis];
@@ -62,7 +62,7 @@ impl Separable {
         Ratio { above, below: one() }
     }
 
-    /// Signs of the least and the greatest value over a cell.
+    /// Returns the signs of the least and the greatest value over a cell.
     pub fn signs(&self, frame: &Frame, cell: Cell) -> [i32; 2] {
         let bounds = corners(frame, cell);
         [-1, 1].map(|way| {
@@ -93,8 +93,8 @@ impl Powers {
                     (0..exponent).fold(Exact::from(coefficient), |product, _| product.times(base))
                 };
                 let mut ends = vec![weighted(&base[0]), weighted(&base[1])];
-                // Between ends of different signs the power is zero somewhere, which is the least or the
-                // greatest of an even one, and between the ends of an odd one.
+                // Between ends of different signs, the power is zero somewhere. Zero is the least or the
+                // greatest value of an even power, and lies between the end values of an odd power.
                 if base[0].sign() * base[1].sign() < 0 {
                     ends.push(Exact::from(0.0));
                 }
@@ -141,7 +141,7 @@ impl Torus {
     }
 }
 
-/// A function whose extremes over boxes are known.
+/// A function with known extremes over boxes.
 #[derive(Clone, Debug)]
 pub enum Truth {
     Separable(Separable),
@@ -150,7 +150,7 @@ pub enum Truth {
 }
 
 impl Truth {
-    /// The best possible verdict.
+    /// Returns the best possible verdict.
     pub fn tag(&self, frame: &Frame, cell: Cell) -> Tag {
         let signs = match self {
             Truth::Separable(separable) => separable.signs(frame, cell),
@@ -165,7 +165,7 @@ impl Truth {
     }
 }
 
-/// Where a cell begins and ends on each axis.
+/// Returns the ends of a cell on each axis.
 pub fn corners(frame: &Frame, cell: Cell) -> [[Exact; 2]; 3] {
     let shift = frame.depth() - cell.level;
     [0, 1, 2].map(|axis| [0, 1].map(|end| Exact::plane(frame, axis, (cell.at[axis] + end) << shift)))

@@ -1,5 +1,4 @@
-//! Operations of many operands, which are grouped by where they lie, against trees that are joined one by
-//! one.
+//! Operations with many operands, grouped by place, against trees that are combined one by one.
 
 use crate::common::{Dense, Random, alone};
 use leafless::op::{intersection_of, union_of, xor_of};
@@ -7,7 +6,7 @@ use leafless::{Affine, Csg, Frame, Octree, Rule, Tag, build, complement, interse
 
 const RULES: [Rule; 4] = [Rule::Certified, Rule::Inner, Rule::Outer, Rule::Sampled];
 
-/// How the operands are joined.
+/// A way to combine the operands.
 #[derive(Clone, Copy, Debug, PartialEq)]
 enum Way {
     Union,
@@ -15,8 +14,8 @@ enum Way {
     Parity,
 }
 
-/// A random operand. Boxes around those that are `plain` say nothing that their half-spaces do not say: there
-/// the hierarchy knows no more than each of them does alone.
+/// A random operand. The bounding box of a `plain` operand excludes no more than its half-spaces do; there
+/// the hierarchy decides no more than single operands.
 fn operand(random: &mut Random, frame: &Frame, special: u64, plain: bool) -> Csg {
     let edge = frame.edge();
     let length = |random: &mut Random, low: f64, high: f64| random.between(low, high) * edge;
@@ -51,7 +50,7 @@ fn operand(random: &mut Random, frame: &Frame, special: u64, plain: bool) -> Csg
             any(random).placed(&Affine::new(rows).unwrap()).unwrap()
         }
         8 | 9 => {
-            // Turned about its place, more or less.
+            // Rotated about its place, approximately.
             let part = Csg::cuboid([-0.5; 3], [0.5, 0.4, 0.3]).unwrap();
             let (s, c) = random.between(0.0, 6.0).sin_cos();
             let k = size(random);
@@ -71,7 +70,7 @@ fn operand(random: &mut Random, frame: &Frame, special: u64, plain: bool) -> Csg
             1 => Csg::union_of((0..20).map(|_| any(random))).unwrap(),
             _ => Csg::xor_of([any(random), any(random)]).unwrap(),
         },
-        // What covers the universe, or all but a part of it.
+        // Operands that cover the universe, or all but a part of it.
         _ if special == 0 => Csg::ball(frame.origin().map(|c| c + 0.5 * edge), 2.0 * edge).unwrap(),
         _ if special == 1 => any(random).complement(),
         _ if special == 2 => Csg::half_space([0.3, 0.5, 1.0], -length(random, 0.0, 1.0)).unwrap(),
@@ -129,12 +128,12 @@ fn many_operands_are_joined_as_trees_are() {
                         cells[1] += expected.count(Tag::Partial);
                     }
                 }
-                // What is resolved: the certified trees of the operands decide it.
+                // The resolved result: the operands' certified trees decide it.
                 if rule == Rule::Certified {
                     for (rule, tag) in [(Rule::Inner, Tag::Empty), (Rule::Outer, Tag::Full)] {
                         let resolved = dense(&build(&csg, &frame, rule, &alone()).unwrap());
                         let expected = expected.resolved(tag);
-                        // Where more is known, less is left to the rule.
+                        // Where more is known, the rule decides less.
                         assert!(resolved == found.resolved(tag), "{what}, {rule:?}");
                         assert!(!plain || resolved == expected, "{what}, {rule:?}");
                     }
@@ -146,7 +145,7 @@ fn many_operands_are_joined_as_trees_are() {
     assert!(cells[1] > 10_000);
 }
 
-/// Whether whatever is `expected` to be decided is found to be just that.
+/// True if every decided cell of `expected` has the same decision in `found`.
 fn no_looser(found: &Dense, expected: &Dense) -> bool {
     found
         .tags
@@ -155,14 +154,14 @@ fn no_looser(found: &Dense, expected: &Dense) -> bool {
         .all(|(&found, &expected)| expected == Tag::Partial || found == expected)
 }
 
-/// What is known of the space around the universe is not contradicted.
+/// Asserts that the exteriors do not contradict each other.
 fn assert_exterior(found: &Octree, expected: &Octree, what: &str) {
     let pair = (found.view().exterior(), expected.view().exterior());
     let contradiction = matches!(pair, (Tag::Full, Tag::Empty) | (Tag::Empty, Tag::Full));
     assert!(!contradiction, "{what}: {pair:?}");
 }
 
-/// The resolved trees as trees, and any order of joining them.
+/// The combinations of resolved trees, in any order.
 #[test]
 fn many_operands_at_once_and_one_by_one() {
     let frame = Frame::new([-1.0; 3], 2.0, 5).unwrap();
@@ -182,7 +181,7 @@ fn many_operands_at_once_and_one_by_one() {
                 (Csg::xor_of(operands.iter().cloned()), xor_of(&views, &alone())),
             ];
             for (i, (csg, expected)) in pairs.into_iter().enumerate() {
-                // Of a parity, what is inside of all choices is not what the inner trees have.
+                // For parity, the inside of all choices is not what the inner trees contain.
                 if i == 2 && matches!(rule, Rule::Inner | Rule::Outer) {
                     continue;
                 }

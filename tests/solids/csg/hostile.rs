@@ -1,5 +1,5 @@
-//! Expressions that nobody would write by hand: enormous, deep, doubled over and over, of numbers at the ends
-//! of their ranges. What comes is a result or a clear error, and it comes soon.
+//! Expressions that nobody would write by hand: enormous, deep, doubled over and over, with numbers at the
+//! ends of their ranges. Each gives a result or a clear error, and soon.
 
 use crate::common::alone;
 use crate::common::cubes::Plain;
@@ -10,7 +10,8 @@ use leafless::{
 };
 use std::time::{Duration, Instant};
 
-/// Time that is far more than the work takes, and far less than work of the wrong order would.
+/// Runs work within a time limit: far more than the work needs, and far less than work of a worse complexity
+/// would need.
 fn soon<T>(work: impl FnOnce() -> T) -> T {
     let start = Instant::now();
     let result = work();
@@ -27,7 +28,7 @@ fn exterior(csg: &Csg, frame: &Frame) -> Result<Tag, Error> {
     Ok(csg.on(frame, &alone())?.exterior())
 }
 
-/// The universe and one cell of each level below it.
+/// Descends from the universe through one cell of each level.
 fn descend(csg: &Csg, frame: &Frame) -> u8 {
     let mut worker = csg.on(frame, &alone()).unwrap().worker().unwrap();
     let mut cell = Cell::ROOT;
@@ -130,7 +131,7 @@ fn deep_placements_end_in_a_limit() {
             assert!(matches!(exterior(&csg, &frame), Err(Error::Limit { .. })), "{placement:?}");
         });
     }
-    // Nothing gets longer, but larger and larger, or smaller.
+    // Numbers do not get longer, but larger and larger, or smaller.
     let frame = Frame::new([1.0; 3], 16.0, 4).unwrap();
     for scale in [2.0, 0.5, 2f64.powi(64), 2f64.powi(-64)] {
         let placement =

@@ -1,5 +1,4 @@
-//! Cuts that are asked where they lie, without a worker: against exact arithmetic, and against the tree as a
-//! solid.
+//! Cuts queried in place, without a worker, against exact arithmetic and against the tree as a solid.
 
 use super::model::{Model, Point};
 use super::oracle::frames;
@@ -18,7 +17,7 @@ fn exact(p: [f64; 3]) -> Point {
     [x, y, z, Exact::from(1.0)]
 }
 
-/// Random models with their extended trees, of which some PARTIAL cell keeps something.
+/// Random models with their extended trees. At least one PARTIAL cell of each tree keeps surfaces.
 fn models(count: usize, seed: u64) -> impl Iterator<Item = (Model, Csg, Octree, Random)> {
     let made = (0..).filter_map(move |k| {
         let mut random = Random(seed ^ k);
@@ -41,8 +40,7 @@ fn make(maker: &mut Maker<'_>) -> Model {
     }
 }
 
-/// A point anywhere in the universe, or near the surface: between an inner and an outer point that halving
-/// has brought together.
+/// A point anywhere in the universe, or near the surface: bisected between an inner and an outer point.
 fn point(model: &Model, frame: &Frame, random: &mut Random) -> [f64; 3] {
     let mut any = || frame.origin().map(|origin| origin + frame.edge() * random.unit());
     let (mut a, mut b) = (any(), any());
@@ -75,7 +73,7 @@ fn points_in_place_do_not_lie() {
             match answer {
                 Membership::Inside => assert!(sign >= 0, "{p:?}\n{model:#?}"),
                 Membership::Outside => assert!(sign <= 0, "{p:?}\n{model:#?}"),
-                // What the tree decides as a solid, rounding may leave open here.
+                // Points that the tree decides as a solid may be undecided here by rounding.
                 Membership::Undecided => {
                     undecided += 1;
                     open += (exactly[i] != Membership::Undecided) as u64;
@@ -90,7 +88,7 @@ fn points_in_place_do_not_lie() {
     assert!(decided > 10_000 && 20 * open < decided, "{decided} {open}");
 }
 
-/// The point of a ray at a time, exactly.
+/// Returns the exact point of a ray at a time.
 fn along(ray: ([f64; 3], [f64; 3]), t: f64) -> Point {
     let [x, y, z] =
         [0, 1, 2].map(|axis| Exact::from(ray.0[axis]).plus(&Exact::from(ray.1[axis]).times(&Exact::from(t))));
@@ -112,8 +110,7 @@ fn rays_in_place_do_not_lie() {
             tree.cast_rays(&[ray], Obstacle::Upper, &mut all).unwrap();
             assert_eq!(all, [hit]);
             let spans = tree.ray_spans(&ray).unwrap();
-            // Before the first place that may be solid nothing is, and in spans that are proven everything
-            // is.
+            // Before the first possible hit nothing is solid, and proven spans are entirely solid.
             let is_in_universe = |t: f64| {
                 (0..3).all(|axis| {
                     let c = from[axis] + t * direction[axis] - frame.origin()[axis];
@@ -121,7 +118,7 @@ fn rays_in_place_do_not_lie() {
                 })
             };
             let mut times: Vec<f64> = (0..20).map(|_| 2.0 * random.unit()).collect();
-            // Lies would stand next to the ends of spans.
+            // Wrong ends would show beside the ends of spans.
             let ends = spans.inner.iter().chain(&spans.outer).flat_map(|span| [span.lower, span.upper]);
             let steps = [0, -1, 1].map(|side| f64::from(side) * 0.5f64.powi(50 - random.below(25) as i32));
             times.extend(ends.filter(|t| t.is_finite()).flat_map(|t| steps.map(|step| t + step * t)));
@@ -138,7 +135,7 @@ fn rays_in_place_do_not_lie() {
                 assert!(!is_inner || sign >= 0, "{t} of {ray:?}: {spans:?}\n{frame:?}\n{model:#?}");
                 judged += 1;
             }
-            // The expression is asked on a finer frame, within limits: a ray in a surface passes very many
+            // The expression is queried on a finer frame, within limits: a ray in a surface passes very many
             // cells.
             let finer = frame.with_depth(16).unwrap();
             let control = Control { max_splits: Some(3000), ..Control::threads(1) };
@@ -187,12 +184,12 @@ fn boxes_in_place_do_not_lie() {
     assert!(found[..3].iter().all(|&count| count > 100), "{found:?}");
 }
 
-/// A number of a surface.
+/// Returns the i-th number of a surface.
 fn number(surface: &StoredSurface<'_>, i: usize) -> Exact {
     surface.number(i).iter().fold(Exact::from(0.0), |sum, &term| sum.plus(&Exact::from(term)))
 }
 
-/// The sign of a surface's function that is a polynomial and not placed.
+/// Returns the sign of a surface's function if it is a polynomial without placement.
 fn side(surface: &StoredSurface<'_>, p: [f64; 3]) -> Option<i32> {
     if surface.placements().next().is_some() {
         return None;
@@ -223,7 +220,7 @@ fn side(surface: &StoredSurface<'_>, p: [f64; 3]) -> Option<i32> {
     Some(value.sign())
 }
 
-/// The function that is read of a cell is what the solid is there; below a cell it is the same one.
+/// The function of a cell describes the solid in the cell. Descendants of the cell have the same function.
 #[test]
 fn functions_of_cells_are_the_solid() {
     let (mut judged, mut functions) = (0, 0);
@@ -257,8 +254,8 @@ fn functions_of_cells_are_the_solid() {
     assert!(functions > 1000 && judged > 300, "{functions} {judged}");
 }
 
-/// A tree without cuts that is made of one with them is that of the expression, but where groups of that
-/// decide a cell by boxes.
+/// The plain tree of a tree with cuts equals the tree of its expression, except where operand groups of the
+/// expression decide a cell by boxes.
 #[test]
 fn plain_trees_are_those_of_the_expression() {
     let (mut same, mut all) = (0, 0);

@@ -1,4 +1,4 @@
-//! What holds of every expression, whatever it stands for.
+//! Laws of every expression.
 
 use super::model::Model;
 use super::oracle::frames;
@@ -14,18 +14,18 @@ use leafless::{
 type CsgWorker = <<Csg as Solid>::Classifier as Classifier>::Worker;
 type CsgPart = <CsgWorker as Parts>::Part;
 
-/// Ways to descend to the finest cells, which must all find the same.
+/// Ways to descend to the finest cells. All must give the same verdicts.
 #[derive(Clone, Copy, Debug)]
 enum Way {
-    /// The scratch memory is released after each cell.
+    /// Releases the scratch memory after each cell.
     Released,
-    /// It is never released.
+    /// Never releases the scratch memory.
     Kept,
-    /// Two levels at once.
+    /// Splits two levels at once.
     Twice,
-    /// Each part is handed over to the other of two workers.
+    /// Hands each part over to the other of two workers.
     HandedOver,
-    /// What has been found out about a cell is asked again after everything below it.
+    /// Splits each cell again after all cells below it.
     Again,
 }
 
@@ -99,7 +99,7 @@ impl Descent {
     }
 }
 
-/// Random expressions, some with other solids, with a frame for each.
+/// Checks random expressions, some with other solids, each on its own frame.
 fn expressions(count: u64, depths: [u8; 2], height: u32, mut check: impl FnMut(&Model, &Csg, &Frame)) {
     for seed in 0..count {
         let mut random = Random(seed ^ 0x1A35);
@@ -130,8 +130,8 @@ fn verdicts_do_not_depend_on_the_way() {
     expressions(400, [1, 4], 3, all_ways_find_the_same);
 }
 
-/// Words that are written for a child and taken back, because a later operand decides what they belong to,
-/// must not take anything with them that others need.
+/// Words that are written for a child may be taken back when a later operand decides their owner. This must
+/// not remove words that others need.
 #[test]
 fn parts_of_other_solids_live_as_long_as_their_cells() {
     for seed in 0..200 {
@@ -148,7 +148,7 @@ fn parts_of_other_solids_live_as_long_as_their_cells() {
     }
 }
 
-/// The tags of the splits on the way down to one of the finest cells.
+/// Returns the tags of the splits on the way down to a random finest cell.
 fn descent(worker: &mut CsgWorker, random: &mut Random) -> Vec<Tag> {
     let mut tags = Vec::new();
     let mut cell = Cell::ROOT;
@@ -184,8 +184,8 @@ fn a_used_worker_is_as_good_as_a_new_one() {
             assert!(now >= evaluations, "the count of evaluations falls\n{model:#?}");
             evaluations = now;
         }
-        // What the used one evaluated is told once it is gone: as much as what the four new ones did, at
-        // least.
+        // The evaluations of the used worker are counted once it is dropped: at least as many as those of the
+        // four new ones.
         let before = csg.evaluations();
         drop(used);
         let parts: u64 = csg.evaluations() - before;
@@ -226,7 +226,7 @@ fn the_complement_is_the_complement() {
     });
 }
 
-/// Of expressions, and of points.
+/// An operation on expressions, and the same on points.
 type Operation = (fn(Csg, Csg) -> Csg, fn(bool, bool) -> bool);
 
 #[test]
@@ -251,7 +251,7 @@ fn booleans_are_those_of_the_trees() {
                 };
                 let [a, b, both] = [a, b, both].map(|tree| Dense::of(tree.view()));
                 let joined = a.combine(&b, op);
-                // What the trees decide the expression decides, too; a rotated one may know more.
+                // The expression decides what the trees decide; a rotated one may decide more.
                 let agree = joined.tags.iter().zip(&both.tags).all(|(&t, &e)| t == Tag::Partial || t == e);
                 assert!(agree, "{rule:?}\n{model:#?}\n{other:#?}");
             }
@@ -271,16 +271,16 @@ fn evaluations_are_counted_where_they_happen() {
     assert_eq!((counted.frames(), counted.solid().evaluations()), (1, once));
     let mut nested = ball.clone();
     for times in 2..5 {
-        // An expression alone would be that expression.
+        // A single expression would be that expression itself.
         nested = Csg::solid(AnySolid::new(SplitCounter::new(nested)));
         let again = SplitCounter::new(&nested);
         build(&again, &frame, Rule::Certified, &alone()).unwrap();
         assert_eq!(again.splits(), counted.splits());
-        // Half-spaces behind the common face count there, as often as without it, and not for what is around
-        // it.
+        // Half-spaces behind the common solid interface count there, as often as without it, and do not count
+        // for the expression around them.
         assert_eq!((ball.evaluations(), nested.evaluations()), (times * once, 0));
     }
-    // Asked again by another worker, the count goes on.
+    // With another worker, the count continues.
     let classifier = SplitCounter::new(&nested).on(&frame, &alone()).unwrap();
     let mut last = ball.evaluations();
     let start = last;

@@ -1,5 +1,5 @@
-//! Expressions by their definition: which side of the surface a point is on, in exact arithmetic and with no
-//! cell in sight.
+//! Expressions by their definition: the side of the surface on which a point lies, in exact arithmetic and
+//! without cells.
 
 use crate::common::cubes::Plain;
 use crate::common::exact::Exact;
@@ -9,19 +9,19 @@ use leafless::{
     Verdict,
 };
 
-/// A point (x, y, z)/w with w ≠ 0, so that the inverse of a placement needs no division.
+/// A homogeneous point (x, y, z)/w with w ≠ 0, so that the inverse of a placement needs no division.
 pub type Point = [Exact; 4];
 
-/// A point, and the point (ε, ε², ε³) beside it: ε = 2^-20000, and, which is as good, 2^-23000 and 2^-26000.
-/// Where a function is zero and has a slope, its value there has the sign that the slope says; where it has
-/// none, its value is far smaller.
+/// A point, and the point beside it, shifted by (ε, ε², ε³): ε = 2^-20000, and, equally well, 2^-23000 and
+/// 2^-26000 for the powers. Where a function is zero with a nonzero gradient, its value beside the point has
+/// the sign that the gradient gives. Where the gradient is zero, the value is far smaller.
 pub struct Probe {
     pub at: Point,
     pub beside: Point,
 }
 
-/// What no value beside a zero with a slope is smaller than, nor one without a slope larger, of the functions
-/// here.
+/// Exponent of two that separates the functions here: beside a zero with a gradient, no value is smaller;
+/// beside a zero without one, no value is larger.
 const SLOPE: i64 = -32_000;
 
 #[derive(Clone, Debug)]
@@ -31,7 +31,7 @@ pub enum Model {
     Quadric([f64; 10]),
     Cuboid([f64; 3], [f64; 3]),
     Ellipsoid([f64; 3], [f64; 3]),
-    /// Radii at the bottom and at the top, and where these are.
+    /// Radii at the bottom and at the top, and their heights.
     Frustum([f64; 2], [f64; 2]),
     Power([(f64, f64, u32); 3], f64),
     Torus(f64, f64),
@@ -39,7 +39,7 @@ pub enum Model {
     Wedge([f64; 3], f64),
     Prism(Vec<[f64; 2]>, [f64; 2]),
     Convex(Vec<([f64; 3], f64)>),
-    /// A ball that a host program knows.
+    /// A ball of a host program.
     Host([f64; 3], f64),
     Union(Vec<Model>),
     Intersection(Vec<Model>),
@@ -50,19 +50,19 @@ pub enum Model {
     Other(Other),
 }
 
-/// What is no half-space.
+/// A solid that is not a half-space.
 #[derive(Clone, Debug)]
 pub enum Other {
     Cuboid([f64; 3], [f64; 3]),
     Ball([f64; 3], f64),
-    /// lower ≤ z ≤ upper, which a callback tells.
+    /// lower ≤ z ≤ upper as a callback.
     Slab(f64, f64),
     /// A tetrahedron as a mesh.
     Tetrahedron([[f64; 3]; 4]),
     Octree(Box<Octree>),
-    /// Moved, on a frame of its own.
+    /// Moved, from a frame of its own.
     Moved(Box<Other>, Frame, Affine),
-    /// An expression behind the common face.
+    /// An expression behind the common solid interface.
     Model(Box<Model>),
 }
 
@@ -74,7 +74,7 @@ fn sum(terms: impl IntoIterator<Item = Exact>) -> Exact {
     terms.into_iter().fold(exact(0.0), |sum, term| sum.plus(&term))
 }
 
-/// a · b for two doubles and a point's coordinates.
+/// Returns a · b for two doubles, times a point's coordinate.
 fn times(a: f64, b: &Exact) -> Exact {
     exact(a).times(b)
 }
@@ -84,7 +84,7 @@ pub fn determinant(m: [[Exact; 3]; 3]) -> Exact {
     sum([m[0][0].times(&minor(1, 2)), m[0][1].times(&minor(2, 0)), m[0][2].times(&minor(0, 1))])
 }
 
-/// The point that `placement` takes to `p`, by Cramer's rule.
+/// Returns the point that `placement` takes to `p`, by Cramer's rule.
 fn original(placement: &Affine, p: &Point) -> Point {
     let m = placement.rows().map(|row| [row[0], row[1], row[2]].map(exact));
     let moved = [0, 1, 2].map(|i| p[i].minus(&times(placement.rows()[i][3], &p[3])));
@@ -96,7 +96,8 @@ fn original(placement: &Affine, p: &Point) -> Point {
     [replaced(0), replaced(1), replaced(2), p[3].times(&determinant(m))]
 }
 
-/// On which side of each half-space of a box a point is, and so on: values of the sign of f, all times w².
+/// Returns values with the signs of a box's half-space functions at a point. The functions below do the same
+/// for other primitives. All values are multiplied by w².
 fn cuboid(min: [f64; 3], max: [f64; 3], p: &Point) -> Vec<Exact> {
     let sides = (0..3)
         .flat_map(|axis| [p[axis].minus(&times(min[axis], &p[3])), times(max[axis], &p[3]).minus(&p[axis])]);
@@ -152,7 +153,7 @@ fn powers(terms: &[(f64, f64, u32); 3], constant: f64, p: &Point) -> Exact {
     sum(along).plus(&times(constant, &power(&p[3], degree)))
 }
 
-/// Of the sign of minor² − (ρ − major)² − z² = 2 major ρ − rest.
+/// Returns a value with the sign of minor² − (ρ − major)² − z² = 2 major ρ − rest.
 fn torus(major: f64, minor: f64, p: &Point) -> Exact {
     let square = |x: &Exact| x.times(x);
     let rho = square(&p[0]).plus(&square(&p[1]));
@@ -164,7 +165,7 @@ fn torus(major: f64, minor: f64, p: &Point) -> Exact {
     times(4.0, &square(&times(major, &p[3])).times(&rho)).minus(&square(&rest))
 }
 
-/// On which side of a polygon's outline a point is, by the edges that a ray crosses.
+/// Returns the side of a polygon's outline on which a point lies, by the edges that a ray crosses.
 fn inside(polygon: &[[f64; 2]], p: &Point) -> i32 {
     // Everything times |w|.
     let sign = p[3].sign();
@@ -187,10 +188,10 @@ fn inside(polygon: &[[f64; 2]], p: &Point) -> i32 {
     if crossings % 2 == 1 { 1 } else { -1 }
 }
 
-/// A ball by its values and its ranges.
+/// A ball by its values and ranges.
 fn host(centre: [f64; 3], radius: f64) -> HalfSpace {
-    // Distances to the nearest and to the farthest point on an axis, squared and relative to the squares
-    // around; some last places for what is rounded.
+    // Squared distances to the nearest and the farthest point along each axis, relative to the squares. A few
+    // last places allow for rounding.
     let value = move |near: [f64; 3]| radius * radius - near.iter().map(|d| d * d).sum::<f64>();
     let slack = |size: f64| 64.0 * f64::EPSILON * size;
     HalfSpace::host(
@@ -210,7 +211,7 @@ fn host(centre: [f64; 3], radius: f64) -> HalfSpace {
     )
 }
 
-/// For each face of a tetrahedron on which side of it p is, the inside being positive.
+/// Returns the side of `p` for each face of a tetrahedron; the inner side is positive.
 fn tetrahedron(corners: [[f64; 3]; 4], p: &Point) -> Vec<Exact> {
     let corners = corners.map(|corner| {
         let [x, y, z] = corner.map(exact);
@@ -232,7 +233,7 @@ fn tetrahedron(corners: [[f64; 3]; 4], p: &Point) -> Vec<Exact> {
 }
 
 impl Model {
-    /// The expression, as it is asked on `frame`.
+    /// Returns the expression for queries on `frame`.
     pub fn csg(&self, frame: &Frame) -> Result<Csg, Error> {
         let all =
             |parts: &[Model]| parts.iter().map(|part| part.csg(frame)).collect::<Result<Vec<_>, Error>>();
@@ -260,7 +261,7 @@ impl Model {
         })
     }
 
-    /// The functions of the half-spaces of a primitive at a point, times something positive.
+    /// Returns the functions of a primitive's half-spaces at a point, times a positive factor.
     fn values(&self, p: &Point) -> Vec<Exact> {
         match self {
             Model::Plane(normal, offset) => vec![plane(*normal, *offset, p)],
@@ -286,8 +287,8 @@ impl Model {
         }
     }
 
-    /// 1 if a point lies in the interior, −1 if it lies outside, 0 on the boundary or if the definition does
-    /// not tell.
+    /// Returns 1 if a point lies in the interior, −1 if it lies outside, 0 on the boundary or if the
+    /// definition does not decide.
     pub fn sign(&self, p: &Point) -> i32 {
         match self {
             Model::Union(parts) => parts.iter().map(|part| part.sign(p)).max().unwrap_or(-1),
@@ -302,8 +303,8 @@ impl Model {
         }
     }
 
-    /// Whether a point lies inside, all points being shifted by (ε, ε², ε³); `None` if the definition does
-    /// not tell.
+    /// True if a point lies inside, after all points are shifted by (ε, ε², ε³); `None` if the definition
+    /// does not decide.
     pub fn sampled(&self, probe: &Probe) -> Option<bool> {
         let all = |parts: &[Model]| parts.iter().map(|part| part.sampled(probe)).collect::<Option<Vec<_>>>();
         Some(match self {
@@ -320,20 +321,21 @@ impl Model {
                 0 => return None,
                 sign => sign > 0,
             },
-            // A host's function is rounded.
+            // A host's function has rounding errors.
             Model::Host(..) => return None,
             Model::Prism(..) => match self.sign(&probe.at) {
                 0 => return None,
                 sign => sign > 0,
             },
-            // Of its zeros those on the axis are too special.
+            // The zeros on the axis are too special.
             Model::Torus(..) if self.sign(&probe.at) == 0 && probe.at[..2].iter().all(|c| c.sign() == 0) => {
                 return None;
             }
             primitive => {
                 let at = primitive.values(&probe.at);
                 let lowest = at.iter().map(Exact::sign).min().unwrap_or(1);
-                // (The numbers beside zeros are long: they are looked at only where it hangs on them.)
+                // (The numbers beside zeros are long. They are examined only where the decision depends on
+                // them.)
                 lowest > 0
                     || lowest == 0
                         && at.iter().zip(&primitive.values(&probe.beside)).all(|(at, beside)| {
@@ -372,7 +374,7 @@ impl Other {
             Other::Moved(other, own, placement) => {
                 AnySolid::new(Transform::new(other.solid(own)?, own, placement))
             }
-            // An expression alone would become part of the one that it stands in.
+            // A single expression would become part of the surrounding one.
             Other::Model(model) => AnySolid::new(SplitCounter::new(model.csg(frame)?)),
         })
     }
@@ -390,7 +392,7 @@ impl Other {
     }
 }
 
-/// What the cells of a tree say that a point touches, if they agree.
+/// Returns the common sign of all cells of a tree that a point touches; 0 if they differ.
 fn stored(tree: &Octree, p: &Point) -> i32 {
     let frame = tree.frame();
     let mut ranges = [[0; 2]; 3];

@@ -1,4 +1,4 @@
-//! Extended octrees that are moved: surfaces go along exactly, and cells are found anew.
+//! Moved extended octrees: their surfaces are moved exactly, and their cells are computed anew.
 
 use super::model::Model;
 use super::oracle::frames;
@@ -27,7 +27,7 @@ fn either(a: &Csg, b: &Csg) -> Csg {
     Csg::union_of([a.clone(), b.clone()]).unwrap()
 }
 
-/// 80 × 60 × 10, with twenty bores.
+/// A plate of 80 × 60 × 10 with twenty bores.
 fn plate() -> Csg {
     let bores = (0..20).map(|k| {
         let to = [8.0 + 16.0 * f64::from(k % 5), 7.5 + 15.0 * f64::from(k / 5), 0.0];
@@ -37,7 +37,7 @@ fn plate() -> Csg {
     block.difference(&Csg::union_of(bores).unwrap()).unwrap()
 }
 
-/// A block less a hundred balls.
+/// A block minus a hundred balls.
 fn swarf() -> Csg {
     let balls = (0..100).map(|k| {
         let s = f64::from(k) / 99.0;
@@ -48,7 +48,8 @@ fn swarf() -> Csg {
     block.difference(&Csg::union_of(balls).unwrap()).unwrap()
 }
 
-/// About an axis through a point, by an angle in degrees; rounded, so that it is not quite a rotation.
+/// A rotation about an axis through a point, by an angle in degrees; rounded, so that it is not quite a
+/// rotation.
 fn turn(axis: [f64; 3], degrees: f64, about: [f64; 3]) -> Affine {
     let length = axis.iter().map(|c| c * c).sum::<f64>().sqrt();
     let [x, y, z] = axis.map(|c| c / length);
@@ -66,7 +67,7 @@ fn turn(axis: [f64; 3], degrees: f64, about: [f64; 3]) -> Affine {
     .unwrap()
 }
 
-/// The frame of a shape, its middle, and a frame with room for all turns about that.
+/// Returns the frame of a shape, its middle, and a frame with room for all rotations about the middle.
 fn frames_of(csg: &Csg, depth: u8) -> (Frame, [f64; 3], Frame) {
     let bounds = csg.bounds().unwrap();
     let middle = [0, 1, 2].map(|axis| 0.5 * (bounds.min[axis] + bounds.max[axis]));
@@ -101,7 +102,7 @@ fn a_plate_that_is_turned_again_and_again() {
         assert!(own.contains(truth) && own.width() <= 1.5 * other.width(), "{own:?} {other:?}");
         let (a, b) = (file::to_bytes(&tree).unwrap().len(), file::to_bytes(&direct).unwrap().len());
         assert!(a <= 2 * b, "{a} {b}");
-        // The image itself, whose cells are known as far as they are asked for.
+        // The image itself, whose cells are computed as far as needed.
         let image = measure(&placed(&tree, &map), &room, 1e-4, &alone()).unwrap().volume;
         assert!(image.contains(truth), "{image:?}");
     }
@@ -119,12 +120,13 @@ fn few_cells_more_are_given_up_by_a_turn() {
     assert!(tree.statistics().nodes() <= 2 * direct.statistics().nodes());
     let (own, other) = (volume(&tree, 1e-6), volume(&direct, 1e-6));
     assert!(own.common(other).is_some(), "{own:?} {other:?}");
-    // Threads do not show.
+    // The number of threads does not matter.
     let image = placed(&extended(&csg, &frame), &map);
     assert_eq!(build_extended(&image, &room, &EXACT, &Control::threads(3)).unwrap(), tree);
 }
 
-/// Whether what a solid says of points contradicts the truth; how many it decides.
+/// Checks that a solid's answers for points do not contradict the truth. Returns the number of decided
+/// points.
 fn compared<S: Solid>(name: &str, solid: &S, frame: &Frame, truth: &Csg, points: &[[f64; 3]]) -> usize {
     let mut answers = vec![Membership::Undecided; points.len()];
     contains(solid, frame, points, &mut answers, &alone()).unwrap();
@@ -140,7 +142,7 @@ fn compared<S: Solid>(name: &str, solid: &S, frame: &Frame, truth: &Csg, points:
     known
 }
 
-/// Points anywhere, and as near to the surface as two doubles that it separates.
+/// Points anywhere, and pairs of adjacent doubles that the surface separates.
 fn points_of(truth: &Csg, frame: &Frame, random: &mut Random) -> Vec<[f64; 3]> {
     let mut points: Vec<[f64; 3]> =
         (0..400).map(|_| frame.origin().map(|origin| origin + frame.edge() * random.unit())).collect();
@@ -165,7 +167,7 @@ fn points_of(truth: &Csg, frame: &Frame, random: &mut Random) -> Vec<[f64; 3]> {
     points
 }
 
-/// Any affine map that leaves a universe about where it is.
+/// A random affine map that leaves a universe about where it is.
 fn any_map(random: &mut Random, frame: &Frame) -> Affine {
     loop {
         let mut rows = [[0.0; 4]; 3];
@@ -205,7 +207,7 @@ fn no_point_of_what_is_moved_is_told_wrong() {
         known[0] += compared("image", &image, &frame, &truth, &points);
         let moved = extended(&image, &frame);
         known[1] += compared("moved", &moved, &frame, &truth, &points);
-        // Once more, from the tree; what leaves the universe in between is lost, and undecided.
+        // Once more, from the tree. Parts that leave the universe in between are lost, and undecided.
         let back = map.inverse().unwrap();
         let returned = extended(&placed(&moved, &back), &frame);
         let truth = truth.placed(&back).unwrap();
@@ -220,7 +222,7 @@ fn no_point_of_what_is_moved_is_told_wrong() {
     assert!(known.iter().all(|&known| known > repeated(1_750, 5_000)), "{known:?}");
 }
 
-/// Planes with a width are moved as others are: what is thinner than the tolerance does not vanish.
+/// Planes with a width are moved like other planes. A part thinner than the tolerance does not vanish.
 #[test]
 fn slabs_are_moved() {
     let mesh = |min: [f64; 3], max: [f64; 3]| {
@@ -270,7 +272,7 @@ fn moved_trees_are_measured_as_the_expression() {
         let map = any_map(&mut random, &frame);
         let (image, truth) = (placed(&tree, &map), part.placed(&map).unwrap());
         let ask = |solid: &AnySolid| {
-            // (However narrow the intervals become, they must have something in common.)
+            // (However narrow the intervals become, they must overlap.)
             let some = Control { max_splits: Some(5_000), ..alone() };
             let found = measure(solid, &frame, 1e-3, &some).unwrap();
             let inertia = found.inertia_about_centroid;
@@ -311,7 +313,7 @@ fn set_operations_keep_what_was_moved() {
     }
 }
 
-/// Where cells are the images of cells the result is that of the expression, moved, in every byte.
+/// If cells are images of cells, the result equals the moved expression's result in every byte.
 #[test]
 fn maps_of_the_lattice_move_cells_one_to_one() {
     let part = {
@@ -343,8 +345,8 @@ fn maps_of_the_lattice_move_cells_one_to_one() {
     }
 }
 
-/// Faces in planes of the lattice cross no cell, so that no cell keeps them. They are found for a map that
-/// turns them.
+/// Faces in planes of the lattice cross no cell, so that no cell keeps them. A map that rotates them finds
+/// them.
 #[test]
 fn faces_in_planes_of_the_lattice_are_moved() {
     let aligned = Frame::new([0.0; 3], 128.0, 14).unwrap();

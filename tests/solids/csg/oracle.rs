@@ -1,4 +1,4 @@
-//! Constructive solid geometry against exact arithmetic that knows nothing of cells.
+//! Constructive solid geometry against exact arithmetic without cells.
 
 use super::points::{Found, Judge, centre};
 use crate::common::{Random, alone, lattice_frame};
@@ -7,7 +7,7 @@ use crate::random::Maker;
 use crate::{any_bytes, common};
 use leafless::{Frame, Rule, Solid, Tag, build};
 
-/// Frames whose planes are integers, exact doubles, no doubles at all; far from the origin, tiny.
+/// Frames whose planes are integers, exact doubles, or no doubles at all; far from the origin; and tiny.
 pub(super) fn frames(depth: u8) -> [Frame; 5] {
     let frame = |origin, edge| Frame::new(origin, edge, depth).unwrap();
     [
@@ -19,7 +19,7 @@ pub(super) fn frames(depth: u8) -> [Frame; 5] {
     ]
 }
 
-/// Random points in `models` random models each, made by `make`.
+/// Checks random points in `models` random models, each made by `make`.
 fn no_lies(models: u64, points: u64, others: bool, make: impl Fn(&mut Maker<'_>) -> Model) {
     let mut found = Found::default();
     let mut made = 0;
@@ -30,7 +30,7 @@ fn no_lies(models: u64, points: u64, others: bool, make: impl Fn(&mut Maker<'_>)
         let aligned = random.below(2) == 0;
         let mut maker = Maker { random: &mut random, frame, aligned, others };
         let model = make(&mut maker);
-        // What the ranges of arguments do not admit.
+        // The library refuses arguments out of range.
         let Ok(csg) = model.csg(&frame) else { continue };
         let tree = build(&csg, &frame, Rule::Certified, &alone()).unwrap();
         let mut judge = Judge { model: &model, tree: &tree, bounds: csg.bounds(), found };
@@ -47,7 +47,7 @@ fn no_lies(models: u64, points: u64, others: bool, make: impl Fn(&mut Maker<'_>)
     assert!(found.inside > all / 8 && found.outside > all / 8 && found.decided > all / 8, "{found:?}");
 }
 
-/// An expression placed twice.
+/// An expression with two placements, one after the other.
 fn placed(maker: &mut Maker<'_>) -> Model {
     let part = maker.expression(1);
     let inner = Model::Placed(Box::new(part), maker.placement());
@@ -89,7 +89,7 @@ fn a_million_points_of_each_kind() {
     no_lies(10_000, 100, true, |maker| maker.expression(4));
 }
 
-/// The sampled rule is the exact decision at cell centres.
+/// The sampled rule gives the exact decision at cell centres.
 fn sampled(models: u64, make: impl Fn(&mut Maker<'_>) -> Model) {
     let mut boundary = 0;
     for seed in 0..models {
@@ -118,7 +118,7 @@ fn samples_are_exact() {
     sampled(120, |maker| maker.expression(2));
 }
 
-/// What the fuzz target does, on inputs that are the same every time.
+/// Runs the fuzz target on inputs that are the same every time.
 fn any_bytes(count: u64) {
     for seed in 0..count {
         let mut random = Random(seed);
@@ -126,7 +126,7 @@ fn any_bytes(count: u64) {
         // Mostly moderate numbers.
         let mut byte = || if random.below(20) == 0 { random.below(256) } else { 40 + random.below(100) };
         let data: Vec<u8> = (0..length).map(|_| byte() as u8).collect();
-        // A thread that fails says what it was given.
+        // A failing test prints its input.
         let result = std::panic::catch_unwind(|| any_bytes::csg(&data));
         assert!(result.is_ok(), "input {seed}: {data:?}");
     }

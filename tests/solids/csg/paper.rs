@@ -1,5 +1,4 @@
-//! The published classification, written down as slowly as it was published: all vertices, then all
-//! half-spaces.
+//! The published classification, as slow as published: all vertices, then all half-spaces.
 
 use super::extremes::{Separable, corners};
 use crate::common::exact::Exact;
@@ -7,15 +6,15 @@ use crate::common::{Dense, Random, alone, lattice_frame, positions};
 use leafless::solid::{HalfSpace, Parts, Touch};
 use leafless::{Cell, Classifier, Csg, Frame, Rule, Solid, Tag, Verdict, Worker, build};
 
-/// A primitive as the library has it, and its half-spaces.
+/// A primitive in the library's form, and its half-spaces.
 #[derive(Clone)]
 struct Primitive {
     csg: Csg,
     half_spaces: Vec<Separable>,
 }
 
-/// A vertex on the surface is inside; vertices that do not agree make a cell PARTIAL, those that do the
-/// half-spaces decide.
+/// Classifies a cell. A vertex on the surface is inside. If the vertices disagree, the cell is PARTIAL; if
+/// they agree, the half-spaces decide.
 fn classify(primitive: &Primitive, frame: &Frame, cell: Cell) -> Tag {
     let [x, y, z] = corners(frame, cell);
     let inside = |vertex: usize| {
@@ -30,7 +29,7 @@ fn classify(primitive: &Primitive, frame: &Frame, cell: Cell) -> Tag {
     }
 }
 
-/// Compares all splits above the frame's depth; returns the tags of the finest cells.
+/// Compares all splits above the frame's depth. Returns the tags of the finest cells.
 fn compare(primitive: &Primitive, frame: &Frame) -> Dense {
     let csg = primitive.csg.with_touch(Touch::Paper);
     let n = primitive.half_spaces.len() as u64;
@@ -43,7 +42,7 @@ fn compare(primitive: &Primitive, frame: &Frame) -> Dense {
     while let Some((cell, verdict)) = stack.pop() {
         match verdict {
             Verdict::Partial(part) if cell.level < frame.depth() => {
-                // A worker for this split alone: what it evaluates is told when it is gone.
+                // A worker for this split alone. Its evaluations are counted when it is dropped.
                 let mut single = classifier.worker().unwrap();
                 let own = single.hand_over(&worker, &part).unwrap();
                 let before = csg.evaluations();
@@ -52,7 +51,8 @@ fn compare(primitive: &Primitive, frame: &Frame) -> Dense {
                 let evaluations = csg.evaluations() - before;
                 let children = worker.split(cell, &part).unwrap();
                 assert_eq!(again, children.each_ref().map(|child| child.tag()));
-                // Each of the 27 points at most once, then each half-space for the children that agree.
+                // Each of the 27 points at most once, then each half-space for the children whose vertices
+                // agree.
                 assert!(
                     evaluations >= (n + 2).min(27) && evaluations <= 27 * n + 8 * n,
                     "{evaluations} of {n}"
@@ -74,7 +74,7 @@ fn compare(primitive: &Primitive, frame: &Frame) -> Dense {
     out
 }
 
-/// Coordinates that are multiples of a quarter of a cell.
+/// A random coordinate, a multiple of a quarter of a cell.
 fn number(random: &mut Random, n: f64) -> f64 {
     (random.between(-0.2, 1.2) * n * 4.0).round() / 4.0
 }
@@ -145,7 +145,7 @@ fn primitives_are_classified_as_published() {
         assert!(Dense::of(build(&paper, &frame, Rule::Certified, &alone()).unwrap().view()) == dense);
         let other = build(&paper.complement().with_touch(Touch::Paper), &frame, Rule::Certified, &alone());
         assert!(Dense::of(other.unwrap().view()) == dense.complement());
-        // What only touches is PARTIAL as published, and EMPTY otherwise; nothing else differs.
+        // Cells with mere contact are PARTIAL as published, and EMPTY otherwise. Nothing else differs.
         let exact = Dense::of(build(&primitive.csg, &frame, Rule::Certified, &alone()).unwrap().view());
         let sharper = exact.tags.iter().zip(&dense.tags).all(|(&e, &p)| p == Tag::Partial || p == e);
         assert!(sharper, "{:?}", primitive.half_spaces);

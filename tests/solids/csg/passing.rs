@@ -1,5 +1,5 @@
-//! Expressions in which one other solid is all that is open, in the whole universe or in a part of it: what
-//! that solid does in bulk, the expression does.
+//! Expressions in which only one other solid is open, in the whole universe or in a part of it. The
+//! expression passes that solid's block-wise work on.
 
 use crate::common::cubes::Plain;
 use crate::common::{alone, repeated};
@@ -35,7 +35,7 @@ fn torus(centre: [f64; 3], major: f64, minor: f64, [around, across]: [u32; 2]) -
     mesh
 }
 
-/// An octahedron that the library does not know: |x| + |y| + |z| ≤ r.
+/// An octahedron that is not a primitive of the library: |x| + |y| + |z| ≤ r.
 fn octahedron(r: f64) -> AnySolid {
     let sum = |p: [f64; 3]| p.iter().map(|c| c.abs()).sum::<f64>();
     let bounds = Bounds::new([-r; 3], [r; 3]).unwrap();
@@ -63,7 +63,7 @@ fn built(solid: &impl Solid, frame: &Frame, rule: Rule) -> Octree {
     tree
 }
 
-/// Whether two trees have the same cells, whatever is known of the space around them.
+/// True if two trees have the same cells, whatever their exteriors.
 fn same_cells(a: &Octree, b: &Octree) -> bool {
     [Rule::Inner, Rule::Outer].into_iter().all(|rule| {
         let [a, b] = [a, b].map(|tree| resolve(tree.view(), rule, &alone()).unwrap());
@@ -71,7 +71,7 @@ fn same_cells(a: &Octree, b: &Octree) -> bool {
     })
 }
 
-/// Whether `a` decides what `b` does, in the same way.
+/// True if `a` decides every cell that `b` decides, in the same way.
 fn no_looser(a: &Octree, b: &Octree) -> bool {
     let within = |a: &Octree, b: &Octree| {
         difference(a.view(), b.view(), &alone()).unwrap().view().root_tag() == Tag::Empty
@@ -84,7 +84,7 @@ fn no_looser(a: &Octree, b: &Octree) -> bool {
 fn check(name: &str, make: impl Fn(&Frame) -> AnySolid, rules: &[Rule]) {
     for depth in 1..=repeated(7, 8) {
         let frames = [Frame::new([-1.0; 3], 2.0, depth), Frame::new([-1.1, -0.9, -1.0], 2.2, depth)];
-        // Large trees take a while: one frame then, and fewer cases.
+        // Large trees take long. They get one frame, and fewer cases.
         let frames = if depth < 7 { &frames[..] } else { &frames[depth as usize % 2..][..1] };
         for frame in frames {
             let frame = *frame.as_ref().unwrap();
@@ -98,7 +98,7 @@ fn check(name: &str, make: impl Fn(&Frame) -> AnySolid, rules: &[Rule]) {
                 let what = format!("{name} {rule:?} {frame:?}");
                 let plain = built(&solid, &frame, rule);
                 assert!(built(&alone_in_it, &frame, rule) == plain, "{what}: alone");
-                // What is left out of the complement is what was left open.
+                // The part missing in the complement is the part that was left open.
                 let opposite = match rule {
                     Rule::Inner => Rule::Outer,
                     Rule::Outer => Rule::Inner,
@@ -106,7 +106,7 @@ fn check(name: &str, make: impl Fn(&Frame) -> AnySolid, rules: &[Rule]) {
                 };
                 let not = complement(built(&solid, &frame, opposite).view(), &alone()).unwrap();
                 assert!(built(&alone_in_it.complement(), &frame, rule) == not, "{what}: the complement");
-                // Trees of the parts: of what is taken away the opposite rule's.
+                // Trees of the parts. The subtracted part has the opposite rule.
                 let cutter = build(&small, &frame, opposite, &alone()).unwrap();
                 let within = build(&most, &frame, rule, &alone()).unwrap();
                 let added = build(&small, &frame, rule, &alone()).unwrap();
@@ -160,13 +160,13 @@ fn a_stored_octree() {
     let solid = MeshSolid::new(mesh, FillRule::NonZero).unwrap();
     let stored = |rule, frame: &Frame| AnySolid::new(build(&solid, frame, rule, &alone()).unwrap());
     check("sampled octree", |frame| stored(Rule::Sampled, frame), &RULES);
-    // Of cells that are not decided no centre is known.
+    // In undecided cells, no centre is known.
     check(
         "certified octree",
         |frame| stored(Rule::Certified, frame),
         &[Rule::Certified, Rule::Inner, Rule::Outer],
     );
-    // Coarser than what is asked.
+    // A tree coarser than the query.
     let coarse = |frame: &Frame| frame.with_depth(frame.depth().div_ceil(2)).unwrap();
     check("coarse octree", |frame| stored(Rule::Sampled, &coarse(frame)), &RULES);
 }

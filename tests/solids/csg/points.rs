@@ -5,7 +5,7 @@ use crate::common::Random;
 use crate::common::exact::Exact;
 use leafless::{Bounds, Frame, Octree, Tag};
 
-/// Positions are counted in steps of 2^-20 of a finest cell.
+/// Positions are multiples of 2^-20 of a finest cell.
 const STEPS: u32 = 20;
 
 fn coordinate(frame: &Frame, axis: usize, k: i64) -> Exact {
@@ -18,12 +18,12 @@ fn point(frame: &Frame, at: [i64; 3]) -> Point {
     [x, y, z, Exact::from(1.0)]
 }
 
-/// What points have found out so far.
+/// Counts of the points examined.
 #[derive(Default, Debug, PartialEq)]
 pub struct Found {
     pub inside: u64,
     pub outside: u64,
-    /// Points in cells that are decided.
+    /// Number of points in decided cells.
     pub decided: u64,
 }
 
@@ -35,7 +35,7 @@ pub struct Judge<'a> {
 }
 
 impl Judge<'_> {
-    /// Which side a position is on; a tree that says otherwise is a lie.
+    /// Returns the side on which a position lies. The check fails if the tree contradicts it.
     fn sign(&mut self, at: [i64; 3]) -> i32 {
         let frame = self.tree.frame();
         let p = point(frame, at);
@@ -75,7 +75,7 @@ impl Judge<'_> {
         sign
     }
 
-    /// A random position: anywhere, on lattice planes, a vertex, a centre, or beyond the universe.
+    /// A random position: anywhere, on lattice planes, at a vertex or a centre, or outside the universe.
     fn position(&self, random: &mut Random) -> [i64; 3] {
         let n = self.tree.frame().cells() as u64;
         let kind = random.below(8);
@@ -93,7 +93,8 @@ impl Judge<'_> {
         })
     }
 
-    /// Points at random, and ever closer to the surface between two that are on different sides of it.
+    /// Checks random points, and points ever closer to the surface by bisection between two points on
+    /// different sides.
     pub fn ask(&mut self, points: u64, random: &mut Random) {
         let mut last = [None; 2];
         let mut asked = 0;
@@ -124,7 +125,7 @@ impl Judge<'_> {
     }
 }
 
-/// The centre of a finest cell, and the point beside it.
+/// Returns the centre of a finest cell, and the point beside it.
 pub fn centre(frame: &Frame, at: [u32; 3]) -> Probe {
     let middle = at.map(|i| ((2 * i as i64) + 1) << (STEPS - 1));
     let at = point(frame, middle);

@@ -1,4 +1,5 @@
-//! Many poses of a block among many balls: the union is prepared once, and a pose costs what is near it.
+//! Many poses of a block among many balls. The union is prepared once, and a pose costs only its
+//! neighbourhood.
 
 use crate::common::cubes::Plain;
 use crate::common::{Random, alone};
@@ -6,11 +7,11 @@ use leafless::query::{Overlap, interference_at};
 use leafless::solid::SplitCounter;
 use leafless::{Affine, Csg, Frame};
 
-/// Evaluations of half-spaces for each pose, among `n` balls.
+/// Returns the number of half-space evaluations for each pose among `n` balls.
 fn evaluations(n: u32) -> f64 {
     const POSES: usize = 1000;
     let mut random = Random(n as u64);
-    // As many balls in a unit of volume, whatever n is.
+    // The same number of balls in a unit of volume for any n.
     let edge = (n as f64).cbrt();
     let frame = Frame::new([0.0; 3], edge, 12).unwrap();
     let balls = (0..n).map(|_| Csg::ball([0; 3].map(|_| random.between(0.0, edge)), 0.3).unwrap());
@@ -43,7 +44,7 @@ fn a_pose_costs_what_is_near_it() {
     assert!(few > 0.0 && many < 3.0 * few, "{few}, then {many}");
 }
 
-/// The same with the union moved past the block, which lies on a frame of its own size.
+/// The same, with the union moved past the block. The block's frame is of the block's size.
 fn evaluations_of_a_moved_union(n: u32) -> f64 {
     const POSES: usize = 1000;
     let mut random = Random(n as u64);
@@ -57,7 +58,7 @@ fn evaluations_of_a_moved_union(n: u32) -> f64 {
         .map(|_| {
             let (s, c) = random.between(0.0, 6.0).sin_cos();
             let [x, y, z] = [0; 3].map(|_| random.between(1.0, edge - 1.0));
-            // The point (x, y, z) of the union comes to the block.
+            // The point (x, y, z) of the union is moved to the block.
             Affine::new([[c, -s, 0.0, s * y - c * x], [s, c, 0.0, -s * x - c * y], [0.0, 0.0, 1.0, -z]])
                 .unwrap()
         })

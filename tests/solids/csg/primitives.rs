@@ -1,6 +1,6 @@
 //! Half-spaces and primitives under random placements, against exact arithmetic.
 //!
-//! By default there are some 10⁵ points of each; a million each take some minutes:
+//! By default there are about 10⁵ points for each. A million points each take some minutes:
 //! `cargo test --release --test solids csg::primitives -- --ignored`
 
 use crate::common::exact::Exact;
@@ -14,13 +14,13 @@ use std::f64::consts::PI;
 use std::sync::atomic::{AtomicUsize, Ordering::Relaxed};
 use std::sync::{Arc, Mutex};
 
-/// A point in a primitive's own space: numerators, and their common denominator, which is positive.
+/// A point in a primitive's own space: numerators, and their positive common denominator.
 struct Point {
     at: [Exact; 3],
     w: Exact,
 }
 
-/// Σ of products of exact numbers.
+/// Returns the sum of exact numbers.
 fn sum(terms: impl IntoIterator<Item = Exact>) -> Exact {
     terms.into_iter().fold(Exact::from(0.0), |sum, term| sum.plus(&term))
 }
@@ -38,7 +38,7 @@ fn pow(base: &Exact, n: u32) -> Exact {
 }
 
 impl Point {
-    /// The point whose image is `p`.
+    /// Returns the point with the image `p`.
     fn before(placement: &Affine, p: [f64; 3]) -> Point {
         let m = placement.rows().map(|row| row.map(Exact::from));
         let d: Vec<Exact> = (0..3).map(|i| Exact::from(p[i]).minus(&m[i][3])).collect();
@@ -53,7 +53,7 @@ impl Point {
         Point { at: at.map(|c| c.times(&flip)), w: w.times(&flip) }
     }
 
-    /// The coordinate less a number, times w.
+    /// Returns the coordinate minus a number, times w.
     fn beyond(&self, axis: usize, x: f64) -> Exact {
         self.at[axis].minus(&self.w.times(&x.into()))
     }
@@ -62,7 +62,7 @@ impl Point {
         self.beyond(axis, low).sign().min(-self.beyond(axis, high).sign())
     }
 
-    /// Sign of n · p + d.
+    /// Returns the sign of n · p + d.
     fn plane(&self, n: [f64; 3], d: f64) -> i32 {
         let products = (0..3).map(|axis| self.at[axis].times(&n[axis].into()));
         sum(products.chain([self.w.times(&d.into())])).sign()
@@ -77,7 +77,7 @@ struct Shape {
     solid: Csg,
     side: Side,
     volume: Option<f64>,
-    /// A box around it.
+    /// A box around the shape.
     bounds: ([f64; 3], [f64; 3]),
 }
 
@@ -107,7 +107,7 @@ fn polygon_area(corners: &[[f64; 2]]) -> f64 {
     pairs.map(|(a, b)| a[0] * b[1] - a[1] * b[0]).sum::<f64>().abs() / 2.0
 }
 
-/// The sign of 2 R ρ − (x² + y² + z² + R² − r²), without a root.
+/// Returns the sign of 2 R ρ − (x² + y² + z² + R² − r²), without a root.
 fn torus_side(p: &Point, major: f64, minor: f64) -> i32 {
     let [x, y, z] = p.at.each_ref().map(|c| pow(c, 2));
     let rho = x.plus(&y);
@@ -134,7 +134,7 @@ fn quadric_side(p: &Point, c: [f64; 10]) -> i32 {
     sum(pairs.iter().zip(c).map(|((a, b), c)| a.times(b).times(&c.into()))).sign()
 }
 
-/// Volume of the points with |x|^p + |y|^q + |z|^r ≤ 1.
+/// Returns the volume of the points with |x|^p + |y|^q + |z|^r ≤ 1.
 fn superball_volume(exponents: [f64; 3]) -> f64 {
     let g = |x: f64| libm::tgamma(1.0 + x);
     let [p, q, r] = exponents.map(|n| 1.0 / n);
@@ -223,8 +223,8 @@ fn shapes() -> Vec<Shape> {
             Csg::frustum_between(from, to, radii).unwrap(),
             Some(PI * length / 3.0 * (r * r + r * s + s * s)),
             (low, high),
-            // The distance from the axis is |(p − a) × d| / |d|, and the radius there r + (s − r) (p − a) · d
-            // / |d|².
+            // The distance from the axis is |(p − a) × d| / |d|, and the radius there is r + (s − r) (p − a)
+            // · d / |d|².
             Box::new(move |p| {
                 let d = [0, 1, 2].map(|i| Exact::from(b[i]).minus(&a[i].into()));
                 let q = [0, 1, 2].map(|i| p.beyond(i, a[i]));
@@ -329,7 +329,7 @@ fn shapes() -> Vec<Shape> {
     shapes
 }
 
-/// SplitMix64.
+/// A SplitMix64 generator.
 struct Random(u64);
 
 impl Random {
@@ -349,7 +349,7 @@ impl Random {
         low + (high - low) * (self.bits() >> 11) as f64 / (1u64 << 53) as f64
     }
 
-    /// Scaled, sheared and mirrored ones; some take axes to axes, some have short numbers.
+    /// Scaled, sheared and mirrored placements. Some take axes to axes, some have short numbers.
     fn placement(&mut self) -> Affine {
         loop {
             let (kind, length) = (self.below(4), self.below(4));
@@ -383,7 +383,7 @@ fn determinant(m: &[[f64; 4]; 3]) -> f64 {
         .sum()
 }
 
-/// A cube around the image of a box, somewhat larger; its lattice planes are short numbers if it is `neat`.
+/// A cube slightly larger than the image of a box. If it is `neat`, its lattice planes are short numbers.
 fn frame_around((min, max): ([f64; 3], [f64; 3]), placement: &Affine, neat: bool, depth: u8) -> Frame {
     let corners: Vec<[f64; 3]> = (0..8)
         .map(|k| {
@@ -405,7 +405,7 @@ fn built(solid: &Csg, frame: &Frame) -> Octree {
     build(solid, frame, Rule::Certified, &Control::threads(1)).unwrap()
 }
 
-/// Points of random cells (corners, middles and random ones) against the cells' tags.
+/// Compares points of random cells (corners, middles and random ones) with the cells' tags.
 fn check_points(
     shape: &Shape,
     placement: &Affine,
@@ -414,11 +414,11 @@ fn check_points(
     random: &mut Random,
 ) -> [u64; 3] {
     let tree = built(&shape.solid.placed(placement).unwrap(), frame);
-    // On a frame of short numbers all of them are doubles, or they stay away from the cells' faces.
+    // On a frame of short numbers all points are doubles; otherwise they stay away from the cells' faces.
     let neat = frame.edge().log2().fract() == 0.0;
     let mut seen = [0; 3];
     for _ in 0..points {
-        // Three of four from where the shape is.
+        // Three of four points are near the shape.
         let mut cell = [0, 1, 2].map(|_| random.below(frame.cells() as u64) as f64);
         if random.below(4) > 0 {
             let (min, max) = shape.bounds;
@@ -479,7 +479,7 @@ fn points_never_contradict_cells_at_length() {
     check_all_points(100, 10_000, 2);
 }
 
-/// Along the axes, two points make what a cylinder or frustum around z is when it is moved there.
+/// Along the axes, two points make the same solid as a cylinder or frustum around z moved there.
 #[test]
 fn two_points_along_an_axis_are_as_good_as_heights() {
     let frame = Frame::new([-2.0; 3], 4.0, 6).unwrap();
@@ -517,7 +517,7 @@ fn two_points_along_an_axis_are_as_good_as_heights() {
             "{from:?} {to:?} {radii:?}"
         );
     }
-    // Numbers as far apart as there may be.
+    // Numbers as far apart as possible.
     let (small, large) = (2f64.powi(-256), 2f64.powi(256));
     for (from, to) in [([0.0; 3], [small, 0.0, small]), ([-large; 3], [large, large, small])] {
         for radii in [[small, large], [large, large], [0.0, small]] {
@@ -556,7 +556,7 @@ fn volumes_contain_the_truth_at_every_depth() {
     }
 }
 
-/// What cells at depth `depth` of [−2, 2]³ say.
+/// Returns the volume from cells at depth `depth` of [−2, 2]³.
 fn volume_on_lattice(solid: impl Into<Csg>, depth: u8) -> Interval {
     built(&solid.into(), &Frame::new([-2.0; 3], 4.0, depth).unwrap()).statistics().volume()
 }
@@ -584,17 +584,17 @@ fn contact_decides() {
             assert_eq!(volume_on_lattice(Csg::from(ball).placed(&moved).unwrap(), 3).upper, 4.0, "{n}");
         }
     }
-    // A torus of radii 3/2 and 1/2 touches the planes z = ±1/2 and the cube's faces; one turned by a right
-    // angle too.
+    // A torus of radii 3/2 and 1/2 touches the planes z = ±1/2 and the cube's faces. A torus rotated by a
+    // right angle does, too.
     let torus = Csg::torus(1.5, 0.5).unwrap();
     let turned = Affine::new([[0.0, 0.0, 1.0, 0.0], [0.0, 1.0, 0.0, 0.0], [-1.0, 0.0, 0.0, 0.0]]).unwrap();
     let cells = [torus.clone(), torus.placed(&turned).unwrap()].map(|torus| volume_on_lattice(torus, 3));
     assert_eq!(cells[0], cells[1]);
-    // Of 8 × 8 × 2 cells the 16 in the hole, which touches the circle of radius 1, stay outside only where
-    // that leaves a whole cell out.
+    // The hole touches the circle of radius 1. Its 16 cells, out of 8 × 8 × 2, stay outside only where the
+    // hole leaves out a whole cell.
     let truth = 2.0 * std::f64::consts::PI.powi(2) * 1.5 * 0.25;
     assert!(cells[0].upper <= 16.0 && cells[0].contains(truth), "{cells:?}");
-    // Moved by less than floating point can tell, it reaches into the cells above.
+    // Moved by less than doubles resolve, it reaches into the cells above.
     for (up, expected) in [(0.0, Membership::Outside), (2f64.powi(-60), Membership::Undecided)] {
         let moved = torus.placed(&Affine::translation([0.0, 0.0, up]).unwrap()).unwrap();
         let tree = built(&moved, &Frame::new([-2.0; 3], 4.0, 3).unwrap());
@@ -664,7 +664,7 @@ fn a_quadratic_power_is_a_quadric() {
 #[test]
 fn far_away_and_out_of_range() {
     let huge = 2f64.powi(250);
-    // |x − c| ≤ 1 seen from a universe of edge 2^250, or 2^-250, or at a distance: nothing is decided wrongly.
+    // |x − c| ≤ 1 in a universe of edge 2^250 or 2^-250, or at a distance. Nothing is decided wrongly.
     for (origin, edge) in [
         ([-huge / 2.0; 3], huge),
         ([0.0; 3], 1.0 / huge),
@@ -688,7 +688,8 @@ fn bounds_of_convex_polyhedra() {
     let mut random = Random(11);
     let sum = |a: [f64; 3], b: [f64; 3]| (0..3).map(|axis| a[axis] * b[axis]).sum::<f64>();
     for i in 0..300 {
-        // Planes that touch a ball, or pass by, around a centre; and their corners by trial of all triples.
+        // Planes that touch a ball, or pass it, around a centre; and their corners, found by trying all
+        // triples.
         let centre = [0, 1, 2].map(|_| random.between(-10.0, 10.0));
         let planes: Vec<([f64; 3], f64)> = (0..4 + i % 10)
             .map(|_| {
@@ -716,7 +717,7 @@ fn bounds_of_convex_polyhedra() {
                 }
             }
         }
-        // It is bounded if nothing of its cone of directions is left.
+        // It is bounded if its cone of directions is empty.
         let bounds = Csg::convex(&planes).unwrap().bounds();
         let far = (0..2000).any(|_| {
             let direction = [0, 1, 2].map(|_| random.between(-1.0, 1.0));
@@ -731,7 +732,7 @@ fn bounds_of_convex_polyhedra() {
             assert!(near(min[axis], low) && near(max[axis], high), "{min:?} {max:?} {low} {high} {planes:?}");
         }
     }
-    // Exactly the box, whatever the length of the normals; and beyond it no cell.
+    // Exactly the box, for any length of the normals; and no cell beyond it.
     let unit = |axis: usize, c: f64| [0, 1, 2].map(|k| if k == axis { c } else { 0.0 });
     let planes: Vec<_> = (0..3).flat_map(|k| [(unit(k, 3.0), 0.75), (unit(k, -1e-9), 1e-9)]).collect();
     let cube = Csg::convex(&planes).unwrap();
@@ -740,7 +741,7 @@ fn bounds_of_convex_polyhedra() {
     assert!(max.iter().all(|&c| (1.0..=1.0000001).contains(&c)), "{max:?}");
     let around = Frame::new([-2.0; 3], 4.0, 3).unwrap();
     assert_eq!(cube.on(&around, &Control::default()).unwrap().exterior(), leafless::Tag::Empty);
-    // Without end, or empty.
+    // Unbounded, or empty.
     assert!(Csg::convex(&planes[..5]).unwrap().bounds().is_none());
     assert!(Csg::convex(&[(unit(0, 1.0), -1.0), (unit(0, -1.0), -1.0)]).unwrap().bounds().is_none());
 }
@@ -782,7 +783,7 @@ fn what_is_refused() {
     assert!(Csg::torus(0.0, 1.0).is_ok() && Csg::wedge([1.0; 3], 0.0).is_ok());
 }
 
-/// A ball of radius 1 by a host's functions, and how often they were asked.
+/// A ball of radius 1 as a host's functions, which count their calls.
 fn host_ball(asked: &Arc<[AtomicUsize; 2]>) -> HalfSpace {
     let [values, ranges] = [asked.clone(), asked.clone()];
     HalfSpace::host(
@@ -798,7 +799,7 @@ fn host_ball(asked: &Arc<[AtomicUsize; 2]>) -> HalfSpace {
                 far += a.max(b).powi(2);
                 near += if min[axis] <= 0.0 && max[axis] >= 0.0 { 0.0 } else { a.min(b).powi(2) };
             }
-            // Dyadic boxes lose nothing; of others some last places are lost.
+            // Dyadic boxes lose nothing; other boxes lose some last places.
             let error = if min.iter().chain(&max).all(|c| (c * 1024.0).fract() == 0.0) { 0.0 } else { 1e-12 };
             Ok(Interval::new(1.0 - far - error, 1.0 - near + error).unwrap())
         },
@@ -872,7 +873,7 @@ fn a_host_is_asked_no_more_than_needed() {
     assert_eq!(split.len(), asked, "a vertex twice");
     assert!(asked <= 27);
     let boxes = boxes.lock().unwrap();
-    // The upper four only: the lower four have vertices on both sides.
+    // Only the upper four: the lower four have vertices on both sides.
     assert_eq!(boxes.len(), 4);
     assert!(boxes.iter().all(|(min, _)| min[2] == 0.5));
     assert_eq!(solid.evaluations() - before.1, (asked + boxes.len()) as u64);
@@ -895,7 +896,7 @@ fn a_host_that_fails_or_talks_nonsense() {
             4
         );
     }
-    // Not a number, the wrong way round, zero everywhere: nothing is decided.
+    // NaN, reversed bounds, and zero everywhere: nothing is decided.
     let nan = f64::NAN;
     for (value, lower, upper) in [
         (nan, -1.0, 1.0),
@@ -905,7 +906,7 @@ fn a_host_that_fails_or_talks_nonsense() {
         (nan, 0.0, 0.0),
         (1.0, nan, 1.0),
     ] {
-        // An interval that is none cannot be said: all that is left is that nothing is known.
+        // An invalid interval cannot be expressed. Then nothing is known.
         let range = Interval::new(lower, upper).unwrap_or(Interval::ALL);
         let solid = HalfSpace::host(move |_| Ok(value), move |_, _| Ok(range), None);
         let volume = build(&Csg::from(solid.clone()), &frame, Rule::Certified, &control)

@@ -1,4 +1,4 @@
-//! Random expressions that have something to do with a frame.
+//! Random expressions that interact with a frame.
 
 // Each test program uses its own part of this.
 #![allow(dead_code)]
@@ -10,10 +10,10 @@ use leafless::{Affine, Frame, Rule, build};
 pub struct Maker<'a> {
     pub random: &'a mut Random,
     pub frame: Frame,
-    /// Whether coordinates are multiples of half a cell and matrices take axes to axes, so that surfaces lie
-    /// on lattice planes and touch cells in vertices.
+    /// True if coordinates are multiples of half a cell and matrices take axes to axes. Then surfaces lie on
+    /// lattice planes, and touch cells in vertices.
     pub aligned: bool,
-    /// Whether solids that are no half-spaces occur.
+    /// True if solids other than half-spaces occur.
     pub others: bool,
 }
 
@@ -63,7 +63,7 @@ impl Maker<'_> {
         Model::Plane(normal, offset)
     }
 
-    /// Through a random point, about a random centre.
+    /// A quadric through a random point, about a random centre.
     pub fn quadric(&mut self, mixed: bool) -> Model {
         let (centre, through) = (self.point(), self.point());
         let mut c = [0.0; 10];
@@ -103,8 +103,9 @@ impl Maker<'_> {
         }
     }
 
-    /// A function of two or three half-spaces that is no intersection or union of them: one chooses between
-    /// the others, holds or both others do, two of three hold, or an odd number of them does.
+    /// A function of two or three half-spaces that is neither an intersection nor a union of them: one
+    /// half-space chooses between the others, one holds or both others do, two of three hold, or an odd
+    /// number of them does.
     pub fn function(&mut self, mut half_space: impl FnMut(&mut Self) -> Model) -> Model {
         let [a, b, c] = [(); 3].map(|()| half_space(self));
         let and = |a: &Model, b: &Model| Model::Intersection(vec![a.clone(), b.clone()]);
@@ -119,7 +120,7 @@ impl Maker<'_> {
         }
     }
 
-    /// Half-spaces joined in some way.
+    /// Several half-spaces combined by some operation.
     pub fn joined(&mut self, count: u64) -> Model {
         let mut model = self.half_space();
         for _ in 1..count {
@@ -172,7 +173,7 @@ impl Maker<'_> {
         }
     }
 
-    /// From around the origin to where the universe is.
+    /// Moves a model from the origin into the universe.
     pub fn moved(&mut self, model: Model) -> Model {
         match Affine::translation(self.point()) {
             Ok(placement) => Model::Placed(Box::new(model), placement),
@@ -180,7 +181,7 @@ impl Maker<'_> {
         }
     }
 
-    /// Through a random point, of moderate size in the universe.
+    /// A power of moderate size in the universe, through a random point.
     pub fn power(&mut self) -> Model {
         let (centre, through) = (self.point(), self.point());
         let terms = [0, 1, 2].map(|axis| {
@@ -214,7 +215,7 @@ impl Maker<'_> {
         Model::Prism(polygon.collect(), [low, low + self.length()])
     }
 
-    /// One that leaves the universe about where it is.
+    /// A placement that leaves the universe about where it is.
     pub fn placement(&mut self) -> Affine {
         loop {
             let mut rows = [[0.0; 4]; 3];
@@ -244,7 +245,7 @@ impl Maker<'_> {
         }
     }
 
-    /// The model in another place.
+    /// Returns the model at another place.
     pub fn placed(&mut self, model: Model) -> Model {
         Model::Placed(Box::new(model), self.placement())
     }
@@ -282,7 +283,7 @@ impl Maker<'_> {
         }
     }
 
-    /// An expression of at most `height` operations above each other.
+    /// An expression with at most `height` nested operations.
     pub fn expression(&mut self, height: u32) -> Model {
         let parts = |maker: &mut Self| {
             let count = [2, 2, 3, 4, 1, 0][maker.below(if height > 1 { 6 } else { 4 }) as usize];

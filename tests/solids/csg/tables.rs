@@ -1,4 +1,4 @@
-//! Expressions of few half-spaces that occur more than once: the verdicts are those of truth tables.
+//! Expressions of few half-spaces that occur more than once. The verdicts are those of truth tables.
 
 use super::model::Model;
 use super::oracle::frames;
@@ -14,7 +14,7 @@ fn built(csg: &Csg, frame: &Frame, rule: Rule) -> Octree {
     build(csg, frame, rule, &alone()).unwrap()
 }
 
-/// Asserts that an expression is decided as a whole: by its root, and in all trees.
+/// Asserts that an expression is decided as a whole, by its root and in all trees.
 fn assert_decided(what: &str, csg: &Csg, tag: Tag) {
     for depth in 1..=4 {
         let frames = frames(depth);
@@ -57,7 +57,7 @@ fn a_solid_and_itself() {
     let nothing_moved = Affine::translation([0.0; 3]).unwrap();
     for (name, a) in solids() {
         let not = a.complement();
-        // As it would come from elsewhere: another node of the same half-spaces.
+        // Another node of the same half-spaces, as if from elsewhere.
         let again = Csg::union_of([a.clone()]).unwrap();
         let cases = [
             ("A minus A", a.difference(&a), Tag::Empty),
@@ -73,7 +73,7 @@ fn a_solid_and_itself() {
         for (what, csg, tag) in cases {
             assert_decided(&format!("{name}: {what}"), &csg.unwrap(), tag);
         }
-        // What comes to A again has the trees of A.
+        // An expression that equals A has the trees of A.
         let same = [
             Csg::union_of([a.clone(), a.clone()]).unwrap(),
             a.difference(&a.complement()).unwrap(),
@@ -206,7 +206,7 @@ impl Tree {
         }
     }
 
-    /// The value for all choices of what is undecided.
+    /// Returns the value for all choices of the undecided half-spaces.
     fn tag(&self, tags: &[Tag]) -> Tag {
         let mut seen = [false; 2];
         for inside in 0..1u32 << tags.len() {
@@ -227,7 +227,7 @@ impl Tree {
     }
 }
 
-/// A primitive of one half-space.
+/// A random primitive with a single half-space.
 fn half_space(maker: &mut Maker<'_>) -> Model {
     loop {
         let model = match maker.below(4) {
@@ -247,8 +247,8 @@ fn half_space(maker: &mut Maker<'_>) -> Model {
     }
 }
 
-/// Verdicts of the universe, cell by cell as far as the splits go: not looser than any choice of what the
-/// half-spaces leave open, each on its own, and never beyond exact arithmetic.
+/// Compares verdicts of the universe, cell by cell as far as the splits go. They are at least as tight as all
+/// independent choices of the undecided half-spaces allow, and never contradict exact arithmetic.
 #[test]
 fn random_expressions_of_few_half_spaces() {
     let (mut tighter, mut found, mut made) = (0, Found::default(), 0);
@@ -265,7 +265,7 @@ fn random_expressions_of_few_half_spaces() {
             continue;
         };
         let tree = Tree::random(&mut random, count, 3);
-        // Longer ones have no table until less of them is left.
+        // Longer expressions have no table until they are reduced.
         if tree.leaves() > 24 {
             continue;
         }
@@ -287,7 +287,7 @@ fn random_expressions_of_few_half_spaces() {
             tighter += (tag != kleene.tags[i]) as u64;
             assert!(tag == kleene.tags[i] || kleene.tags[i] == Tag::Partial);
         }
-        // The root knows at once what no half-space matters for.
+        // The root decides expressions that no half-space affects.
         if tree.tag(&vec![Tag::Partial; count]) != Tag::Partial {
             let mut worker = csg.on(&frame, &crate::common::alone()).unwrap().worker().unwrap();
             assert_ne!(worker.root().unwrap().tag(), Tag::Partial, "{tree:#?}");

@@ -1,12 +1,12 @@
-//! Booleans of a mesh and its copy beside OpenVDB's masks, and what a second thread brings.
+//! Booleans of a mesh and its copy, compared with OpenVDB's masks, and the gain of a second thread.
 //!
 //! ```text
 //! cargo run --release --manifest-path benches/peers/Cargo.toml --bin booleans -- mesh.stl [openvdb]
 //! ```
 //!
-//! `openvdb` is the program made of `openvdb.cpp`, see benches/README.md. The longest side of the mesh has
-//! 1024 cells; the copy is moved by 10 % of its extent along x, on the same lattice. One thread each, in
-//! turn, processor time. Without the second argument: the mesh and its copy turned by 0.002 rad, on one
+//! `openvdb` is built from `openvdb.cpp`, see benches/README.md. The longest side of the mesh has 1024 cells.
+//! The copy is moved by 10 % of its extent along x, on the same lattice. One thread each, in turn, processor
+//! time. Without the second argument, the program measures the mesh and its copy rotated by 0.002 rad, on one
 //! thread and on two, elapsed time.
 
 use leafless::octree::Cursor;
@@ -19,10 +19,10 @@ use std::process::Command;
 use std::time::Instant;
 
 const CELLS: f64 = 1024.0;
-/// With it the copy of a mask takes a fraction of the time.
+/// A memory allocator with which copying a mask takes a fraction of the time.
 const PRELOADED: &str = "libtbbmalloc_proxy.so.2";
 const ROUNDS: usize = 9;
-/// Operations of ours in a round.
+/// Operations of Leafless in a round.
 const TIMES: usize = 10;
 
 type Made = Result<Octree, leafless::Error>;

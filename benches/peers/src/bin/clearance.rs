@@ -1,14 +1,14 @@
-//! Distances of a mesh from itself under random rigid placements beside FCL; see benches/README.md.
+//! Distances of a mesh from itself under random rigid placements, compared with FCL; see benches/README.md.
 //!
 //! ```text
 //! cargo run --release --manifest-path benches/peers/Cargo.toml --bin clearance -- mesh.stl PROGRAM [PLACEMENTS]
 //! ```
 //!
-//! PROGRAM is made of `clearance.cpp`. The mesh is turned around the centre of its box by any rotation, all
-//! equally likely, and moved by up to two of the box's sides along each axis. Every distance of FCL is
-//! compared with our interval. FCL takes the triangles for all there is: what lies inside of the other solid
-//! without touching its surface is left out of the comparison. One thread each, in turn; the ratio is the
-//! median of those of the rounds, over the placements that are apart.
+//! PROGRAM is built from `clearance.cpp`. The mesh is rotated around the centre of its box by a uniformly
+//! distributed rotation, and moved by up to two of the box's sides along each axis. Every distance of FCL is
+//! compared with the interval of Leafless. FCL considers only the triangles: a placement with one solid
+//! inside the other, without contact of the surfaces, is left out of the comparison. One thread each, in
+//! turn. The ratio is the median of the rounds' ratios, over the placements that are apart.
 
 use leafless::query::clearance_at;
 use leafless::{Affine, Control, Frame, Solid};
@@ -82,7 +82,7 @@ fn main() -> Result<(), Box<dyn Error>> {
             widest = widest.max(distance.width());
         }
         let is_contact = theirs < 0.0;
-        // Triangles that do not meet, of solids that overlap: one lies within the other.
+        // Triangles that do not meet, although the solids overlap: one solid lies within the other.
         if !is_contact && distance.upper == 0.0 && found.depth > 0.0 {
             within += 1;
         } else if is_contact && distance.lower > slack

@@ -1,15 +1,15 @@
-//! Collisions of two stored octrees under random rigid placements beside FCL's octrees; see
+//! Collisions of two stored octrees under random rigid placements, compared with FCL's octrees; see
 //! benches/README.md.
 //!
 //! ```text
 //! cargo run --release --manifest-path benches/peers/Cargo.toml --bin interference -- mesh.stl PROGRAM [PLACEMENTS [DEPTHS...]]
 //! ```
 //!
-//! PROGRAM is made of `interference.cpp`. The longest side of the mesh's bounding box has 2^depth cells,
-//! which are decided at their centres. The solid meets itself: turned around the centre of its box by any
-//! rotation, all equally likely, and moved by up to 1.2 of the box's sides along each axis. Both programs
-//! have the same cells and placements, and end with the proof or the first contact. One thread each, in turn;
-//! the ratio is the median of those of the rounds.
+//! PROGRAM is built from `interference.cpp`. The longest side of the mesh's bounding box has 2^depth cells,
+//! decided at their centres. The solid meets itself, rotated around the centre of its box by a uniformly
+//! distributed rotation, and moved by up to 1.2 of the box's sides along each axis. Both programs have the
+//! same cells and placements, and end with the proof or the first contact. One thread each, in turn. The
+//! ratio is the median of the rounds' ratios.
 
 use leafless::octree::Cursor;
 use leafless::query::{Interference, Overlap, interference_at};
@@ -23,8 +23,8 @@ use std::process::Command;
 
 const ROUNDS: usize = 9;
 
-/// Adds the nodes below a cursor as OctoMap's `.bt` has them: two bits a child, which is unknown, occupied or
-/// cut. Returns how many nodes OctoMap makes of them.
+/// Appends the nodes below a cursor in OctoMap's `.bt` form: two bits a child, which is unknown, occupied or
+/// cut. Returns the number of nodes that OctoMap makes of them.
 fn add_nodes(cursor: &mut Cursor<'_>, out: &mut Vec<u8>) -> usize {
     let Some(node) = cursor.node() else { return 1 };
     let tags = node.tags();

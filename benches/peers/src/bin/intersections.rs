@@ -1,11 +1,11 @@
-//! The test of a mesh for self-intersections beside CGAL's.
+//! The test of a mesh for self-intersections, compared with CGAL's.
 //!
 //! ```text
 //! cargo run --release --manifest-path benches/peers/Cargo.toml --bin intersections -- mesh.stl cgal
 //! ```
 //!
-//! `cgal` is the program made of `cgal.cpp`, see benches/README.md. One thread each, in turn, processor time.
-//! Each search builds its own tree over the triangles.
+//! `cgal` is built from `cgal.cpp`, see benches/README.md. One thread each, in turn, processor time. Each
+//! search builds its own tree over the triangles.
 
 use leafless::Control;
 use peers::{Peer, median, read, spent};

@@ -1,14 +1,13 @@
-//! Single questions to a triangle mesh, asked of Embree and FCL, and of parry3d in single and double
-//! precision; see benches/README.md. One thread, one call for each question.
+//! Single queries of a triangle mesh by Embree and FCL, and by parry3d in single and double precision; see
+//! benches/README.md. One thread, one call for each query.
 //!
 //! ```text
 //! cargo run --release --manifest-path benches/peers/Cargo.toml --bin mesh_queries -- mesh.stl PROGRAM FOLDER [QUESTIONS [CHECKED]]
 //! ```
 //!
-//! PROGRAM is made of `mesh_queries.cpp`. The mesh is sewn, and kept for all peers as `sewn.stl` in FOLDER.
-//! There are a million questions unless told otherwise. The answers to the first 1000, or as many as CHECKED
-//! tells, and those to questions about which peers disagree, are held against what Leafless proves; of
-//! points, all answers.
+//! PROGRAM is built from `mesh_queries.cpp`. The mesh is sewn, and written for all peers to `sewn.stl` in
+//! FOLDER. There are a million queries by default. Proofs of Leafless check the answers to the first CHECKED
+//! queries (default 1000) and to queries on which peers disagree; for points, all answers.
 
 use leafless::query::{DistanceTo, distances, ray_spans};
 use leafless::solid::Prepared;
@@ -24,26 +23,26 @@ mod questions;
 
 const ROUNDS: usize = 5;
 
-/// The questions: two lists of rays, and points.
+/// The queries: two lists of rays, and points.
 struct Questions {
     rays: [Vec<Line>; 2],
     points: Vec<[f32; 3]>,
 }
 
-/// One number a question.
+/// The answers, one number for each query.
 #[derive(Default)]
 struct Answers {
-    /// The first hits of both lists of rays; negative for none.
+    /// The times of the first hits of both lists of rays; negative for a miss.
     first: [Vec<f64>; 2],
-    /// How many hits there are in all.
+    /// The total numbers of hits.
     all: Option<[Vec<f64>; 2]>,
     /// Distances from the surface.
     distances: Vec<f64>,
-    /// Odd for points inside.
+    /// Odd numbers for points inside.
     inside: Vec<f64>,
 }
 
-/// The median time of a question, in nanoseconds, and the answers.
+/// Prints the median time of a query in nanoseconds; returns the answers.
 fn asked<Q>(name: &str, questions: &[Q], mut ask: impl FnMut(&Q) -> f64) -> Vec<f64> {
     let mut answers = vec![0.0; questions.len()];
     let round = |_| {
@@ -59,7 +58,7 @@ fn asked<Q>(name: &str, questions: &[Q], mut ask: impl FnMut(&Q) -> f64) -> Vec<
     answers
 }
 
-/// The same for both precisions.
+/// Queries parry3d, the same for both precisions.
 macro_rules! parry {
     ($module:ident, $parry:ident, $real:ty) => {
         mod $module {
@@ -77,7 +76,7 @@ macro_rules! parry {
                 let start = spent().0;
                 let corner = |v: &[f64; 3]| Vector::new(v[0] as $real, v[1] as $real, v[2] as $real);
                 let corners = mesh.vertices().iter().map(corner).collect();
-                // With normals of edges and corners, by which it tells inside from outside.
+                // With the normals of edges and corners that distinguish inside from outside.
                 let mesh = TriMesh::with_flags(corners, mesh.triangles().to_vec(), TriMeshFlags::ORIENTED)?;
                 println!("{:38} {:10.2} ms", format!("{name}, tree"), spent().0 - start);
                 let ray = |list: &str, rays: &[Line]| {
@@ -102,7 +101,7 @@ macro_rules! parry {
 parry!(single, parry3d, f32);
 parry!(double, parry3d_f64, f64);
 
-/// What the program made of `mesh_queries.cpp` has written.
+/// Reads the output of the program built from `mesh_queries.cpp`.
 fn written(path: &Path, count: usize) -> Result<Answers, Box<dyn Error>> {
     let bytes = std::fs::read(path)?;
     if bytes.len() != 8 * 6 * count {
@@ -120,18 +119,18 @@ fn written(path: &Path, count: usize) -> Result<Answers, Box<dyn Error>> {
     })
 }
 
-/// Where a ray crosses the surface; `None` if some of it is not decided.
+/// Intervals in which a ray crosses the surface; `None` if part of the ray is undecided.
 type Crossings = Option<Vec<[f64; 2]>>;
 
-/// What Leafless proves of some of the questions, with their places.
+/// Proofs of Leafless for some of the queries, with the queries' indices.
 struct Proven {
     crossings: [Vec<(usize, Crossings)>; 2],
     distances: Vec<(usize, [f64; 2])>,
-    /// All points.
+    /// Answers for all points.
     inside: Vec<Membership>,
 }
 
-/// Of rays and distances, those at `places`.
+/// Proves answers. For rays and distances, only the queries at `places` are proven.
 fn prove(
     mesh: &TriangleMesh,
     questions: &Questions,
@@ -170,8 +169,8 @@ fn prove(
     Ok(Proven { crossings, distances, inside })
 }
 
-/// Prints how many answers are wrong, and by how much numbers are off at the most; a t that is off by more
-/// than `much` is that of another hit.
+/// Prints the number of wrong answers, and the greatest error of numbers. A t with an error above `much`
+/// belongs to another hit.
 fn hold(name: &str, answers: &Answers, proven: &Proven, much: f64) {
     let off = |answer: f64, [lower, upper]: [f64; 2]| (lower - answer).max(answer - upper).max(0.0);
     for (list, from) in ["from afar", "from within"].into_iter().enumerate() {
@@ -205,8 +204,8 @@ fn hold(name: &str, answers: &Answers, proven: &Proven, much: f64) {
     println!("{name}, {} points: {} wrong; {open} undecided", proven.inside.len(), wrong.count());
 }
 
-/// The first questions, and those about which the first of the peers and another are of two minds by more
-/// than `much`; of rays, and of distances.
+/// Returns the indices of the first queries, and of queries on which the first peer and another peer differ
+/// by more than `much`: for the two lists of rays, and for distances.
 fn places(peers: &[(&str, Answers)], first: usize, much: f64) -> [Vec<usize>; 3] {
     let [(_, one), others @ ..] = peers else { return Default::default() };
     let list = |of: &dyn Fn(&Answers) -> &[f64], is_odd: &dyn Fn(usize) -> bool| {

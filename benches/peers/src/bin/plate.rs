@@ -4,13 +4,13 @@
 //! plate DEPTH OUT.stl
 //! ```
 //!
-//! Tells the seconds that its octree and its mesh take on one thread, and the number of triangles.
+//! Prints the seconds that its octree and its mesh take on one thread, and the number of triangles.
 
 use fidget::context::Tree;
 use fidget::shape::BoundShape;
 use std::time::Instant;
 
-/// Half of the edge of fidget's cube in the plate's units: the cube reaches from -1 to 1 around the plate's
+/// Half the edge of fidget's cube in the plate's units. The cube reaches from -1 to 1 around the plate's
 /// centre.
 const HALF: f64 = 42.0;
 

@@ -1,14 +1,14 @@
-//! Rays and points on a mesh's octree beside a mask of NanoVDB.
+//! Rays and points on a mesh's octree, compared with a mask of NanoVDB.
 //!
 //! ```text
 //! cargo run --release --manifest-path benches/peers/Cargo.toml --bin queries -- mesh.stl nanovdb
 //! ```
 //!
-//! `nanovdb` is the program made of `nanovdb.cpp`, see benches/README.md. 1024 cells an axis, decided at
-//! their centres, the same in both. A million rays of a camera to their first full cell, in scan order and in
-//! random order; a million points of the bounding box, uniform at random and along lines. One thread each, in
-//! turn, processor time. The camera: eye at the centre of the box + 2 D w, D its diagonal, w along (1, 0.7,
-//! 0.5), half width D/2.
+//! `nanovdb` is built from `nanovdb.cpp`, see benches/README.md. Both programs have the same 1024 cells along
+//! an axis, decided at their centres. The queries are a million rays of a camera to their first full cell, in
+//! scan order and in random order, and a million points of the bounding box, uniform at random and along
+//! lines. One thread each, in turn, processor time. The camera: eye at the centre of the box + 2 D w, D its
+//! diagonal, w along (1, 0.7, 0.5), half width D/2.
 
 use leafless::octree::Cursor;
 use leafless::query::{Obstacle, PointCursor, PointTable};
@@ -38,7 +38,7 @@ fn unit(a: Vector) -> Vector {
     a.map(|c| c / length)
 }
 
-/// The origins and directions of a camera's rays.
+/// Returns the origins and directions of a camera's rays.
 fn camera(min: Vector, max: Vector, perspective: bool) -> Vec<[Vector; 2]> {
     let diagonal = sum(max, min, -1.0);
     let size = diagonal.iter().map(|c| c * c).sum::<f64>().sqrt();
@@ -59,7 +59,7 @@ fn camera(min: Vector, max: Vector, perspective: bool) -> Vec<[Vector; 2]> {
     pixels.map(ray).collect()
 }
 
-/// Numbers that look random (splitmix64).
+/// Pseudo-random numbers (splitmix64).
 fn random(state: &mut u64) -> u64 {
     *state = state.wrapping_add(0x9E37_79B9_7F4A_7C15);
     let z = (*state ^ *state >> 30).wrapping_mul(0xBF58_476D_1CE4_E5B9);
