@@ -9,7 +9,7 @@ use std::str::FromStr;
 /// The rules of an octree, of which `certified` is the first.
 pub fn octree_rules() -> impl TypedValueParser<Value = Rule> {
     rules([
-        (Rule::Certified, "They stay undecided: volumes are intervals that hold the truth"),
+        (Rule::Certified, "They stay undecided: volumes are intervals that contain the true value"),
         (Rule::Sampled, "They are inside if their centre is"),
         (Rule::Inner, "They are outside: the result lies within the solid"),
         (Rule::Outer, "They are inside: the result contains the solid"),

@@ -16,36 +16,37 @@ use serde::Serialize;
 use std::ffi::OsString;
 use std::path::Path;
 
-/// Each cell of the finest level in the whole universe is a byte, 255 inside and 0 outside.
+/// Each cell of the chosen level in the whole cube of the solid becomes one byte: 255 inside, 0 outside.
+/// `leafless voxelize` makes the same solid from the volume again.
 ///
-/// `leafless voxelize` makes the same solid of the volume.
+/// A raw volume has no header. Its extents are printed: remember them to read the file again.
 #[derive(Args)]
 pub struct Arguments {
     /// Solid (.lfl), or `-` for standard input
     file: OsString,
-    /// Where to write: the extension .nrrd or .raw tells the format; `-` is standard output
+    /// File to write, with the extension .nrrd or .raw, or `-` for standard output
     #[arg(short, long, value_name = "OUTPUT")]
     output: OsString,
-    /// Format to write. Without it: what the extension of the output says, or NRRD for standard output
-    #[arg(long, value_enum)]
-    write: Option<WriteName>,
-    /// Compress the samples of a NRRD
-    #[arg(long)]
-    gzip: bool,
-    /// What undecided cells count as, and cells of the level that are cut further. Without it: what their
-    /// centres are, where cells keep surfaces, and outer in other files, which is told
-    #[arg(long, value_enum)]
-    resolve: Option<ResolveName>,
-    /// Level of the cells, 0 to the solid's depth. Without it: the finest one, or 8 if the cells keep
-    /// surfaces
-    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u8).range(0..=MAX_DEPTH as i64))]
-    level: Option<u8>,
-    /// Threads to use; 0: as many as there are processors. The result is the same
-    #[arg(long, default_value_t = 0, value_name = "N", value_parser = threads)]
-    threads: usize,
     /// Print one JSON object
     #[arg(long)]
     json: bool,
+    /// Level of the cells, from 0 to the solid's depth [default: the finest one, or 8 if the cells keep
+    /// surfaces]
+    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u8).range(0..=MAX_DEPTH as i64))]
+    level: Option<u8>,
+    /// What undecided cells count as, and cells of this level that are split further [default: what their
+    /// centres are, where cells keep surfaces; otherwise outer, and a note says so]
+    #[arg(long, value_enum)]
+    resolve: Option<ResolveName>,
+    /// Threads to use, 0 to 1024; 0: one for each processor. The result does not depend on it
+    #[arg(long, default_value_t = 0, value_name = "N", value_parser = threads)]
+    threads: usize,
+    /// Format to write [default: by the extension of the output; NRRD for standard output]
+    #[arg(long, value_enum)]
+    write: Option<WriteName>,
+    /// Compress the samples of an NRRD
+    #[arg(long)]
+    gzip: bool,
 }
 
 #[derive(Debug, Clone, Copy, PartialEq, ValueEnum)]

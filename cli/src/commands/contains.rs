@@ -12,9 +12,10 @@ use std::ffi::OsString;
 /// Reads points from standard input, one a line: x, y and z in the solid's units, separated by blanks, tabs
 /// or commas. Empty lines and lines that begin with # are skipped.
 ///
-/// Prints a line for each point: `inside` and `outside` are proven if the solid is certified; `undecided` are
-/// points in cells that the surface may pass through, points outside of the solid's bounds, and such as
-/// `nan`. Answers come as soon as lines are there, so that another program can ask and wait.
+/// Prints one line for each point: `inside`, `outside` or `undecided`. `inside` and `outside` are proven if
+/// the solid is certified. `undecided` are points in cells that the surface may pass through, points outside
+/// the solid's bounds, and points with a coordinate such as `nan`. Answers are printed as soon as lines
+/// arrive, so that another program can ask and wait.
 #[derive(Args)]
 pub struct Arguments {
     /// Solid (.lfl)

@@ -21,65 +21,69 @@ use leafless::{Frame, Octree, Rule, TriDexel};
 use std::ffi::OsString;
 use std::time::Instant;
 
-/// Makes an octree, a tri-dexel model or a triangle mesh of any of them, or of a scene or a volume, as
-/// `leafless voxelize`, `csg`, `dexelize` and `mesh` do where nothing more is asked for.
+/// Makes an octree, a tri-dexel model or a triangle mesh from any of the three, or from a scene or a volume,
+/// as `leafless voxelize`, `csg`, `dexelize` and `mesh` do with their default options.
 ///
-/// Of a tri-dexel model an octree has the cells whose centres lie inside, and the materials as the channel
+/// From a tri-dexel model to an octree: a cell is inside if its centre is. Materials become the channel
 /// `material`. With --by-ends a cell is inside or outside if all rays through it are so all the way, and
-/// undecided if one begins or ends in it: what is thinner than a cell is not lost. Neither proves anything of
-/// the part between the rays. Of an octree a tri-dexel model has just the cells, exactly; undecided ones
-/// count as --resolve says. An octree of a mesh or a scene is certified, and its undecided cells stay so
-/// without --resolve. Of an octree whose cells keep surfaces, an octree without them has the cells that the
-/// surfaces decide. A mesh that becomes a mesh keeps its triangles, unless --resolution, --bounds or
-/// --resolve asks for samples.
+/// undecided if an interval begins or ends in it, so that features thinner than a cell are not lost. Neither
+/// way proves anything about the part between the rays.
 ///
-/// With --translate, --rotate, --scale and --place all of them are moved. Without --to an octree or a
-/// tri-dexel model then stays what it is, surfaces and channels included: on the image of its own cube, or,
-/// if that is not along the axes, on a cube around its image. Moved by whole cells and quarter turns, an
-/// octree stays exact; otherwise its cells blur by about one.
+/// From an octree to a tri-dexel model: the model contains exactly the cells; undecided cells count as
+/// --resolve says. From an octree whose cells keep surfaces to one without: the surfaces decide the cells.
+///
+/// From a mesh or a scene to an octree: the octree is certified, and without --resolve its undecided cells
+/// stay undecided. From a mesh to a mesh: the triangles stay, unless --resolution, --bounds or --resolve asks
+/// for samples.
+///
+/// --translate, --rotate, --scale and --place move any of them. Without --to, an octree or tri-dexel model
+/// then stays what it is, with its surfaces and channels. It lies on the image of its own cube or, if that
+/// image is not parallel to the axes, on a cube around the image. An octree that is moved by whole cells and
+/// quarter turns stays exact; otherwise its cells blur by about one cell.
 #[derive(Args)]
 pub struct Arguments {
     /// Octree or tri-dexel model (.lfl), mesh (STL, OBJ, PLY, OFF, 3MF), scene (.csg) or volume (NRRD,
     /// MetaImage), or `-` for standard input
     #[arg(value_name = "FILE")]
     input: OsString,
-    /// File to write, or `-` for standard output; it is written whole or not at all
+    /// File to write, or `-` for standard output; written completely or not at all
     #[arg(short, long, value_name = "OUT")]
     output: OsString,
-    /// What to make. The extension .ply, .stl, .obj, .off or .3mf of the output says that it is a mesh; .lfl
-    /// says nothing, as octrees and tri-dexel models both have it. What is moved stays what it is without it
+    /// What to make [default: a mesh if the output has the extension .ply, .stl, .obj, .off or .3mf; what the
+    /// input is if it is moved]. The extension .lfl does not decide, as octrees and tri-dexel models both
+    /// have it
     #[arg(id = "target", long = "to", value_enum, value_name = "KIND")]
     kind: Option<KindName>,
-    /// What cells count as that the surface passes through, or that are undecided
-    #[arg(long, value_enum)]
-    resolve: Option<ResolveName>,
-    /// Let the ends of a tri-dexel model's intervals decide the cells of an octree, and not the centres of
-    /// cells
-    #[arg(long, conflicts_with = "resolve")]
-    by_ends: bool,
-    /// Cells to an axis of the cube around a mesh or scene, a power of two. Without it: 256, and of a volume
-    /// the voxels; a mesh that becomes a mesh keeps its triangles
-    #[arg(long, value_name = "N", value_parser = resolution)]
-    resolution: Option<u8>,
-    /// Lower corner and edge length of the cube, for a mesh, a scene, or what is moved. Without it: the cube
-    /// around it
-    #[arg(long, value_name = "X0,Y0,Z0,EDGE", value_parser = bounds, allow_hyphen_values = true)]
-    bounds: Option<Frame>,
-    #[command(flatten)]
-    taking: Taking,
-    /// Take triangles out of a mesh, and move its surface by this at the most, in model units. Edges of the
-    /// shape and values of triangles stay, and how far the surface moved is proven
+    /// Remove triangles from a mesh, moving its surface by at most T, in model units. Edges of the shape and
+    /// values of triangles stay. How far the surface moved is proven
     #[arg(long, value_name = "T", value_parser = tolerance, allow_hyphen_values = true)]
     simplify: Option<f64>,
-    /// Write an STL also if rounding to its 32-bit coordinates breaks the surface
-    #[arg(long)]
-    lossy: bool,
-    /// Threads to use; 0: as many as there are processors. The result is the same
-    #[arg(long, default_value_t = 0, value_name = "N", value_parser = threads)]
-    threads: usize,
     /// Print one JSON object, that of the subcommand that does the work
     #[arg(long)]
     json: bool,
+    /// Cells along an axis of the cube around a mesh or scene, a power of two from 2 to 524288 [default: 256;
+    /// the voxels of a volume]. A mesh that becomes a mesh keeps its triangles without it
+    #[arg(long, value_name = "N", value_parser = resolution)]
+    resolution: Option<u8>,
+    /// What undecided cells count as, and cells that the surface passes through
+    #[arg(long, value_enum)]
+    resolve: Option<ResolveName>,
+    /// Decide the cells of an octree by the ends of a tri-dexel model's intervals instead of by the centres
+    /// of the cells
+    #[arg(long, conflicts_with = "resolve")]
+    by_ends: bool,
+    /// Threads to use, 0 to 1024; 0: one for each processor. The result does not depend on it
+    #[arg(long, default_value_t = 0, value_name = "N", value_parser = threads)]
+    threads: usize,
+    /// Lower corner and edge length of the cube, for a mesh, a scene, or an input that is moved [default: the
+    /// cube around it]
+    #[arg(long, value_name = "X0,Y0,Z0,EDGE", value_parser = bounds, allow_hyphen_values = true)]
+    bounds: Option<Frame>,
+    /// Write an STL even if rounding to its 32-bit coordinates breaks the surface
+    #[arg(long)]
+    lossy: bool,
+    #[command(flatten)]
+    taking: Taking,
 }
 
 #[derive(Debug, Clone, Copy, PartialEq, ValueEnum)]

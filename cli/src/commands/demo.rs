@@ -13,13 +13,14 @@ use std::path::{Path, PathBuf};
 use std::sync::Arc;
 use std::time::Instant;
 
-/// Makes a flanged, ribbed and drilled part and a tool to cut it with, writes both as STL files, reads them
-/// back, turns them into octrees of 1024³ cells, cuts, saves, maps, verifies and queries the result.
+/// Makes a flanged, ribbed and drilled part and a tool to cut it with, and writes both as STL files. Then it
+/// reads the files back, turns them into octrees of 1024³ cells, cuts, saves, maps and verifies the result,
+/// and asks questions about it.
 ///
-/// Every file stays in the folder to be looked at.
+/// All files stay in the folder.
 #[derive(Args)]
 pub struct Arguments {
-    /// Folder for the files; made if it does not exist [default: leafless-demo in the folder for temporary
+    /// Folder for the files; created if it does not exist [default: leafless-demo in the folder for temporary
     /// files]
     dir: Option<PathBuf>,
 }

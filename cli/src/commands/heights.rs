@@ -12,36 +12,37 @@ use leafless::lattice::MAX_DEPTH;
 use leafless::query::{Columns, Heights, Side, heights};
 use std::ffi::OsString;
 
-/// Columns are those of cells along an axis. Heights are in the solid's units; what is empty is `nan`.
+/// Prints one height for each column of cells along an axis, in the solid's units; `nan` for an empty column.
 ///
-/// Columns lie in rows: along a row the first of the other two axes ascends, from row to row the second.
+/// The columns of one row are printed in one line: along a row the first of the other two axes ascends, from
+/// row to row the second.
 #[derive(Args)]
 pub struct Arguments {
     /// Solid (.lfl), mesh (STL, OBJ, PLY, OFF, 3MF), scene (.csg) or volume (NRRD, MetaImage), or `-` for
     /// standard input
     file: OsString,
-    /// The axis of the columns
+    /// Axis of the columns
     #[arg(long, value_enum)]
     axis: Axis,
-    /// Where the columns are looked at from: `above` are higher coordinates
+    /// Side from which the columns are seen: `above` is the side of higher coordinates
     #[arg(long, value_enum, default_value_t = From::Above)]
     from: From,
-    /// Which cells count: those proven to be solid (the solid reaches at least that far), or those that may
-    /// be (it reaches no farther)
-    #[arg(long, value_enum, default_value_t = On::Upper)]
-    on: On,
-    /// Where to write; `-` is standard output
+    /// File to write, or `-` for standard output
     #[arg(short, long, default_value = "-", value_name = "OUTPUT")]
     output: OsString,
-    /// Write doubles, 8 bytes each, little-endian, instead of lines with commas
-    #[arg(long)]
-    raw: bool,
-    /// Level of the cells, 1 to 20: there are 2^N times 2^N columns. Without it: as deep as the solid is, or
-    /// 9 for a mesh or scene
+    /// Which cells count: those proven to be solid, so that the solid reaches at least that far, or also
+    /// those that may be solid, so that it reaches no farther
+    #[arg(long, value_enum, default_value_t = On::Upper)]
+    on: On,
+    /// Level of the cells, 1 to 20; there are 2^N × 2^N columns [default: the depth of the solid, or 9 for a
+    /// mesh or scene]
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u8).range(1..=MAX_DEPTH as i64))]
     depth: Option<u8>,
     #[command(flatten)]
     looking: Looking,
+    /// Write doubles, 8 bytes each, little-endian, instead of text with commas
+    #[arg(long)]
+    raw: bool,
 }
 
 /// The depth of meshes and scenes, if none is asked for.
@@ -62,9 +63,9 @@ enum From {
 
 #[derive(Debug, Clone, Copy, ValueEnum)]
 enum On {
-    /// Those that are proven to be solid
+    /// Cells that are proven to be solid
     Full,
-    /// Those that may be solid
+    /// Cells that may be solid
     Upper,
 }
 

@@ -21,16 +21,16 @@ use leafless::{
 use serde::Serialize;
 use std::ffi::OsString;
 
-/// Says whether two solids have inner points in common: `disjoint` and `overlapping` are proven, `undecided`
-/// comes with the reason: the depth or the number of splits does not decide it, the cells of a file do not
-/// prove enough, or both solids go on outside of the bounds. Solids that touch are disjoint, and their
-/// clearance is 0. Of scenes and of solids that keep surfaces this is proven also where the surfaces on which
-/// they touch are one.
+/// Tells whether two solids have inner points in common. `disjoint` and `overlapping` are proven. `undecided`
+/// comes with the reason: the depth or the number of splits is too small, the cells of a file do not prove
+/// enough, or both solids may extend outside the bounds. Solids that touch are disjoint, and their clearance
+/// is 0. For scenes and for solids that keep surfaces, this is proven even if they touch along a common
+/// surface.
 ///
 /// The volume that the solids have in common and the clearance, the least distance between them, are
-/// intervals that hold the true ones. The clearance of two closed meshes is found by their triangles, to
-/// rounding. Of other solids an upper bound of the clearance needs cells that are proven to be inside. What
-/// is not known is null in JSON.
+/// intervals that contain the true values. The clearance of two closed meshes is computed from their
+/// triangles, up to rounding. For other solids, an upper bound of the clearance needs cells that are proven
+/// to be inside. Unknown numbers are null in JSON.
 #[derive(Args)]
 #[command(mut_arg("place", |place| place.visible_alias("place-b")))]
 pub struct Arguments {
@@ -38,43 +38,43 @@ pub struct Arguments {
     /// for standard input
     #[arg(value_name = "A")]
     a: OsString,
-    /// Second solid, mesh or scene; --translate, --rotate, --scale and --place move it
+    /// Second solid, mesh, scene or volume. The moves --translate, --rotate, --scale and --place apply to it
     #[arg(value_name = "B")]
     b: OsString,
-    /// Levels to look at, 1 to 20. Without it: as many as the first solid has, or 10 for a mesh or scene
-    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u8).range(1..=leafless::lattice::MAX_DEPTH as i64))]
-    depth: Option<u8>,
-    /// Lower corner and edge length of the cube to look at. Without it: the cube around both
-    #[arg(long, value_name = "X0,Y0,Z0,EDGE", value_parser = bounds, allow_hyphen_values = true)]
-    bounds: Option<Frame>,
-    /// Cells to split at most, for each of the three answers. Without it: 100000, or as many as --seconds
-    /// allow
-    #[arg(long, value_name = "N")]
-    splits: Option<u64>,
-    /// Seconds after which it ends with what is known by then. The result then depends on the machine
-    #[arg(long, value_name = "S", value_parser = seconds, allow_hyphen_values = true)]
-    seconds: Option<f64>,
-    /// Take the cells of solids from files (.lfl) for the solids themselves, whatever they prove of what they
-    /// were made from
-    #[arg(long)]
-    cells: bool,
-    #[command(flatten)]
-    taking: Taking,
-    /// Ask for the verdict alone, of B under each of the matrices in a file: a line for each as --place takes
-    /// it, after the other moves. With --gap-at-least, say of each place whether the solids are that far
-    /// apart
-    #[arg(long, value_name = "FILE", conflicts_with = "seconds")]
-    poses: Option<std::path::PathBuf>,
-    /// With --poses, tell the clearance in each place, too, and a point of each solid that are as near
-    #[arg(long, requires = "poses", conflicts_with = "gap_at_least")]
-    clearance: bool,
-    /// Say no more than whether no two points of them are nearer than that, in units of the model, and print
-    /// two points if some are. The exit code is 0 if that is proven, and 1 if not
+    /// Tell only whether the distance of the solids is at least D, in model units, and print two points that
+    /// are nearer if there are any. The exit code is 0 if the distance is proven, and otherwise 1
     #[arg(long, value_name = "D", conflicts_with = "seconds", allow_hyphen_values = true)]
     gap_at_least: Option<f64>,
+    /// Tell only the verdict, for B under each of the matrices in a file: one line for each, as --place takes
+    /// it, applied after the other moves. With --gap-at-least, tell for each pose whether the solids are that
+    /// far apart
+    #[arg(long, value_name = "FILE", conflicts_with = "seconds")]
+    poses: Option<std::path::PathBuf>,
+    /// With --poses, tell also the clearance in each pose, and a point of each solid at that distance
+    #[arg(long, requires = "poses", conflicts_with = "gap_at_least")]
+    clearance: bool,
     /// Print one JSON object
     #[arg(long)]
     json: bool,
+    /// Finest level of cells, 1 to 20 [default: that of the first solid, or 10 for a mesh or scene]
+    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u8).range(1..=leafless::lattice::MAX_DEPTH as i64))]
+    depth: Option<u8>,
+    /// Take the cells of solids from files (.lfl) as the solids themselves, whatever the cells prove about
+    /// their source
+    #[arg(long)]
+    cells: bool,
+    /// Time limit in seconds: the command then ends with the bounds found so far. The result then depends on
+    /// the machine
+    #[arg(long, value_name = "S", value_parser = seconds, allow_hyphen_values = true)]
+    seconds: Option<f64>,
+    /// Most cells to split for each of the three answers [default: 100000, or no limit with --seconds]
+    #[arg(long, value_name = "N")]
+    splits: Option<u64>,
+    /// Lower corner and edge length of the cube to examine [default: the cube around both]
+    #[arg(long, value_name = "X0,Y0,Z0,EDGE", value_parser = bounds, allow_hyphen_values = true)]
+    bounds: Option<Frame>,
+    #[command(flatten)]
+    taking: Taking,
 }
 
 /// A cell in the units of the model, and a ball in it that lies in both solids.

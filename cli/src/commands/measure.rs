@@ -26,55 +26,56 @@ use leafless::{
 use serde::Serialize;
 use std::ffi::OsString;
 
-/// Measures a solid of density 1, or of --density, without making an octree of it: the cells of which most is
-/// in doubt are split first, until the volume is known well enough. All numbers are intervals that hold the
-/// true ones.
+/// Measures a solid of density 1, or of --density, without making an octree: the cells with the greatest
+/// uncertainty are split first, until the volume is known well enough. All numbers are intervals that contain
+/// the true values.
 ///
-/// A solid from a file (.lfl) knows no more about its undecided cells, so its own bounds are told, as well as
-/// it was made; a mesh or a scene is split as deep as it takes.
+/// A solid from a file (.lfl) has no more information about its undecided cells, so its own bounds are
+/// printed. A mesh or a scene is split as deep as necessary.
 #[derive(Args)]
 pub struct Arguments {
     /// Solid (.lfl), mesh (STL, OBJ, PLY, OFF, 3MF), scene (.csg) or volume (NRRD, MetaImage), or `-` for
     /// standard input
     file: OsString,
-    /// How wide the interval of the volume may be, relative to its middle; 0 goes on to the depth. Without
-    /// it: 0.01, or 0 if --splits is given; much less costs little where surfaces are those of half-spaces
-    #[arg(long, value_name = "T", value_parser = tolerance, allow_hyphen_values = true)]
-    tolerance: Option<f64>,
-    /// How wide it may be otherwise, in cubic units. Without it: a billionth of the cube that is looked at,
-    /// or 0 if --tolerance or --splits is given
-    #[arg(long, value_name = "A", value_parser = tolerance, allow_hyphen_values = true)]
-    absolute: Option<f64>,
-    /// Cells to split at most. Without it: 67108864, a minute or so
-    #[arg(long, value_name = "N")]
-    splits: Option<u64>,
-    /// Seconds after which it ends with what is known by then. The result then depends on the machine
-    #[arg(long, value_name = "S", value_parser = seconds, allow_hyphen_values = true)]
-    seconds: Option<f64>,
-    /// Mass of a cubic unit, which makes the volume a mass and the inertia that of this mass; or with a unit,
-    /// g/cm3, kg/dm3, kg/m3 or lb/in3, if the unit of the model is known or told by --unit: --unit mm
-    /// --density 7.85g/cm3 tells grams
+    /// Mass of a cubic unit: tells the mass, and the inertia for this mass. A unit g/cm3, kg/dm3, kg/m3 or
+    /// lb/in3 needs the unit of the model, from the file or from --unit: with --unit mm and 7.85g/cm3 the
+    /// mass is in grams
     #[arg(long, value_name = "D", value_parser = density, allow_hyphen_values = true)]
     density: Option<Density>,
-    /// Deepest level to split to, 1 to 20. Without it: as deep as the solid is, or 20 for a mesh or scene
-    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u8).range(1..=MAX_DEPTH as i64))]
-    depth: Option<u8>,
-    /// Lower corner and edge length of the cube to measure in, for a mesh or scene. Without it: the cube
-    /// around it
-    #[arg(long, value_name = "X0,Y0,Z0,EDGE", value_parser = bounds, allow_hyphen_values = true)]
-    bounds: Option<Frame>,
-    /// Take the cells of a solid from a file (.lfl) for the solid itself, whatever they prove of what they
-    /// were made from
-    #[arg(long)]
-    cells: bool,
-    #[command(flatten)]
-    taking: Taking,
-    /// Threads to use; 0: as many as there are processors. The result is the same
-    #[arg(long, default_value_t = 0, value_name = "N", value_parser = threads)]
-    threads: usize,
     /// Print one JSON object
     #[arg(long)]
     json: bool,
+    /// Greatest width of the volume's interval, relative to its middle; 0 continues to the depth [default:
+    /// 0.01, or 0 with --splits]. Small values cost little if the surfaces are those of half-spaces
+    #[arg(long, value_name = "T", value_parser = tolerance, allow_hyphen_values = true)]
+    tolerance: Option<f64>,
+    /// Width of the volume's interval that suffices in any case, in cubic units [default: a billionth of the
+    /// cube that is examined, or 0 with --tolerance or --splits]
+    #[arg(long, value_name = "A", value_parser = tolerance, allow_hyphen_values = true)]
+    absolute: Option<f64>,
+    /// Finest level to split to, 1 to 20 [default: the depth of the solid, or 20 for a mesh or scene]
+    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u8).range(1..=MAX_DEPTH as i64))]
+    depth: Option<u8>,
+    /// Take the cells of a solid from a file (.lfl) as the solid itself, whatever the cells prove about their
+    /// source
+    #[arg(long)]
+    cells: bool,
+    /// Time limit in seconds: the command then ends with the bounds found so far. The result then depends on
+    /// the machine
+    #[arg(long, value_name = "S", value_parser = seconds, allow_hyphen_values = true)]
+    seconds: Option<f64>,
+    /// Most cells to split [default: 67108864, about a minute]
+    #[arg(long, value_name = "N")]
+    splits: Option<u64>,
+    /// Threads to use, 0 to 1024; 0: one for each processor. The result does not depend on it
+    #[arg(long, default_value_t = 0, value_name = "N", value_parser = threads)]
+    threads: usize,
+    /// Lower corner and edge length of the cube to measure in, for a mesh or scene [default: the cube around
+    /// it]
+    #[arg(long, value_name = "X0,Y0,Z0,EDGE", value_parser = bounds, allow_hyphen_values = true)]
+    bounds: Option<Frame>,
+    #[command(flatten)]
+    taking: Taking,
 }
 
 /// Sides of the bounding box are told to this part of the universe's edge where that is cheap, …

@@ -11,24 +11,24 @@ use serde::Serialize;
 use std::ffi::OsString;
 use std::fmt::Write;
 
-/// Reads cells from standard input, one a line: the level, and the cell's x, y and z among those of its
+/// Reads cells from standard input, one a line: the level, and the cell's x, y and z among the cells of its
 /// level, counted from 0. Empty lines and lines that begin with # are skipped.
 ///
-/// Prints for each cell a line for each neighbour: the steps along x, y and z that lead to it, its tag
-/// (empty, full, partial or branch, which means split), its level, and its x, y and z. The neighbour is as
-/// large as the cell, or the larger one that is not split. There is none beyond the universe. An empty line
-/// ends the answer.
+/// Prints one line for each neighbour of a cell: the steps along x, y and z that lead to it, its tag (empty,
+/// full, partial, or branch for a cell that is split), its level, and its x, y and z. The neighbour is as
+/// large as the cell, or a larger cell that is not split. There is none outside the cube of the solid. An
+/// empty line ends the answer.
 #[derive(Args)]
 pub struct Arguments {
     /// Solid (.lfl)
     file: OsString,
-    /// Which neighbours
+    /// Which neighbours to list
     #[arg(long, value_enum, default_value_t = Through::Faces)]
     through: Through,
-    /// Tell in place of a neighbour that is split all the smaller cells in it that touch the cell
+    /// In place of a neighbour that is split, list all smaller cells in it that touch the cell
     #[arg(long)]
     smaller: bool,
-    /// Print a line of JSON for each cell
+    /// Print one line of JSON for each cell
     #[arg(long)]
     json: bool,
 }

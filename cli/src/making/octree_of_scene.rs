@@ -23,7 +23,7 @@ use std::time::Instant;
 pub enum TouchName {
     /// Contact is not overlap: a cell that the solid touches from outside is empty
     Exact,
-    /// As in the paper that the method comes from: such a cell is undecided
+    /// As in the paper that describes the method: such a cell is undecided
     Paper,
 }
 

@@ -34,44 +34,44 @@ pub struct Looks {
     /// What to show
     #[arg(long, value_enum, default_value_t = View::Surface)]
     pub view: View,
-    /// Plane of the slice: the points x, y, z with a x + b y + c z + d = 0. One looks at it against its
-    /// normal a,b,c: at 0,0,1,d from above, at 0,-1,0,d from the front, at 1,0,0,d from the right. +z is
-    /// upward; where the plane is level, +x is to the right. It is never mirrored. Without --plane: the one
-    /// through the middle that is seen best of those along the axes
-    #[arg(long, value_name = "A,B,C,D", value_parser = numbers::<4>, allow_hyphen_values = true)]
-    pub plane: Option<[f64; 4]>,
-    /// Colours of values: viridis, cividis, inferno, magma, plasma or grey
-    #[arg(long, value_name = "NAME", default_value = "viridis", value_parser = map)]
-    map: ColourMap,
-    /// Values at both ends of the colours. Without it: the least and the greatest
-    #[arg(long, value_name = "A,B", value_parser = numbers::<2>, allow_hyphen_values = true)]
-    range: Option<[f64; 2]>,
-    /// Opacity of a volume as thick as the solid's longest side, 0 to 1
-    #[arg(long, value_name = "ALPHA", default_value_t = 0.95, value_parser = share)]
-    opacity: f64,
-    /// Show voxels as published: of an edge of k finest voxels as k layers, wherever a line of sight crosses
-    /// them
-    #[arg(long)]
-    published: bool,
-    /// Draw edges: those at which faces meet at more than 30 degrees, or of a mesh those of all its triangles
-    #[arg(long, value_enum, value_name = "WHICH", num_args = 0..=1, default_missing_value = "features")]
+    /// Colour of the surface, such as #b2bbc4
+    #[arg(long, value_name = "COLOUR", value_parser = colour, help_heading = "Colours and values")]
+    colour: Option<[u8; 4]>,
+    /// Draw edges: those at which faces meet at more than 30 degrees, or those of all triangles of a mesh
+    #[arg(long, value_enum, value_name = "WHICH", num_args = 0..=1, default_missing_value = "features", help_heading = "Colours and values")]
     edges: Option<Edges>,
-    /// Show a slice without cells: what of the plane is inside. The surface of what is no octree of cells is
-    /// then drawn as a line, of cells as small as a pixel
+    /// Show the cells of a solid by their faces
     #[arg(long)]
-    no_cells: bool,
-    /// What becomes of the undecided cells of an octree whose cells keep no surfaces
+    faces: bool,
+    /// How the undecided cells of an octree are shown whose cells keep no surfaces
     #[arg(long, value_enum, default_value_t = Undecided::Shown)]
     undecided: Undecided,
     /// Leave out the legend, and the scale and the extents of a slice
     #[arg(long)]
     pub no_legend: bool,
-    /// Show the cells of a solid by their faces
-    #[arg(long)]
-    faces: bool,
-    /// Colour of the surface, as in #b2bbc4
-    #[arg(long, value_name = "COLOUR", value_parser = colour)]
-    colour: Option<[u8; 4]>,
+    /// Plane of the slice: the points x, y, z with a x + b y + c z + d = 0, seen against its normal a,b,c:
+    /// 0,0,1,d from above, 0,-1,0,d from the front, 1,0,0,d from the right. +z is upward; if the plane is
+    /// horizontal, +x is to the right. The slice is never mirrored [default: the plane through the middle,
+    /// across the axis that is nearest to the direction of view]
+    #[arg(long, value_name = "A,B,C,D", value_parser = numbers::<4>, allow_hyphen_values = true, help_heading = "Slices and cuts")]
+    pub plane: Option<[f64; 4]>,
+    /// Show a slice without cells: only what is inside. Unless the input is an octree of cells, its surface
+    /// is then drawn as a line, made of cells as small as a pixel
+    #[arg(long, help_heading = "Slices and cuts")]
+    no_cells: bool,
+    /// Colours of values: viridis, cividis, inferno, magma, plasma or grey
+    #[arg(long, value_name = "NAME", default_value = "viridis", value_parser = map, help_heading = "Colours and values")]
+    map: ColourMap,
+    /// Values at both ends of the colours [default: the least and the greatest]
+    #[arg(long, value_name = "A,B", value_parser = numbers::<2>, allow_hyphen_values = true, help_heading = "Colours and values")]
+    range: Option<[f64; 2]>,
+    /// Opacity of a volume as thick as the solid's longest side, 0 to 1
+    #[arg(long, value_name = "ALPHA", default_value_t = 0.95, value_parser = share, help_heading = "Colours and values")]
+    opacity: f64,
+    /// Show voxels as in the published method: a voxel with an edge of k finest voxels counts as k layers,
+    /// wherever a line of sight crosses it
+    #[arg(long, help_heading = "Colours and values")]
+    published: bool,
 }
 
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, ValueEnum)]
@@ -81,19 +81,19 @@ pub enum View {
     Surface,
     /// The inside, translucent
     Volume,
-    /// Both: clip planes cut only the surface, which is translucent without any
+    /// Both: clip planes cut only the surface; without clip planes it is translucent
     Hybrid,
-    /// A plane through it, with its cells and what they are
+    /// A plane section, with its cells and their tags
     Slice,
 }
 
 #[derive(Debug, Clone, Copy, PartialEq, ValueEnum)]
 enum Undecided {
-    /// As those that are FULL
+    /// Like FULL cells
     Shown,
-    /// Translucent, around those that are FULL
+    /// Translucent, around FULL cells
     Faint,
-    /// Only what is FULL is shown
+    /// Only FULL cells are shown
     Hidden,
 }
 
@@ -101,7 +101,7 @@ enum Undecided {
 enum Edges {
     /// Where faces meet at more than 30 degrees
     Features,
-    /// Those of all triangles, fainter where these are seen small
+    /// All edges of triangles, fainter where triangles are small in the picture
     All,
 }
 

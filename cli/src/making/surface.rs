@@ -89,26 +89,26 @@ impl Wanted {
 
 #[derive(Debug, Clone, Copy, PartialEq, ValueEnum)]
 pub enum Method {
-    /// Marching cubes: between samples of one distance
+    /// Marching cubes: the surface between samples at equal distances
     Mc,
-    /// Surface nets: the same samples, with a vertex in each cube between them. Smoother; of a mesh, a scene
-    /// or a volume an octree is made first
+    /// Surface nets: the same samples, with a vertex in each cube between them. Smoother. A mesh, a scene or
+    /// a volume is first made an octree
     Nets,
-    /// Dual contouring, which keeps edges and corners: of a tri-dexel model with normals. Of a mesh, a scene
-    /// or a volume one is made first
+    /// Dual contouring of a tri-dexel model with normals, which keeps edges and corners. A mesh, a scene or a
+    /// volume is first made such a model
     Dual,
-    /// The surfaces themselves, of a scene and of a solid whose cells keep surfaces: plane faces as they are,
-    /// with sharp edges, and curved ones in chords (--tolerance). Of a closed mesh its triangles, merged. Few
-    /// triangles
+    /// The surfaces themselves, of a scene and of a solid whose cells keep surfaces: plane faces exactly,
+    /// with sharp edges, and curved ones in chords (--tolerance). For a closed mesh its triangles, merged.
+    /// Few triangles
     Faces,
-    /// Adaptive dual contouring: few triangles where the surface is flat, about as near as --tolerance says,
-    /// with sharp edges. Of whatever has a shape
+    /// Adaptive dual contouring of any input: few triangles where the surface is flat, sharp edges, and a
+    /// distance of about --tolerance
     Adaptive,
     /// Simple marching cubes: all vertices are samples, all normals have one of 13 directions
     Smc,
-    /// The surface of smc, with one region of few triangles for all that lies in one plane; no cracks
+    /// The surface of smc, with one region of few triangles for each connected coplanar part; no cracks
     Shrink,
-    /// Coplanar shrink as it was published, to compare with: it has cracks
+    /// Coplanar shrink as published, for comparison: it has cracks
     ShrinkPublished,
 }
 
@@ -141,11 +141,11 @@ pub enum At {
 
 #[derive(Debug, Clone, Copy, ValueEnum)]
 pub enum ResolveName {
-    /// Outside: the surface is that of what is proven to be solid
+    /// Outside: the surface is that of the part that is proven to be solid
     Inner,
-    /// Inside: the surface is that of what may be solid
+    /// Inside: the surface is that of the part that may be solid
     Outer,
-    /// Where the mesh or the scene says: at the cell's centre
+    /// As the mesh or the scene says at the cell's centre
     Source,
 }
 

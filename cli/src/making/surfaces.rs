@@ -10,10 +10,10 @@ use leafless::{Frame, Rule};
 /// Whether surfaces are kept.
 #[derive(Clone, Copy, Args)]
 pub struct Surfaces {
-    /// Keep the surfaces that cross undecided cells: the file is small, and as exact as what it is made of.
-    /// Cells end where three surfaces are left, at any size; the depth bounds where more meet. Of meshes,
-    /// which need one, the surface is kept within layers of this thickness, as a part of the longest side; of
-    /// scenes exact surfaces alone are kept without it
+    /// Keep the surfaces that cross undecided cells: the file is small, and as exact as the input. Cells of
+    /// any size are not split further once three surfaces are left; the depth limits the splitting where more
+    /// meet. A mesh needs the tolerance: its surface is kept within layers of this thickness, relative to its
+    /// longest side. For a scene without it, only exact surfaces are kept
     #[arg(long, value_name = "TOLERANCE", num_args = 0..=1, require_equals = true, value_parser = tolerance)]
     surfaces: Option<Option<f64>>,
 }

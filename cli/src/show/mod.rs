@@ -23,7 +23,7 @@ use terminal::{Terminal, terminal};
 pub enum Protocol {
     /// The best of the others that the terminal says it understands
     Auto,
-    /// The protocol of kitty, which Ghostty, Konsole and WezTerm understand too
+    /// The protocol of kitty, which Ghostty, Konsole and WezTerm understand, too
     Kitty,
     /// The protocol of iTerm2
     Iterm,

@@ -18,23 +18,23 @@ use leafless::{Error, FillRule, Frame, TriangleMesh, exchange};
 #[derive(Clone, Default, Args)]
 #[command(next_help_heading = "Meshes (STL, OBJ, PLY, OFF, 3MF)")]
 pub struct Reading {
-    /// Format of the mesh file. Without it the content tells, and the extension of the name
+    /// Unit of the numbers in the mesh file: um, mm, cm, m, in or ft [default: that of a 3MF; unknown for
+    /// other formats]
+    #[arg(long, value_name = "UNIT", value_parser = unit, help_heading = "Units and placement")]
+    unit: Option<LengthUnit>,
+    /// Unit to convert the mesh to: um, mm, cm, m, in or ft
+    #[arg(long = "to-unit", value_name = "UNIT", value_parser = unit, help_heading = "Units and placement")]
+    to: Option<LengthUnit>,
+    /// Format of the mesh file [default: by the content, and by the extension of the name]
     #[arg(long, value_parser = formats(["stl", "obj", "ply", "off", "3mf"]))]
     format: Option<MeshFormat>,
-    /// Unit of the numbers in the mesh file: um, mm, cm, m, in or ft. Without it that of a 3MF is known, and
-    /// those of other formats are not
-    #[arg(long, value_name = "UNIT", value_parser = unit)]
-    unit: Option<LengthUnit>,
-    /// Unit to convert the mesh to
-    #[arg(long = "to-unit", value_name = "UNIT", value_parser = unit)]
-    to: Option<LengthUnit>,
-    /// Which points count as inside a mesh. Without it: positive for 3MF, as that format demands, and nonzero
-    /// for all others
+    /// Which points are inside a mesh [default: positive for 3MF, as that format demands; nonzero for all
+    /// others]
     #[arg(long, value_enum)]
     fill: Option<FillName>,
-    /// The true boundary lies within this distance of a mesh, such as the deflection of a tessellation: what
-    /// is proven is then proven of the true solid, and what is nearer to the triangles is undecided. In units
-    /// of the mesh after --to-unit, before it is moved or scaled. The mesh must be closed
+    /// The true boundary lies within this distance of the mesh, such as the deflection of a tessellation.
+    /// What is proven is then proven for the true solid, and points nearer to the triangles are undecided. In
+    /// units of the mesh after --to-unit, before it is moved or scaled. The mesh must be closed
     #[arg(long, value_name = "D", value_parser = tolerance)]
     deviation: Option<f64>,
     #[command(flatten)]
@@ -43,12 +43,12 @@ pub struct Reading {
 
 #[derive(Debug, Clone, Copy, ValueEnum)]
 enum FillName {
-    /// Those that the surface winds around, in either sense: overlapping bodies are joined
+    /// Points that the surface winds around, in either sense: overlapping bodies are united
     #[value(alias = "non-zero")]
     Nonzero,
-    /// Those that it winds around in the positive sense: bodies that are inside out take away from others
+    /// Points that it winds around in the positive sense: inverted bodies are subtracted from others
     Positive,
-    /// Those that it winds around an odd number of times: overlaps are holes. Needs a closed mesh
+    /// Points that it winds around an odd number of times: overlaps are holes. Needs a closed mesh
     #[value(alias = "even-odd")]
     Evenodd,
 }

@@ -20,28 +20,28 @@ const MOVES: [Move; 4] = [
     Move {
         name: "translate",
         value: "X,Y,Z",
-        help: "Move what is read by so much along x, y and z. --translate, --rotate, --scale and --place may be given several \
-               times, and act one after another in the order of the command line",
+        help: "Move the input by this much along x, y and z, in model units. The moves --translate, --rotate, --scale and \
+               --place may be given several times, and act one after another in the order of the command line",
         map: translation,
     },
     Move {
         name: "rotate",
         value: "AXIS,DEGREES",
-        help: "Turn what is read about an axis through the origin, counter-clockwise as seen from its tip: x, y or z, or the \
-               three numbers of a direction, and an angle: z,30 or 1,1,0,30. Quarter turns about x, y and z are exact",
+        help: "Rotate the input about an axis through the origin, counter-clockwise as seen from the axis's tip: x, y or z, or \
+               the three numbers of a direction, and an angle in degrees: z,30 or 1,1,0,30. Quarter turns about x, y and z are exact",
         map: rotation,
     },
     Move {
         name: "scale",
         value: "S|SX,SY,SZ",
-        help: "Scale what is read by a factor, or by one along each axis, about the origin; negative ones mirror it",
+        help: "Scale the input about the origin by one factor, or by one for each axis; negative factors mirror it",
         map: scaling,
     },
     Move {
         name: "place",
         value: "MATRIX",
-        help: "Move what is read by the rows of the matrix [M | t], 12 numbers, or 16 with a last row 0 0 0 1, in brackets or \
-               not. M may turn, stretch, shear and mirror",
+        help: "Move the input by the matrix [M | t]: its rows, 12 numbers, or 16 with a last row 0 0 0 1, with or without \
+               brackets. M may rotate, stretch, shear and mirror",
         map: matrix,
     },
 ];
@@ -126,7 +126,7 @@ impl Args for Placing {
         command.args(MOVES.map(|Move { name, value, help, map }| {
             let argument = Arg::new(name).long(name).value_name(value).help(help);
             argument
-                .help_heading("Moves")
+                .help_heading("Units and placement")
                 .action(ArgAction::Append)
                 .allow_hyphen_values(true)
                 .value_parser(map)

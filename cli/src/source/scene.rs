@@ -15,7 +15,7 @@ use std::path::Path;
 #[command(next_help_heading = "Scenes (.csg)")]
 pub struct Drawing {
     /// Which circles, cylinders, balls and solids of revolution of a scene are polygons, as OpenSCAD draws
-    /// them. Without it: those with a $fn of 12 or less
+    /// them [default: those with a $fn of 12 or less]
     #[arg(long = "fn", value_enum, value_name = "CURVES")]
     facets: Option<FacetsName>,
 }

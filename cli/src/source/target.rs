@@ -12,19 +12,18 @@ use leafless::{Affine, Frame, Octree, Proof};
 /// How a solid that is asked is read, and looked at.
 #[derive(Args)]
 pub struct Looking {
-    /// Lower corner and edge length of the cube to look at, for a mesh or scene. Without it: the cube around
-    /// it
-    #[arg(long, value_name = "X0,Y0,Z0,EDGE", value_parser = bounds, allow_hyphen_values = true)]
-    bounds: Option<Frame>,
-    /// Take the cells of a solid from a file (.lfl) for the solid itself, whatever they prove of what they
-    /// were made from. A file that is written says what they prove, all the same
+    /// Take the cells of a solid from a file (.lfl) as the solid itself, whatever the cells prove about their
+    /// source. A file that is written still records what the cells prove
     #[arg(long)]
     cells: bool,
-    #[command(flatten)]
-    taking: Taking,
-    /// Threads to use; 0: as many as there are processors. The result is the same
+    /// Threads to use, 0 to 1024; 0: one for each processor. The result does not depend on it
     #[arg(long, default_value_t = 0, value_name = "N", value_parser = threads)]
     pub threads: usize,
+    /// Lower corner and edge length of the cube to examine, for a mesh or scene [default: the cube around it]
+    #[arg(long, value_name = "X0,Y0,Z0,EDGE", value_parser = bounds, allow_hyphen_values = true)]
+    bounds: Option<Frame>,
+    #[command(flatten)]
+    taking: Taking,
 }
 
 impl Looking {

@@ -19,28 +19,28 @@ use leafless::{Affine, AnySolid, Control, Error, Frame, Volume};
 #[derive(Clone, Default, Args)]
 #[command(next_help_heading = "Volumes (NRRD, MetaImage, raw)")]
 pub struct Sampling {
-    /// Least sample of a volume (NRRD, MetaImage, raw) that is inside. Without it: the middle of the range of
-    /// the samples' type, 0 for floating point numbers; if all samples lie on one side of that, the number
-    /// that parts their histogram best (by Otsu's method), which is told
+    /// Least sample of a volume (NRRD, MetaImage, raw) that is inside [default: the middle of the range of
+    /// the samples' type, 0 for floating-point numbers; if all samples lie on one side of it, the number that
+    /// separates their histogram best (Otsu's method), and a note says so]
     #[arg(long, value_name = "T", value_parser = threshold, allow_hyphen_values = true)]
     threshold: Option<f64>,
-    /// Read the file as a raw volume, which has no header: an array of so many samples along x, y and z, x
-    /// fastest
+    /// Read the file as a raw volume, which has no header: an array with this many samples along x, y and z,
+    /// x fastest
     #[arg(long, value_name = "NX,NY,NZ", value_parser = extents)]
     extents: Option<[u32; 3]>,
-    /// Type of the samples of a raw volume. Without it: u8
+    /// Type of the samples of a raw volume [default: u8]
     #[arg(long = "type", value_parser = kinds(), requires = "extents")]
     kind: Option<SampleKind>,
-    /// Edges of the voxels of a raw volume along x, y and z, or one for all. Without it: 1
+    /// Edges of the voxels of a raw volume along x, y and z, or one number for all [default: 1]
     #[arg(long, value_name = "S|SX,SY,SZ", value_parser = spacing, requires = "extents")]
     spacing: Option<[f64; 3]>,
-    /// Lower corner of the first voxel of a raw volume. Without it: 0,0,0
+    /// Lower corner of the first voxel of a raw volume [default: 0,0,0]
     #[arg(long, value_name = "X,Y,Z", value_parser = corner, requires = "extents", allow_hyphen_values = true)]
     corner: Option<[f64; 3]>,
-    /// Bytes of a raw volume before its first sample. Without it: 0
+    /// Bytes of a raw volume before its first sample [default: 0]
     #[arg(long, value_name = "BYTES", requires = "extents")]
     skip: Option<u64>,
-    /// The first byte of each sample of a raw volume is the one of the highest weight
+    /// The first byte of each sample of a raw volume is the most significant one
     #[arg(long, requires = "extents")]
     big_endian: bool,
 }
