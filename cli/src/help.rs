@@ -4,7 +4,8 @@
 //! purpose, its usage, its arguments and its options under headings, the most common ones first; the details
 //! and the examples follow. What each subcommand and each option means is written where it is defined.
 
-use clap::Command;
+use crate::show;
+use clap::{Arg, Command};
 
 /// The subcommands under their headings. A test compares them with the program's subcommands.
 const GROUPS: [(&str, &[&str]); 9] = [
@@ -12,9 +13,9 @@ const GROUPS: [(&str, &[&str]); 9] = [
     ("Combine solids", &["union", "intersection", "difference", "xor", "complement"]),
     ("Measure", &["measure", "within"]),
     ("Compare and fit", &["interfere", "deviation", "layout"]),
-    ("Ask about points, rays and cells (on standard input)", &["contains", "distance", "ray", "neighbours"]),
+    ("Ask about points, rays and cells", &["contains", "distance", "ray", "neighbours"]),
     ("Meshes, pictures and arrays", &["mesh", "render", "heights", "bitmap", "voxels"]),
-    ("Attributes: values inside a solid", &["attribute", "sample", "summary"]),
+    ("Attributes (values inside a solid)", &["attribute", "sample", "summary"]),
     ("Files", &["info", "verify", "convert"]),
     ("First steps", &["demo", "help"]),
 ];
@@ -236,46 +237,106 @@ const EXAMPLES: [(&str, &[&str]); 29] = [
     ("demo", &["leafless demo", "leafless demo parts"]),
 ];
 
+/// The options that most subcommands have, for the overview.
+const COMMON: [(&str, &str); 6] = [
+    ("-o, --output <FILE>", "File to write; `-` is standard output"),
+    ("--depth <N>", "Levels of cells, 1 to 20; each level halves the cells and the error"),
+    ("--threads <N>", "Threads to use; 0, the default: one for each processor"),
+    ("--json", "Print JSON"),
+    ("--unit <UNIT>", "Unit of the numbers in a mesh file; --to-unit converts them"),
+    ("--translate <X,Y,Z>", "Move the input; likewise --rotate, --scale and --place"),
+];
+
+/// The greatest width of help texts, also where the terminal's width is not known.
+const WIDTH: usize = 100;
+/// The least width, which a narrower terminal has to break further.
+const LEAST_WIDTH: usize = 60;
+/// Columns before the help of an option of a subcommand, which begins a line of its own.
+const INDENT: usize = 10;
+/// Columns before the help of an option in the overview.
+const COLUMN: usize = 27;
+
 /// The command line with its help texts.
-pub fn with_help(mut all: Command) -> Command {
-    for own in all.get_subcommands_mut() {
-        let details = own.get_long_about().map(|text| text.to_string()).unwrap_or_default();
-        let examples = examples(own);
-        let taken = std::mem::take(own).mut_args(|argument| {
-            let heading =
-                argument.get_long().filter(|_| argument.get_help_heading().is_none()).and_then(heading);
-            match heading {
-                Some(heading) => argument.help_heading(heading),
-                None => argument,
-            }
-        });
-        let details = section(&taken, "Details", &details, "\n\n");
-        *own =
-            taken.long_about(None).after_long_help(format!("{details}\n\n{examples}")).after_help(examples);
-    }
-    let list = overview(&all);
-    let [usage, options] = ["Usage:", "Options:"].map(|text| header(&all, text));
-    // (The parser's own list of subcommands has no headings.)
-    all.help_template(format!(
-        "{{about}}\n\n{usage} {{usage}}\n\n{options}\n{{options}}\n\n{list}{{after-help}}"
-    ))
+pub fn with_help(all: Command) -> Command {
+    with_width(all, show::columns().unwrap_or(WIDTH).clamp(LEAST_WIDTH, WIDTH))
 }
 
-/// The heading of an option.
-fn heading(option: &str) -> Option<&'static str> {
-    HEADINGS.iter().find(|(_, options)| options.contains(&option)).map(|(heading, _)| *heading)
+fn with_width(mut all: Command, width: usize) -> Command {
+    for own in all.get_subcommands_mut() {
+        let details = own.get_long_about().map(|text| text.to_string()).unwrap_or_default();
+        let details = filled(&details, width - 2);
+        let examples = examples(own);
+        let taken = std::mem::take(own).next_line_help(true).long_about(None);
+        let taken = taken.mut_args(|argument| refilled(headed(argument), width - INDENT));
+        let details = section(&taken, "Details", &details);
+        *own = taken.after_long_help(format!("{details}\n\n{examples}")).after_help(examples);
+    }
+    let notes = all.get_after_help().map(|text| filled(&text.to_string(), width)).unwrap_or_default();
+    let list = overview(&all, width);
+    let [usage, options, most] =
+        ["Usage:", "Options:", "Options of most commands:"].map(|text| header(&all, text));
+    let common: String =
+        COMMON.iter().map(|(option, help)| line(&all, option, help, COLUMN, width)).collect();
+    // (The parser's own list of subcommands has no headings.)
+    let template = format!(
+        "{{about}}\n\n{usage} {{usage}}\n\n{options}\n{{options}}\n\n{most}{common}\n\n{list}\n\n{notes}\n"
+    );
+    all.mut_args(|argument| refilled(headed(argument), width - COLUMN)).help_template(template)
+}
+
+/// The argument under the heading of its name.
+fn headed(argument: Arg) -> Arg {
+    let name = argument.get_long().filter(|_| argument.get_help_heading().is_none());
+    let known = HEADINGS.iter().find(|(_, options)| name.is_some_and(|name| options.contains(&name)));
+    match known {
+        Some((heading, _)) => argument.help_heading(*heading),
+        None => argument,
+    }
+}
+
+/// The argument with its help in lines of this width. (Without the terminal's width the parser breaks none.)
+fn refilled(argument: Arg, width: usize) -> Arg {
+    let [help, long] = [argument.get_help(), argument.get_long_help()]
+        .map(|text| text.map(|text| filled(&text.to_string(), width)));
+    match (help, long) {
+        (Some(help), Some(long)) => argument.help(help).long_help(long),
+        (Some(help), None) => argument.help(help),
+        _ => argument,
+    }
+}
+
+/// Paragraphs, which empty lines separate, in lines of this width.
+fn filled(text: &str, width: usize) -> String {
+    let paragraph = |text: &str| {
+        let (mut lines, mut length) = (String::new(), 0);
+        for word in text.split_whitespace() {
+            let own = word.chars().count();
+            if length > 0 && length + 1 + own > width {
+                lines.push('\n');
+                length = 0;
+            } else if length > 0 {
+                lines.push(' ');
+                length += 1;
+            }
+            lines.push_str(word);
+            length += own;
+        }
+        lines
+    };
+    text.split("\n\n").map(paragraph).collect::<Vec<_>>().join("\n\n")
 }
 
 /// The examples of a subcommand.
 fn examples(command: &Command) -> String {
     let known = EXAMPLES.iter().find(|(name, _)| *name == command.get_name());
-    known.map(|(_, lines)| section(command, "Examples", &lines.join("\n"), "\n")).unwrap_or_default()
+    known.map(|(_, lines)| section(command, "Examples", &lines.join("\n"))).unwrap_or_default()
 }
 
-/// A heading, and indented lines or paragraphs below it.
-fn section(command: &Command, heading: &str, text: &str, between: &str) -> String {
-    let parts: Vec<String> = text.split(between).map(|part| format!("  {part}")).collect();
-    format!("{}\n{}", header(command, &format!("{heading}:")), parts.join(between))
+/// A heading, and indented lines below it.
+fn section(command: &Command, heading: &str, text: &str) -> String {
+    let indented = |line: &str| if line.is_empty() { "\n".into() } else { format!("\n  {line}") };
+    let lines: String = text.lines().map(indented).collect();
+    format!("{}{lines}", header(command, &format!("{heading}:")))
 }
 
 /// A heading in the style of the parser's own ones.
@@ -284,28 +345,36 @@ fn header(command: &Command, text: &str) -> String {
     format!("{style}{text}{style:#}")
 }
 
-/// The subcommands and their purposes, under their headings.
-fn overview(all: &Command) -> String {
-    let names = || GROUPS.iter().flat_map(|(_, names)| *names);
-    let width = names().map(|name| name.len()).max().unwrap_or(0);
+/// The line of a name in a list, whose help begins at a column.
+fn line(all: &Command, name: &str, help: &str, column: usize, width: usize) -> String {
     let style = all.get_styles().get_literal();
-    let line = |name: &&str| {
+    // (Options without a short name stand below the long names of others.)
+    let indent = if name.starts_with("--") { 6 } else { 2 };
+    let gap = column.saturating_sub(indent + name.len());
+    let help = filled(help, width - column).replace('\n', &format!("\n{:column$}", ""));
+    format!("\n{:indent$}{style}{name}{style:#}{:gap$}{help}", "", "")
+}
+
+/// The subcommands and their purposes, under their headings.
+fn overview(all: &Command, width: usize) -> String {
+    let longest = GROUPS.iter().flat_map(|(_, names)| *names).map(|name| name.len()).max().unwrap_or(0);
+    let own = |name: &&str| {
         let about = all.find_subcommand(name).and_then(Command::get_about);
         let about = about.map_or_else(|| HELP.to_owned(), |about| about.to_string());
-        format!("\n  {style}{name}{style:#}{:padding$}{about}", "", padding = width + 2 - name.len())
+        line(all, name, &about, longest + 4, width)
     };
     let group = |(heading, names): &(&str, &[&str])| {
-        let lines: String = names.iter().map(line).collect();
-        format!("{}{lines}\n\n", header(all, &format!("{heading}:")))
+        let lines: String = names.iter().map(own).collect();
+        format!("{}{lines}", header(all, &format!("{heading}:")))
     };
-    let groups: String = GROUPS.iter().map(group).collect();
-    groups.trim_end().to_owned()
+    GROUPS.iter().map(group).collect::<Vec<_>>().join("\n\n")
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::command_line;
+    use crate::{Arguments, command_line};
+    use clap::CommandFactory;
     use std::collections::BTreeSet;
 
     fn names(command: &Command) -> BTreeSet<String> {
@@ -320,7 +389,40 @@ mod tests {
         assert_eq!(listed.iter().map(|name| (*name).to_owned()).collect::<BTreeSet<_>>(), names(&all));
         assert_eq!(listed.len(), names(&all).len(), "{listed:?}");
         let text = all.render_help().to_string();
-        assert!(text.lines().all(|line| line.chars().count() <= 100), "{text}");
+    }
+
+    #[test]
+    fn help_texts_keep_to_their_width() {
+        for width in [LEAST_WIDTH, 80, WIDTH] {
+            let mut all = with_width(Arguments::command(), width);
+            all.build();
+            let overview = all.render_long_help().to_string();
+            let text = overview.lines().skip_while(|line| !line.starts_with("Options:"));
+            for line in text.filter(|line| line.contains(' ')) {
+                assert!(line.chars().count() <= width, "{line:?}");
+            }
+            for own in all.get_subcommands_mut() {
+                let text = own.render_long_help().to_string();
+                let text = text.split("Examples:").next().unwrap().to_owned();
+                let text = text
+                    .lines()
+                    .skip_while(|line| !line.starts_with("Arguments:") && !line.starts_with("Options:"));
+                // (The parser lays out the values of options.)
+                for line in text.filter(|line| !line.trim_start().starts_with("- ")) {
+                    assert!(line.chars().count() <= width, "{} {line:?}", own.get_name());
+                }
+            }
+        }
+    }
+
+    #[test]
+    fn options_of_most_commands_are_so() {
+        let all = command_line();
+        for (option, _) in COMMON {
+            let long = option.split("--").nth(1).unwrap().split(' ').next().unwrap();
+            let has = |own: &&Command| own.get_arguments().any(|argument| argument.get_long() == Some(long));
+            assert!(all.get_subcommands().filter(has).count() >= 12, "{option}");
+        }
     }
 
     #[test]

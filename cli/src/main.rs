@@ -49,11 +49,11 @@ standard error report the progress, every five and later every thirty seconds.";
 
 /// The command line.
 #[derive(Parser)]
-#[command(name = "leafless", version, propagate_version = true, max_term_width = 100)]
+#[command(name = "leafless", version, propagate_version = true)]
 #[command(about = ABOUT, long_about = None, after_help = NOTES)]
 struct Arguments {
-    /// Most memory to take, such as 512M or 2G; a larger result is refused [default: what the machine has to
-    /// spare, at most 16G]
+    /// Most memory to take, such as 512M or 2G; results that would take more are refused [default: what the
+    /// machine has to spare, at most 16G]
     #[arg(long, global = true, value_name = "SIZE", value_parser = memory::size, display_order = 900)]
     max_memory: Option<u64>,
     #[command(subcommand)]
@@ -84,13 +84,13 @@ enum Command {
     Xor(boolean::Arguments),
     #[command(about = "Invert a solid: the points outside of it")]
     Complement(boolean::ComplementArguments),
-    #[command(about = "Tell whether points lie inside a solid")]
+    #[command(about = "Tell whether points on standard input lie inside a solid")]
     Contains(contains::Arguments),
-    #[command(about = "Tell how far points are from a solid, a mesh or a scene")]
+    #[command(about = "Tell how far points on standard input are from a solid, a mesh or a scene")]
     Distance(distance::Arguments),
-    #[command(about = "List the cells beside a cell of a solid")]
+    #[command(about = "List the neighbours of cells on standard input")]
     Neighbours(neighbours::Arguments),
-    #[command(about = "Tell where rays first hit a solid, a mesh or a scene")]
+    #[command(about = "Tell where rays on standard input first hit a solid, a mesh or a scene")]
     Ray(ray::Arguments),
     #[command(about = "Make a picture (PNG), or show it on the terminal")]
     Render(render::Arguments),

@@ -34,9 +34,9 @@ use std::ffi::OsString;
 #[derive(Args)]
 pub struct Arguments {
     #[command(flatten)]
-    operands: Operands,
-    #[command(flatten)]
     common: Common,
+    #[command(flatten)]
+    operands: Operands,
 }
 
 /// The complement is solid where the operand is empty, and empty where the operand is solid.

@@ -49,9 +49,9 @@ pub struct Arguments {
     /// File to write, or `-` for standard output; written completely or not at all
     #[arg(short, long, value_name = "OUT")]
     output: OsString,
-    /// What to make [default: a mesh if the output has the extension .ply, .stl, .obj, .off or .3mf; what the
-    /// input is if it is moved]. The extension .lfl does not decide, as octrees and tri-dexel models both
-    /// have it
+    /// What to make. The extension .lfl does not decide, as octrees and tri-dexel models both have it
+    /// [default: a mesh if the output has the extension .ply, .stl, .obj, .off or .3mf; what the input is if
+    /// it is moved]
     #[arg(id = "target", long = "to", value_enum, value_name = "KIND")]
     kind: Option<KindName>,
     /// Remove triangles from a mesh, moving its surface by at most T, in model units. Edges of the shape and
@@ -61,8 +61,8 @@ pub struct Arguments {
     /// Print one JSON object, that of the subcommand that does the work
     #[arg(long)]
     json: bool,
-    /// Cells along an axis of the cube around a mesh or scene, a power of two from 2 to 524288 [default: 256;
-    /// the voxels of a volume]. A mesh that becomes a mesh keeps its triangles without it
+    /// Cells along an axis of the cube around a mesh or scene, a power of two from 2 to 524288. Without it, a
+    /// mesh that becomes a mesh keeps its triangles [default: 256; the voxels of a volume]
     #[arg(long, value_name = "N", value_parser = resolution)]
     resolution: Option<u8>,
     /// What undecided cells count as, and cells that the surface passes through

@@ -35,8 +35,8 @@ pub struct Arguments {
     /// Print one line of JSON for each point; infinite bounds are `null`
     #[arg(long)]
     json: bool,
-    /// Greatest width of the interval, in the solid's units [default: a millionth of the edge of the cube
-    /// that is examined]. Does not apply to a solid from a file (.lfl), whose cells give the bounds
+    /// Greatest width of the interval, in the solid's units. Does not apply to a solid from a file (.lfl),
+    /// whose cells give the bounds [default: a millionth of the edge of the cube that is examined]
     #[arg(long, value_name = "T", value_parser = tolerance, allow_hyphen_values = true)]
     tolerance: Option<f64>,
     /// Finest level to which cells are split, 1 to 20 [default: the depth of the solid, or 20 for a mesh or

@@ -45,8 +45,8 @@ pub struct Arguments {
     /// Print one JSON object
     #[arg(long)]
     json: bool,
-    /// Greatest width of the volume's interval, relative to its middle; 0 continues to the depth [default:
-    /// 0.01, or 0 with --splits]. Small values cost little if the surfaces are those of half-spaces
+    /// Greatest width of the volume's interval, relative to its middle; 0 continues to the depth. Small
+    /// values cost little if the surfaces are those of half-spaces [default: 0.01, or 0 with --splits]
     #[arg(long, value_name = "T", value_parser = tolerance, allow_hyphen_values = true)]
     tolerance: Option<f64>,
     /// Width of the volume's interval that suffices in any case, in cubic units [default: a billionth of the

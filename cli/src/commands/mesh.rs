@@ -23,12 +23,16 @@ use std::time::Instant;
 /// normals, a solid that keeps layers of a mesh, and a volume. Nets (surface nets): a solid that consists of
 /// cells only.
 ///
-/// All other methods separate samples inside from samples outside. The samples of a mesh or a scene are the
-/// corners of cells, and vertices lie where the edges between corners cross the surface. The samples of a
-/// volume are its voxels, those of a tri-dexel model the centres of its cells, and those of a solid from a
-/// file its cells at the finest level; undecided cells count as inside, unless --resolve says otherwise. A
-/// solid whose cells keep surfaces is split to --depth; with --method mc and dual, vertices lie where rays
-/// through cell centres cross these surfaces.
+/// By the method faces, curved faces become chords within --tolerance. The method adaptive takes any input,
+/// and its surface is about as near as --tolerance says. The method dual first makes a tri-dexel model of a
+/// mesh, a scene or a volume, and the method nets an octree.
+///
+/// The methods other than faces and adaptive separate samples inside from samples outside. The samples of a
+/// mesh or a scene are the corners of cells, and vertices lie where the edges between corners cross the
+/// surface. The samples of a volume are its voxels, those of a tri-dexel model the centres of its cells, and
+/// those of a solid from a file its cells at the finest level; undecided cells count as inside, unless
+/// --resolve says otherwise. A solid whose cells keep surfaces is split to --depth; with --method mc and
+/// dual, vertices lie where rays through cell centres cross these surfaces.
 #[derive(Args)]
 pub struct Arguments {
     /// Solid or tri-dexel model (.lfl), mesh (STL, OBJ, PLY, OFF, 3MF), scene (.csg) or volume (NRRD,
@@ -37,7 +41,7 @@ pub struct Arguments {
     /// File to write, with the extension .ply, .stl, .obj, .off or .3mf, or `-` for standard output
     #[arg(short, long, value_name = "OUTPUT")]
     output: OsString,
-    /// How the surface is made [default: as sharp as the input allows, see below]
+    /// How the surface is made [default: as sharp as the input allows, see Details]
     #[arg(long, value_enum)]
     method: Option<Method>,
     /// Remove triangles from the surface after any method, moving it by at most T, in model units. Edges of
@@ -55,8 +59,8 @@ pub struct Arguments {
     /// Print one JSON object
     #[arg(long)]
     json: bool,
-    /// Greatest distance of the surface from the solid by the methods faces and adaptive, in model units
-    /// [default: a thousandth of the longest extent]. The report tells the distance
+    /// Greatest distance of the surface from the solid by the methods faces and adaptive, in model units. The
+    /// report tells the distance [default: a thousandth of the longest extent]
     #[arg(long, value_name = "T", value_parser = tolerance, allow_hyphen_values = true)]
     tolerance: Option<f64>,
     /// Level of the cells of a mesh, a scene, or a solid whose cells keep surfaces, 1 to 19: of all cells, or
@@ -68,12 +72,12 @@ pub struct Arguments {
     /// voxelize` makes them, instead of the corners, and the default method is nets
     #[arg(long, value_enum)]
     resolve: Option<ResolveName>,
-    /// Where --method mc puts the vertices of a mesh, scene or volume [default: crossing]. Given without
-    /// --method: mc
+    /// Where --method mc puts the vertices of a mesh, scene or volume. Given without --method, it implies mc
+    /// [default: crossing]
     #[arg(long, value_enum)]
     vertices: Option<At>,
-    /// Where the methods smc, shrink and shrink-published move vertices to [default: fat]. Given without
-    /// --method: smc
+    /// Where the methods smc, shrink and shrink-published move vertices to. Given without --method, it
+    /// implies smc [default: fat]
     #[arg(long, value_enum)]
     snap: Option<SnapName>,
     /// Threads to use, 0 to 1024; 0: one for each processor. The result does not depend on it

@@ -60,7 +60,7 @@ pub struct Arguments {
     /// further right, a positive elevation further above [default: 30,25; for a slice, perpendicular to its
     /// plane]
     #[arg(long, value_name = "AZIMUTH,ELEVATION", value_parser = numbers::<2>, allow_hyphen_values = true,
-          verbatim_doc_comment, conflicts_with = "eye", help_heading = "Camera")]
+          conflicts_with = "eye", help_heading = "Camera")]
     from: Option<[f64; 2]>,
     /// Parallel projection: parallel lines stay parallel
     #[arg(long, conflicts_with = "fov", help_heading = "Camera")]

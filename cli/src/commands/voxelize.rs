@@ -71,9 +71,9 @@ pub struct Arguments {
     #[command(flatten)]
     like: Like,
     #[command(flatten)]
-    placing: Placing,
-    #[command(flatten)]
     reading: Reading,
+    #[command(flatten)]
+    placing: Placing,
 }
 
 pub fn run(arguments: &Arguments) -> Result<(), Failure> {

@@ -21,9 +21,9 @@ use std::time::Instant;
 
 #[derive(Debug, Clone, Copy, ValueEnum)]
 pub enum TouchName {
-    /// Contact is not overlap: a cell that the solid touches from outside is empty
+    /// Contact is not overlap: a cell touched from outside is empty
     Exact,
-    /// As in the paper that describes the method: such a cell is undecided
+    /// As in the paper of the method: a cell touched from outside is undecided
     Paper,
 }
 

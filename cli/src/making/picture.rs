@@ -81,7 +81,7 @@ pub enum View {
     Surface,
     /// The inside, translucent
     Volume,
-    /// Both: clip planes cut only the surface; without clip planes it is translucent
+    /// Both; clip planes cut only the surface, else translucent
     Hybrid,
     /// A plane section, with its cells and their tags
     Slice,
@@ -101,7 +101,7 @@ enum Undecided {
 enum Edges {
     /// Where faces meet at more than 30 degrees
     Features,
-    /// All edges of triangles, fainter where triangles are small in the picture
+    /// All edges of triangles, fainter where triangles are small
     All,
 }
 

@@ -91,22 +91,17 @@ impl Wanted {
 pub enum Method {
     /// Marching cubes: the surface between samples at equal distances
     Mc,
-    /// Surface nets: the same samples, with a vertex in each cube between them. Smoother. A mesh, a scene or
-    /// a volume is first made an octree
+    /// Surface nets: smoother, with a vertex in each cube between samples
     Nets,
-    /// Dual contouring of a tri-dexel model with normals, which keeps edges and corners. A mesh, a scene or a
-    /// volume is first made such a model
+    /// Dual contouring of a tri-dexel model with normals: keeps edges and corners
     Dual,
-    /// The surfaces themselves, of a scene and of a solid whose cells keep surfaces: plane faces exactly,
-    /// with sharp edges, and curved ones in chords (--tolerance). For a closed mesh its triangles, merged.
-    /// Few triangles
+    /// The surfaces themselves, plane faces exactly, with few triangles
     Faces,
-    /// Adaptive dual contouring of any input: few triangles where the surface is flat, sharp edges, and a
-    /// distance of about --tolerance
+    /// Adaptive dual contouring: few triangles where flat, sharp edges
     Adaptive,
-    /// Simple marching cubes: all vertices are samples, all normals have one of 13 directions
+    /// Simple marching cubes: vertices are samples, normals have 13 directions
     Smc,
-    /// The surface of smc, with one region of few triangles for each connected coplanar part; no cracks
+    /// The surface of smc, with few triangles for each coplanar part; no cracks
     Shrink,
     /// Coplanar shrink as published, for comparison: it has cracks
     ShrinkPublished,

@@ -23,11 +23,11 @@ use terminal::{Terminal, terminal};
 pub enum Protocol {
     /// The best of the others that the terminal says it understands
     Auto,
-    /// The protocol of kitty, which Ghostty, Konsole and WezTerm understand, too
+    /// The protocol of kitty; also of Ghostty, Konsole and WezTerm
     Kitty,
     /// The protocol of iTerm2
     Iterm,
-    /// Sixels, in up to 256 colours: foot, mlterm, Windows Terminal, xterm and others
+    /// Sixels, up to 256 colours: foot, mlterm, Windows Terminal, xterm …
     Sixel,
     /// Half-block characters, two pixels each: every terminal with colours
     Blocks,
@@ -40,6 +40,11 @@ pub struct Screen {
     area: Option<[usize; 2]>,
     /// Colours of sixels.
     colours: usize,
+}
+
+/// The columns of the terminal that standard output goes to, if they are known.
+pub fn columns() -> Option<usize> {
+    terminal(false).cells.map(|[columns, _]| columns)
 }
 
 /// Cells of a terminal of which nothing is known.

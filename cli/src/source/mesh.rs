@@ -43,12 +43,12 @@ pub struct Reading {
 
 #[derive(Debug, Clone, Copy, ValueEnum)]
 enum FillName {
-    /// Points that the surface winds around, in either sense: overlapping bodies are united
+    /// Points with a winding number other than 0: overlapping bodies unite
     #[value(alias = "non-zero")]
     Nonzero,
-    /// Points that it winds around in the positive sense: inverted bodies are subtracted from others
+    /// Points with a positive winding number: inverted bodies are subtracted
     Positive,
-    /// Points that it winds around an odd number of times: overlaps are holes. Needs a closed mesh
+    /// Points with an odd winding number: overlaps are holes; needs a closed mesh
     #[value(alias = "even-odd")]
     Evenodd,
 }

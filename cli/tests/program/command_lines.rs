@@ -38,11 +38,9 @@ struct Choice {
 
 /// All subcommands with their options, as the program's help tells them.
 fn subcommands(place: &Place) -> BTreeMap<String, Vec<Choice>> {
-    let help = place.run("--help").good();
-    let list = help.text().split("Commands:\n").nth(1).unwrap().split("\n\n").next().unwrap().to_owned();
-    let names =
-        list.lines().filter_map(|line| line.strip_prefix("  ")?.split_whitespace().next().map(str::to_owned));
-    names
+    place
+        .commands()
+        .into_iter()
         .filter(|name| name != "help" && name != "demo")
         .map(|name| (name.clone(), choices(place, &name)))
         .collect()

@@ -5,6 +5,7 @@
 
 use leafless::{TriangleMesh, exchange};
 use serde_json::Value;
+use std::collections::BTreeSet;
 use std::ffi::OsStr;
 use std::fmt;
 use std::io::Write;
@@ -47,6 +48,15 @@ impl Place {
     }
 
     /// Runs a command line whose words are separated by blanks.
+    /// The subcommands that the program's help lists.
+    pub fn commands(&self) -> BTreeSet<String> {
+        let help = self.run("--help").good();
+        // A line of the lists is a name, two blanks or more, and a text.
+        let names = help.text().lines().filter_map(|line| line.strip_prefix("  ")?.split_once("  "));
+        let names = names.filter(|(name, _)| !name.is_empty() && !name.starts_with('-'));
+        names.map(|(name, _)| name.to_owned()).collect()
+    }
+
     pub fn run(&self, line: &str) -> Run {
         Run::new(line, self.command(line.split_whitespace()).output().unwrap())
     }
