@@ -1,12 +1,12 @@
-//! `leafless`: solids from mesh files to queries, on the command line.
+//! The program `leafless`: solids from mesh files to queries, on the command line.
 //!
-//! A subcommand (`commands`) holds its arguments, and says what it wants. A file of any kind becomes a solid
-//! on a frame in `source`; what is made of it is made in `making`; `report` knows what is told of it, and
-//! `sink` takes it to a file or to standard output. `show` puts pictures on the terminal. A folder uses only
-//! those below it: from the bottom up these are `source`, `report` and `sink`, `show` and `making`, and
-//! `commands`; no subcommand uses another.
+//! A subcommand (`commands`) defines its arguments and runs its task. `source` makes a solid on a frame from
+//! a file of any kind; `making` makes new solids, meshes and pictures; `report` describes them, and `sink`
+//! writes results to a file or to standard output. `show` displays pictures on the terminal. A folder uses
+//! only the folders below it: from the bottom up these are `source`, `report` and `sink`, `show` and
+//! `making`, and `commands`. No subcommand uses another one.
 //!
-//! Every failure is one line on standard error that names the file; the exit code is 0 for success, 1 for
+//! Every failure is one line on standard error that names the file. The exit code is 0 for success, 1 for
 //! failure, 2 for wrong usage. A signal ends the program at once (see `signals`).
 
 #![deny(unsafe_code)]
@@ -172,9 +172,9 @@ fn main() -> ExitCode {
     };
     match result {
         Ok(()) => ExitCode::SUCCESS,
-        // Whoever reads has seen enough, as `head` has.
+        // The reader has seen enough, as `head` has.
         Err(Failure::ReaderGone) => ExitCode::SUCCESS,
-        // Half a solid is none; but the reader knows best why it left.
+        // Half a solid is useless. The reader knows why it left, so there is no message.
         Err(Failure::Undelivered) => ExitCode::from(1),
         Err(Failure::Failed(line)) => {
             complain(&line);
@@ -187,13 +187,13 @@ fn main() -> ExitCode {
     }
 }
 
-/// Shows help and version as they are, and errors in one line.
+/// Prints help and version as they are, and errors in one line.
 fn refuse_usage(error: &clap::Error) -> ExitCode {
     match error.kind() {
         ErrorKind::DisplayHelp
         | ErrorKind::DisplayVersion
         | ErrorKind::DisplayHelpOnMissingArgumentOrSubcommand => {
-            // Nobody is left to be told if this cannot be printed.
+            // If this cannot be printed, nobody is there to read about it.
             let _ = error.print();
         }
         _ => complain(&usage_line(&error.to_string())),
@@ -201,7 +201,7 @@ fn refuse_usage(error: &clap::Error) -> ExitCode {
     ExitCode::from(error.exit_code() as u8)
 }
 
-/// What `clap` says over several lines, in one: the complaint and its hints, without the synopsis.
+/// Joins the lines of an error of `clap` into one: the complaint and its hints, without the synopsis.
 fn usage_line(text: &str) -> String {
     let complaint = text.split("\nUsage:").next().unwrap_or(text);
     let complaint = complaint.split("\nFor more information").next().unwrap_or(complaint);
@@ -221,7 +221,7 @@ mod tests {
     #[test]
     fn the_definition_of_the_arguments_is_sound() {
         fn check(command: &clap::Command) {
-            // Where debug assertions are off, as in a release, clap itself does not look.
+            // Without debug assertions, as in a release, clap itself does not check this.
             let mut names = std::collections::BTreeSet::new();
             for argument in command.get_arguments() {
                 assert!(names.insert(argument.get_id().to_string()), "{} {argument}", command.get_name());
