@@ -135,7 +135,7 @@ struct Report {
     seconds: f64,
 }
 
-/// Depth of a new channel of a solid whose cells keep surfaces, if none is asked for.
+/// Depth of a new channel of a solid whose cells keep surfaces, without --depth.
 const DEPTH: u8 = 8;
 
 pub fn run(arguments: &Arguments) -> Result<(), Failure> {
@@ -176,7 +176,7 @@ fn made(arguments: &Arguments, input: &Input, octree: &Octree) -> Result<Channel
     let values = values(arguments, octree)?;
     let kind = arguments.store.or(values.kind);
     let own_depth = match octree.view().cuts() {
-        // Its own cells end at any size, and the frame is as deep as can be.
+        // The solid's own cells end at any size, and its frame is as deep as possible.
         Some(_) => DEPTH.min(octree.frame().depth()),
         None => octree.frame().depth(),
     };

@@ -55,7 +55,7 @@ enum WriteName {
     Raw,
 }
 
-/// Level of the cells of a solid whose cells keep surfaces, if none is asked for.
+/// Level of the cells of a solid whose cells keep surfaces, without --level.
 const LEVEL: u8 = 8;
 
 #[derive(Serialize)]
@@ -66,7 +66,7 @@ struct Report {
     extents: [u32; 3],
     spacing: f64,
     corner: [f64; 3],
-    /// Samples that are inside.
+    /// Number of samples that are inside.
     inside: u64,
     bytes: u64,
 }
@@ -89,7 +89,7 @@ pub fn run(arguments: &Arguments) -> Result<(), Failure> {
         let problem = format!("--level {level} is beyond the depth of {input}, which is {}", frame.depth());
         return Err(Failure::Usage(problem));
     }
-    // Its own cells are large, and say little: the surfaces decide smaller ones.
+    // The solid's own cells are large, and say little: its surfaces decide smaller ones.
     let rule = arguments.resolve.map_or(Rule::Sampled, Rule::from);
     let octree = match keeps_surfaces {
         true => watched("bitmap", arguments.threads, |control| plain(&octree, level.max(1), rule, control))
@@ -142,7 +142,7 @@ pub fn run(arguments: &Arguments) -> Result<(), Failure> {
     output.tell(arguments.json, &report, Report::text)
 }
 
-/// Says if the corner does not come back: the format has the first voxel's centre, rounded.
+/// Warns if the corner is not read back exactly: the format stores the centre of the first voxel, rounded.
 fn warn_of_rounding(grid: &VoxelGrid, output: &Output) -> Result<(), Error> {
     let one = VoxelGrid::new([1; 3], grid.corner(), grid.spacing())?;
     let header = write_nrrd(&vec![0u8].into(), &one, NrrdEncoding::Raw)?;
@@ -155,7 +155,7 @@ fn warn_of_rounding(grid: &VoxelGrid, output: &Output) -> Result<(), Error> {
     Ok(())
 }
 
-/// The format to write.
+/// Returns the format to write.
 fn format(arguments: &Arguments, path: Option<&Path>) -> Result<WriteName, Failure> {
     if let Some(name) = arguments.write {
         return Ok(name);
@@ -171,7 +171,7 @@ fn format(arguments: &Arguments, path: Option<&Path>) -> Result<WriteName, Failu
     }
 }
 
-/// A byte for each cell of a level, x fastest.
+/// Returns a byte for each cell of a level, x fastest.
 fn samples(octree: &Octree, level: u8, is_outer: bool, control: &Control<'_>) -> Result<Vec<u8>, Error> {
     let n = 1usize << level;
     let row = n.div_ceil(64);

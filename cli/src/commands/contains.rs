@@ -24,7 +24,7 @@ pub struct Arguments {
 
 pub fn run(arguments: &Arguments) -> Result<(), Failure> {
     let input = Input::file(&arguments.file, "points")?;
-    // Proven answers need a file that is what its maker wrote.
+    // Proven answers need an intact file.
     let (octree, _) = input.octree(true)?;
     let tree = octree.view();
     let solid = tree.cuts().map(|_| Prepared::new(AnySolid::new(octree.clone())));
@@ -34,7 +34,7 @@ pub fn run(arguments: &Arguments) -> Result<(), Failure> {
 /// Points that are answered together.
 struct Batch<'t, 'a> {
     tree: &'t OctreeRef<'a>,
-    /// The same if its cells keep surfaces.
+    /// The octree as a solid, if its cells keep surfaces.
     solid: Option<Prepared>,
     points: Vec<[f64; 3]>,
     answers: Vec<Membership>,
@@ -53,7 +53,7 @@ impl Questions<3> for Batch<'_, '_> {
         }
         self.answers.resize(self.points.len(), Membership::Undecided);
         let answered = match &self.solid {
-            // Exact signs decide points next to surfaces too.
+            // Exact signs decide points next to surfaces, too.
             Some(solid) => {
                 contains(solid, self.tree.frame(), &self.points, &mut self.answers, &Control::default())
             }

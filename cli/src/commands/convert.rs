@@ -96,7 +96,7 @@ enum KindName {
     Mesh,
 }
 
-/// The depth of octrees, if none is asked for.
+/// Depth of octrees without --resolution.
 const DEPTH: u8 = 8;
 
 pub fn run(arguments: &Arguments) -> Result<(), Failure> {
@@ -120,7 +120,7 @@ pub fn run(arguments: &Arguments) -> Result<(), Failure> {
                 ResolveName::Outer => surface::ResolveName::Outer,
             });
             let copy = job.depth.is_none() && bounds.is_none() && resolve.is_none();
-            // Cells of one size are asked for.
+            // The user requests cells of one size.
             let is_sampled = job.depth.is_some() || bounds.is_some();
             let method = if is_sampled { Some(Method::Mc) } else { resolve.map(|_| Method::Nets) };
             let wanted = Wanted { method, resolve, simplify, lossy, copy, ..Default::default() };
@@ -134,7 +134,7 @@ pub fn run(arguments: &Arguments) -> Result<(), Failure> {
     }
 }
 
-/// What to make; `None` is what the file is already, in another place.
+/// Returns the kind to make; `None` keeps the kind of the file, in another place.
 fn kind(arguments: &Arguments, job: &Job) -> Result<Option<KindName>, Failure> {
     let Job { input, output, .. } = job;
     let extension = output.path().and_then(|path| path.extension()?.to_str());
@@ -155,7 +155,7 @@ fn kind(arguments: &Arguments, job: &Job) -> Result<Option<KindName>, Failure> {
     }
 }
 
-/// A stored solid in another place.
+/// Moves a stored solid to another place.
 fn moved(job: &Job, taking: &Taking, resolve: Option<ResolveName>) -> Result<(), Failure> {
     let Job { input, output, .. } = job;
     output.check()?;
@@ -246,7 +246,7 @@ fn to_octree(job: &Job, taking: &Taking, resolve: Option<ResolveName>, by_ends: 
         return Err(Failure::of(input, problem));
     }
     if input.begins_as_solid() {
-        // A damaged file is told to be damaged.
+        // A damaged file is reported as damaged.
         return match Stored::read(input, true)?.0 {
             Stored::Dexels(model) => from_dexels(job, taking, model, (resolve, by_ends)),
             Stored::Octree(_) if by_ends => Err(refused_by_ends(input)),

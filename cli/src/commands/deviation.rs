@@ -1,4 +1,4 @@
-//! `leafless deviation`: how far are the boundaries of two solids from each other?
+//! `leafless deviation`: the distance between the boundaries of two solids.
 
 use super::interfere::common_frame;
 use crate::failure::{Failure, Of};
@@ -66,15 +66,16 @@ pub struct Arguments {
     taking: Taking,
 }
 
-/// Without a tolerance: this part of the cube's edge.
+/// Tolerance without --tolerance, relative to the cube's edge.
 const FINE: f64 = 1e-4;
 
-/// One direction; null where nothing is known.
+/// One direction; null where unknown.
 #[derive(Serialize)]
 struct Way {
     lower: Option<f64>,
     upper: Option<f64>,
-    /// A point next to the one boundary, how near that is to it at least, and the nearest point of the other.
+    /// A point near the first boundary, a bound of its distance from it, and the nearest point of the other
+    /// boundary.
     point: Option<[f64; 3]>,
     apart: Option<f64>,
     nearest: Option<[f64; 3]>,
@@ -97,15 +98,15 @@ impl From<&OneWay> for Way {
 struct Report {
     a: String,
     b: String,
-    /// With a distance: "within", "beyond" or "undecided"; else absent (null).
+    /// With --within: "within", "beyond" or "undecided"; otherwise null.
     verdict: Option<&'static str>,
     within: Option<f64>,
-    /// The greater of both directions.
+    /// The greater distance of both directions.
     lower: Option<f64>,
     upper: Option<f64>,
     a_to_b: Way,
     b_to_a: Way,
-    /// Why the search ended.
+    /// The reason why the search ended.
     measured: &'static str,
     tolerance: f64,
     proof_a: Proven,
@@ -117,7 +118,7 @@ struct Report {
     depth: u8,
     origin: [f64; 3],
     edge: f64,
-    /// Whether a solid may go on outside of the cube that was looked at.
+    /// True if a solid may extend beyond the cube that was examined.
     clipped_a: bool,
     clipped_b: bool,
 }
@@ -129,7 +130,7 @@ pub fn run(arguments: &Arguments) -> Result<(), Failure> {
     }
     let [a, b] = &inputs;
     let placement = arguments.taking.placing.map().copied().unwrap_or(Affine::IDENTITY);
-    // What is moved as a solid blurs no more than its cells, and keeps what is known of a mesh.
+    // A source that is moved as a solid blurs no more than its cells, and keeps what is known about a mesh.
     let taking = arguments.taking.unmoved();
     let [first, second] =
         [Source::read(a, &taking)?, Source::read(b, &taking)?].map(|source| source.taken(arguments.cells));
@@ -207,7 +208,7 @@ impl Report {
     }
 }
 
-/// The same for people.
+/// Returns the report for people.
 fn text(found: &Deviation, report: &Report) -> String {
     let mut text = String::new();
     let mut line = |name: &str, value: String| put_line(&mut text, name, &value);

@@ -74,7 +74,7 @@ pub struct Arguments {
     taking: Taking,
 }
 
-/// Which axes rays run along.
+/// The axes that rays run along.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 struct Directions([bool; 3]);
 

@@ -1,4 +1,4 @@
-//! `leafless distance`: how far are these points from the solid?
+//! `leafless distance`: the distance of points from a solid.
 
 use crate::failure::{Failure, Of};
 use crate::options::tolerance;
@@ -71,7 +71,7 @@ impl From<To> for DistanceTo {
     }
 }
 
-/// Without a tolerance: this part of the cube's edge.
+/// Tolerance without --tolerance, relative to the cube's edge.
 const FINE: f64 = 1e-6;
 
 pub fn run(arguments: &Arguments) -> Result<(), Failure> {
@@ -110,7 +110,7 @@ impl Batch<'_> {
     }
 }
 
-/// An interval, of which what is not finite is absent (null).
+/// An interval whose infinite ends are null.
 #[derive(Serialize)]
 struct Distance {
     lower: Option<f64>,

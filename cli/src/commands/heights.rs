@@ -1,4 +1,4 @@
-//! `leafless heights`: how far does a solid reach in each column of cells?
+//! `leafless heights`: the height of a solid in each column of cells.
 
 use crate::failure::{Failure, Of};
 use crate::progress::watched;
@@ -45,7 +45,7 @@ pub struct Arguments {
     raw: bool,
 }
 
-/// The depth of meshes and scenes, if none is asked for.
+/// Depth of meshes and scenes without --depth.
 const DEPTH: u8 = 9;
 
 #[derive(Debug, Clone, Copy, ValueEnum)]
@@ -81,7 +81,7 @@ pub fn run(arguments: &Arguments) -> Result<(), Failure> {
     };
     let map = watched("heights", arguments.looking.threads, |control| {
         let columns = Columns::all(target.frame(), arguments.axis as usize)?;
-        // Two bounds, and a number in a text or eight bytes.
+        // Two bounds, and a number as text or eight bytes.
         let needed = columns.count().saturating_mul(16);
         if let Some(limit) = control.max_bytes.filter(|&limit| needed > limit) {
             return Err(Error::TooLarge { what: "the heights", needed, limit });
@@ -96,18 +96,18 @@ pub fn run(arguments: &Arguments) -> Result<(), Failure> {
     output.write(&written)
 }
 
-/// The height of a column.
+/// Returns the height of a column.
 fn height(map: &Heights, on: On, index: usize) -> f64 {
     let Some(between) = map.height(index) else { return f64::NAN };
     let height = match (on, map.side()) {
         (On::Full, Side::Above) | (On::Upper, Side::Below) => between.lower,
         (On::Full, Side::Below) | (On::Upper, Side::Above) => between.upper,
     };
-    // Nothing is proven of this column.
+    // Nothing is proven about this column.
     if height.is_finite() { height } else { f64::NAN }
 }
 
-/// How many columns lie in a row, and how many rows there are.
+/// Returns the number of columns in a row, and the number of rows.
 fn size(map: &Heights) -> [usize; 2] {
     map.columns().size().map(|n| n as usize)
 }

@@ -1,4 +1,4 @@
-//! `leafless info`: what a solid, a mesh or a scene consists of.
+//! `leafless info`: the contents of a file.
 
 use crate::failure::{Failure, Of};
 use crate::progress::at_work;

@@ -1,4 +1,4 @@
-//! `leafless layout`: how many copies of parts go into a container, and where?
+//! `leafless layout`: copies of parts in a container.
 
 use crate::failure::{Failure, Of};
 use crate::making::laid::{Scenery, package, surfaces};
@@ -115,9 +115,9 @@ pub struct Arguments {
     unit: Option<LengthUnit>,
 }
 
-/// How well volumes are to be known, as a part of them; …
+/// Accuracy of volumes, relative to them, …
 const DIGITS: f64 = 1e-4;
-/// … and what may be split for each.
+/// … and the splits for each of them.
 const SPLITS: u64 = 1 << 18;
 
 fn objective(text: &str) -> Result<Objective, String> {
@@ -222,7 +222,7 @@ pub fn run(arguments: &Arguments) -> Result<(), Failure> {
         wall: arguments.wall_clearance.unwrap_or(0.0),
     };
     let solids = stock.read(&turns, clearances, arguments.unit)?;
-    // What cannot be written is told before the search.
+    // Scenes that cannot be written are reported before the search.
     let scenes = outputs.iter().zip(&formats).map(|(output, format)| match format {
         Format::Scene => Scenery::new(&stock, &solids, folder_of(output.path())).map(Some),
         _ => Ok(None),
@@ -284,7 +284,7 @@ pub fn run(arguments: &Arguments) -> Result<(), Failure> {
     let names = outputs.iter().map(Output::to_string).collect();
     let seconds = start.elapsed().as_secs_f64();
     let report = Found::new(stock.holder.to_string(), items, measures, &search, names, seconds);
-    // (Where standard output carries a layout, the report stands on standard error.)
+    // (If standard output carries a layout, the report goes to standard error.)
     let carrier = outputs.iter().find(|output| output.path().is_none()).or(outputs.first());
     match carrier {
         Some(output) => output.tell(arguments.json, &report, Found::text)?,
@@ -293,7 +293,7 @@ pub fn run(arguments: &Arguments) -> Result<(), Failure> {
     report.rest().map_or(Ok(()), |rest| Err(Failure::Failed(rest)))
 }
 
-/// What is next to each copy, and what is known of all.
+/// Returns the neighbour of each copy, and the measures of all copies.
 fn known(
     layout: &Layout,
     mass_unit: MassUnit,

@@ -78,16 +78,16 @@ pub struct Arguments {
     taking: Taking,
 }
 
-/// Sides of the bounding box are told to this part of the universe's edge where that is cheap, …
+/// Accuracy of the sides of the bounding box, relative to the universe's edge, if it is cheap, …
 const FINE_SIDES: f64 = 1e-9;
-/// … which means that it takes no more splits than this …
+/// … that is, if it takes no more splits than this …
 const FEW_SPLITS: u64 = 1 << 14;
-/// … and else to this part …
+/// … and otherwise this accuracy, …
 const SIDES: f64 = 0.001;
 /// … unless that takes more splits than this.
 const MOST_SPLITS: u64 = 1 << 22;
 
-/// The bounding box, as well as it is known cheaply.
+/// Returns the bounding box, as accurately as it is cheap.
 fn sides<S: Solid>(
     solid: &S,
     frame: &Frame,
@@ -109,7 +109,7 @@ fn sides<S: Solid>(
     Ok(fine)
 }
 
-/// Cells that are split for the area at most, if --splits does not say otherwise.
+/// Most splits for the area without --splits.
 const AREA_SPLITS: u64 = 1 << 17;
 
 /// Lower and upper bounds of the elements of a vector or a matrix.
@@ -136,30 +136,30 @@ impl From<[[Interval; 3]; 3]> for Bounds<[[f64; 3]; 3]> {
 struct Report {
     input: String,
     volume: Volume,
-    /// Absent (null) without a density.
+    /// Null without a density.
     mass: Option<Volume>,
-    /// Of the mass and the inertia: `g`, or empty where the density has no unit.
+    /// Unit of the mass and the inertia: `g`, or empty if the density has no unit.
     mass_unit: &'static str,
-    /// What of the solid is proven; what is not counts as undecided.
+    /// The proof of the solid; unproven cells count as undecided.
     proof: Proven,
-    /// Absent (null) if nothing is proven to be inside.
+    /// Null if nothing is proven to be inside.
     centroid: Option<Bounds<[f64; 3]>>,
     /// About the centroid.
     inertia: Bounds<[[f64; 3]; 3]>,
     inertia_about_origin: Bounds<[[f64; 3]; 3]>,
-    /// Corners of the bounding box; absent (null) if the solid is proven empty.
+    /// Corners of the bounding box; null if the solid is proven to be empty.
     min: Option<Bounds<[f64; 3]>>,
     max: Option<Bounds<[f64; 3]>>,
-    /// Of the boundary; absent (null) if nothing is known of it.
+    /// Area of the boundary; null if unknown.
     area: Option<Volume>,
-    /// How far the boundary may lie beside the mesh whose area this is, along an axis: what vertices were
-    /// moved by, and what was stated.
+    /// Greatest distance of the boundary from the mesh with this area, along an axis: the moves of vertices,
+    /// and the stated deviation.
     area_displacement: f64,
     area_measured: &'static str,
     area_splits: u64,
-    /// Why it ended.
+    /// The reason why the computation ended.
     measured: &'static str,
-    /// Without those for the bounding box and for the area.
+    /// Splits other than those for the bounding box and the area.
     splits: u64,
     evaluations: u64,
     level: u8,
@@ -167,12 +167,12 @@ struct Report {
     origin: [f64; 3],
     edge: f64,
     clipped: bool,
-    /// Whether all is known up to rounding, without splitting cells, as of a closed mesh whose triangles do
-    /// not intersect; absent (null) for what is no mesh.
+    /// True if everything is known up to rounding, without splitting cells, as for a closed mesh whose
+    /// triangles do not intersect; null for other inputs than meshes.
     exact: Option<bool>,
-    /// Why not.
+    /// The reason why not.
     inexact_reason: Option<String>,
-    /// How the curves of a scene were drawn; else absent (null).
+    /// The way in which the curves of a scene were drawn; null for other inputs.
     curves: Option<Curves>,
 }
 
@@ -196,7 +196,7 @@ pub fn run(arguments: &Arguments) -> Result<(), Failure> {
     };
     let solid = Prepared::new(source.placed(&input, &placement, &frame)?);
     let own = match solid.solid().sole_mesh().filter(|_| is_scene) {
-        // By any rule it is the same solid, unless bodies are inside out.
+        // By any fill rule it is the same solid, unless bodies are inside out.
         Some(mesh) => {
             let corners = Corners::new(&input, mesh, FillRule::Positive)?;
             let sewn = if corners.are_exact() { as_sewn(&input, mesh, FillRule::Positive)? } else { None };
@@ -207,7 +207,7 @@ pub fn run(arguments: &Arguments) -> Result<(), Failure> {
     let (corners, sewn) = own.map_or((None, None), |(corners, sewn)| (Some(corners), sewn));
     let asked = arguments.tolerance.is_some() || arguments.splits.is_some();
     let relative = arguments.tolerance.unwrap_or(if arguments.splits.is_some() { 0.0 } else { 0.01 });
-    // What is flat or empty has no volume to be relative to.
+    // A flat or empty solid has no volume that the tolerance could refer to.
     let absolute = arguments.absolute.unwrap_or(if asked { 0.0 } else { 1e-9 * frame.edge().powi(3) });
     let tolerance = Tolerance { relative, absolute };
     let asking =
@@ -231,37 +231,38 @@ pub fn run(arguments: &Arguments) -> Result<(), Failure> {
     sink::print(text.as_bytes())
 }
 
-/// What is measured, and how well.
+/// The task of a measurement.
 struct Asking<'a> {
     solid: &'a Prepared,
     frame: &'a Frame,
     tolerance: Tolerance,
-    /// Of a mesh the corners of its triangles.
+    /// The corners of the triangles of a mesh.
     corners: Option<&'a Corners>,
-    /// Of a mesh whose hair cracks were closed, or that is known within a deviation only, that mesh as it is.
+    /// The mesh without its displacement, if its hair cracks were closed, or if it is known within a
+    /// deviation only.
     sewn: Option<&'a AsItIs>,
 }
 
-/// A mesh that the boundary may lie beside, as if it did not.
+/// A mesh without the displacement of its boundary.
 struct AsItIs {
     solid: MeshSolid,
-    /// Whether that was stated of the mesh, and not only vertices were moved.
+    /// True if the displacement was stated, and not only vertices were moved.
     is_stated: bool,
 }
 
-/// What was found.
+/// The results.
 struct Found {
     mass: MassProperties,
-    /// What was multiplied by the density, if there is one.
+    /// The density by which the results were multiplied, if there is one.
     weight: Option<Interval>,
     extent: Extent,
     surface: SurfaceArea,
-    /// How far the boundary may lie beside the mesh whose area this is.
+    /// Greatest distance of the boundary from the mesh with this area.
     area_displacement: f64,
-    /// Whether that was stated of the mesh, and not only vertices were moved.
+    /// True if the displacement was stated, and not only vertices were moved.
     is_stated: bool,
     evaluations: u64,
-    /// Of a mesh why its moments were not known without splitting cells, if they were not.
+    /// For a mesh, the reason why its moments were not known without splitting cells, if they were not.
     inexact: Option<Option<String>>,
 }
 
@@ -271,7 +272,7 @@ impl Asking<'_> {
         let mass = measure(solid, frame, tolerance, control)?;
         let evaluations = evaluations(solid.solid());
         let quiet = Control { progress: None, ..*control };
-        // `measure` has found it out before, as a rule.
+        // Usually, `measure` has found this out before.
         let inexact = match solid.solid().get::<MeshSolid>() {
             Some(mesh) => Some(inexact_reason(mesh, mass.clipped, &quiet)?),
             None => None,
@@ -297,7 +298,7 @@ impl Asking<'_> {
         let few = Control { max_splits: most, ..quiet };
         let mut surface = surface_area(solid.solid(), frame, tolerance.relative, &few)?;
         let mut area_displacement = 0.0;
-        // A surface that is known to lie beside the mesh may have any area; that of the mesh is told instead.
+        // A surface that may lie beside the mesh may have any area; the area of the mesh is reported instead.
         let is_stated = sewn.is_some_and(|sewn| sewn.is_stated);
         if let Some(AsItIs { solid, .. }) = sewn.filter(|_| !is_known(&surface)) {
             surface = surface_area(solid, frame, tolerance.relative, &few)?;
@@ -308,7 +309,7 @@ impl Asking<'_> {
 }
 
 impl Found {
-    /// Makes the volume a mass, if a cubic unit has this one, and the inertia that of this mass.
+    /// Multiplies the volume and the inertia by the mass of a cubic unit.
     fn weigh(&mut self, mass: f64) {
         self.weight = Some(times(self.mass.volume, mass));
         for tensor in [&mut self.mass.inertia_about_centroid, &mut self.mass.inertia_about_origin] {
@@ -317,8 +318,7 @@ impl Found {
     }
 }
 
-/// A mesh whose hair cracks were closed as if it had never had any, and one with a deviation as if it had
-/// none.
+/// Returns a mesh whose hair cracks were closed, or that has a deviation, as if its boundary were exact.
 fn as_sewn(input: &Input, mesh: &TriangleMesh, fill: FillRule) -> Result<Option<AsItIs>, Failure> {
     if mesh.displacement() == 0.0 {
         return Ok(None);
@@ -328,8 +328,8 @@ fn as_sewn(input: &Input, mesh: &TriangleMesh, fill: FillRule) -> Result<Option<
     Ok(Some(AsItIs { solid, is_stated: mesh.deviation() > 0.0 }))
 }
 
-/// What is left to move, and the frame to look at. A solid from a file is moved as a solid: cells of any size
-/// tell of it what its own ones tell.
+/// Returns the rest of the placement, and the frame to examine. A solid from a file is moved as a solid:
+/// cells of any size then tell as much as its own ones.
 fn place(arguments: &Arguments, input: &Input, source: &Source) -> Result<(Affine, Frame), Failure> {
     let (bounds, depth) = (arguments.bounds.as_ref(), arguments.depth);
     let (Source::Octree(octree), Some(map)) = (source, arguments.taking.placing.map()) else {
@@ -344,7 +344,7 @@ fn place(arguments: &Arguments, input: &Input, source: &Source) -> Result<(Affin
     Ok((*map, frame.with_depth(depth).of(input)?))
 }
 
-/// Why a mesh's moments were not known without splitting cells; `None` if they were.
+/// Returns the reason why a mesh's moments were not known without splitting cells; `None` if they were.
 fn inexact_reason(mesh: &MeshSolid, clipped: bool, control: &Control<'_>) -> Result<Option<String>, Error> {
     Ok(match mesh.moments(control)? {
         MeshMoments::Known(_) if clipped => Some("the mesh reaches beyond the bounds, or may".into()),
@@ -390,7 +390,7 @@ fn is_known(surface: &SurfaceArea) -> bool {
     surface.area.upper < f64::INFINITY
 }
 
-/// The same for people.
+/// Returns the report for people.
 fn text(
     found: &Found,
     frame: &Frame,
@@ -443,7 +443,7 @@ fn text(
     }
     if let Some([min, max]) = extent.corners {
         for (axis, name) in ["x", "y", "z"].into_iter().enumerate() {
-            // What goes on beyond the cube may reach any further.
+            // A solid that continues beyond the cube may extend any further.
             let (start, end) = (frame.origin()[axis], frame.origin()[axis] + frame.edge());
             let wall = |is_wall: bool| {
                 if is_wall && mass.clipped { ", where the cube ends that is looked at" } else { "" }

@@ -1,4 +1,4 @@
-//! `leafless neighbours`: what lies beside these cells?
+//! `leafless neighbours`: the cells beside given cells.
 
 use crate::failure::Failure;
 use crate::rows::{Questions, serve};
@@ -60,7 +60,7 @@ pub fn run(arguments: &Arguments) -> Result<(), Failure> {
     serve(&mut Batch { tree, cursor: Cursor::new(tree), arguments, text: String::new() })
 }
 
-/// Cells, and what is told of them so far.
+/// The answers to the cells so far.
 struct Batch<'t, 'a> {
     tree: &'t OctreeRef<'a>,
     cursor: Cursor<'a>,
@@ -88,7 +88,7 @@ impl Neighbour {
     }
 }
 
-/// The whole number that is meant, if it is one.
+/// Returns the number as a whole number, if it is one.
 fn whole(number: f64) -> Option<u32> {
     let whole = number as u32;
     (f64::from(whole) == number).then_some(whole)

@@ -1,4 +1,4 @@
-//! `leafless ray`: where do these rays meet the solid?
+//! `leafless ray`: the first hits of rays.
 
 use crate::failure::{Failure, Of};
 use crate::progress::watched;
@@ -96,7 +96,7 @@ struct Batch<'a> {
     text: String,
 }
 
-/// A hit, of which ∞ is absent (null).
+/// A hit; an infinite end is null.
 #[derive(Serialize)]
 struct Hit {
     t_lower: f64,

@@ -1,4 +1,4 @@
-//! `leafless render`: what does it look like?
+//! `leafless render`: pictures.
 
 use crate::failure::{Failure, Of};
 use crate::making::clipped::Planes;
@@ -112,10 +112,10 @@ fn size(text: &str) -> Result<[u32; 2], String> {
 /// Width and height of a picture that goes to a file.
 const SIZE: [u32; 2] = [1024, 768];
 
-/// Levels of cells of what has none of its own.
+/// Levels of cells of shapes without cells.
 const DEPTH: u8 = 8;
 
-/// What is told of a picture.
+/// The report on a picture.
 #[derive(Serialize)]
 struct Made {
     width: u32,
@@ -124,7 +124,7 @@ struct Made {
     view: View,
     eye: [f64; 3],
     forward: [f64; 3],
-    /// Pixels that are not as the background, those of a legend too.
+    /// Number of pixels that differ from the background, including those of a legend.
     covered: usize,
     bytes: usize,
     seconds: f64,
@@ -143,7 +143,7 @@ pub fn run(arguments: &Arguments) -> Result<(), Failure> {
         output.check()?;
     }
     arguments.looks.check()?;
-    // Before any work: what is shown may depend on the terminal, which may be none.
+    // Before any work: the picture may depend on the terminal, which may be missing.
     let screen = arguments.show.map(Screen::of).transpose()?;
     let shown_size = screen.as_ref().filter(|_| output.is_none()).and_then(Screen::size);
     let size = arguments.size.or(shown_size).unwrap_or(SIZE);
@@ -190,7 +190,7 @@ pub fn run(arguments: &Arguments) -> Result<(), Failure> {
         bytes: bytes.len(),
         seconds: start.elapsed().as_secs_f64(),
     };
-    // Standard output carries the picture where it is shown.
+    // If the picture is shown, standard output carries it.
     let told = output.as_ref().filter(|_| screen.is_none()).unwrap_or(&Output::Standard);
     if arguments.json {
         return told.report(&json(&made)?);
@@ -212,7 +212,7 @@ pub fn run(arguments: &Arguments) -> Result<(), Failure> {
     })
 }
 
-/// Pictures are PNG files, whatever their name says: a name that says something else is refused.
+/// Refuses a name with another extension than .png: pictures are PNG files.
 fn check_name(output: &Output) -> Result<(), Failure> {
     match output.path().and_then(|path| path.extension()) {
         Some(extension) if !extension.eq_ignore_ascii_case("png") => {
@@ -245,7 +245,7 @@ fn shot(
         kept = Some(bounds);
     }
     let planes = match looks.view {
-        // Its volume is not cut.
+        // The volume is not cut.
         View::Hybrid => Planes::default(),
         _ => Planes::new(&arguments.clip, kept.as_ref()),
     };
@@ -259,7 +259,7 @@ fn shot(
                 None if is_slice => [0.0, 0.0],
                 _ => [30.0, 25.0],
             });
-            // What is shown is as far from both sides as the legend is wide.
+            // The margins on both sides are as wide as the legend.
             let free = |end: u32, side: u32| (2.0 * f64::from(end) / f64::from(side) - 1.0).max(LEAST_FREE);
             let across = legend.map_or(1.0, |[left, ..]| free(left, width));
             let upward = scale.filter(|_| is_slice).map_or(1.0, |[_, top, ..]| free(top, height));
@@ -280,7 +280,7 @@ fn shot(
             let is_upright = along[0].hypot(along[1]) < 1e-6 * along[2].abs();
             let up = arguments.up.unwrap_or(if is_upright { [0.0, 1.0, 0.0] } else { [0.0, 0.0, 1.0] });
             let distance = along.iter().map(|c| c * c).sum::<f64>().sqrt();
-            // As high as what a perspective shows at the distance of what it looks at.
+            // The height that a perspective shows at the distance of the point that the eye looks at.
             let parallel = 2.0 * distance * (0.5 * FIELD_OF_VIEW.to_radians()).tan();
             Camera::new(eye, at, up, field.map_or(Lens::Parallel(parallel), Lens::Perspective))?
         }
@@ -289,10 +289,10 @@ fn shot(
     Ok(Shot { camera, size, samples, clip, background })
 }
 
-/// The least part of a picture's width or height that is left between what a legend takes.
+/// The least part of a picture's width or height that a legend leaves free.
 const LEAST_FREE: f64 = 0.3;
 
-/// The middle of the box around points.
+/// Returns the middle of the box around points.
 fn middle(points: &[[f64; 3]]) -> [f64; 3] {
     let (low, high) = extremes(points);
     [0, 1, 2].map(|axis| 0.5 * low[axis] + 0.5 * high[axis])

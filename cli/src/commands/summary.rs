@@ -1,4 +1,4 @@
-//! `leafless summary`: what a channel amounts to in a solid.
+//! `leafless summary`: statistics of a channel in a solid.
 
 use crate::failure::{Failure, Of};
 use crate::options::numbers;
@@ -77,7 +77,7 @@ struct Whole {
     unit: Option<String>,
     volume: Volume,
     volume_without: Volume,
-    /// One for each number of a value.
+    /// One element for each number of a value.
     values: Vec<Numbers>,
 }
 

@@ -1,4 +1,4 @@
-//! `leafless verify`: is a file good?
+//! `leafless verify`: a complete check of a file.
 
 use crate::failure::Failure;
 use crate::report::dexels;

@@ -97,7 +97,7 @@ pub struct Arguments {
     write: Option<WriteName>,
 }
 
-/// The depth of meshes and scenes, if none is asked for.
+/// Depth of meshes and scenes without --depth.
 const DEPTH: u8 = 7;
 
 #[derive(Debug, Clone, Copy, PartialEq, ValueEnum)]
@@ -142,7 +142,7 @@ struct Report {
     refined: u64,
     /// Levels of the lattice: digits of a code.
     depth: u8,
-    /// Pairs of a boundary voxel and a triangle.
+    /// Number of pairs of a boundary voxel and a triangle.
     #[serde(skip_serializing_if = "Option::is_none")]
     triangles: Option<u64>,
     bytes: u64,
@@ -154,7 +154,7 @@ pub fn run(arguments: &Arguments) -> Result<(), Failure> {
     if arguments.import { import(arguments, &input, &output) } else { list(arguments, &input, &output) }
 }
 
-/// The attribute that inside voxels follow, and whose values records have.
+/// Returns the attribute that inside voxels follow, and whose values records have.
 fn attribute(
     arguments: &Arguments,
     input: &Input,
@@ -180,7 +180,7 @@ fn list(arguments: &Arguments, input: &Input, output: &Output) -> Result<(), Fai
         })
         .of(input)?,
     };
-    // Whatever the cells are taken for, records prove what the cells were said to prove.
+    // Even with --cells, records prove no more than the cells proved in their file.
     let octree = octree.with_proof(octree.proof().and(proof));
     let attribute = attribute(arguments, input, &octree)?;
     let options = options(arguments, &octree, attribute.is_some())?;
@@ -256,7 +256,7 @@ impl Report {
     }
 }
 
-/// The form to write.
+/// Returns the form to write.
 fn form(arguments: &Arguments, path: Option<&Path>) -> Result<WriteName, Failure> {
     if let Some(name) = arguments.write {
         return Ok(name);
@@ -271,7 +271,7 @@ fn form(arguments: &Arguments, path: Option<&Path>) -> Result<WriteName, Failure
     }
 }
 
-/// Which voxels are wanted.
+/// Returns the options for the voxels to list.
 fn options(arguments: &Arguments, octree: &Octree, has_attribute: bool) -> Result<VoxelOptions, Failure> {
     let refused = |error: leafless::Error| Failure::Usage(error.to_string());
     if arguments.tolerance.is_some() && !has_attribute {
@@ -304,7 +304,7 @@ fn options(arguments: &Arguments, octree: &Octree, has_attribute: bool) -> Resul
     })
 }
 
-/// A mesh as it is in its file.
+/// Reads a mesh as it is in its file.
 fn mesh(input: &Input) -> Result<TriangleMesh, Failure> {
     let bytes = input.read()?;
     let read = exchange::read_mesh(&bytes, &exchange::MeshOptions::default()).of(input)?;

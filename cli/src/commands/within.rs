@@ -1,4 +1,4 @@
-//! `leafless within`: how much of a solid lies in a ball, a box or another solid?
+//! `leafless within`: the part of a solid in a ball, a box or another solid.
 
 use crate::failure::{Failure, Of};
 use crate::options::{bounds, numbers};
@@ -57,9 +57,9 @@ pub struct Arguments {
     taking: Taking,
 }
 
-/// Splits that take a second or so.
+/// Splits that take about a second.
 const SPLITS: u64 = 1 << 20;
-/// Levels of cells of what has none of its own.
+/// Levels of cells of shapes without cells.
 const DEPTH: u8 = 8;
 
 fn ball(text: &str) -> Result<Csg, String> {
@@ -76,7 +76,7 @@ fn cuboid(text: &str) -> Result<Csg, String> {
     }
 }
 
-/// What is certain and what is possible.
+/// A certain and a possible number.
 #[derive(Serialize)]
 struct Range {
     least: u64,
@@ -92,9 +92,9 @@ impl Range {
 
 #[derive(Serialize)]
 struct Cells {
-    /// FULL ones.
+    /// FULL cells.
     full: Range,
-    /// FULL and PARTIAL ones.
+    /// FULL and PARTIAL cells.
     upper: Range,
 }
 
@@ -109,7 +109,7 @@ struct Report {
     edge: f64,
 }
 
-/// What is asked: an octree about its own cells, and whatever else about those of a frame.
+/// The solid: an octree is queried about its own cells, other solids about those of a frame.
 enum Subject {
     Octree(Box<Octree>),
     Solid(AnySolid),
@@ -172,7 +172,7 @@ pub fn run(arguments: &Arguments) -> Result<(), Failure> {
     })
 }
 
-/// The region, and what it is called.
+/// Returns the region, and its name.
 fn region(arguments: &Arguments, frame: &Frame) -> Result<(AnySolid, String), Failure> {
     if let Some(ball) = &arguments.ball {
         return Ok((AnySolid::new(ball.clone()), "ball".into()));

@@ -16,11 +16,11 @@ use leafless::exchange::MeshFormat;
 use leafless::{Affine, AnySolid, Csg, Error};
 use std::time::Instant;
 
-/// The depth if none is asked for.
+/// Levels of cells without --depth.
 const DEPTH: u8 = 8;
 
-/// Combines meshes, scenes and volumes as they are, and writes the surface, with vertices where edges of
-/// cells cross it.
+/// Combines meshes, scenes and volumes directly, and writes the surface, with vertices where edges of cells
+/// cross it.
 pub fn make(
     combining: &Combining,
     files: &[(Input, Placing)],

@@ -1,4 +1,4 @@
-//! A solid that many questions are put to.
+//! A solid that answers many questions.
 
 use crate::failure::Failure;
 use crate::options::{bounds, threads};
@@ -9,7 +9,7 @@ use clap::Args;
 use leafless::solid::Prepared;
 use leafless::{Affine, Frame, Octree, Proof};
 
-/// How a solid that is asked is read, and looked at.
+/// The options of reading and examining a solid that is queried.
 #[derive(Args)]
 pub struct Looking {
     /// Take the cells of a solid from a file (.lfl) as the solid itself, whatever the cells prove about their
@@ -27,14 +27,14 @@ pub struct Looking {
 }
 
 impl Looking {
-    /// Reads a solid. `depth` is the one that the user gave; without it a mesh, a scene, or an octree whose
+    /// Reads a solid. `depth` is the one that the user gave. Without it, a mesh, a scene, or an octree whose
     /// cells keep surfaces is split to `deepest`.
     pub fn target(&self, input: &Input, depth: Option<u8>, deepest: u8) -> Result<Target, Failure> {
         Ok(self.target_and_proof(input, depth, deepest)?.0)
     }
 
-    /// The same, and what the cells of a file prove of what they were made from, whatever they are taken for:
-    /// what is written of them proves no more.
+    /// Reads a solid, and also returns what the cells of its file prove about their source. This is
+    /// independent of --cells: a result that is written proves no more.
     pub fn target_and_proof(
         &self,
         input: &Input,
@@ -47,11 +47,11 @@ impl Looking {
     }
 }
 
-/// What is asked.
+/// A solid that is queried.
 pub enum Target {
-    /// A stored octree whose cells prove what they say, and keep no surfaces: it is asked where it lies.
+    /// A stored octree whose cells are proven and keep no surfaces: it is queried in place.
     Cells(Box<Octree>),
-    /// Anything else, on a frame.
+    /// Any other solid, on a frame.
     Solid(Box<(Prepared, Frame)>),
 }
 
@@ -80,7 +80,7 @@ impl Target {
         }
     }
 
-    /// The frame that it is asked on.
+    /// Returns the frame of the queries.
     pub fn frame(&self) -> &Frame {
         match self {
             Target::Cells(octree) => octree.frame(),

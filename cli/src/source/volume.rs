@@ -1,4 +1,4 @@
-//! Volumes from files, NRRD, MetaImage and raw: which voxels are inside, and what is told of them.
+//! Volumes from files (NRRD, MetaImage and raw), and the options of reading them.
 
 use crate::failure::{Failure, Of, Problem, complain};
 use crate::options::{list, number, numbers};
@@ -15,7 +15,7 @@ use leafless::exchange::{
 use leafless::solid::{Band, Samples, VoxelGrid};
 use leafless::{Affine, AnySolid, Control, Error, Frame, Volume};
 
-/// Which voxels of a volume are inside, and what the bytes of one without a header mean.
+/// The options of reading a volume: its threshold, and the format of a file without a header.
 #[derive(Clone, Default, Args)]
 #[command(next_help_heading = "Volumes (NRRD, MetaImage, raw)")]
 pub struct Sampling {
@@ -78,18 +78,18 @@ fn kinds() -> impl TypedValueParser<Value = SampleKind> {
 /// A volume as a solid.
 pub struct Voxels {
     pub solid: AnySolid,
-    /// The frame whose finest cells are voxels, if voxels are cubes along the axes.
+    /// The frame whose finest cells are the voxels, if the voxels are cubes along the axes.
     pub frame: Option<Frame>,
     pub unit: Option<LengthUnit>,
     pub volume: Volume<'static>,
-    /// What moves the grid to its place, if its axes are not x, y and z.
+    /// The map from the grid to its place, if its axes are not x, y and z.
     pub placement: Option<Affine>,
     pub format: String,
     pub kind: SampleKind,
     pub threshold: f64,
 }
 
-/// What a file holds.
+/// The contents of a file.
 struct Found {
     samples: Samples<'static>,
     grid: VoxelGrid,
@@ -101,14 +101,14 @@ struct Found {
 }
 
 impl Sampling {
-    /// Whether the user says that files are volumes without headers.
+    /// True if the user states that files are volumes without headers.
     pub fn is_raw(&self) -> bool {
         self.extents.is_some()
     }
 
-    /// Refuses the options for volumes where something else is read: `what` it is.
+    /// Refuses the options for volumes if something else is read; `what` names it.
     pub fn refuse(&self, input: &Input, what: &str) -> Result<(), Failure> {
-        // (All others need --extents.)
+        // (All others require --extents.)
         let given = [("--threshold", self.threshold.is_some()), ("--extents", self.is_raw())];
         match given.into_iter().find(|option| option.1) {
             Some((option, _)) => Err(Failure::Usage(format!("{option} is for volumes: {input} is {what}"))),
@@ -116,12 +116,12 @@ impl Sampling {
         }
     }
 
-    /// The volume in a file with these bytes, whose samples may be in another file beside it.
+    /// Reads the volume in a file with these bytes. The samples may be in another file beside it.
     pub fn read(&self, input: &Input, bytes: &[u8]) -> Result<Voxels, Failure> {
         self.parted(input, bytes, default_threshold)
     }
 
-    /// The same where samples are values, so that nobody asks which of them are inside.
+    /// Reads a volume whose samples are values, so that the threshold does not matter.
     pub fn read_values(&self, input: &Input, bytes: &[u8]) -> Result<Voxels, Failure> {
         self.parted(input, bytes, |_, _, kind| kind.half_range())
     }
@@ -163,14 +163,14 @@ impl Sampling {
     }
 }
 
-/// The threshold if the user names none.
+/// Returns the threshold if the user names none.
 fn default_threshold(input: &Input, samples: &Samples<'_>, kind: SampleKind) -> f64 {
     let half = kind.half_range();
     let Some([least, greatest]) = histogram::range(samples) else { return half };
     if least < half && half <= greatest {
         return half;
     }
-    // (What is the same everywhere is all inside, or all outside.)
+    // (A constant volume is all inside, or all outside.)
     let Some(best) = histogram::best_threshold(samples) else { return half };
     let range = format!(
         "its samples go from {} to {}, all on one side of {}",
@@ -188,7 +188,7 @@ fn default_threshold(input: &Input, samples: &Samples<'_>, kind: SampleKind) -> 
 fn with_header(input: &Input, bytes: &[u8]) -> Result<Found, Failure> {
     let file = match (input.path(), volume_data_file(bytes).of(input)?) {
         (Some(path), Some(_)) => open_volume(path).map_err(|error| match &error {
-            // Of the header or of the file of its samples.
+            // The header, or the file of its samples.
             Error::File { path, .. } => Failure::of(path.display(), error.text()),
             _ => Failure::of(input, error.text()),
         })?,
@@ -206,7 +206,7 @@ fn with_header(input: &Input, bytes: &[u8]) -> Result<Found, Failure> {
 }
 
 impl Voxels {
-    /// The volume under a map.
+    /// Returns the volume under a map.
     pub fn placed(self, map: &Affine) -> Result<Voxels, Error> {
         let placement = match &self.placement {
             Some(own) => after(map, own)?,
@@ -217,7 +217,7 @@ impl Voxels {
         Ok(Voxels { solid, frame, placement: Some(placement), ..self })
     }
 
-    /// The samples as values at points.
+    /// Returns the samples as values at points.
     pub fn attribute(&self, interpolation: Interpolation) -> Result<Box<dyn Attribute>, Error> {
         let samples = VolumeAttribute::new(self.volume.clone(), interpolation);
         Ok(match &self.placement {
