@@ -355,7 +355,7 @@ pub fn write(job: &Job, format: MeshFormat, wanted: &Wanted, made: Made) -> Resu
         Some(faces) if wanted.polygons => faces.file(format, &options).of(output)?,
         _ => write_mesh(&kept.written, format, &options).of(output)?,
     };
-    // The report describes the mesh that a reader gets, who triangulates polygons.
+    // The report describes the mesh that a reader gets: readers triangulate polygons.
     let mesh = match wanted.polygons {
         true => Cow::Owned(read_mesh(&bytes, &Default::default()).of(output)?.mesh),
         false => kept.read,

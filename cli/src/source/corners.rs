@@ -50,7 +50,7 @@ impl Corners {
         })
     }
 
-    /// Returns the corners, which a closed mesh restricts to its own box.
+    /// Returns the corners, restricted to the box of the mesh if the mesh is closed.
     pub fn within(&self, [min, max]: [[Interval; 3]; 2]) -> [[Interval; 3]; 2] {
         if !self.is_closed {
             return [min, max];
