@@ -62,7 +62,7 @@ pub fn watched<R>(
             memory::told(limit)
         ),
         // Nothing else cancels the work.
-        Error::Cancelled => "the time of --seconds was over before anything was known: give more".into(),
+        Error::Cancelled => "the time of --seconds was over before any bounds were found: give more".into(),
         Error::OutOfMemory => {
             "the system has no memory left: take fewer levels of cells (one less takes about a quarter)".into()
         }

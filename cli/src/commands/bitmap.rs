@@ -106,7 +106,7 @@ pub fn run(arguments: &Arguments) -> Result<(), Failure> {
         complain(&format!("{input}: {UNDECIDED}"));
     }
     if octree.view().exterior() != Tag::Empty {
-        let warning = "warning: the solid may go on outside of its bounds, which a volume does not tell";
+        let warning = "warning: the solid may extend beyond its bounds; a volume does not record that";
         complain(&format!("{input}: {warning}"));
     }
     let n = 1u32 << level;

@@ -144,11 +144,11 @@ fn kind(arguments: &Arguments, job: &Job) -> Result<Option<KindName>, Failure> {
         None if arguments.taking.placing.map().is_some() && input.begins_as_solid() => Ok(None),
         None => {
             let choices = "--to octree, --to dexels or --to mesh";
-            let problem = "its name does not say what it is to be";
+            let problem = "its name does not say what to make";
             Err(Failure::Usage(format!("{output}: {problem}: choose {choices}")))
         }
         Some(KindName::Octree | KindName::Dexels) if is_mesh => {
-            let problem = "its name is that of a mesh, which neither an octree nor a tri-dexel model is";
+            let problem = "its name is that of a mesh, but an octree or a tri-dexel model is to be written";
             Err(Failure::Usage(format!("{output}: {problem}")))
         }
         kind => Ok(kind),
@@ -241,8 +241,8 @@ fn refused_by_ends(input: &Input) -> Failure {
 fn to_octree(job: &Job, taking: &Taking, resolve: Option<ResolveName>, by_ends: bool) -> Result<(), Failure> {
     let Job { input, output, .. } = job;
     if input.path().is_none_or(|path| !path.is_file()) {
-        let problem = "must be a regular file, because it is looked at first; `leafless voxelize` and `leafless csg` \
-                       can read what comes through a pipe";
+        let problem = "must be a regular file, because its kind is examined first; `leafless voxelize` \
+                       and `leafless csg` can read from a pipe";
         return Err(Failure::of(input, problem));
     }
     if input.begins_as_solid() {

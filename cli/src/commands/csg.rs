@@ -92,7 +92,7 @@ pub fn run(arguments: &Arguments) -> Result<(), Failure> {
         let useless = match (touch, adaptive) {
             (TouchName::Exact, None) => None,
             (_, Some(_)) => Some("--adaptive: cells end where few surfaces are left"),
-            _ => Some("--touch paper, by which no surfaces are known"),
+            _ => Some("--touch paper, which provides no surfaces"),
         };
         if let Some(useless) = useless {
             return Err(surfaces.refusal(useless));
@@ -101,8 +101,8 @@ pub fn run(arguments: &Arguments) -> Result<(), Failure> {
     if adaptive.is_some() {
         let useless = match (rule, touch) {
             (Rule::Certified, TouchName::Exact) => None,
-            (Rule::Certified, TouchName::Paper) => Some("--touch paper, by which no layers are known"),
-            _ => Some("a --rule but certified: the cells that it leaves whole are undecided"),
+            (Rule::Certified, TouchName::Paper) => Some("--touch paper, which provides no layers"),
+            _ => Some("a --rule other than certified: the cells that it leaves whole are undecided"),
         };
         if let Some(useless) = useless {
             return Err(Failure::Usage(format!("--adaptive does not go with {useless}")));

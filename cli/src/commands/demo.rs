@@ -95,7 +95,7 @@ pub fn run(arguments: &Arguments) -> Result<(), Failure> {
     let ((), time) = fallible(|| mapped.contains_many(&points, &mut answers)).of(&input)?;
     row("a million points, in a batch", &per_point(time), time)?;
     if answers != single {
-        return Err(Failure::of(&input, "the batch was answered differently from the single points"));
+        return Err(Failure::of(&input, "the answers for the batch differ from those for the single points"));
     }
     let share = |wanted: Membership| {
         let hits = answers.iter().filter(|&&answer| answer == wanted).count();

@@ -164,7 +164,7 @@ pub fn run(arguments: &Arguments) -> Result<(), Failure> {
     match report.verdict {
         Some("within") => Ok(()),
         Some("beyond") => Err(Failure::of(b, format!("is not within {distance} of {a}"))),
-        _ => Err(Failure::of(b, format!("is not known to be within {distance} of {a}"))),
+        _ => Err(Failure::of(b, format!("is not proven to be within {distance} of {a}"))),
     }
 }
 

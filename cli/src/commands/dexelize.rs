@@ -118,7 +118,8 @@ fn dexel_rules() -> impl TypedValueParser<Value = Rule> {
         (Rule::Inner, "Cells that are wholly inside: the result lies within the solid"),
         (
             Rule::Outer,
-            "Cells that are not wholly outside: the result contains the points of each ray that lie in the solid",
+            "Cells that are not wholly outside: the result contains the points of each ray that lie in \
+             the solid",
         ),
     ])
 }

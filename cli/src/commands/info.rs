@@ -41,16 +41,13 @@ pub fn run(arguments: &Arguments) -> Result<(), Failure> {
     let found = Found::look(input, reading.told())?;
     let bytes = found.length();
     if arguments.check && found.content != Content::Mesh {
-        let problem = "is none; `leafless verify` checks the file of a solid";
+        let problem = "is not a mesh; `leafless verify` checks the file of a solid";
         return Err(Failure::Usage(format!("--check is for meshes: {input} {problem}")));
     }
     match found.content {
         Content::Solid => {
             taking.refuse(input, "a solid")?;
-            placing.refuse(
-                input,
-                "what is told is what the file says; `leafless convert` makes a moved solid",
-            )?;
+            placing.refuse(input, "the report describes the file; `leafless convert` makes a moved solid")?;
             match found.stored(false)? {
                 (Stored::Octree(octree), bytes) => {
                     print_told(as_json, &octree::Info::new(&octree, bytes), octree::Info::text)

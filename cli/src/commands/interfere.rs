@@ -94,13 +94,13 @@ fn reason(found: &Interference, is_spent: bool) -> Option<(&'static str, &'stati
     match found.verdict {
         // (What lies outside the universe of such a solid is not proven, either.)
         Overlap::Undecided if !found.proofs.into_iter().all(certified) => {
-            Some(("unproven", "the cells of a file do not prove enough; --cells takes them for the solid"))
+            Some(("unproven", "the cells of a file do not prove enough; --cells takes them as the solid"))
         }
         Overlap::Undecided if found.clipped => {
-            Some(("clipped", "both solids may go on outside of the bounds; give larger --bounds"))
+            Some(("clipped", "both solids may extend beyond the bounds; give larger --bounds"))
         }
         Overlap::Undecided if is_spent => {
-            Some(("budget", "the splits are spent; give more --splits or --seconds"))
+            Some(("budget", "all splits are used; give more --splits or --seconds"))
         }
         Overlap::Undecided => {
             Some(("depth", "cells of the finest level are undecided; give a greater --depth"))

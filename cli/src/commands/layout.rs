@@ -189,7 +189,7 @@ fn format(output: &Output) -> Result<Format, Failure> {
         Some("csg") => Ok(Format::Scene),
         Some("png") => Ok(Format::Picture),
         _ => {
-            let problem = "has none of the extensions .json, .3mf, .csg and .png, which tell the format";
+            let problem = "has none of the extensions .json, .3mf, .csg and .png, which decide the format";
             Err(Failure::Usage(format!("{output}: {problem}")))
         }
     }

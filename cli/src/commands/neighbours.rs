@@ -97,7 +97,7 @@ fn whole(number: f64) -> Option<u32> {
 impl Questions<4> for Batch<'_, '_> {
     fn ask(&mut self, numbers: [f64; 4]) -> Result<(), String> {
         let [Some(level), Some(x), Some(y), Some(z)] = numbers.map(whole) else {
-            return Err("the level and the place of a cell are whole numbers from 0 on".into());
+            return Err("the level and the coordinates of a cell must be whole numbers, 0 or more".into());
         };
         let level = u8::try_from(level).unwrap_or(u8::MAX);
         let depth = self.tree.frame().depth();
@@ -120,7 +120,8 @@ impl Questions<4> for Batch<'_, '_> {
             }
         }
         if self.arguments.json {
-            self.text.push_str(&sink::json_line(&neighbours).map_err(|_| "cannot be told".to_owned())?);
+            self.text
+                .push_str(&sink::json_line(&neighbours).map_err(|_| "cannot be written as JSON".to_owned())?);
             return Ok(());
         }
         for Neighbour { steps: [dx, dy, dz], tag, level, cell: [x, y, z] } in neighbours {

@@ -136,7 +136,7 @@ pub fn run(arguments: &Arguments) -> Result<(), Failure> {
     let output = arguments.output.as_deref().map(Output::from);
     if let Some(output) = &output {
         if arguments.show.is_some() && output.path().is_none() {
-            let problem = "both -o - and --show want standard output: name a file, or leave one of them out";
+            let problem = "both -o - and --show use standard output: name a file, or leave one of them out";
             return Err(Failure::Usage(problem.into()));
         }
         check_name(output)?;

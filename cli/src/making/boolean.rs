@@ -102,7 +102,7 @@ fn warn_of_clipping(files: &[(Input, Placing)], octrees: &[Octree], result: &Oct
             continue;
         }
         let place = if placing.map().is_some() { "where it was moved to " } else { "" };
-        complain(&format!("{input}: warning: {place}it may reach beyond {frame}, and was cut off"));
+        complain(&format!("{input}: warning: {place}it may extend beyond {frame}, and was cut off"));
     }
 }
 

@@ -74,7 +74,7 @@ pub fn cubes(model: &TriDexel, input: &Input, threads: usize) -> Result<(Triangl
 /// Returns the surface by dual contouring; the model must have normals.
 pub fn dual(model: &TriDexel, input: &Input, threads: usize) -> Result<(TriangleMesh, Followed), Failure> {
     if model.view().format().normals == DexelNormals::None {
-        let problem = "stores no normals, which dual contouring needs: make it anew of its source, by \
+        let problem = "stores no normals, which dual contouring needs: make it again from its source, by \
                        `leafless dexelize --normals 32`";
         return Err(Failure::of(input, problem));
     }

@@ -161,14 +161,14 @@ fn of_solid<S: Solid>(solid: &S, job: &Job, frame: &Frame, storing: &Storing) ->
 fn warn(input: &Input, source: &Source, frame: &Frame) {
     if let Source::Octree(octree) = source {
         if octree.view().exterior() != Tag::Empty {
-            let problem = "the solid may go on outside of its bounds, which a tri-dexel model does not tell";
+            let problem = "the solid may extend beyond its bounds; a tri-dexel model does not record that";
             complain(&format!("{input}: warning: {problem}"));
         }
         return;
     }
     let Ok((min, max)) = source.bounds(input) else {
         // The extent of a scene with half-spaces is unknown.
-        let problem = "the solid may go on outside of the bounds, where it was cut off";
+        let problem = "the solid may extend beyond the bounds, where it was cut off";
         return complain(&format!("{input}: warning: {problem}"));
     };
     let sticks_out = |axis: usize| {

@@ -122,7 +122,7 @@ fn call(input: &Input, kind: Kind, folder: &Path) -> Result<String, Failure> {
         }
         Kind::Volume => {
             let problem =
-                "is a volume, for which a scene has no place: make a mesh of it first, by `leafless mesh`";
+                "is a volume, which a scene cannot contain: make a mesh of it first, by `leafless mesh`";
             Err(Failure::of(input, problem))
         }
     }

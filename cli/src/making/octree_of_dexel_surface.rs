@@ -43,8 +43,8 @@ pub fn make(job: &Job, found: Found<'_>, wanted: &Voxelizing) -> Result<(), Fail
     };
     wanted.reading.refuse(input, "a tri-dexel model")?;
     let Some(part) = wanted.surfaces.part() else {
-        let problem = "is a tri-dexel model, whose surface is not known exactly: say how thick the layers around it may be, as a \
-                       part of its longest side: --surfaces=1e-4";
+        let problem = "is a tri-dexel model, whose surface is not known exactly: give the thickness of \
+                       the layers around it, relative to its longest side: --surfaces=1e-4";
         return Err(Failure::Usage(format!("--surfaces: {input} {problem}")));
     };
     let (mesh, followed) = dual(&model, input, job.threads)?;

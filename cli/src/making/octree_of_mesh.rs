@@ -75,8 +75,8 @@ pub fn make(job: &Job, found: Found<'_>, wanted: &Voxelizing) -> Result<(), Fail
         Content::Mesh | Content::Volume => {}
     }
     if surfaces.are_kept() && surfaces.part().is_none() {
-        let problem = "no surface of a mesh is known exactly: say how thick the layers around it may be, as a part of its \
-                       longest side: --surfaces=1e-4";
+        let problem = "the surface of a mesh is not known exactly: give the thickness of the layers \
+                       around it, relative to its longest side: --surfaces=1e-4";
         return Err(Failure::Usage(format!("--surfaces: {input} is a mesh, and {problem}")));
     }
     let fingerprint = found.fingerprint();
@@ -164,7 +164,7 @@ pub fn clipping(frame: &Frame, min: [f64; 3], max: [f64; 3]) -> String {
         }
     }
     if text.is_empty() {
-        return "what the open mesh encloses may go on outside of the bounds, where it was cut off".into();
+        return "the solid of the open mesh may extend beyond the bounds, where it was cut off".into();
     }
     format!("the mesh sticks out of the bounds and was cut off{text}")
 }

@@ -128,7 +128,7 @@ pub fn make(
     let save = saving.elapsed().as_secs_f64();
 
     if octree.view().is_clipped() {
-        let warning = "the solid may go on outside of the bounds, where it was cut off";
+        let warning = "the solid may extend beyond the bounds, where it was cut off";
         complain(&format!("{input}: warning: {warning}"));
     }
     let mut info = Info::new(&octree, bytes);

@@ -322,15 +322,15 @@ pub struct Made {
 /// Refuses options that exclude polygons.
 fn polygons_of(wanted: &Wanted, method: Method, format: MeshFormat) -> Result<(), Failure> {
     let problem = if method != Method::Faces {
-        "is for --method faces, which knows plane faces"
+        "is for --method faces, which provides plane faces"
     } else if !matches!(format, MeshFormat::Obj | MeshFormat::Off) {
-        "is for OBJ and OFF: other formats have triangles alone"
+        "is for OBJ and OFF: other formats have triangles only"
     } else if wanted.normals {
         "does not go with --normals"
     } else if wanted.channel.is_some() {
         "does not go with --channel, whose values are on triangles"
     } else if wanted.simplify.is_some() {
-        "does not go with --simplify, which knows triangles alone: --tolerance makes fewer of them"
+        "does not go with --simplify, which makes triangles only: --tolerance makes fewer of them"
     } else {
         return Ok(());
     };
@@ -445,7 +445,7 @@ fn of_dexels(
         ("--snap", wanted.snap.is_some() && !method.moves_to_samples()),
     ];
     if let Some((option, _)) = given.into_iter().find(|option| option.1) {
-        let problem = "is a tri-dexel model, whose rays leave nothing to choose";
+        let problem = "is a tri-dexel model, whose rays determine the samples";
         return Err(Failure::Usage(format!("{option} is not for {input}: it {problem}")));
     }
     match method {
@@ -475,12 +475,12 @@ fn by_rays(
 ) -> Result<(TriangleMesh, Followed), Failure> {
     let input = &job.input;
     if source.is_of_cells() {
-        let problem = "is an octree, whose cells know no normals, which dual contouring needs: make a tri-dexel model \
-                       of what it was made of, by `leafless dexelize --normals 32`";
+        let problem = "is an octree, whose cells have no normals, which dual contouring needs: make a \
+                       tri-dexel model from its source, by `leafless dexelize --normals 32`";
         return Err(Failure::of(input, problem));
     }
     if wanted.resolve.is_some() {
-        return Err(Failure::Usage("--resolve does not go with --method dual, which asks rays".into()));
+        return Err(Failure::Usage("--resolve does not go with --method dual, which follows rays".into()));
     }
     let frame = source.frame_to(input, job.bounds.as_ref(), job.depth, DEPTH)?;
     let solid = source.placed(input, &Affine::IDENTITY, &frame)?;
@@ -526,7 +526,7 @@ fn to_tolerance(
     };
     if method == Method::Faces && !knows_surfaces {
         let problem =
-            "is neither a scene, a mesh, nor a solid whose cells keep surfaces, which --method faces is for";
+            "is no scene, no mesh and no solid whose cells keep surfaces: --method faces is for these";
         return Err(Failure::of(input, problem));
     }
     let tolerance = tolerance(&source, job, wanted)?;
@@ -552,7 +552,7 @@ fn to_tolerance(
     if let Some(mesh) = by_contour(&solid, &frame, tolerance, job, is_named)? {
         return Ok((mesh, Method::Adaptive, None, None));
     }
-    let problem = "its surface does not end in the cube that is looked at";
+    let problem = "its surface extends beyond the cube that is examined";
     complain(&format!("{input}: note: {problem}, and is cut off there by --method mc"));
     let depth = job.depth.unwrap_or(DEPTH);
     let frame = match job.bounds {
@@ -673,8 +673,7 @@ fn extract(source: Source, job: &Job, wanted: &Wanted, method: Method) -> Result
         (Some(ResolveName::Inner), _) => Some(Resolve::Inner),
         (Some(ResolveName::Outer), _) => Some(Resolve::Outer),
         (Some(ResolveName::Source), source) if source.is_of_cells() => {
-            let problem =
-                "a solid from a file has no source: undecided cells can be resolved as inner or outer";
+            let problem = "a solid from a file has no source to ask: --resolve can be inner or outer";
             return Err(Failure::of(input, problem));
         }
         (Some(ResolveName::Source), _) => None,
@@ -761,7 +760,7 @@ fn of_cells(
     let snap = wanted.snap.unwrap_or_default().into();
     match method {
         Method::Dual | Method::Faces | Method::Adaptive => {
-            unreachable!("rays, surfaces and cells of several sizes are asked elsewhere")
+            unreachable!("this method does not sample the cells of an octree")
         }
         Method::Mc => marching_cubes(octree.view(), resolve, control),
         Method::Nets => surface_nets(octree.view(), resolve, control),
@@ -786,7 +785,7 @@ pub fn of_solid(
     let snap = wanted.snap.unwrap_or_default().into();
     match method {
         Method::Dual | Method::Faces | Method::Adaptive | Method::Nets => {
-            unreachable!("rays, surfaces, and cells of octrees are asked elsewhere")
+            unreachable!("this method does not sample the corners of cells")
         }
         Method::Mc => marching_cubes_solid(solid, frame, placement, control),
         Method::Smc => simple_marching_cubes_solid(solid, frame, snap, control),

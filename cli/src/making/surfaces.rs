@@ -45,7 +45,7 @@ impl Surfaces {
     /// Refuses surfaces if a rule decides the cells.
     pub fn check_rule(&self, rule: Rule) -> Result<(), Failure> {
         if self.are_kept() && rule != Rule::Certified {
-            return Err(self.refusal("a --rule but certified: undecided cells keep them"));
+            return Err(self.refusal("a --rule other than certified: undecided cells keep them"));
         }
         Ok(())
     }

@@ -37,8 +37,8 @@ impl Density {
     pub fn of_cube(&self, unit: Option<LengthUnit>) -> Result<(f64, &'static str), String> {
         let Some((grams, edge)) = self.unit else { return Ok((self.number, "")) };
         let unit = unit.ok_or(
-            "nobody knows the unit of the model: say it by --unit mm, for instance; or give the mass of a \
-                               cubic unit as a number alone",
+            "the unit of the model is unknown: give it, as in --unit mm, or give the mass of a cubic \
+             unit as a plain number",
         )?;
         let part = f64::from(unit.micrometres()) / edge;
         Ok((self.number * grams * part * part * part, "g"))

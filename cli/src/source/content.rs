@@ -67,8 +67,8 @@ fn stranger(bytes: &[u8], extension: &str) -> Option<String> {
         || is_guess && !extension.is_empty() && MeshFormat::from_extension(extension).is_none()
     {
         return Some(format!(
-            "is no mesh, and has no header that tells what it is ({} bytes): if it is a volume, say how many samples it has along \
-             x, y and z, and their type: --extents 512,512,300 --type u16",
+            "is no mesh, and has no known header ({} bytes): if it is a raw volume, give the number of \
+             samples along x, y and z, and their type: --extents 512,512,300 --type u16",
             bytes.len()
         ));
     }

@@ -203,7 +203,8 @@ pub fn format_name(format: MeshFormat) -> &'static str {
 /// Describes where a mesh is open or its orientation is inconsistent; `None` for a mesh that bounds a solid.
 pub fn openness(report: &MeshReport) -> Option<String> {
     let (open, turned) = (report.boundary_edges, report.misoriented_edges);
-    let facing = || format!("its facing changes across {}", counted(turned, "inner edge", "inner edges"));
+    let facing =
+        || format!("its orientation changes across {}", counted(turned, "inner edge", "inner edges"));
     let opening = || {
         let loops = counted(report.boundary_loops, "loop", "loops");
         format!("it is open along {} in {loops}", counted(open, "edge", "edges"))

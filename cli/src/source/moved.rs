@@ -136,7 +136,7 @@ pub fn frame_of(octree: &Octree, map: &Affine) -> Result<Frame, Error> {
     match image(own, map) {
         Some(image) => Ok(image),
         None => {
-            let problem = "moves the solid beyond what doubles can tell";
+            let problem = "moves the solid beyond the range of double precision";
             let bounds =
                 occupied(octree)?.placed(map).ok_or(Error::Argument { name: "placement", problem })?;
             fitted(own, bounds, map)

@@ -34,7 +34,8 @@ const MOVES: [Move; 4] = [
     Move {
         name: "scale",
         value: "S|SX,SY,SZ",
-        help: "Scale the input about the origin by one factor, or by one for each axis; negative factors mirror it",
+        help: "Scale the input about the origin by one factor, or by one for each axis; negative factors \
+               mirror it",
         map: scaling,
     },
     Move {

@@ -100,6 +100,6 @@ pub fn bounds_of(input: &Input, scene: &Scene) -> Result<([f64; 3], [f64; 3]), F
         // Any cube will do for an empty scene.
         return Ok(([0.0; 3], [1.0; 3]));
     }
-    let unknown = "reaches nobody knows how far: give --bounds X0,Y0,Z0,EDGE";
+    let unknown = "has no known extent: give --bounds X0,Y0,Z0,EDGE";
     scene.bounds().of(input)?.ok_or_else(|| Failure::of(input, unknown))
 }

@@ -173,13 +173,14 @@ fn default_threshold(input: &Input, samples: &Samples<'_>, kind: SampleKind) -> 
     // (A constant volume is all inside, or all outside.)
     let Some(best) = histogram::best_threshold(samples) else { return half };
     let range = format!(
-        "its samples go from {} to {}, all on one side of {}",
+        "its samples range from {} to {}, all on one side of {}",
         told(least),
         told(greatest),
         told(half)
     );
     complain(&format!(
-        "{input}: note: {range}: they are inside from {} on, which parts them best; --threshold chooses another",
+        "{input}: note: {range}: they are inside from {} on, the threshold that separates them best; \
+         --threshold chooses another",
         told(best)
     ));
     best

@@ -198,7 +198,7 @@ fn bitmaps() {
     place.run("bitmap ball.nrrd -o cells.raw").bad(1, &["ball.nrrd"]);
     place.run("complement ball.lfl -o outside.lfl").good();
     let outside = place.run("bitmap outside.lfl -o outside.raw");
-    assert!(outside.code == Some(0) && outside.errors.contains("may go on"), "{outside:?}");
+    assert!(outside.code == Some(0) && outside.errors.contains("may extend"), "{outside:?}");
     assert_eq!(
         read("outside.raw").iter().filter(|&&sample| sample == 255).count() as u64,
         4096 - self::inside()
