@@ -116,11 +116,7 @@ fn dexel_rules() -> impl TypedValueParser<Value = Rule> {
     rules([
         (Rule::Sampled, "The points of each ray that lie in the solid"),
         (Rule::Inner, "Cells that are wholly inside: the result lies within the solid"),
-        (
-            Rule::Outer,
-            "Cells that are not wholly outside: the result contains the points of each ray that lie in \
-             the solid",
-        ),
+        (Rule::Outer, "Cells that are not wholly outside: the result contains the solid on each ray"),
     ])
 }
 
