@@ -388,7 +388,6 @@ mod tests {
         let listed: Vec<&str> = GROUPS.iter().flat_map(|(_, names)| *names).copied().collect();
         assert_eq!(listed.iter().map(|name| (*name).to_owned()).collect::<BTreeSet<_>>(), names(&all));
         assert_eq!(listed.len(), names(&all).len(), "{listed:?}");
-        let text = all.render_help().to_string();
     }
 
     #[test]
