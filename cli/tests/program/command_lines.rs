@@ -49,10 +49,13 @@ fn subcommands(place: &Place) -> BTreeMap<String, Vec<Choice>> {
 fn choices(place: &Place, name: &str) -> Vec<Choice> {
     let help = place.run(&format!("{name} --help")).good();
     let mut found: Vec<Choice> = vec![];
-    for line in help.text().lines() {
+    let options = help.text().split("Details:").next().unwrap();
+    for line in options.lines() {
+        // Help texts are indented further than the options.
+        let is_option = !line.starts_with("          ");
         let line = line.trim_start();
         if let Some(option) =
-            line.split(' ').find(|word| word.starts_with("--")).filter(|_| line.starts_with('-'))
+            line.split(' ').find(|word| word.starts_with("--")).filter(|_| is_option && line.starts_with('-'))
         {
             let value = line.split_once(option).is_some_and(|(_, rest)| rest.trim_start().starts_with('<'));
             found.push(Choice {

@@ -90,7 +90,7 @@ fn booleans_take_volumes() {
     // Voxels that are no cubes are sampled on the cells of the solid, whose cube they leave.
     place
         .run("union ball.lfl flat.nrrd -o both.lfl")
-        .noted(&["flat.nrrd", "reach beyond the frame of ball.lfl"]);
+        .noted(&["flat.nrrd", "extend beyond the frame of ball.lfl"]);
 }
 
 #[test]
