@@ -1,33 +1,33 @@
-//! What goes wrong: how a subcommand ends without success, and what it complains of.
+//! Failures: how a subcommand ends without success, and the line that it prints.
 
 use leafless::Error;
 use leafless::error::FormatError;
 use std::fmt::Display;
 use std::io::Write;
 
-/// Why a subcommand stopped.
+/// The reason why a subcommand stopped.
 #[derive(Debug)]
 pub enum Failure {
     /// One line that says what is wrong with which file.
     Failed(String),
     /// One line that says what is wrong with the arguments.
     Usage(String),
-    /// Nobody reads standard output any more: no reason to say anything.
+    /// The reader of standard output is gone; there is nothing to report.
     ReaderGone,
-    /// Nobody reads standard output any more, where a solid was to go.
+    /// The reader of standard output is gone, and the output was a solid.
     Undelivered,
 }
 
 impl Failure {
-    /// A failure of the file that is called `name`.
+    /// Returns a failure of the file called `name`.
     pub fn of(name: impl Display, problem: impl Display) -> Failure {
         Failure::Failed(format!("{name}: {problem}"))
     }
 }
 
-/// What can be wrong with a file.
+/// A problem with a file.
 pub trait Problem {
-    /// The problem in words, without the name of the file.
+    /// Returns the problem in words, without the name of the file.
     fn text(&self) -> String;
 }
 
@@ -45,7 +45,7 @@ impl Problem for Error {
 
 impl Problem for std::io::Error {
     fn text(&self) -> String {
-        // People do not know the numbers of the system's errors.
+        // The numbers of the system's errors mean nothing to people.
         let text = self.to_string();
         let words = text.split_once(" (os error ").map_or(text.as_str(), |parts| parts.0);
         words.to_owned()
@@ -60,7 +60,7 @@ impl Problem for String {
 
 /// Names the file that an error is about.
 pub trait Of<T> {
-    /// The result, its error about the file that is called `name`.
+    /// Returns the result; an error becomes a failure of the file called `name`.
     fn of(self, name: impl Display) -> Result<T, Failure>;
 }
 
@@ -70,12 +70,13 @@ impl<T, E: Problem> Of<T> for Result<T, E> {
     }
 }
 
-/// Writes one line to standard error. If that is closed nobody wants to know.
+/// Writes one line to standard error. If standard error is closed, nobody wants to know.
 pub fn complain(line: &str) {
     let _ = writeln!(std::io::stderr().lock(), "leafless: {}", harmless(line));
 }
 
-/// The text without line ends and what else a terminal might obey: names of files may hold anything.
+/// Returns the text without line ends and other characters that a terminal might obey: file names may contain
+/// anything.
 fn harmless(text: &str) -> String {
     let mut line = String::with_capacity(text.len());
     for c in text.chars() {

@@ -1,18 +1,19 @@
-//! `leafless`: solids from mesh files to queries, on the command line.
+//! The program `leafless`: solids from mesh files to queries, on the command line.
 //!
-//! A subcommand (`commands`) holds its arguments, and says what it wants. A file of any kind becomes a solid
-//! on a frame in `source`; what is made of it is made in `making`; `report` knows what is told of it, and
-//! `sink` takes it to a file or to standard output. `show` puts pictures on the terminal. A folder uses only
-//! those below it: from the bottom up these are `source`, `report` and `sink`, `show` and `making`, and
-//! `commands`; no subcommand uses another.
+//! A subcommand (`commands`) defines its arguments and runs its task. `source` makes a solid on a frame from
+//! a file of any kind; `making` makes new solids, meshes and pictures; `report` describes them, and `sink`
+//! writes results to a file or to standard output. `show` displays pictures on the terminal. A folder uses
+//! only the folders below it: from the bottom up these are `source`, `report` and `sink`, `show` and
+//! `making`, and `commands`. No subcommand uses another one.
 //!
-//! Every failure is one line on standard error that names the file; the exit code is 0 for success, 1 for
+//! Every failure is one line on standard error that names the file. The exit code is 0 for success, 1 for
 //! failure, 2 for wrong usage. A signal ends the program at once (see `signals`).
 
 #![deny(unsafe_code)]
 
 mod commands;
 mod failure;
+mod help;
 mod making;
 mod memory;
 mod options;
@@ -31,21 +32,29 @@ use commands::*;
 use failure::{Failure, complain};
 use std::process::ExitCode;
 
-/// Turns meshes into solids, cuts and joins them exactly, and answers questions about them.
-///
-/// A solid is kept as an octree in a file (.lfl) that is queried where it lies, without loading it. Unless
-/// another rule is asked for, answers are certified: what is called inside or outside is proven, and a volume
-/// is an interval that holds the true one.
+/// The beginning of the help: what the program does, and an example.
+const ABOUT: &str = "\
+Makes solids from meshes, scenes and volumes, combines them exactly, and answers questions about them.
+Example: `leafless voxelize part.stl -o part.lfl --depth 9`, then `leafless measure part.lfl`.";
+
+/// The end of the help.
+const NOTES: &str = "\
+`leafless COMMAND --help` lists the arguments and options of a command, with examples.
+
+A solid is stored as an octree in a file (.lfl), and queried there without loading it. Answers are certified \
+by default: `inside` and `outside` are proven, and a volume is an interval that contains the true value. A file \
+named `-` is standard input or standard output. Files are mapped into memory: do not let another program \
+change a file in place while it is read. Long work shows a progress bar at a terminal; elsewhere, lines on \
+standard error report the progress, every five and later every thirty seconds.";
+
+/// The command line.
 #[derive(Parser)]
-#[command(name = "leafless", version, propagate_version = true, max_term_width = 100)]
-#[command(after_help = "\
-Try `leafless demo` first. A file named `-` is standard input or standard output.
-Files are mapped, not loaded: let no other program rewrite one in place while it is read here. Long work \
-shows a bar at a terminal; elsewhere a line on standard error tells every five seconds, later every thirty, how far it is.")]
+#[command(name = "leafless", version, propagate_version = true)]
+#[command(about = ABOUT, long_about = None, after_help = NOTES)]
 struct Arguments {
-    /// Most memory to take, as 512M or 2G; what would take more is refused. Without it: what the machine has
-    /// to spare, and 16G at most
-    #[arg(long, global = true, value_name = "SIZE", value_parser = memory::size)]
+    /// Most memory to take, such as 512M or 2G; results that would take more are refused [default: what the
+    /// machine has to spare, at most 16G]
+    #[arg(long, global = true, value_name = "SIZE", value_parser = memory::size, display_order = 900)]
     max_memory: Option<u64>,
     #[command(subcommand)]
     command: Command,
@@ -53,96 +62,69 @@ struct Arguments {
 
 #[derive(Subcommand)]
 enum Command {
-    #[command(
-        about = "Make a solid from a mesh (STL, OBJ, PLY, OFF, 3MF) or a volume (NRRD, MetaImage, raw)"
-    )]
+    #[command(about = "Make a solid from a mesh or a volume")]
     Voxelize(voxelize::Arguments),
-    #[command(
-        about = "Make a solid from a scene: primitives and set operations, as OpenSCAD exports them (.csg)"
-    )]
+    #[command(about = "Make a solid from a scene of primitives and set operations (.csg, as from OpenSCAD)")]
     Csg(csg::Arguments),
-    #[command(
-        about = "Make a tri-dexel model, intervals along rays, of a solid, a mesh, a scene or a volume"
-    )]
+    #[command(about = "Make a tri-dexel model (intervals along rays) from any input")]
     Dexelize(dexelize::Arguments),
-    #[command(about = "Make an octree, a tri-dexel model or a triangle mesh of any of them")]
+    #[command(about = "Convert between octree, tri-dexel model and triangle mesh, or move one of them")]
     Convert(convert::Arguments),
-    #[command(
-        about = "Show what a solid consists of (depth, nodes, cells, volume), a mesh (bodies, holes, defects) or a scene"
-    )]
+    #[command(about = "Show what a file contains, and what is wrong with a mesh")]
     Info(info::Arguments),
-    #[command(about = "Check a file completely: exit code 0 if it is good, 1 with the reason if not")]
+    #[command(about = "Check a file completely: exit code 0 if it is good, otherwise 1")]
     Verify(verify::Arguments),
-    #[command(about = "All points of any of the solids")]
+    #[command(about = "Unite solids: the points of any of them")]
     Union(boolean::Arguments),
-    #[command(about = "The points that the solids have in common")]
+    #[command(about = "Intersect solids: the points that all of them have in common")]
     Intersection(boolean::Arguments),
-    #[command(about = "The first solid without all the others")]
+    #[command(about = "Subtract all other solids from the first one")]
     Difference(boolean::Arguments),
-    #[command(about = "The points that lie in an odd number of the solids (of two: in just one of them)")]
+    #[command(about = "Keep the points that lie in an odd number of the solids (of two: in only one)")]
     Xor(boolean::Arguments),
-    #[command(about = "Everything but the solid")]
+    #[command(about = "Invert a solid: the points outside of it")]
     Complement(boolean::ComplementArguments),
-    #[command(about = "Say of points on standard input whether the solid contains them")]
+    #[command(about = "Tell whether points on standard input lie inside a solid")]
     Contains(contains::Arguments),
-    #[command(about = "Say how far points on standard input are from a solid, a mesh or a scene")]
+    #[command(about = "Tell how far points on standard input are from a solid, a mesh or a scene")]
     Distance(distance::Arguments),
-    #[command(about = "Say what lies beside cells on standard input")]
+    #[command(about = "List the neighbours of cells on standard input")]
     Neighbours(neighbours::Arguments),
-    #[command(about = "Say where rays on standard input first meet a solid, a mesh or a scene")]
+    #[command(about = "Tell where rays on standard input first hit a solid, a mesh or a scene")]
     Ray(ray::Arguments),
-    #[command(about = "Make a picture (PNG), or show one on the terminal")]
+    #[command(about = "Make a picture (PNG), or show it on the terminal")]
     Render(render::Arguments),
-    #[command(
-        about = "Write how far a solid, a mesh or a scene reaches in each column of cells: a height map"
-    )]
+    #[command(about = "Write a height map: how far the solid reaches in each column of cells")]
     Heights(heights::Arguments),
-    #[command(about = "Write the surface of a solid, a mesh or a scene as a triangle mesh")]
+    #[command(about = "Write the surface as a triangle mesh (STL, PLY, OBJ, OFF, 3MF)")]
     Mesh(mesh::Arguments),
     #[command(about = "Write the cells of a solid as a volume (NRRD or raw)")]
     Bitmap(bitmap::Arguments),
-    #[command(
-        about = "Write the voxels of a solid, a mesh or a scene as records (NPZ or CSV), or make a solid of records"
-    )]
+    #[command(about = "Write the voxels as records (NPZ or CSV), or make a solid from records")]
     Voxels(voxels::Arguments),
-    #[command(about = "Say whether two solids or meshes overlap, by how much, and how far they are apart")]
+    #[command(about = "Tell whether two solids overlap, by how much, and how far apart they are")]
     Interfere(interfere::Arguments),
-    #[command(
-        about = "Place as many copies of parts in a container as go in, proven to be apart; or check such a layout"
-    )]
+    #[command(about = "Pack copies of parts into a container without overlap, or check a layout")]
     Layout(layout::Arguments),
-    #[command(about = "Say how far the boundaries of two solids or meshes are from each other")]
+    #[command(about = "Tell how far two boundaries deviate from each other (Hausdorff distance)")]
     Deviation(deviation::Arguments),
-    #[command(
-        about = "Volume, centroid, inertia and bounds of a solid or a mesh, as intervals that hold the true ones"
-    )]
+    #[command(about = "Measure volume, area, centroid, inertia and bounds, as certified intervals")]
     Measure(measure::Arguments),
-    #[command(
-        about = "Say how much of a solid lies in a ball, a box or another solid: cells, and the volume in common"
-    )]
+    #[command(about = "Bound the part of a solid that lies in a ball, a box or another solid")]
     Within(within::Arguments),
-    #[command(about = "Give a solid a channel: a colour, a temperature, a material at every point inside")]
+    #[command(about = "Give a solid a channel of values: a colour, a temperature, a material")]
     Attribute(attribute::Arguments),
-    #[command(about = "Say which value a channel has at points on standard input")]
+    #[command(about = "Tell which value a channel has at points on standard input")]
     Sample(sample::Arguments),
-    #[command(
-        about = "Say what a channel amounts to in a solid: least, greatest, mean, integral; or for each material"
-    )]
+    #[command(about = "Tell the least, greatest and mean value and the integral of a channel")]
     Summary(summary::Arguments),
-    #[command(about = "Show the main job end to end on a mechanical part that the program makes itself")]
+    #[command(about = "Run the main workflow on a mechanical part that the program makes itself")]
     Demo(demo::Arguments),
 }
 
-/// The command line, with help that says of each command first what it does, and then how.
+/// The command line with its help texts.
 fn command_line() -> clap::Command {
-    let mut all = Arguments::command();
-    for own in all.get_subcommands_mut() {
-        if let (Some(about), Some(long)) = (own.get_about(), own.get_long_about()) {
-            let text = format!("{about}.\n\n{long}");
-            *own = own.clone().long_about(text);
-        }
-    }
-    all
+    help::with_help(Arguments::command())
 }
 
 fn main() -> ExitCode {
@@ -190,9 +172,9 @@ fn main() -> ExitCode {
     };
     match result {
         Ok(()) => ExitCode::SUCCESS,
-        // Whoever reads has seen enough, as `head` has.
+        // The reader has seen enough, as `head` has.
         Err(Failure::ReaderGone) => ExitCode::SUCCESS,
-        // Half a solid is none; but the reader knows best why it left.
+        // Half a solid is useless. The reader knows why it left, so there is no message.
         Err(Failure::Undelivered) => ExitCode::from(1),
         Err(Failure::Failed(line)) => {
             complain(&line);
@@ -205,13 +187,13 @@ fn main() -> ExitCode {
     }
 }
 
-/// Shows help and version as they are, and errors in one line.
+/// Prints help and version as they are, and errors in one line.
 fn refuse_usage(error: &clap::Error) -> ExitCode {
     match error.kind() {
         ErrorKind::DisplayHelp
         | ErrorKind::DisplayVersion
         | ErrorKind::DisplayHelpOnMissingArgumentOrSubcommand => {
-            // Nobody is left to be told if this cannot be printed.
+            // If this cannot be printed, nobody is there to read about it.
             let _ = error.print();
         }
         _ => complain(&usage_line(&error.to_string())),
@@ -219,7 +201,7 @@ fn refuse_usage(error: &clap::Error) -> ExitCode {
     ExitCode::from(error.exit_code() as u8)
 }
 
-/// What `clap` says over several lines, in one: the complaint and its hints, without the synopsis.
+/// Joins the lines of an error of `clap` into one: the complaint and its hints, without the synopsis.
 fn usage_line(text: &str) -> String {
     let complaint = text.split("\nUsage:").next().unwrap_or(text);
     let complaint = complaint.split("\nFor more information").next().unwrap_or(complaint);
@@ -239,7 +221,7 @@ mod tests {
     #[test]
     fn the_definition_of_the_arguments_is_sound() {
         fn check(command: &clap::Command) {
-            // Where debug assertions are off, as in a release, clap itself does not look.
+            // Without debug assertions, as in a release, clap itself does not check this.
             let mut names = std::collections::BTreeSet::new();
             for argument in command.get_arguments() {
                 assert!(names.insert(argument.get_id().to_string()), "{} {argument}", command.get_name());

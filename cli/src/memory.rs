@@ -1,18 +1,18 @@
-//! How much memory the program may take, and what is said where that is not enough.
+//! Limits of the memory that the program may take, and the messages when they are reached.
 
 use std::sync::OnceLock;
 
-/// What the user allowed.
+/// The limit that the user set, in bytes.
 static ALLOWED: OnceLock<u64> = OnceLock::new();
 
-/// Most that the program takes without being told, if the machine has as much to spare.
+/// Most bytes that the program takes without --max-memory, if the machine has as many to spare.
 const MOST: u64 = 16 << 30;
-/// The same where the system does not tell what it has.
+/// The same limit where the system does not report its free memory.
 const UNTOLD: u64 = 8 << 30;
-/// Most that is read from what does not say how long it is, such as a pipe, if the user allowed nothing.
+/// Most bytes that are read from a source of unknown length, such as a pipe, without --max-memory.
 const STREAM: u64 = 1 << 30;
 
-/// A number of bytes: `1500000000`, or `1500M`, `1.5G`, in powers of 1024.
+/// Parses a number of bytes: `1500000000`, or `1500M`, `1.5G`, in powers of 1024.
 pub fn size(text: &str) -> Result<u64, String> {
     let refusal = || "expected a number of bytes, or one with the unit K, M, G or T: 512M, 1.5G".to_string();
     let text = text.trim();
@@ -27,18 +27,18 @@ pub fn size(text: &str) -> Result<u64, String> {
         _ => return Err(refusal()),
     };
     let bytes = number.parse::<f64>().map_err(|_| refusal())? * 1024f64.powi(power);
-    // (What is not a number is not in the range.)
+    // (NaN is not in the range.)
     if (1.0..=2f64.powi(63)).contains(&bytes) { Ok(bytes as u64) } else { Err(refusal()) }
 }
 
-/// Sets what the user allowed.
+/// Sets the limit that the user chose.
 pub fn allow(bytes: u64) {
-    // The arguments are read once.
+    // The arguments are read once, so this is the first call.
     let _ = ALLOWED.set(bytes);
 }
 
-/// The bytes that the next result may take: half of what is allowed and not taken yet. A result exists twice
-/// for a moment, when it is put together, or written.
+/// Returns the bytes that the next result may take: half of the memory that is allowed and not yet taken. A
+/// result exists twice for a moment, while it is assembled or written.
 pub fn affordable() -> u64 {
     let left = match ALLOWED.get() {
         Some(allowed) => allowed.saturating_sub(taken()),
@@ -47,7 +47,7 @@ pub fn affordable() -> u64 {
     (left / 2).max(1)
 }
 
-/// Refuses to make a file in memory for which there is no room.
+/// Refuses to make a file in memory if there is no room for it.
 pub fn afford_file(bytes: u64) -> Result<(), String> {
     let room = affordable();
     if bytes <= room {
@@ -59,35 +59,36 @@ pub fn afford_file(bytes: u64) -> Result<(), String> {
     ))
 }
 
-/// The longest file that is read into memory, in bytes: what is made of it takes as much again.
+/// Returns the length of the longest file that is read into memory, in bytes: the result takes as much again.
 pub fn longest_file() -> u64 {
     affordable() / 2
 }
 
-/// The same of what does not say how long it is.
+/// Returns the same limit for sources of unknown length.
 pub fn longest_stream() -> u64 {
     let longest = longest_file();
     if ALLOWED.get().is_some() { longest } else { longest.min(STREAM) }
 }
 
-/// What the system can give without swapping, if it tells.
+/// Returns the bytes that the system can give without swapping, if it reports them.
 fn spare() -> Option<u64> {
     kibibytes(&std::fs::read_to_string("/proc/meminfo").ok()?, "MemAvailable:")
 }
 
-/// The memory that the program has taken, where the system tells. Mapped files do not count.
+/// Returns the bytes that the program has taken, or 0 where the system does not report them. Mapped files do
+/// not count.
 fn taken() -> u64 {
     let status = std::fs::read_to_string("/proc/self/status").ok();
     status.and_then(|status| kibibytes(&status, "RssAnon:")).unwrap_or(0)
 }
 
-/// The number behind a name, in bytes.
+/// Returns the number behind a name, converted from KiB to bytes.
 fn kibibytes(text: &str, name: &str) -> Option<u64> {
     let line = text.lines().find_map(|line| line.strip_prefix(name))?;
     line.trim().strip_suffix("kB")?.trim().parse::<u64>().ok()?.checked_mul(1024)
 }
 
-/// A number of bytes as people write it, rounded up: `1.5 GB`. (In powers of 1024, as [`size`] reads them.)
+/// Formats a number of bytes, rounded up: `1.5 GB`, in powers of 1024 as [`size`] reads them.
 pub fn told(bytes: u64) -> String {
     if bytes == u64::MAX {
         return "more bytes than can be counted".into();

@@ -1,4 +1,4 @@
-//! Values of options that several subcommands have.
+//! Values of options that several subcommands share.
 
 use clap::ValueEnum;
 use clap::builder::{PossibleValue, PossibleValuesParser, TypedValueParser};
@@ -6,29 +6,29 @@ use leafless::exchange::MeshFormat;
 use leafless::{Frame, Rule};
 use std::str::FromStr;
 
-/// The rules of an octree, of which `certified` is the first.
+/// Returns the parser of the rules of an octree; `certified` is the first one.
 pub fn octree_rules() -> impl TypedValueParser<Value = Rule> {
     rules([
-        (Rule::Certified, "They stay undecided: volumes are intervals that hold the truth"),
+        (Rule::Certified, "They stay undecided: volumes are intervals that contain the true value"),
         (Rule::Sampled, "They are inside if their centre is"),
         (Rule::Inner, "They are outside: the result lies within the solid"),
         (Rule::Outer, "They are inside: the result contains the solid"),
     ])
 }
 
-/// Some rules, and what is said of each.
+/// Returns the parser of some rules with their help texts.
 pub fn rules<const N: usize>(known: [(Rule, &'static str); N]) -> impl TypedValueParser<Value = Rule> {
     let values = known.map(|(rule, help)| PossibleValue::new(rule_name(rule)).help(help));
     let of = move |name: String| known.into_iter().find(|(rule, _)| rule_name(*rule) == name);
     PossibleValuesParser::new(values).try_map(move |name| of(name).map(|known| known.0).ok_or("is no rule"))
 }
 
-/// The name of an option's value, as the user writes it.
+/// Returns the name of an option's value, as the user writes it.
 pub fn name_of(value: impl ValueEnum) -> String {
     value.to_possible_value().map_or_else(String::new, |value| value.get_name().to_owned())
 }
 
-/// What cells that are not decided count as.
+/// The rule for undecided cells.
 #[derive(Debug, Clone, Copy, PartialEq, ValueEnum)]
 pub enum ResolveName {
     /// Outside
@@ -37,7 +37,7 @@ pub enum ResolveName {
     Outer,
 }
 
-/// What is told of undecided cells where nobody said what they count as.
+/// The note on undecided cells if the user named no rule.
 pub const UNDECIDED: &str = "note: its undecided cells count as inside; --resolve inner leaves them out";
 
 impl From<ResolveName> for Rule {
@@ -49,7 +49,7 @@ impl From<ResolveName> for Rule {
     }
 }
 
-/// The name of a rule, as the user writes it.
+/// Returns the name of a rule, as the user writes it.
 pub fn rule_name(rule: Rule) -> &'static str {
     match rule {
         Rule::Certified => "certified",
@@ -59,23 +59,23 @@ pub fn rule_name(rule: Rule) -> &'static str {
     }
 }
 
-/// A number that is finite and `good`; `what` is expected.
+/// Parses a finite number that is `good`; otherwise the error says that `what` is expected.
 pub fn number(text: &str, what: &str, good: impl Fn(f64) -> bool) -> Result<f64, String> {
     let number = text.parse().ok().filter(|number: &f64| number.is_finite() && good(*number));
     number.ok_or_else(|| format!("expected {what}"))
 }
 
-/// Numbers between commas.
+/// Parses numbers between commas.
 pub fn list<T: FromStr>(text: &str) -> Option<Vec<T>> {
     text.split(',').map(|number| number.trim().parse().ok()).collect()
 }
 
-/// The same if there are just `N`.
+/// Parses exactly `N` numbers between commas.
 pub fn numbers<T: FromStr, const N: usize>(text: &str) -> Option<[T; N]> {
     list(text)?.try_into().ok()
 }
 
-/// The universe of `--bounds`; its depth is a placeholder.
+/// Parses the cube of `--bounds`; its depth is a placeholder.
 pub fn bounds(text: &str) -> Result<Frame, String> {
     match numbers(text) {
         Some([x, y, z, edge]) => Frame::new([x, y, z], edge, 1).map_err(|error| error.to_string()),
@@ -83,23 +83,23 @@ pub fn bounds(text: &str) -> Result<Frame, String> {
     }
 }
 
-/// Formats of meshes, named in this order.
+/// Returns the parser of mesh formats, which are listed in this order.
 pub fn formats(names: [&'static str; 5]) -> impl TypedValueParser<Value = MeshFormat> {
     PossibleValuesParser::new(names)
         .try_map(|name| MeshFormat::from_extension(&name).ok_or("is no format of meshes"))
 }
 
-/// How wide an interval may be.
+/// Parses the width of an interval.
 pub fn tolerance(text: &str) -> Result<f64, String> {
     number(text, "a number not below 0", |tolerance| tolerance >= 0.0)
 }
 
-/// How long something may take.
+/// Parses a time limit in seconds.
 pub fn seconds(text: &str) -> Result<f64, String> {
     number(text, "a number of seconds above 0", |seconds| seconds > 0.0 && seconds < 1e9)
 }
 
-/// A number of threads: far more than processors help nobody.
+/// Parses a number of threads. More than 1024 would help nobody.
 pub fn threads(text: &str) -> Result<usize, String> {
     match text.parse() {
         Ok(threads @ 0..=1024) => Ok(threads),
@@ -110,7 +110,7 @@ pub fn threads(text: &str) -> Result<usize, String> {
 /// Most levels of a lattice.
 const MOST: u8 = 19;
 
-/// The levels of a lattice of so many cells to an axis.
+/// Parses the number of cells along an axis, and returns the levels of that lattice.
 pub fn resolution(text: &str) -> Result<u8, String> {
     let most = 1u64 << MOST;
     let Ok(cells) = text.parse::<u64>() else {

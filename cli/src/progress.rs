@@ -1,5 +1,4 @@
-//! Long work: a bar for whoever waits at a terminal, lines for a log, an end before memory runs out or when
-//! time is up.
+//! Progress of long work: a bar at a terminal, lines in a log; and limits of memory and time.
 
 use crate::failure::complain;
 use crate::memory;
@@ -12,18 +11,18 @@ use std::sync::{Arc, OnceLock};
 use std::thread::JoinHandle;
 use std::time::{Duration, Instant};
 
-/// Work that is done before this needs no bar.
+/// Work that takes less time than this shows no bar.
 const PATIENCE: Duration = Duration::from_secs(1);
-/// Where there is no terminal, a line is told as often as this, …
+/// The time between two lines of progress without a terminal, …
 const PACE: Duration = Duration::from_secs(5);
-/// … and after a minute as often as this: a night's work fills no log.
+/// … and after a minute: a night's work fills no log.
 const SLOW_PACE: Duration = Duration::from_secs(30);
 /// Steps of the bar.
 const STEPS: u64 = 1000;
 
-/// Runs `work` on so many threads (0: one a processor), with a progress bar called `label` once it has taken
-/// more than a second, if standard error is a terminal, and else with a line every few seconds. Work that
-/// would take more memory than is allowed ends with a sentence that says so.
+/// Runs `work` on `threads` threads (0: one for each processor). If standard error is a terminal, a progress
+/// bar called `label` appears after one second; otherwise a line is printed every few seconds. Work that
+/// would take more memory than is allowed ends with an error that says so.
 pub fn watched<R>(
     label: &'static str,
     threads: usize,
@@ -50,7 +49,7 @@ pub fn watched<R>(
     }
     drop(told);
     result.map_err(|error| match error {
-        // The only limit that is set here; others are the library's own, and say what they are.
+        // The only limit that is set here; others are the library's own, and explain themselves.
         Error::Limit { what: "bytes", limit } => format!(
             "needs more than the {} of memory that there is room for: take fewer levels of cells (one less takes about \
              a quarter), or give more with --max-memory",
@@ -62,8 +61,8 @@ pub fn watched<R>(
             memory::told(needed),
             memory::told(limit)
         ),
-        // Nothing else cancels.
-        Error::Cancelled => "the time of --seconds was over before anything was known: give more".into(),
+        // Nothing else cancels the work.
+        Error::Cancelled => "the time of --seconds was over before any bounds were found: give more".into(),
         Error::OutOfMemory => {
             "the system has no memory left: take fewer levels of cells (one less takes about a quarter)".into()
         }
@@ -79,7 +78,7 @@ fn started(label: &'static str, start: Instant) -> ProgressBar {
     }
 }
 
-/// Runs work that does not say how far it is; every few seconds a line says that it goes on.
+/// Runs work that does not report its progress; every few seconds a line says that it continues.
 pub fn at_work<R>(label: &'static str, work: impl FnOnce() -> R) -> R {
     let told = Told::new(label);
     let result = work();
@@ -87,15 +86,15 @@ pub fn at_work<R>(label: &'static str, work: impl FnOnce() -> R) -> R {
     result
 }
 
-/// A thread that tells every few seconds of work that is going on, until this is dropped.
+/// A thread that reports running work every few seconds, until this value is dropped.
 struct Told {
-    /// Thousandths that are done.
+    /// Thousandths of the work that are done.
     done: Arc<AtomicU32>,
     thread: Option<(Sender<()>, JoinHandle<()>)>,
 }
 
 impl Told {
-    /// `None` at a terminal.
+    /// Starts the thread, or returns `None` at a terminal.
     fn new(label: &'static str) -> Option<Told> {
         if std::io::stderr().is_terminal() {
             return None;
@@ -115,7 +114,7 @@ impl Told {
                 complain(&format!("{label}: at work for {time} s{part}"));
             }
         };
-        // Without the thread there are no lines.
+        // If the thread cannot be started, there are no lines.
         let thread = std::thread::Builder::new().name("progress".into()).stack_size(1 << 17).spawn(tell).ok();
         Some(Told { done, thread: thread.map(|thread| (end, thread)) })
     }
@@ -135,11 +134,11 @@ impl Drop for Told {
     }
 }
 
-/// Splits of the first attempt within a time.
+/// Splits of the first attempt within a time limit.
 const FIRST_SPLITS: u64 = 1 << 10;
 
-/// Does work with four times as many splits each time, until it `is_done` or the time is over, and returns
-/// what the last attempt that came to its end found. Without a time it is done once.
+/// Repeats work with four times as many splits each time, until it `is_done` or the time is over. Returns the
+/// result of the last attempt that was completed. Without a time limit the work is done once.
 pub fn within_time<R>(
     seconds: Option<f64>,
     control: &Control<'_>,
@@ -163,7 +162,7 @@ pub fn within_time<R>(
     })
 }
 
-/// Does work with a flag that is raised when the time is over. Without a time there is none.
+/// Runs work with a flag that is raised when the time is over. Without a time limit there is no flag.
 pub fn until<R>(seconds: Option<f64>, work: impl FnOnce(Option<&AtomicBool>) -> R) -> R {
     let Some(seconds) = seconds else { return work(None) };
     let is_over = AtomicBool::new(false);

@@ -1,30 +1,30 @@
-//! Questions on standard input, one a line, that are answered as they come.
+//! Questions on standard input, one a line, answered as they arrive.
 
 use crate::failure::Failure;
 use std::io::{ErrorKind, Read};
 
-/// Questions of `N` numbers each.
+/// A task that answers questions of `N` numbers each.
 pub trait Questions<const N: usize> {
-    /// Takes one in, or says what is wrong with it.
+    /// Accepts a question, or says what is wrong with it.
     fn ask(&mut self, numbers: [f64; N]) -> Result<(), String>;
 
-    /// Prints the answers to all that were taken in, and forgets them.
+    /// Prints the answers to all accepted questions, and forgets the questions.
     fn answer(&mut self) -> Result<(), Failure>;
 }
 
-/// Bytes that are asked for at once.
+/// Bytes that are read at once.
 const CHUNK: usize = 1 << 18;
-/// No line with a few numbers is longer.
+/// The longest line that is accepted, in bytes; lines of a few numbers are shorter.
 const LONGEST_LINE: usize = 1 << 16;
 
 /// Reads questions from standard input to its end: numbers separated by blanks, tabs or commas. Empty lines
-/// and lines that begin with # are skipped. Whole lines are answered as soon as they are there, in bounded
+/// and lines that begin with # are skipped. Complete lines are answered as soon as they arrive, in bounded
 /// memory.
 pub fn serve<const N: usize>(questions: &mut impl Questions<N>) -> Result<(), Failure> {
     let mut stdin = std::io::stdin().lock();
     let mut buffer = vec![0; CHUNK];
     let mut lines = 0;
-    // The beginning of the buffer holds the beginning of a line whose end has not come yet.
+    // The buffer begins with the beginning of a line whose end has not arrived yet.
     let mut kept = 0;
     loop {
         let read = match stdin.read(&mut buffer[kept..]) {
@@ -33,14 +33,14 @@ pub fn serve<const N: usize>(questions: &mut impl Questions<N>) -> Result<(), Fa
             Err(error) => return Err(Failure::of("standard input", error)),
         };
         let filled = kept + read;
-        // At the end a last line need not be ended.
+        // The last line may lack its line end.
         let end = if read == 0 {
             filled
         } else {
             buffer[..filled].iter().rposition(|&byte| byte == b'\n').map_or(0, |last| last + 1)
         };
         let taken = take(questions, &buffer[..end], &mut lines);
-        // What could be understood is answered before anybody hears of what could not.
+        // The valid questions are answered before the invalid one is reported.
         questions.answer()?;
         taken?;
         if read == 0 {
@@ -54,13 +54,13 @@ pub fn serve<const N: usize>(questions: &mut impl Questions<N>) -> Result<(), Fa
     }
 }
 
-/// Reads the questions in whole lines; `lines` were read before.
+/// Reads the questions in complete lines; `lines` lines were read before.
 fn take<const N: usize>(
     questions: &mut impl Questions<N>,
     bytes: &[u8],
     lines: &mut u64,
 ) -> Result<(), Failure> {
-    // The lines end in line feeds; what stands behind the last one is a line only if there is something.
+    // Lines end in line feeds. The text behind the last line feed is a line only if it is not empty.
     for line in bytes.split_inclusive(|&byte| byte == b'\n') {
         let asked = match row(line) {
             Some(Ok(numbers)) => questions.ask(numbers),
@@ -73,14 +73,14 @@ fn take<const N: usize>(
     Ok(())
 }
 
-/// The failure of the line after the first `lines`.
+/// Returns the failure of the line after the first `lines` lines.
 fn refuse(lines: u64, problem: &str) -> Failure {
     Failure::of("standard input", format_args!("line {}: {problem}", lines + 1))
 }
 
-/// The problem with a line that does not consist of `N` numbers.
+/// Describes a line that does not consist of `N` numbers.
 fn not_numbers<const N: usize>(line: &[u8]) -> String {
-    /// Enough to recognise the line by.
+    /// Characters that are enough to recognise the line.
     const SHOWN: usize = 40;
     let text = String::from_utf8_lossy(line);
     let text = text.trim();
@@ -95,7 +95,7 @@ fn not_numbers<const N: usize>(line: &[u8]) -> String {
     format!("expected {expected} numbers, found \"{}{more}\"", shown.escape_debug())
 }
 
-/// The numbers on a line, if there are any.
+/// Parses the numbers on a line; `None` for a line without any.
 fn row<const N: usize>(line: &[u8]) -> Option<Result<[f64; N], ()>> {
     let Ok(line) = std::str::from_utf8(line) else { return Some(Err(())) };
     let line = line.trim();
@@ -105,13 +105,13 @@ fn row<const N: usize>(line: &[u8]) -> Option<Result<[f64; N], ()>> {
     Some(numbers(line).ok_or(()))
 }
 
-/// Numbers with a comma or white space between them.
+/// Parses numbers with a comma or white space between them.
 fn numbers<const N: usize>(line: &str) -> Option<[f64; N]> {
     let mut numbers = [0.0; N];
     let mut rest = line;
     for (i, number) in numbers.iter_mut().enumerate() {
         if i > 0 {
-            // One comma at most, with or without blanks around it.
+            // At most one comma, with or without blanks around it.
             rest = rest.trim_start();
             rest = rest.strip_prefix(',').unwrap_or(rest).trim_start();
         }

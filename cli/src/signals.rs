@@ -1,9 +1,9 @@
-//! Signals that end the program: it ends at once, wherever it waits, and leaves no temporary file and no
-//! terminal in another mode behind.
+//! Signals that end the program: it ends at once, wherever it waits, and leaves no temporary file behind and
+//! no terminal in another mode.
 //!
-//! A thread of its own waits for the signals, and no other thread ever receives one: no system call is
-//! interrupted, and none needs to be. What the signal must undo is undone by that thread. Then the process
-//! dies of the signal, as it would have without all this, so that a shell knows why it ended.
+//! A separate thread waits for the signals, and no other thread ever receives one: no system call is
+//! interrupted, and none needs to be. That thread undoes what must be undone. Then the process dies of the
+//! signal, as it would have without this module, so that a shell knows why it ended.
 
 use std::sync::atomic::{AtomicBool, Ordering::SeqCst};
 use std::sync::{Mutex, MutexGuard, PoisonError, TryLockError};
@@ -11,27 +11,28 @@ use std::time::{Duration, Instant};
 
 type Action = Box<dyn FnOnce() + Send>;
 
-/// What is to be done before the program ends. Whoever changes anything that an action undoes holds the lock.
+/// The action that is needed before the program ends. Code that makes a change which an action undoes holds
+/// the lock.
 static UNDO: Mutex<Option<Action>> = Mutex::new(None);
-/// Locked while something is written that must not be cut off in the middle.
+/// Locked while text is written that must not be cut off.
 static WHOLE: Mutex<()> = Mutex::new(());
-/// Whether a signal has come.
+/// True after a signal.
 static IS_ENDING: AtomicBool = AtomicBool::new(false);
 
-/// How long what must not be cut off may take until it ends by itself.
+/// The time that an uninterruptible write may take to end by itself.
 const PATIENCE: Duration = Duration::from_millis(500);
 
 fn undo() -> MutexGuard<'static, Option<Action>> {
     UNDO.lock().unwrap_or_else(PoisonError::into_inner)
 }
 
-/// A change that is undone when this is dropped, or when the program ends before.
+/// A change that is undone when this value is dropped, or when the program ends before.
 #[cfg(unix)]
 pub struct Change(());
 
 #[cfg(unix)]
 impl Change {
-    /// Makes a change, if it can be made.
+    /// Makes a change, if possible.
     pub fn make(
         change: impl FnOnce() -> Option<()>,
         undone: impl FnOnce() + Send + 'static,
@@ -53,10 +54,10 @@ impl Drop for Change {
     }
 }
 
-/// Calls `write` with each piece of a text, and with `end` after the piece in which a signal comes. The
-/// program then ends. It does so without `end` if a piece takes longer than half a second.
+/// Calls `write` with each piece of a text, and with `end` after the piece during which a signal arrives. The
+/// program then ends. If a piece takes longer than half a second, the program ends without writing `end`.
 pub fn write_whole<E>(text: &[u8], end: &[u8], write: impl Fn(&[u8]) -> Result<(), E>) -> Result<(), E> {
-    /// Bytes of a piece: a slow line takes them in no time.
+    /// Bytes of a piece: even a slow line transmits them in no time.
     const PIECE: usize = 1024;
     let whole = WHOLE.lock().unwrap_or_else(PoisonError::into_inner);
     for piece in text.chunks(PIECE) {
@@ -73,7 +74,7 @@ pub fn write_whole<E>(text: &[u8], end: &[u8], write: impl Fn(&[u8]) -> Result<(
     Ok(())
 }
 
-/// Does what must be done before the program ends. After that no other thread can save a file or change a
+/// Performs the clean-up before the program ends. After it, no other thread can save a file or change a
 /// terminal.
 #[cfg(any(unix, windows))]
 fn clean_up() {
@@ -90,17 +91,17 @@ fn clean_up() {
     leafless::file::abandon_saves();
 }
 
-/// Begins to wait for signals. To be called before there are other threads.
+/// Starts to wait for signals. Must be called before there are other threads.
 #[cfg(unix)]
 pub fn watch() {
     use nix::sys::signal::Signal::{SIGHUP, SIGINT, SIGQUIT, SIGTERM, SIGXCPU, SIGXFSZ};
     use nix::sys::signal::{SigHandler, SigSet};
-    // What is written beyond the limit on the size of files is then an error, which is told.
+    // Writing beyond the limit on file sizes then becomes an error, which is reported.
     set(SIGXFSZ, SigHandler::SigIgn);
     let mut ending = SigSet::empty();
     for signal in [SIGHUP, SIGINT, SIGQUIT, SIGTERM, SIGXCPU] {
-        // A signal that is ignored stays so, as SIGHUP under `nohup`. (There is no way to ask without
-        // setting.)
+        // An ignored signal stays ignored, as SIGHUP under `nohup`. (There is no way to query the action
+        // without setting it.)
         if matches!(set(signal, SigHandler::SigDfl), Some(SigHandler::SigIgn)) {
             set(signal, SigHandler::SigIgn);
         } else {
@@ -114,13 +115,13 @@ pub fn watch() {
     let wait = move || {
         if let Ok(signal) = ending.wait() {
             clean_up();
-            // Nothing else does so, and there is nobody to tell if this fails.
+            // Nothing else unblocks signals, and a failure could not be reported.
             let _ = ending.thread_unblock();
             let _ = nix::sys::signal::raise(signal);
             // The first process of a container does not die of signals.
             std::process::exit(128 + signal as i32);
         }
-        // The signals do now what they do by default.
+        // From here on, the signals have their default actions.
         let _ = ending.thread_unblock();
         loop {
             std::thread::park();
@@ -132,7 +133,7 @@ pub fn watch() {
     }
 }
 
-/// Sets what a signal does, and returns what it did.
+/// Sets the action of a signal, and returns the previous one.
 #[cfg(unix)]
 #[allow(unsafe_code)]
 fn set(
@@ -145,18 +146,18 @@ fn set(
     unsafe { sigaction(signal, &action) }.ok().map(|before| before.handler())
 }
 
-/// The same for Ctrl-C and Ctrl-Break on Windows, and the closing of the console.
+/// The same for Ctrl-C and Ctrl-Break on Windows, and for the closing of the console.
 #[cfg(windows)]
 pub fn watch() {
-    /// What shells report of a program that Ctrl-C ended.
+    /// The exit code that shells report for a program that Ctrl-C ended.
     const STOPPED: i32 = 130;
-    // If this fails the program ends without it.
+    // If this fails, Ctrl-C ends the program without the clean-up.
     let _ = ctrlc::set_handler(|| {
         clean_up();
         std::process::exit(STOPPED);
     });
 }
 
-/// Other systems have no signals.
+/// Does nothing: other systems have no signals.
 #[cfg(not(any(unix, windows)))]
 pub fn watch() {}

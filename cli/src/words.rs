@@ -2,7 +2,7 @@
 
 use std::fmt::Write;
 
-/// A count, with commas: 1,234,567.
+/// Formats a count, with commas: 1,234,567.
 pub fn count(count: u64) -> String {
     let digits = count.to_string();
     let mut text = String::with_capacity(digits.len() + digits.len() / 3);
@@ -15,12 +15,12 @@ pub fn count(count: u64) -> String {
     text
 }
 
-/// A count and what is counted: "1 body", "2 bodies".
+/// Formats a count and the counted noun: "1 body", "2 bodies".
 pub fn counted(number: u64, one: &str, many: &str) -> String {
     format!("{} {}", count(number), if number == 1 { one } else { many })
 }
 
-/// A number in full precision, in scientific notation if it is very large or small.
+/// Formats a number in full precision, in scientific notation if it is very large or small.
 pub fn number(x: f64) -> String {
     let mut text = String::new();
     push_number(&mut text, x);
@@ -29,7 +29,7 @@ pub fn number(x: f64) -> String {
 
 /// Appends a [`number`].
 pub fn push_number(text: &mut String, x: f64) {
-    // (A string takes whatever is written to it.)
+    // (Writing to a string does not fail.)
     let _ = write!(text, "{x:?}");
     if text.ends_with(".0") {
         text.truncate(text.len() - 2);
@@ -38,11 +38,11 @@ pub fn push_number(text: &mut String, x: f64) {
 
 /// Appends a line to a text: a name, and a value in a column behind it.
 pub fn put_line(text: &mut String, name: &str, value: &str) {
-    // (A string takes whatever is written to it.)
+    // (Writing to a string does not fail.)
     let _ = writeln!(text, "{name:<16}{value}");
 }
 
-/// A duration in the unit that suits it.
+/// Formats a duration in a suitable unit.
 pub fn seconds(seconds: f64) -> String {
     match seconds {
         s if s < 1e-3 => format!("{:.1} µs", s * 1e6),
@@ -51,13 +51,13 @@ pub fn seconds(seconds: f64) -> String {
     }
 }
 
-/// A number for a table: six digits tell where to look.
+/// Formats a number for a table: six digits are enough there.
 pub fn short(x: f64) -> String {
     let rounded: f64 = format!("{x:.5e}").parse().unwrap_or(x);
     number(rounded)
 }
 
-/// Lines whose columns are aligned to the right.
+/// Formats lines whose columns are aligned to the right.
 pub fn table<R: AsRef<[String]>>(head: &R, rows: &[R]) -> String {
     let all = || [head].into_iter().chain(rows).map(AsRef::as_ref);
     let width = |column: usize| all().map(|row| row[column].chars().count()).max().unwrap_or(0);

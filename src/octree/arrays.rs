@@ -20,9 +20,9 @@ pub(crate) struct Arrays {
     pub base: Vec<u64>,
     pub bricks: OwnedBricks,
     pub starts: [usize; MAX_ELEMENT_LEVELS + 1],
-    /// Whether the links are those that the planes determine.
+    /// True if the links are those that the planes determine.
     pub is_linked: bool,
-    /// What PARTIAL cells keep of surfaces.
+    /// The surfaces that PARTIAL cells keep.
     pub cuts: Option<Cuts>,
 }
 
@@ -30,8 +30,9 @@ impl Arrays {
     /// Ranks the children of `planes`, which lie in level order as `starts` says.
     ///
     /// # Errors
-    /// [`Damage::Count`] if a level does not hold what its parents demand, as can come of copying from
-    /// damaged operands.
+    ///
+    /// [`Damage::Count`] if the number of elements of a level differs from the number that its parents
+    /// demand. Copying from damaged operands can cause this.
     pub(crate) fn link(
         frame: Frame,
         root: Tag,

@@ -1,4 +1,4 @@
-//! Dense blocks of 64³ cells: how bulk algorithms hand over what they found.
+//! Dense blocks of 64³ cells, the results of bulk algorithms.
 
 use super::tag::Tag;
 use super::word::Planes;
@@ -11,9 +11,9 @@ use alloc::boxed::Box;
 /// Levels of a block: 64³ cells are six octree levels, three elements.
 pub(crate) const BLOCK_LEVELS: u8 = 6;
 
-/// A cube of 64³ finest cells as bit columns along z: what a [`Worker`](crate::Worker) fills that can
-/// classify many cells at once. Bit k of word x + 64·y is the cell (x, y, k). Whoever makes a block says what
-/// is wanted: the certified planes, the centres, or both.
+/// A cube of 64³ finest cells as bit columns along z. A [`Worker`](crate::Worker) that can classify many
+/// cells at once fills it. Bit k of word x + 64·y is the cell (x, y, k). The maker of a block chooses its
+/// contents: the certified planes, the centres, or both.
 pub struct Block {
     planes: Option<[Columns; 2]>,
     centres: Option<Columns>,
@@ -23,27 +23,29 @@ pub struct Block {
 type Columns = Box<[u64; 4096]>;
 
 impl Block {
-    /// An empty block for which is asked what `planes` and `centres` say.
+    /// Returns an empty block with the planes and the centres requested by `planes` and `centres`.
     ///
     /// # Errors
+    ///
     /// [`Error::OutOfMemory`].
     pub fn new(planes: bool, centres: bool) -> Result<Block, Error> {
         let planes = if planes { Some([memory::zeros()?, memory::zeros()?]) } else { None };
         Ok(Block { planes, centres: if centres { Some(memory::zeros()?) } else { None } })
     }
 
-    /// The planes of the surely and of the possibly solid cells, to be filled if they are asked for; a cell
-    /// that is surely solid must be possibly solid too.
+    /// Returns the planes of the surely and of the possibly solid cells, to be filled, if they are requested.
+    /// A surely solid cell must be possibly solid, too.
     pub fn planes_mut(&mut self) -> Option<(&mut [u64; 4096], &mut [u64; 4096])> {
         self.planes.as_mut().map(|[lower, upper]| (&mut **lower, &mut **upper))
     }
 
-    /// Which centres of cells lie inside, to be filled if that is asked for: of decided cells, too.
+    /// Returns the bits of the cells whose centres lie inside, to be filled, if they are requested. Decided
+    /// cells count, too.
     pub fn centres_mut(&mut self) -> Option<&mut [u64; 4096]> {
         self.centres.as_deref_mut()
     }
 
-    /// Makes all of it that of the complement.
+    /// Turns the block into that of the complement.
     pub fn complement(&mut self) {
         if let Some([lower, upper]) = &mut self.planes {
             core::mem::swap(lower, upper);
@@ -54,27 +56,27 @@ impl Block {
         }
     }
 
-    /// The planes of the surely and of the possibly solid cells, if they were asked for.
+    /// Returns the planes of the surely and of the possibly solid cells, if they were requested.
     pub(crate) fn planes(&self) -> Option<(&[u64; 4096], &[u64; 4096])> {
         self.planes.as_ref().map(|[lower, upper]| (&**lower, &**upper))
     }
 
-    /// Which centres lie inside, if that was asked for.
+    /// Returns the bits of the cells whose centres lie inside, if they were requested.
     pub(crate) fn centres(&self) -> Option<&[u64; 4096]> {
         self.centres.as_deref()
     }
 }
 
-/// The cells of a block, resolved as they are to be stored.
+/// The cells of a block in the form in which they are stored.
 pub(crate) struct Cells<'b> {
-    /// Whether both planes are the same.
+    /// True if both planes are the same.
     pub binary: bool,
     pub lower: &'b [u64; 4096],
     pub upper: &'b [u64; 4096],
 }
 
 impl Cells<'_> {
-    /// Writes them as three levels of elements, `e` being the first; returns the block's tag.
+    /// Writes the cells as three levels of elements, of which `e` is the first. Returns the tag of the block.
     pub(crate) fn write(&self, e: usize, writer: &mut Writer<'_>) -> Result<Tag, Error> {
         let tiles = self.tiles();
         let mut block = Planes::uniform(Tag::Empty);
@@ -85,7 +87,7 @@ impl Cells<'_> {
         writer.put(e, block)
     }
 
-    /// What the 4 × 4 columns of each tile have in common, which decides most bricks.
+    /// Returns the common bits of the 4 × 4 columns of each tile, which decide most bricks.
     fn tiles(&self) -> [Tile; 256] {
         let mut tiles = [Tile { all: Planes::uniform(Tag::Full), any: Planes::uniform(Tag::Empty) }; 256];
         let binary = self.binary;
@@ -102,7 +104,7 @@ impl Cells<'_> {
         tiles
     }
 
-    /// 16³ cells; `at` in bricks.
+    /// Writes an element of 16³ cells; `at` is in bricks.
     fn write_element(
         &self,
         tiles: &[Tile; 256],
@@ -148,14 +150,15 @@ impl Cells<'_> {
     }
 }
 
-/// Sixteen columns: what holds for all of them, and for any.
+/// Sixteen columns: the bits set in all of them, and in any of them.
 #[derive(Clone, Copy)]
 struct Tile {
     all: Planes,
     any: Planes,
 }
 
-/// The brick whose lowest column is `column`, its cells at bits `shift..shift + 4` of 4 × 4 columns.
+/// Returns the brick whose lowest column is `column`, with its cells at bits `shift..shift + 4` of 4 × 4
+/// columns.
 #[inline(always)]
 fn gather(words: &[u64; 4096], column: usize, shift: u32) -> u64 {
     // A nibble's four bits (z = 0 to 3) belong at Morton bits 2 and 5 of the brick's index.

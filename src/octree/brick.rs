@@ -4,7 +4,7 @@ use super::word::Planes;
 use alloc::vec::Vec;
 use bytemuck::Pod;
 
-/// What a brick is stored as: one plane of a binary solid, or both planes.
+/// The stored form of a brick: one plane of a binary solid, or both planes.
 pub(crate) trait Brick: Pod + Eq + Ord + core::hash::Hash + Send + Sync {
     fn planes(self) -> Planes;
     fn of(planes: Planes) -> Self;
@@ -50,7 +50,7 @@ impl<T: Brick> BrickArray<'_, T> {
         }
     }
 
-    /// Brick `b`, or `None` beyond the end and where the dictionary is damaged.
+    /// Returns brick `b`; `None` beyond the end and where the dictionary is damaged.
     #[inline(always)]
     pub(crate) fn get(&self, b: usize) -> Option<T> {
         match *self {
@@ -63,7 +63,7 @@ impl<T: Brick> BrickArray<'_, T> {
         }
     }
 
-    /// Appends the bricks of `range` to `out`, changed by `map`; `false` if one of them is damaged.
+    /// Appends the bricks of `range`, changed by `map`, to `out`. Returns `false` if one of them is damaged.
     pub(crate) fn extend<U>(
         &self,
         range: core::ops::Range<usize>,
@@ -105,7 +105,7 @@ impl Bricks<'_> {
         }
     }
 
-    /// Brick `b`, or `None` beyond the end and where the dictionary is damaged.
+    /// Returns brick `b`; `None` beyond the end and where the dictionary is damaged.
     #[inline(always)]
     pub(crate) fn get(&self, b: usize) -> Option<Planes> {
         match self {
@@ -114,7 +114,7 @@ impl Bricks<'_> {
         }
     }
 
-    /// Bytes that they take, with their dictionary.
+    /// Returns the bytes of the bricks, including their dictionary.
     pub(crate) fn bytes(&self) -> usize {
         fn of<T>(bricks: &BrickArray<'_, T>) -> usize {
             match *bricks {
@@ -130,7 +130,7 @@ impl Bricks<'_> {
         }
     }
 
-    /// Whether bricks have one plane: nothing in the tree is undecided.
+    /// True if bricks have one plane: no cell in the tree is undecided.
     pub(crate) fn one_plane(&self) -> bool {
         matches!(self, Bricks::One(_))
     }

@@ -1,4 +1,4 @@
-//! The cells of an octree one after another, in Morton order.
+//! Iteration over the cells of an octree, in Morton order.
 
 use super::links::Step;
 use super::path::{NOWHERE, Path, Place};
@@ -11,16 +11,16 @@ use crate::lattice::{Cell, MAX_DEPTH, morton};
 use core::ops::RangeInclusive;
 use yoke::Yokeable;
 
-/// A cell and what is known of it.
+/// A cell with its tag.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
 pub struct TaggedCell {
-    /// Which octant of the universe.
+    /// The octant of the universe.
     pub cell: Cell,
     /// Its tag.
     pub tag: Tag,
 }
 
-/// Which cells of an octree are wanted: those of certain tags, on certain levels, in a box.
+/// A selection of the cells of an octree: cells with certain tags, on certain levels, in a box.
 ///
 /// ```
 /// use leafless::{Tag, octree::CellFilter};
@@ -29,7 +29,7 @@ pub struct TaggedCell {
 /// ```
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct CellFilter {
-    /// Bit t: cells whose tag has the number t.
+    /// Bit t: select cells whose tag has the number t.
     tags: u8,
     levels: [u8; 2],
     min: [u32; 3],
@@ -37,43 +37,43 @@ pub struct CellFilter {
 }
 
 impl CellFilter {
-    /// Cells with one of these tags, on all levels and in the whole universe. BRANCH stands for the cells
-    /// that are cut and split.
+    /// Selects the cells with one of these tags, on all levels and in the whole universe. BRANCH stands for
+    /// cells that are cut and split.
     pub fn tags(tags: &[Tag]) -> CellFilter {
         let tags = tags.iter().fold(0, |bits, &tag| bits | 1 << tag as u8);
         CellFilter { tags, levels: [0, MAX_DEPTH], min: [0; 3], max: [u32::MAX; 3] }
     }
 
-    /// Cells that are not split: EMPTY, FULL and PARTIAL.
+    /// Selects the cells that are not split: EMPTY, FULL and PARTIAL.
     pub fn leaves() -> CellFilter {
         CellFilter::tags(&[Tag::Empty, Tag::Full, Tag::Partial])
     }
 
-    /// Of these cells those on `levels`; 0 is the universe.
+    /// Restricts the selection to cells on `levels`; level 0 is the universe.
     #[must_use]
     pub fn levels(self, levels: RangeInclusive<u8>) -> CellFilter {
         CellFilter { levels: [*levels.start(), *levels.end()], ..self }
     }
 
-    /// Of these cells those that reach into the box from `min` to `max`, which is given in finest cells:
-    /// `max` is the first cell beyond it on each axis. No cell reaches into an empty box.
+    /// Restricts the selection to cells that reach into the box from `min` to `max`, in finest cells: `max`
+    /// is the first cell beyond the box on each axis. No cell reaches into an empty box.
     #[must_use]
     pub fn within(self, min: [u32; 3], max: [u32; 3]) -> CellFilter {
         CellFilter { min, max, ..self }
     }
 
-    /// Whether `tag` is among the tags.
+    /// True if `tag` is one of the selected tags.
     #[inline(always)]
     pub(super) fn has(&self, tag: Tag) -> bool {
         self.tags >> tag as u8 & 1 != 0
     }
 
-    /// The same without BRANCH.
+    /// Returns the same filter without BRANCH.
     pub(super) fn without_branches(self) -> CellFilter {
         CellFilter { tags: self.tags & CellFilter::leaves().tags, ..self }
     }
 
-    /// The leaves with another tag, on all levels and in the whole universe.
+    /// Returns the filter for the leaves with other tags, on all levels and in the whole universe.
     pub(super) fn others(&self) -> CellFilter {
         CellFilter { tags: CellFilter::leaves().tags & !self.tags, ..CellFilter::leaves() }
     }
@@ -93,48 +93,48 @@ impl CellFilter {
     }
 }
 
-/// What is still to be told of an element.
+/// The cells of an element that are still to be returned.
 #[derive(Clone, Copy, Default)]
 struct Todo {
     /// Octants, as the low bits of their bytes.
     octants: u64,
-    /// Cells, and those that must be entered.
+    /// Cells to return, and cells to enter.
     cells: u64,
 }
 
 /// Low bit of every byte.
 const LOW: u64 = 0x0101_0101_0101_0101;
 
-/// The cells of an octree that a [`CellFilter`] wants, in Morton order: a cell that is split comes before the
-/// cells in it. See [`OctreeRef::cells`].
+/// An iterator over the cells of an octree that a [`CellFilter`] selects, in Morton order: a cell that is
+/// split comes before the cells in it. See [`OctreeRef::cells`].
 ///
-/// It is an iterator; [`fill`](Cells::fill) hands out many cells at once, which is faster, and
-/// [`seek`](Cells::seek) goes on from any cell. It needs no allocation.
+/// [`fill`](Cells::fill) returns many cells at once, which is faster, and [`seek`](Cells::seek) continues
+/// from any cell. The iterator needs no allocation.
 ///
-/// Over bytes that nobody has checked it meets no element twice: the elements of a level must ascend, and a
-/// link that contradicts this makes its cell PARTIAL, as for a [`Cursor`](crate::octree::Cursor).
+/// Over unchecked bytes, it visits no element twice: the elements of a level must ascend. A link that
+/// violates this order makes its cell PARTIAL, as for a [`Cursor`](crate::octree::Cursor).
 #[derive(Clone, Yokeable)]
 pub struct Cells<'a> {
     tree: OctreeRef<'a>,
     filter: CellFilter,
     everywhere: bool,
-    /// The universe is still to be told, which is no cell of an element.
+    /// True until the universe has been returned, which is not a cell of an element.
     universe: bool,
-    /// Elements that are open: those on the path.
+    /// Number of open elements, that is, of those on the path.
     open: usize,
-    /// The own cell of the last of them.
+    /// Position of the own cell of the last open element.
     at: [u32; 3],
     path: Path,
     todo: [Todo; MAX_ELEMENT_LEVELS],
-    /// Per element level the first element that has not been passed.
+    /// For each element level, the first element that has not been passed.
     next: [usize; MAX_ELEMENT_LEVELS],
-    /// Elements that may still be entered.
+    /// Number of elements that may still be entered.
     visits: usize,
 }
 
 impl<'a> OctreeRef<'a> {
-    /// The cells that `filter` wants, in Morton order. O(cells and elements that are met): elements outside
-    /// of the filter's box or below its levels are not met. Damage reads as PARTIAL.
+    /// Returns the cells that `filter` selects, in Morton order. O(cells and visited elements): elements
+    /// outside the filter's box or below its levels are not visited. Damage reads as PARTIAL.
     ///
     /// ```
     /// use leafless::{Control, Csg, Frame, Rule, Tag, build, octree::CellFilter};
@@ -153,7 +153,7 @@ impl<'a> OctreeRef<'a> {
 }
 
 impl<'a> Cells<'a> {
-    /// Nothing to tell.
+    /// Returns an iterator without any cells.
     fn blank(tree: &OctreeRef<'a>, filter: CellFilter, visits: usize) -> Cells<'a> {
         let mut next = [0; MAX_ELEMENT_LEVELS];
         next.copy_from_slice(&tree.starts[..MAX_ELEMENT_LEVELS]);
@@ -171,19 +171,19 @@ impl<'a> Cells<'a> {
         }
     }
 
-    /// The cells in the element at `place`, below which at most `visits` elements are entered.
+    /// Returns the cells in the element at `place`, below which at most `visits` elements are entered.
     pub(super) fn below(tree: &OctreeRef<'a>, place: Place, filter: CellFilter, visits: usize) -> Cells<'a> {
         let mut cells = Cells::blank(tree, filter, visits.saturating_add(1));
         cells.enter(place);
         cells
     }
 
-    /// How many elements may still be entered.
+    /// Returns the number of elements that may still be entered.
     pub(super) fn visits(&self) -> usize {
         self.visits
     }
 
-    /// The elements from the root to the one that the last cell lies in, if that cell is a leaf.
+    /// Returns the elements from the root to the one that contains the last cell, if that cell is a leaf.
     pub(super) fn path(&self) -> &Path {
         &self.path
     }
@@ -196,25 +196,25 @@ impl<'a> Cells<'a> {
         &self.filter
     }
 
-    /// Begins with the universe.
+    /// Starts at the universe.
     fn begin(&mut self) {
         if self.filter.is_nowhere(self.tree.frame.cells()) {
             return;
         }
         let root = Place { level: 0, index: 0, at: [0; 3] };
         let entered = self.tree.root == Tag::Branch && self.enter(root);
-        // Of an odd depth the universe is an octant of the root.
+        // In a tree of odd depth, the universe is an octant of the root.
         self.universe = !(entered && starts_half_way(self.tree.frame.depth()));
     }
 
-    /// The cell with this number in the element at `place`, and its level.
+    /// Returns the cell with this number in the element at `place`, with its level.
     fn child(&self, e: usize, c: u32) -> Cell {
         let [x, y, z] = morton::position(c);
         let at = self.at;
         Cell { level: self.tree.cell_level(e), at: [4 * at[0] + x, 4 * at[1] + y, 4 * at[2] + z] }
     }
 
-    /// Opens an element unless it is damaged, or has been passed.
+    /// Opens an element, unless it is damaged or has been passed.
     #[inline(always)]
     fn enter(&mut self, place: Place) -> bool {
         let Place { level: e, index, at } = place;
@@ -231,7 +231,7 @@ impl<'a> Cells<'a> {
         true
     }
 
-    /// What is to be told of the element that has just been entered.
+    /// Returns the cells to return from the element that has just been entered.
     #[inline(always)]
     fn plan(&self, e: usize, planes: Planes) -> Todo {
         let (tree, filter, level) = (&self.tree, &self.filter, self.tree.cell_level(e));
@@ -240,7 +240,7 @@ impl<'a> Cells<'a> {
         if e == 0 {
             within &= tree.root_cells();
             if starts_half_way(tree.frame.depth()) {
-                // The universe is cut, whatever damaged bytes say of its children.
+                // The universe is cut, whatever damaged bytes say about its children.
                 [empty, full, partial] = [0; 3];
             }
         }
@@ -268,7 +268,7 @@ impl<'a> Cells<'a> {
         todo
     }
 
-    /// The cells of the current element, which lie on `level`, that reach into the box.
+    /// Returns the cells of the current element, on `level`, that reach into the box.
     fn cells_in_box(&self, level: u8) -> u64 {
         let (depth, shift) = (self.tree.frame.depth(), self.tree.frame.depth() - level);
         let mut within = !0;
@@ -285,7 +285,7 @@ impl<'a> Cells<'a> {
         within
     }
 
-    /// The next cell.
+    /// Returns the next cell.
     #[inline(always)]
     fn advance(&mut self) -> Option<TaggedCell> {
         if self.universe {
@@ -327,17 +327,17 @@ impl<'a> Cells<'a> {
         }
     }
 
-    /// The octant whose first cell is `c`.
+    /// Returns the octant whose first cell is `c`.
     #[inline(always)]
     fn octant(&self, e: usize, c: u32, planes: Planes) -> TaggedCell {
         let cell = self.child(e, c).parent();
-        // The universe is cut, whatever damaged bytes say of its children.
+        // The universe is cut, whatever damaged bytes say about its children.
         let tag = if cell.level == 0 { Tag::Branch } else { planes.octant(c / 8) };
         TaggedCell { cell, tag }
     }
 
-    /// Opens what lies in the BRANCH `c` of an element, and says what the cell is taken for: PARTIAL if that
-    /// cannot be opened.
+    /// Opens the element or brick in the BRANCH `c` of an element, and returns the tag of the cell: PARTIAL
+    /// if it cannot be opened.
     #[inline(always)]
     fn descend(&mut self, e: usize, index: usize, planes: Planes, c: u32, cell: Cell) -> Tag {
         let entered = match self.tree.step(e, index, planes, c) {
@@ -347,10 +347,11 @@ impl<'a> Cells<'a> {
         if entered { Tag::Branch } else { Tag::Partial }
     }
 
-    /// Goes on from `cell`: the next cell is that one, or the leaf that contains it, or the first wanted one
+    /// Continues from `cell`: the next cell is `cell`, the leaf that contains it, or the first selected cell
     /// after it in Morton order. O(depth).
     ///
     /// # Errors
+    ///
     /// [`Error::Argument`] if `cell` does not lie in the universe, or is finer than the finest cells.
     pub fn seek(&mut self, cell: Cell) -> Result<(), Error> {
         let cell = self.tree.checked(cell)?;
@@ -392,8 +393,8 @@ impl<'a> Cells<'a> {
         }
     }
 
-    /// Writes the next cells to the front of `cells`. The result says how many these are: fewer than there is
-    /// room for if there are no more.
+    /// Writes the next cells to the front of `cells`, and returns their number. The number is less than the
+    /// length of `cells` only at the end.
     pub fn fill(&mut self, cells: &mut [TaggedCell]) -> usize {
         let mut free = cells.iter_mut();
         self.put(free.len(), move |found| {
@@ -403,7 +404,7 @@ impl<'a> Cells<'a> {
         })
     }
 
-    /// Hands at most `most` cells to `put`, and says how many these were.
+    /// Passes at most `most` cells to `put`, and returns their number.
     pub fn put(&mut self, most: usize, put: impl FnMut(TaggedCell)) -> usize {
         with_popcount(Put { cells: self, most, put })
     }
@@ -417,7 +418,7 @@ impl Iterator for Cells<'_> {
     }
 }
 
-/// Many cells at once.
+/// A consumer of many cells at once.
 struct Put<'c, 'a, P> {
     cells: &'c mut Cells<'a>,
     most: usize,
@@ -441,7 +442,7 @@ impl<P: FnMut(TaggedCell)> Hot for Put<'_, '_, P> {
 }
 
 impl OctreeRef<'_> {
-    /// `cell`, if it is one of this tree's universe.
+    /// Returns `cell`, if it lies in the universe of this tree and is not finer than the finest cells.
     pub(super) fn checked(&self, cell: Cell) -> Result<Cell, Error> {
         let inside = cell.level <= self.frame.depth() && cell.at.iter().all(|&a| a >> cell.level == 0);
         let problem = "lies outside of the universe, or is finer than the finest cells";

@@ -1,4 +1,4 @@
-//! The one definition of well-formed.
+//! The one definition of a well-formed tree.
 
 use super::dictionary;
 use super::tag::Tag;
@@ -7,14 +7,15 @@ use super::word::Planes;
 use crate::error::{Damage, Error};
 
 impl OctreeRef<'_> {
-    /// Checks everything that a well-formed tree promises: children where level order puts them, nothing
-    /// uniform, no branches in bricks, only real cells, a canonical dictionary, no more planes than needed,
+    /// Checks everything that a well-formed tree guarantees: children where level order puts them, no uniform
+    /// elements, no branches in bricks, only real cells, a canonical dictionary, no more planes than needed,
     /// a true level table. The trees that the library makes pass by construction. O(n).
     ///
     /// # Errors
-    /// [`Error::Damaged`] with the first [`Damage`] found, in this order, which matters because each step
-    /// relies on the one before: links level by level, then elements, then bricks, then what is derived from
-    /// them. [`Error::OutOfMemory`]: a dictionary's entries are counted and compared, at most 65 536 at a
+    ///
+    /// [`Error::Damaged`] with the first [`Damage`] found. The order matters, because each step relies on the
+    /// previous ones: links level by level, then elements, then bricks, then the data derived from them.
+    /// [`Error::OutOfMemory`]: the entries of a dictionary are counted and compared, at most 65 536 at a
     /// time.
     pub fn check(&self) -> Result<(), Error> {
         self.check_links()?;
@@ -52,13 +53,14 @@ impl OctreeRef<'_> {
     }
 
     /// Checks the links as [`check_links`](Self::check_links) does, unless they are known to be sound. A
-    /// solid is asked for one point as often as for a million: then O(1) for trees that were made by this
-    /// library in memory.
+    /// solid may be queried for a single point as often as for a million points; for trees that this library
+    /// made in memory, the check is O(1).
     pub(crate) fn ensure_links(&self) -> Result<(), Damage> {
         if self.is_linked { Ok(()) } else { self.check_links() }
     }
 
-    /// Ranks all children anew and compares. Where this finds nothing, every element has one parent.
+    /// Ranks all children anew and compares the results with the links. If they agree, every element has one
+    /// parent.
     pub(crate) fn check_links(&self) -> Result<(), Damage> {
         let count = self.planes.len();
         let levels = self.levels();

@@ -1,4 +1,4 @@
-//! The octree as the papers draw it: node by node, eight 2-bit tags each.
+//! The octree as in the papers: node by node, eight 2-bit tags each.
 
 use super::links::Step;
 use super::path::{NOWHERE, Path};
@@ -8,7 +8,7 @@ use super::word::Planes;
 use crate::lattice::Cell;
 use yoke::Yokeable;
 
-/// One internal node of the leaf-free octree: the tags of a cell's eight children.
+/// An internal node of the leaf-free octree: the tags of a cell's eight children.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
 pub struct Node {
     /// Bit k: child k is surely solid.
@@ -18,17 +18,17 @@ pub struct Node {
 }
 
 impl Node {
-    /// The tag of child `octant` (0 to 7).
+    /// Returns the tag of child `octant` (0 to 7).
     pub const fn tag(self, octant: u8) -> Tag {
         Tag::from_bits(self.lower >> octant & 1 != 0, self.upper >> octant & 1 != 0)
     }
 
-    /// The eight tags in octant order.
+    /// Returns the eight tags in octant order.
     pub fn tags(self) -> [Tag; 8] {
         [0, 1, 2, 3, 4, 5, 6, 7].map(|octant| self.tag(octant))
     }
 
-    /// The node of an element's own cell: what its octants amount to.
+    /// Returns the node of an element's own cell, from the tags of its octants.
     fn of_octants(planes: Planes) -> Node {
         let mut node = Node { lower: 0, upper: 0 };
         for k in 0..8 {
@@ -39,20 +39,20 @@ impl Node {
         node
     }
 
-    /// The node of octant `k` of an element.
+    /// Returns the node of octant `k` of an element.
     fn of_octant(planes: Planes, k: u32) -> Node {
         Node { lower: (planes.lower >> (8 * k)) as u8, upper: (planes.upper >> (8 * k)) as u8 }
     }
 }
 
-/// A position in an octree that moves along its links, one octree level at a step. It needs no allocation,
-/// and an octree of any odd or even depth looks the same through it.
+/// A position in an octree that moves along its links, one octree level at a step. It needs no allocation.
+/// Octrees of even and of odd depth look the same through it.
 ///
-/// Over bytes that nobody has checked a walk is bounded too. In a sound tree the elements of a level ascend
-/// with their cells in Morton order, and a cursor compares each element that it enters with the last one of
-/// the level: a link that contradicts this order leads nowhere, and its cell reads as PARTIAL. So a walk that
-/// takes the octants of every cell in ascending order meets no element twice. (Whether a damaged link is
-/// noticed depends on where the cursor has been before.)
+/// Over unchecked bytes, a walk is bounded, too. In a sound tree the elements of a level ascend with their
+/// cells in Morton order. A cursor compares each element that it enters with the last one of the level. A
+/// link that violates this order leads nowhere, and its cell reads as PARTIAL. So a walk that takes the
+/// octants of every cell in ascending order visits no element twice. (Whether a damaged link is noticed
+/// depends on the earlier positions of the cursor.)
 ///
 /// ```
 /// use leafless::{Control, Csg, Frame, Rule, Tag, build, octree::Cursor};
@@ -79,7 +79,7 @@ pub struct Cursor<'a> {
 }
 
 impl<'a> Cursor<'a> {
-    /// A cursor on the universe.
+    /// Returns a cursor on the universe.
     pub fn new(tree: &OctreeRef<'a>) -> Cursor<'a> {
         let mut cursor = Cursor {
             tree: *tree,
@@ -95,17 +95,17 @@ impl<'a> Cursor<'a> {
         cursor
     }
 
-    /// The cell that the cursor stands on.
+    /// Returns the current cell.
     pub fn cell(&self) -> Cell {
         self.cell
     }
 
-    /// Its tag.
+    /// Returns the tag of the current cell.
     pub fn tag(&self) -> Tag {
         self.tag
     }
 
-    /// Its node, if the cell is a BRANCH.
+    /// Returns the node of the current cell, if the cell is a BRANCH.
     pub fn node(&self) -> Option<Node> {
         (self.tag == Tag::Branch).then(|| match self.position(self.cell.level) {
             (e, None) => Node::of_octants(self.path[e].1),
@@ -113,8 +113,8 @@ impl<'a> Cursor<'a> {
         })
     }
 
-    /// Moves to the child in `octant` (0 to 7) of a BRANCH; the cursor stays where it is, and the answer is
-    /// `false`, on any other cell.
+    /// Moves to the child in `octant` (0 to 7) of a BRANCH. On any other cell, the cursor stays and returns
+    /// `false`.
     pub fn descend(&mut self, octant: u8) -> bool {
         if self.tag != Tag::Branch || octant >= 8 {
             return false;
@@ -136,7 +136,7 @@ impl<'a> Cursor<'a> {
         true
     }
 
-    /// Moves to the parent; `false` if the cursor stands on the universe.
+    /// Moves to the parent. Returns `false` if the cursor is on the universe.
     pub fn ascend(&mut self) -> bool {
         if self.cell.level == 0 {
             return false;
@@ -164,13 +164,13 @@ impl<'a> Cursor<'a> {
         &self.tree
     }
 
-    /// The elements from the root to the one that the cell lies in.
+    /// Returns the elements from the root to the one that contains the cell.
     pub(super) fn path(&self) -> &Path {
         &self.path
     }
 
-    /// Where the node of a cell at `level` is kept: the element level, and the octant of the element unless
-    /// it is the element's own.
+    /// Returns the place of the node of a cell at `level`: the element level, and the octant of the element
+    /// unless the cell is the element's own.
     fn position(&self, level: u8) -> (usize, Option<u32>) {
         let padded = level as usize + starts_half_way(self.tree.frame.depth()) as usize;
         let k = if padded.is_multiple_of(2) {
@@ -183,8 +183,8 @@ impl<'a> Cursor<'a> {
         (padded / 2, k)
     }
 
-    /// Enters the element `index` of level `e`, which describes the current cell, unless it is damaged or
-    /// stands out of order.
+    /// Enters the element `index` of level `e`, which describes the current cell, unless it is damaged or out
+    /// of order.
     fn enter(&mut self, e: usize, index: usize) {
         let ordered =
             self.entered[e].is_none_or(|(morton, last)| self.morton.cmp(&morton) == index.cmp(&last));

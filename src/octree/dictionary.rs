@@ -1,9 +1,10 @@
 //! Dictionaries of bricks.
 //!
-//! A smooth surface cuts 4³ cells in few ways, so most bricks of a tree are repetitions and a 16-bit index
-//! into the distinct ones is four or eight times smaller. A fixed rule decides, so that equal solids have
-//! equal files: fewest bytes among raw bricks, one dictionary for all, and dictionaries for segments of 2^k
-//! bricks by descending k, in this order where sizes tie. Entries stand by descending frequency, then value.
+//! A smooth surface cuts 4³ cells in few ways. So most bricks of a tree are repetitions, and a 16-bit index
+//! into the distinct bricks is four or eight times smaller. A fixed rule decides, so that equal solids have
+//! equal files: fewest bytes among raw bricks, one dictionary for all bricks, and dictionaries for segments
+//! of 2^k bricks by descending k, in this order where sizes tie. Entries are sorted by descending frequency,
+//! then value.
 
 use super::brick::{Brick, BrickArray, Bricks, OwnedArray, OwnedBricks};
 use super::view::OctreeRef;
@@ -15,18 +16,19 @@ use hashbrown::{HashMap, HashSet};
 /// Most entries that a 16-bit index can name.
 const MOST: usize = 1 << 16;
 
-/// Bricks of a segment when there is only one: 2^63 is more than any.
+/// Bricks of a segment if there is only one segment: 2^63 is more than any number.
 pub(crate) const WHOLE: u8 = 63;
 
-/// Bytes of `bricks` bricks as `entries` entries in `segments` segments.
+/// Returns the bytes of `bricks` bricks as `entries` entries in `segments` segments.
 fn bytes<T>(bricks: usize, entries: usize, segments: usize) -> usize {
     size_of::<u16>() * bricks + size_of::<T>() * entries + size_of::<u64>() * segments
 }
 
-/// The bricks in the encoding that the rule demands, or `None` if they are raw and are to stay so: they need
-/// not be copied then.
+/// Returns the bricks in the encoding that the rule demands; `None` if they are raw and stay raw, so that
+/// they need not be copied.
 ///
 /// # Errors
+///
 /// [`Error::OutOfMemory`], and [`Error::Damaged`] if a brick cannot be read.
 pub(crate) fn encode(bricks: &Bricks<'_>) -> Result<Option<OwnedBricks>, Error> {
     Ok(match bricks {
@@ -50,7 +52,7 @@ fn encode_array<T: Brick>(bricks: &BrickArray<'_, T>) -> Result<Option<OwnedArra
     Ok(Some(shortest(&decoded)?.unwrap_or(OwnedArray::Raw(decoded))))
 }
 
-/// The bricks through the dictionary that the rule demands, or `None` if it demands raw bricks.
+/// Returns the bricks through the dictionary that the rule demands; `None` if it demands raw bricks.
 fn shortest<T: Brick>(raw: &[T]) -> Result<Option<OwnedArray<T>>, Error> {
     // Halving the segments never makes the sum of their dictionaries smaller, so the first size that fits
     // 16-bit indices is the smallest.
@@ -68,7 +70,7 @@ fn shortest<T: Brick>(raw: &[T]) -> Result<Option<OwnedArray<T>>, Error> {
     Ok(None)
 }
 
-/// What comes of segments of one size.
+/// The result for segments of one size.
 enum Segmented<T> {
     /// A dictionary, shorter than raw bricks.
     Fits(OwnedArray<T>),
@@ -78,7 +80,7 @@ enum Segmented<T> {
     TooManyEntries,
 }
 
-/// The bricks in segments of 2^shift.
+/// Encodes the bricks in segments of 2^shift.
 fn segmented<T: Brick>(raw: &[T], shift: u8) -> Result<Segmented<T>, Error> {
     let length = if shift == WHOLE { raw.len().max(1) } else { 1 << shift };
     let mut indices: Vec<u16> = memory::with_capacity(raw.len())?;
@@ -92,7 +94,7 @@ fn segmented<T: Brick>(raw: &[T], shift: u8) -> Result<Segmented<T>, Error> {
         counts.clear();
         distinct.clear();
         let first = indices.len();
-        // Indices are given in order of appearance first, and renamed once the frequencies are known.
+        // Indices are first assigned in order of appearance, and renamed once the frequencies are known.
         for &brick in segment {
             let fresh = counts.len();
             seen.try_reserve(1)?;
@@ -121,7 +123,8 @@ fn segmented<T: Brick>(raw: &[T], shift: u8) -> Result<Segmented<T>, Error> {
         segments.push(entries.len() as u64);
         entries.try_reserve(order.len())?;
         entries.extend(order.iter().map(|&i| distinct[i as usize]));
-        // Already no shorter than raw bricks: nor will it be with the other segments, or smaller ones.
+        // The encoding is already no shorter than raw bricks; further segments, or smaller ones, will not
+        // make it shorter.
         if bytes::<T>(raw.len(), entries.len(), segments.len()) >= size_of_val(raw) {
             return Ok(Segmented::Longer);
         }
@@ -132,6 +135,7 @@ fn segmented<T: Brick>(raw: &[T], shift: u8) -> Result<Segmented<T>, Error> {
 /// Checks that the dictionary, if there is one, is the one that the bricks determine.
 ///
 /// # Errors
+///
 /// [`Error::Damaged`]; [`Error::OutOfMemory`], because entries are counted and compared, a segment at a time.
 pub(crate) fn check(tree: &OctreeRef<'_>) -> Result<(), Error> {
     match &tree.bricks {
@@ -166,7 +170,7 @@ fn check_array<T: Brick>(bricks: &BrickArray<'_, T>) -> Result<(), Error> {
         let mut distinct = HashSet::new();
         distinct.try_reserve(own.len())?;
         let key = |i: usize| (core::cmp::Reverse(counts[i]), own[i]);
-        // Equal entries of different frequency do not stand side by side.
+        // Equal entries with different counts are not adjacent.
         let right = |i: usize, fresh: bool| fresh && counts[i] != 0 && (i == 0 || key(i - 1) < key(i));
         if let Some(i) = (0..own.len()).find(|&i| !right(i, distinct.insert(own[i]))) {
             return Err(Damage::DictionaryOrder { entry: expected + i as u64 }.into());

@@ -1,13 +1,13 @@
-//! The twenty-six ways from a cell to its neighbours.
+//! The twenty-six directions from a cell to its neighbours.
 
-/// A step of at most one cell along each axis, and along one axis at least: through a face of a cell if it
-/// goes along one axis, through an edge along two, through a vertex along three.
+/// A step of at most one cell along each axis, and along at least one axis. One axis leads through a face of
+/// a cell, two axes through an edge, three through a vertex.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
 pub struct Direction([i8; 3]);
 
 impl Direction {
-    /// All directions: the 6 through faces come first, then the 12 through edges, then the 8 through
-    /// vertices. So `ALL[..6]`, `ALL[..18]` and `ALL` are the usual neighbourhoods.
+    /// All directions: first the 6 through faces, then the 12 through edges, then the 8 through vertices. So
+    /// `ALL[..6]`, `ALL[..18]` and `ALL` are the usual neighbourhoods.
     pub const ALL: [Direction; 26] = {
         let mut all = [Direction([0; 3]); 26];
         let (mut count, mut axes) = (0, 1);
@@ -32,18 +32,19 @@ impl Direction {
         [a, b, c, d, e, f]
     };
 
-    /// The direction with these steps along x, y and z; `None` unless each is −1, 0 or 1, and one is not 0.
+    /// Returns the direction with these steps along x, y and z; `None` unless each is −1, 0 or 1, and at
+    /// least one is not 0.
     pub fn new(steps: [i8; 3]) -> Option<Direction> {
         let one_at_most = steps.iter().all(|step| (-1..=1).contains(step));
         (one_at_most && steps != [0; 3]).then_some(Direction(steps))
     }
 
-    /// The steps along x, y and z: −1, 0 or 1.
+    /// Returns the steps along x, y and z: −1, 0 or 1.
     pub fn steps(self) -> [i8; 3] {
         self.0
     }
 
-    /// The way back.
+    /// Returns the opposite direction.
     #[must_use]
     pub fn opposite(self) -> Direction {
         Direction(self.0.map(|step| -step))

@@ -1,4 +1,4 @@
-//! Octrees whose PARTIAL cells keep surfaces: what is counted, and what they promise.
+//! Octrees whose PARTIAL cells keep surfaces: their counts, and their invariants.
 
 use super::cuts::{
     BLOCK, Block, CellCut, CellFunction, CellIds, CutCounts, CutsRef, Head, StoredSurface, SurfacesRef,
@@ -12,12 +12,12 @@ use crate::lattice::{Cell, VolumeMoments};
 use crate::memory;
 use alloc::vec::Vec;
 
-/// Where a PARTIAL cell below the universe lies among the planes: its element, the planes of that, and the
-/// number there.
+/// The place of a PARTIAL cell below the universe among the planes: its element, the planes of the element,
+/// and the cell's number there.
 type PartialCell = (usize, Planes, u32);
 
 impl OctreeRef<'_> {
-    /// What the PARTIAL cells keep of the surfaces that cross them; `None` if they keep nothing. O(records).
+    /// Returns the counts of the surfaces that PARTIAL cells keep; `None` if they keep none. O(records).
     pub fn cuts(&self) -> Option<CutCounts> {
         let cuts = self.cuts.as_ref()?;
         let count = |head: Head| cuts.heads.iter().filter(|&&own| own == head.0).count() as u64;
@@ -37,33 +37,32 @@ impl OctreeRef<'_> {
         })
     }
 
-    /// The volume and the moments of the solid that the cells bound, if that knew them when the tree was
-    /// made: they are exact up to rounding, and hold as far as the cells are proven.
+    /// Returns the volume and the moments of the solid, if the solid provided them when the tree was made.
+    /// They are exact up to rounding, and valid as far as the cells are proven.
     pub fn moments(&self) -> Option<VolumeMoments> {
         self.cuts.as_ref()?.moments?.moments()
     }
 
-    /// The same tree without cuts: what its planes say.
+    /// Returns the same tree without cuts, that is, with its planes only.
     #[must_use]
     pub fn without_cuts(&self) -> Self {
         OctreeRef { cuts: None, ..*self }
     }
 
     /// Checks the cuts as [`check_cuts`](Self::check_cuts) does, unless they are known to be sound: O(1) for
-    /// trees that were made by this library in memory. A part that several cells share would be visited as
-    /// often as there are ways to it.
+    /// trees that this library made in memory. The check also excludes parts that several cells share, which
+    /// would be visited once for each path to them.
     pub(crate) fn ensure_cuts(&self) -> Result<(), Error> {
         if self.is_linked { Ok(()) } else { self.check_cuts() }
     }
 
-    /// Checks everything that cuts promise: a record for each PARTIAL cell, groups for splits down to the
-    /// finest cells at most, prefix counts, tables whose surfaces are there and count, surfaces of which none
-    /// is unused. O(n).
+    /// Checks all invariants of cuts: a record for each PARTIAL cell, groups for splits down to the finest
+    /// cells at most, prefix counts, tables whose surfaces exist and matter, and no unused surfaces. O(n).
     pub(crate) fn check_cuts(&self) -> Result<(), Error> {
         let Some(cuts) = &self.cuts else { return Ok(()) };
         let mut levels = self.levels_of_records(cuts)?;
         cuts.surfaces.check_groups()?;
-        // Records, and what is counted before them.
+        // Records, and the counts before them.
         let (mut ids, mut splits, mut known) = (0, 0, Known::new(&cuts.surfaces)?);
         for (record, &head) in cuts.heads.iter().enumerate() {
             if record % BLOCK == 0 {
@@ -81,7 +80,7 @@ impl OctreeRef<'_> {
                 if level >= self.frame.depth() || levels.len() + 8 > cuts.heads.len() {
                     return Err(wrong.into());
                 }
-                // (The group begins where the levels that are known so far end.)
+                // (The group begins where the levels known so far end.)
                 if cuts.heads[levels.len()..levels.len() + 8].iter().all(|&head| head == Head::NONE.0) {
                     return Err(wrong.into());
                 }
@@ -91,7 +90,7 @@ impl OctreeRef<'_> {
             }
             let Some(own) = CellIds::read(cuts.ids, ids, head.surfaces()) else { return Err(wrong.into()) };
             ids += own.len();
-            // (As many bytes may hold one id more than there may be.)
+            // (The bytes may hold one id more than the limit.)
             if u32::try_from(ids).is_err() {
                 return Err(wrong.into());
             }
@@ -109,8 +108,8 @@ impl OctreeRef<'_> {
         Ok(cuts.surfaces.check(self.frame.depth())?)
     }
 
-    /// The levels of the PARTIAL cells that the planes have, in the order of their records, whose counts are
-    /// checked. (Memory for as many levels as there are records.)
+    /// Returns the levels of the PARTIAL cells of the planes, in the order of their records, whose counts are
+    /// checked. (Takes memory for one level for each record.)
     fn levels_of_records(&self, cuts: &CutsRef<'_>) -> Result<Vec<u8>, Error> {
         let mut levels = memory::with_capacity(cuts.heads.len())?;
         if self.root == Tag::Partial {
@@ -143,10 +142,10 @@ impl OctreeRef<'_> {
     }
 }
 
-/// Which surfaces have been met, where surfaces stand group by group in the order of their first use.
+/// The surfaces that have been met. Surfaces are sorted by group, and within a group by their first use.
 struct Known {
-    /// For each group the numbers of its first surface, of the first that has not been met, and of the first
-    /// that is not its own.
+    /// For each group, the numbers of its first surface, of the first one that has not been met, and of the
+    /// first one of the next group.
     groups: Vec<[u64; 3]>,
 }
 
@@ -164,11 +163,10 @@ impl Known {
         Ok(Known { groups })
     }
 
-    /// Whether a surface is one that was met before, or the first of its group that was not, of a group that
-    /// may be begun.
+    /// Returns true if a surface was met before, or is the next one of its group, and the group may be begun.
     fn meet(&mut self, surfaces: &SurfacesRef<'_>, id: u32) -> bool {
         let group = surfaces.group(id as usize).map_or(0, |(group, _)| group + 1);
-        // (Slabs of cells have a group after the first.)
+        // (Group 0 has the exact surfaces, and may be empty; the groups of slabs are begun in their order.)
         let begun = group < 2 || self.groups.get(group - 1).is_some_and(|&[first, next, _]| next > first);
         let Some([_, next, end]) = self.groups.get_mut(group) else { return false };
         let id = u64::from(id);
@@ -184,14 +182,14 @@ impl Known {
 }
 
 impl<'a> OctreeRef<'a> {
-    /// The surface of this number, less than [`CutCounts::surfaces`]; `None` if there is none, or it is
-    /// damaged. O(1).
+    /// Returns the surface of this number, which is less than [`CutCounts::surfaces`]; `None` if there is no
+    /// such surface, or it is damaged. O(1).
     pub fn surface(&self, id: u32) -> Option<StoredSurface<'a>> {
         StoredSurface::new(self.cuts.as_ref()?.surfaces, id)
     }
 
-    /// The function that the solid is in a cell that lies in a PARTIAL one; `None` if nothing is known there,
-    /// if different functions hold in parts of the cell, or there is no such cell. O(depth).
+    /// Returns the function of surfaces that the solid is in a cell within a PARTIAL cell; `None` if nothing
+    /// is known there, if different functions hold in parts of the cell, or there is no such cell. O(depth).
     pub fn cell_function(&self, cell: Cell) -> Option<CellFunction> {
         let cuts = self.cuts.as_ref()?;
         let depth = self.frame().depth();
@@ -214,14 +212,14 @@ impl<'a> OctreeRef<'a> {
         }
     }
 
-    /// The record and the level of the PARTIAL cell of the planes in which a cell lies.
+    /// Returns the record and the level of the PARTIAL cell of the planes that contains a cell.
     pub(super) fn record_above(&self, cuts: &CutsRef<'_>, cell: Cell) -> Option<(usize, u8)> {
         let (place, level) = self.partial_above(cell)?;
         Some((place.map_or(CutsRef::ROOT, |(index, planes, c)| cuts.record(index, planes, c)), level))
     }
 
-    /// The level of the PARTIAL cell of the planes in which a cell lies of which nothing is known; `None` if
-    /// something is known of it, or there is no such cell.
+    /// Returns the level of the PARTIAL cell of the planes that contains a cell about which nothing is known;
+    /// `None` if something is known about the cell, or there is no such cell.
     pub(super) fn open_above(&self, cell: Cell) -> Option<u8> {
         if cell.level > self.frame().depth() || cell.at.iter().any(|&a| a >> cell.level != 0) {
             return None;
@@ -241,15 +239,15 @@ impl<'a> OctreeRef<'a> {
         }
     }
 
-    /// The PARTIAL cell of the planes in which a cell lies, or nothing for it if it is the universe; and its
-    /// level.
+    /// Returns the PARTIAL cell of the planes that contains a cell, and its level. The inner `None` stands
+    /// for the universe.
     fn partial_above(&self, cell: Cell) -> Option<(Option<PartialCell>, u8)> {
         match self.root_tag() {
             Tag::Branch => {}
             Tag::Partial => return Some((None, 0)),
             _ => return None,
         }
-        // The finest cell at its lower corner.
+        // The finest cell at the lower corner.
         let shift = self.frame().depth() - cell.level;
         let finest = Cell { level: self.frame().depth(), at: cell.at.map(|a| a << shift) };
         let mut index = 0;
@@ -257,7 +255,7 @@ impl<'a> OctreeRef<'a> {
             let planes = self.entry(index)?;
             let cells = self.cell_level(e);
             let inner = finest.ancestor(cells).octant();
-            // Of an odd depth the root has one octant.
+            // In a tree of odd depth, the root has one octant.
             let outer = if e == 0 && starts_half_way(self.frame().depth()) {
                 0
             } else {

@@ -1,4 +1,4 @@
-//! The faces between cells of some tags and all others: the boundary of what the tags stand for.
+//! The faces between cells with selected tags and all other cells: the boundary of a region of tags.
 
 use super::cells::{CellFilter, Cells, TaggedCell};
 use super::direction::Direction;
@@ -9,20 +9,21 @@ use crate::error::Error;
 use crate::lattice::Cell;
 use yoke::Yokeable;
 
-/// A square between two leaves of which one has a tag that was asked for, and the other has none: a whole
-/// face of the smaller one.
+/// A square between a leaf with a selected tag and a leaf with another tag. It is a complete face of the
+/// smaller one.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
 pub struct BoundaryFace {
-    /// The leaf that has such a tag.
+    /// The leaf with a selected tag.
     pub inner: TaggedCell,
-    /// The leaf that has none; `None` outside of the universe.
+    /// The leaf with another tag; `None` outside the universe.
     pub outer: Option<TaggedCell>,
-    /// The way from the inner leaf to the outer one, along one axis.
+    /// The direction from the inner leaf to the outer one, along one axis.
     pub direction: Direction,
 }
 
 impl BoundaryFace {
-    /// The smaller of the two leaves, of which this is a whole face; the inner one if they are equal.
+    /// Returns the smaller one of the two leaves, of which this is a complete face; the inner one if they are
+    /// equal.
     pub(crate) fn smaller(&self) -> Cell {
         match self.outer {
             Some(outer) if outer.cell.level > self.inner.cell.level => outer.cell,
@@ -31,31 +32,31 @@ impl BoundaryFace {
     }
 }
 
-/// The faces between cells that a [`CellFilter`] wants and leaves of other tags, in the Morton order of the
-/// wanted cells. See [`OctreeRef::boundary_faces`].
+/// An iterator over the faces between cells that a [`CellFilter`] selects and leaves with other tags, in the
+/// Morton order of the selected cells. See [`OctreeRef::boundary_faces`].
 #[derive(Clone, Yokeable)]
 pub struct BoundaryFaces<'a> {
     inner: Cells<'a>,
-    /// The cell whose faces are under way, and how many of these have been looked at.
+    /// The cell whose faces are being returned, and the number of its faces already examined.
     current: Option<(TaggedCell, usize)>,
-    /// The smaller leaves at the last of them.
+    /// The smaller leaves at the last of these faces.
     smaller: Option<Cells<'a>>,
-    /// How many elements smaller leaves may still be sought in.
+    /// Number of elements that may still be searched for smaller leaves.
     visits: usize,
 }
 
 impl<'a> OctreeRef<'a> {
-    /// The faces between leaves that `filter` wants and leaves of other tags: with FULL, the boundary of what
-    /// is surely solid; with FULL and PARTIAL, of what is possibly solid. What the
-    /// [exterior](OctreeRef::exterior) is decides about faces on the boundary of the universe. Where cells of
-    /// different sizes meet there is one face for each of the smaller ones, so that the faces are disjoint.
-    /// They come in the Morton order of the inner cells, for each of these in the order of
-    /// [`Direction::FACES`], and for each face in the Morton order of the outer cells. A box and levels of
-    /// the filter are those of the inner cells. BRANCH cells do not count.
+    /// Returns the faces between leaves that `filter` selects and leaves with other tags. With FULL, this is
+    /// the boundary of the surely solid region; with FULL and PARTIAL, that of the possibly solid region. The
+    /// [exterior](OctreeRef::exterior) decides about faces on the boundary of the universe. Where cells of
+    /// different sizes meet, there is one face for each smaller cell, so that the faces are disjoint. The
+    /// faces are sorted by the Morton order of the inner cells, then by the order of [`Direction::FACES`],
+    /// then by the Morton order of the outer cells. The box and the levels of the filter apply to the inner
+    /// cells. BRANCH cells do not count.
     ///
-    /// O(elements + leaves), with no allocation. In a sound tree an element touches six leaves that are
-    /// larger than its cell, at most, one on each side. So six times as many elements as there are may be met
-    /// beside cells; over damaged bytes, everything beyond is PARTIAL.
+    /// O(elements + leaves), without allocation. In a sound tree an element touches at most six leaves that
+    /// are larger than its cell, one on each side. So the search for outer leaves may visit six times as many
+    /// elements as there are; over damaged bytes, everything beyond that number is PARTIAL.
     ///
     /// ```
     /// use leafless::{Control, Csg, Frame, Rule, Tag, build, octree::CellFilter};
@@ -77,10 +78,11 @@ impl<'a> OctreeRef<'a> {
 }
 
 impl BoundaryFaces<'_> {
-    /// Goes on with the faces of `cell`, or of the leaf that contains it, or of the first wanted cell after
+    /// Continues with the faces of `cell`, of the leaf that contains it, or of the first selected cell after
     /// it in Morton order. O(depth).
     ///
     /// # Errors
+    ///
     /// [`Error::Argument`] if `cell` does not lie in the universe, or is finer than the finest cells.
     pub fn seek(&mut self, cell: Cell) -> Result<(), Error> {
         self.inner.seek(cell)?;
@@ -89,7 +91,7 @@ impl BoundaryFaces<'_> {
         Ok(())
     }
 
-    /// The next outer leaf that is smaller than the inner one, if such are under way.
+    /// Returns the next outer leaf that is smaller than the inner one, if there is one on the current face.
     #[inline(always)]
     fn next_smaller(&mut self) -> Option<TaggedCell> {
         let smaller = self.smaller.as_mut()?;

@@ -1,11 +1,10 @@
 //! Following links: the one place where children are found.
 //!
-//! Bytes that nobody has checked may hold any link, so whoever follows one compares where it leads with
-//! something, and there are two ways:
+//! Unchecked bytes may contain any link, so the target of a link must be checked. There are two ways:
 //!
 //! * Single links are compared with the level that they should lead to ([`OctreeRef::step`]; [`Links`] for
 //!   points, where every instruction counts). A descent then ends, because the level rises with each link.
-//! * A traversal of a whole tree passes [`Windows`]: what it has met once it does not meet again.
+//! * A traversal of a whole tree passes [`Windows`]: it does not visit an element twice.
 
 use super::tag::Tag;
 use super::view::{MAX_ELEMENT_LEVELS, OctreeRef};
@@ -13,15 +12,16 @@ use super::word::Planes;
 use crate::error::Damage;
 use core::ops::Range;
 
-/// What lies in a cell of an element.
+/// The content of a cell of an element.
 pub(crate) enum Step {
-    /// A cell that is not cut, or of which damage leaves nothing known.
+    /// A cell that is not cut, or about which damage leaves nothing known.
     Settled(Tag),
     /// The element or brick with this index, on the next level.
     Into(usize),
 }
 
-/// The child in cell `c` of an element whose BRANCH cells are `branch`: rank by the cells before it.
+/// Returns the child in cell `c` of an element whose BRANCH cells are `branch`: its rank is the number of
+/// branches before the cell.
 #[inline(always)]
 fn nth_child(base: u64, rel: u16, branch: u64, c: u32) -> usize {
     let rank = (branch & ((1u64 << c) - 1)).count_ones() as usize;
@@ -29,7 +29,7 @@ fn nth_child(base: u64, rel: u16, branch: u64, c: u32) -> usize {
 }
 
 impl OctreeRef<'_> {
-    /// The element or brick with this index.
+    /// Returns the element or brick with this index.
     #[inline(always)]
     pub(crate) fn entry(&self, index: usize) -> Option<Planes> {
         match self.planes.get(index) {
@@ -38,7 +38,8 @@ impl OctreeRef<'_> {
         }
     }
 
-    /// Index of the first child of element `n`, whether or not it has one: children are numbered through.
+    /// Returns the index of the first child of element `n`, whether or not it has one: children are numbered
+    /// consecutively.
     #[inline(always)]
     pub(crate) fn first_child(&self, n: usize) -> Option<usize> {
         let base = *self.base.get(n >> 10)?;
@@ -46,15 +47,16 @@ impl OctreeRef<'_> {
         usize::try_from(base.checked_add(rel as u64)?).ok()
     }
 
-    /// Index of the child in cell `c` of element `n`, whose BRANCH cells are `branch`. Nothing is known of it
-    /// before it is compared with a level or a window: wild sums wrap, as they do in the point queries, so
-    /// that all that follow single links agree also where these are damaged.
+    /// Returns the index of the child in cell `c` of element `n`, whose BRANCH cells are `branch`. The caller
+    /// must compare it with a level or a window. Invalid sums wrap, as they do in the point queries, so that
+    /// all code that follows single links agrees even where the links are damaged.
     #[inline(always)]
     pub(crate) fn child(&self, n: usize, branch: u64, c: u32) -> Option<usize> {
         Some(nth_child(*self.base.get(n >> 10)?, *self.rel.get(n)?, branch, c))
     }
 
-    /// Where the children of the elements of level `e` from `n` on begin; `n` may be one past the level.
+    /// Returns the index at which the children of the elements of level `e` from `n` on begin; `n` may be one
+    /// past the level.
     pub(crate) fn children_from(&self, n: usize, e: usize) -> usize {
         let end = self.starts[e + 2];
         if n == self.starts[e + 1] {
@@ -64,13 +66,13 @@ impl OctreeRef<'_> {
         }
     }
 
-    /// Whether `index` lies on element level `e`.
+    /// True if `index` lies on element level `e`.
     #[inline(always)]
     pub(crate) fn on_level(&self, index: usize, e: usize) -> bool {
         self.starts[e] <= index && index < self.starts[e + 1]
     }
 
-    /// What lies in cell `c` of element `index` of level `e`, whose cells are `planes`.
+    /// Returns the content of cell `c` of element `index` of level `e`, whose cells are `planes`.
     #[inline(always)]
     pub(crate) fn step(&self, e: usize, index: usize, planes: Planes, c: u32) -> Step {
         match planes.tag(c) {
@@ -99,14 +101,15 @@ impl<'a> Links<'a> {
         Links { planes: &tree.planes[..count], rel: &tree.rel[..count], base: tree.base }
     }
 
-    /// The cells of element `index`; PARTIAL if there is no such element.
+    /// Returns the cells of element `index`; PARTIAL if there is no such element.
     #[inline(always)]
     pub fn planes(&self, index: usize) -> Planes {
         self.planes.get(index).copied().unwrap_or(Planes::uniform(Tag::Partial))
     }
 
-    /// What element `index` has in cell `c`, and the child there, which means something for a BRANCH whose
-    /// link is sound: whether it leads to `level`, the children's range of indices.
+    /// Returns the tag of cell `c` of element `index`, the child there, and whether the link leads to
+    /// `level`, the children's range of indices. The child is meaningful only for a BRANCH whose link is
+    /// sound.
     #[inline(always)]
     pub fn step(&self, index: usize, c: u32, level: &[usize]) -> (Tag, usize, bool) {
         let (Some(planes), Some(&rel), Some(&base)) =
@@ -115,14 +118,14 @@ impl<'a> Links<'a> {
             return (Tag::Partial, 0, false);
         };
         let branch = planes.branch();
-        // A wild sum is caught by the range.
+        // The range check catches an invalid sum.
         let child = nth_child(base, rel, branch, c);
         let sound = child.wrapping_sub(level[0]) < level[1] - level[0];
         (planes.tag(c), child, sound & (branch >> c & 1 != 0))
     }
 }
 
-/// The index ranges of the element levels below the root, from the top.
+/// Returns the index ranges of the element levels below the root, from the top.
 #[inline(always)]
 pub(crate) fn levels_below<'t>(tree: &'t OctreeRef<'_>) -> impl Iterator<Item = (u32, &'t [usize])> {
     let levels = tree.levels();
@@ -130,12 +133,12 @@ pub(crate) fn levels_below<'t>(tree: &'t OctreeRef<'_>) -> impl Iterator<Item = 
     shifts.zip(tree.starts[1..levels + 1].windows(2))
 }
 
-/// What a depth-first traversal has already passed, per level: how hostile bytes are kept from making it
+/// The elements that a depth-first traversal has passed, for each level, so that hostile bytes cannot make it
 /// visit anything twice.
 ///
-/// In a sound tree a depth-first traversal meets the elements of each level in ascending order. So one index
-/// per level, the first that has not been passed, decides in O(1) whether a link is admissible; all visits
-/// together never exceed the number of elements.
+/// In a sound tree a depth-first traversal visits the elements of each level in ascending order. So one index
+/// per level, the first one that has not been passed, decides in O(1) whether a link is admissible. All
+/// visits together never exceed the number of elements.
 #[derive(Clone)]
 pub(crate) struct Windows {
     next: [usize; MAX_ELEMENT_LEVELS],
@@ -143,7 +146,7 @@ pub(crate) struct Windows {
 }
 
 impl Windows {
-    /// All of a tree.
+    /// Returns the windows of a whole tree.
     pub(crate) fn new(tree: &OctreeRef<'_>) -> Windows {
         let mut windows = Windows { next: [0; MAX_ELEMENT_LEVELS], end: [0; MAX_ELEMENT_LEVELS] };
         windows.next.copy_from_slice(&tree.starts[..MAX_ELEMENT_LEVELS]);
@@ -151,9 +154,8 @@ impl Windows {
         windows
     }
 
-    /// Cuts off the windows of the subtrees below the elements `range` of level `e`, which have been
-    /// admitted, and passes them: what several threads visit below elements that were cut off one after
-    /// another never overlaps.
+    /// Splits off the windows of the subtrees below the admitted elements `range` of level `e`, and passes
+    /// them. Several threads that visit the subtrees below ranges split off one after another never overlap.
     pub(crate) fn below(
         &mut self,
         tree: &OctreeRef<'_>,
@@ -185,13 +187,13 @@ impl Windows {
         }
     }
 
-    /// Takes back the admission of element `first` of level `e` and of those behind it, which are admitted
+    /// Takes back the admission of element `first` of level `e` and of those behind it. They are admitted
     /// again when they are copied.
     pub(crate) fn put_back(&mut self, e: usize, first: usize) {
         self.next[e] = self.next[e].min(first);
     }
 
-    /// The child of element `n` (BRANCH cells `branch`) in cell `c`, which lies on level `e`.
+    /// Returns the child of element `n` (BRANCH cells `branch`) in cell `c`, which lies on level `e`.
     #[inline(always)]
     pub(crate) fn child(
         &mut self,

@@ -1,19 +1,18 @@
-//! Key–value facts that travel with a tree.
+//! Key–value facts that are stored with a tree.
 
 use crate::error::{Error, FormatError};
 use crate::memory;
 use alloc::string::String;
 use alloc::vec::Vec;
 
-/// UTF-8 keys and values, sorted by key. They mean nothing to the library; files carry them along.
+/// UTF-8 keys and values, sorted by key. They mean nothing to the library; files store them.
 ///
-/// Names in use: `name`, `units` (the unit of length), `source` (a fingerprint of what the tree was made
-/// from), `rule`. Operations on views make octrees without metadata; [`common`](Self::common) tells what to
-/// keep.
+/// Names in use: `name`, `units` (the unit of length), `source` (a fingerprint of the tree's source), `rule`.
+/// Operations on views make octrees without metadata; [`common`](Self::common) returns the facts to keep.
 #[derive(Debug, Clone, Default, PartialEq, Eq)]
 pub struct Metadata(Vec<(String, String)>);
 
-/// How many bytes all facts together may take in a file; part of the format.
+/// The greatest size of all facts together in a file, in bytes; part of the format.
 #[derive(Debug, Clone, Copy)]
 pub struct MetadataLimit {
     bytes: usize,
@@ -21,22 +20,23 @@ pub struct MetadataLimit {
 }
 
 impl MetadataLimit {
-    /// Of the facts of a solid.
+    /// The limit for the facts of a solid.
     pub const SOLID: MetadataLimit =
         MetadataLimit { bytes: 1 << 20, problem: "must not take more than 1 MiB in a file" };
 
-    /// Of the facts of a channel, so that the work of mapping a file is bounded.
+    /// The limit for the facts of a channel, which bounds the work of mapping a file.
     pub const CHANNEL: MetadataLimit =
         MetadataLimit { bytes: 1 << 16, problem: "must not take more than 64 KiB in a file for a channel" };
 
-    /// That many bytes.
+    /// Returns the limit in bytes.
     pub const fn bytes(self) -> usize {
         self.bytes
     }
 
-    /// Refuses facts that take so many bytes in a file.
+    /// Refuses facts that take too many bytes in a file.
     ///
     /// # Errors
+    ///
     /// [`Error::Argument`].
     pub(crate) fn check(self, bytes: usize) -> Result<(), Error> {
         if bytes > self.bytes {
@@ -46,14 +46,14 @@ impl MetadataLimit {
     }
 }
 
-/// What set operations keep if their operands agree on it, in ascending order.
+/// The facts that set operations keep if their operands agree on them, in ascending order.
 const LASTING: [&str; 2] = ["name", "units"];
 
 /// Bytes of the two lengths before a fact in a file.
 const LENGTHS: usize = 2 * size_of::<u32>();
 
 impl Metadata {
-    /// No facts.
+    /// Returns an empty set of facts.
     pub fn new() -> Metadata {
         Metadata::default()
     }
@@ -67,14 +67,15 @@ impl Metadata {
         }
     }
 
-    /// Removes `key`; its value, if it was there.
+    /// Removes `key`, and returns its value, if there was one.
     pub fn remove(&mut self, key: &str) -> Option<String> {
         self.find(key).ok().map(|at| self.0.remove(at).1)
     }
 
-    /// A copy, in which `key` has another value or, for `None`, does not occur.
+    /// Returns a copy in which `key` has another value or, for `None`, does not occur.
     ///
     /// # Errors
+    ///
     /// [`Error::Argument`] if the copy would not fit into a file; [`Error::OutOfMemory`].
     pub fn changed(&self, key: &str, value: Option<&str>, limit: MetadataLimit) -> Result<Metadata, Error> {
         let kept = || self.iter().filter(|(known, _)| *known != key);
@@ -93,9 +94,9 @@ impl Metadata {
         Ok(changed)
     }
 
-    /// What holds of a set made of octrees with these metadata: `name` and `units`, each if all of them have
-    /// it with one value. Nothing of none. (What an octree was made from, and by which rule, is another
-    /// matter for the result.)
+    /// Returns the facts that hold for a combination of octrees with these metadata: `name` and `units`, each
+    /// if all octrees have it with the same value. Without octrees there are none. (The source and the rule
+    /// of an octree do not hold for the result.)
     ///
     /// ```
     /// use leafless::{Control, Frame, Metadata, Octree, Tag, union};
@@ -126,35 +127,36 @@ impl Metadata {
         Ok(common)
     }
 
-    /// The value of `key`.
+    /// Returns the value of `key`.
     pub fn get(&self, key: &str) -> Option<&str> {
         self.find(key).ok().and_then(|at| self.0.get(at)).map(|(_, value)| value.as_str())
     }
 
-    /// All facts, by ascending key.
+    /// Returns all facts, by ascending key.
     pub fn iter(&self) -> impl Iterator<Item = (&str, &str)> {
         self.0.iter().map(|(key, value)| (key.as_str(), value.as_str()))
     }
 
-    /// Whether there is none.
+    /// True if there are no facts.
     pub fn is_empty(&self) -> bool {
         self.0.is_empty()
     }
 
-    /// Where `key` is, or where it belongs.
+    /// Returns the position of `key`, or the position where it belongs.
     fn find(&self, key: &str) -> Result<usize, usize> {
         self.0.binary_search_by(|(known, _)| known.as_str().cmp(key))
     }
 
-    /// Bytes that they take in a file.
+    /// Returns the bytes that the facts take in a file.
     pub(crate) fn len_in_file(&self) -> usize {
         self.iter().map(|(key, value)| LENGTHS + key.len() + value.len()).sum()
     }
 
-    /// The bytes in a file: per fact the lengths of key and value as little-endian u32, then both texts.
-    /// There must not be 4 GiB of them.
+    /// Returns the bytes for a file: for each fact the lengths of key and value as little-endian u32, then
+    /// both texts. There must be less than 4 GiB of them.
     ///
     /// # Errors
+    ///
     /// [`Error::OutOfMemory`].
     pub(crate) fn to_bytes(&self) -> Result<Vec<u8>, Error> {
         let mut bytes = memory::with_capacity(self.len_in_file())?;
@@ -167,13 +169,14 @@ impl Metadata {
         Ok(bytes)
     }
 
-    /// Reads [`to_bytes`](Self::to_bytes). Takes at most six times the memory of `bytes`.
+    /// Reads the bytes of [`to_bytes`](Self::to_bytes). Takes at most six times the memory of `bytes`.
     ///
     /// # Errors
-    /// [`FormatError::Metadata`] unless the keys ascend and everything is UTF-8 and used up;
+    ///
+    /// [`FormatError::Metadata`] unless the keys ascend, everything is UTF-8, and all bytes are used;
     /// [`Error::OutOfMemory`].
     pub(crate) fn from_bytes(bytes: &[u8]) -> Result<Metadata, Error> {
-        // Everything is looked at before anything is allocated.
+        // Everything is checked before anything is allocated.
         let mut last = None;
         let mut count = 0;
         for fact in Facts(bytes) {
@@ -192,7 +195,7 @@ impl Metadata {
     }
 }
 
-/// The facts in the bytes of a file; `None`, and no more, where they cannot be read.
+/// An iterator over the facts in the bytes of a file. At unreadable bytes it yields `None` and ends.
 struct Facts<'a>(&'a [u8]);
 
 impl<'a> Facts<'a> {

@@ -1,8 +1,8 @@
 //! The leaf-free octree: two bits a cell, internal nodes only, in dense arrays.
 //!
-//! [`OctreeRef`] explains how a solid is stored and does all reading; [`Octree`] owns or shares the arrays;
-//! the writer (crate-internal) is the one place where trees come into being; [`Cursor`] walks the octree node
-//! by node as if it were stored that way.
+//! [`OctreeRef`] describes the storage of a solid, and does all reading. [`Octree`] owns or shares the
+//! arrays. The writer (crate-internal) is the one place where trees are made. [`Cursor`] walks the octree
+//! node by node as if it were stored that way.
 
 mod arrays;
 pub(crate) mod block;

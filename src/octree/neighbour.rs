@@ -1,8 +1,8 @@
 //! Neighbours of cells: the classical algorithm, up to the least common ancestor and down again.
 //!
-//! A cell's coordinates tell how far up the common ancestor of two cells is (Samet 1989, *Neighbor finding in
-//! images represented by octrees*). Whoever comes from a cell has the elements above it at hand, so only the
-//! way down is read.
+//! The coordinates of two cells determine their least common ancestor (Samet 1989, *Neighbor finding in
+//! images represented by octrees*). The elements above the first cell are known from the way to it, so only
+//! the way down is read.
 
 use super::cells::{CellFilter, Cells, TaggedCell};
 use super::cursor::Cursor;
@@ -14,23 +14,23 @@ use super::view::{OctreeRef, starts_half_way};
 use crate::error::Error;
 use crate::lattice::{Cell, morton};
 
-/// What lies beside a cell.
+/// A neighbour of a cell.
 pub(super) struct Neighbour {
     pub found: TaggedCell,
-    /// The element that has its children, if it is a BRANCH.
+    /// The place of the element that contains its children, if it is a BRANCH.
     pub place: Option<Place>,
 }
 
 impl<'a> OctreeRef<'a> {
-    /// The neighbour of `cell` in `direction`: as large as the cell, or the leaf that contains a cell of that
-    /// size. `None` outside of the universe. `path` leads to the cell.
+    /// Returns the neighbour of `cell` in `direction`: the cell of the same size, or the larger leaf that
+    /// contains it. `None` outside the universe. `path` leads to the cell.
     #[inline(always)]
     pub(super) fn neighbour(&self, path: &Path, cell: Cell, direction: Direction) -> Option<Neighbour> {
         let (level, steps) = (cell.level as usize, direction.steps());
         let mut at = [0; 3];
         let mut changed = 0;
         for axis in 0..3 {
-            // Below 0 it wraps, and is beyond the last cell as well.
+            // Below 0, the coordinate wraps to a number beyond the last cell.
             at[axis] = cell.at[axis].wrapping_add_signed(steps[axis] as i32);
             changed |= at[axis] ^ cell.at[axis];
         }
@@ -61,7 +61,7 @@ impl<'a> OctreeRef<'a> {
             let shift = cell.level - cells;
             let c = morton::index(at[0] >> shift, at[1] >> shift, at[2] >> shift);
             let octant = planes.octant(c / 8);
-            // The universe is cut, whatever damaged bytes say of its children.
+            // The universe is cut, whatever damaged bytes say about its children.
             if octant != Tag::Branch && cells > 1 {
                 return leaf(cells - 1, octant);
             }
@@ -79,8 +79,8 @@ impl<'a> OctreeRef<'a> {
         }
     }
 
-    /// The leaves of a tag in `filter` that lie in `cell`, whose element is at `place`, and touch what lies
-    /// beside the cell against `direction`. At most `visits` elements below are entered.
+    /// Returns the leaves with a tag in `filter` that lie in `cell`, whose element is at `place`, and touch
+    /// its neighbour against `direction`. At most `visits` elements below are entered.
     pub(super) fn leaves_towards(
         &self,
         cell: Cell,
@@ -104,11 +104,11 @@ impl<'a> OctreeRef<'a> {
 }
 
 impl<'a> Cursor<'a> {
-    /// The neighbour of the cursor's cell in `direction`, through a face, an edge or a vertex: the cell of
-    /// the same size, which is a BRANCH if it is split, or the larger leaf that contains a cell of that size.
-    /// `None` outside of the universe. The cursor stays where it is.
+    /// Returns the neighbour of the cursor's cell in `direction`, through a face, an edge or a vertex: the
+    /// cell of the same size, which is a BRANCH if it is split, or the larger leaf that contains it. `None`
+    /// outside the universe. The cursor stays where it is.
     ///
-    /// Along a walk amortised O(1), at most O(depth): only elements below the common ancestor are read.
+    /// O(depth), and amortised O(1) along a walk: only elements below the common ancestor are read.
     ///
     /// ```
     /// use leafless::{Cell, Control, Csg, Frame, Rule, Tag, build, octree::{Cursor, Direction}};
@@ -127,10 +127,10 @@ impl<'a> Cursor<'a> {
         self.tree().neighbour(self.path(), self.cell(), direction).map(|neighbour| neighbour.found)
     }
 
-    /// All leaves that touch the cursor's cell in `direction`: the one that
-    /// [`neighbour`](Self::neighbour) finds, or if that is a BRANCH the leaves in it that touch the cell's
-    /// face, edge or vertex, in Morton order. None outside of the universe. O(leaves · depth); also over
-    /// damaged bytes no element is met twice.
+    /// Returns all leaves that touch the cursor's cell in `direction`: the one that
+    /// [`neighbour`](Self::neighbour) returns or, if that is a BRANCH, the leaves in it that touch the cell's
+    /// face, edge or vertex, in Morton order. There are none outside the universe. O(leaves · depth). Over
+    /// damaged bytes, no element is visited twice.
     pub fn neighbours(&self, direction: Direction) -> impl Iterator<Item = TaggedCell> + use<'a> {
         let tree = self.tree();
         let neighbour = tree.neighbour(self.path(), self.cell(), direction);
@@ -142,10 +142,11 @@ impl<'a> Cursor<'a> {
         alone.map(|neighbour| neighbour.found).into_iter().chain(within.into_iter().flatten())
     }
 
-    /// Moves to `cell`, or to the leaf that contains it; the answer is whether the cursor stands on the cell
-    /// itself. O(levels below the common ancestor of both cells).
+    /// Moves to `cell`, or to the leaf that contains it. Returns true if the cursor is on the cell itself.
+    /// O(levels below the common ancestor of both cells).
     ///
     /// # Errors
+    ///
     /// [`Error::Argument`] if `cell` does not lie in the universe, or is finer than the finest cells. The
     /// cursor then stays where it is.
     pub fn seek(&mut self, cell: Cell) -> Result<bool, Error> {

@@ -22,80 +22,81 @@ use yoke::erased::ErasedArcCart;
 
 /// An octree that owns its arrays, or shares the mapping of a file.
 ///
-/// It is immutable, a clone costs two reference counts, and any number of threads may read it at once. All
-/// reading is done through its [`view`](Octree::view).
+/// An octree is immutable, a clone costs two reference counts, and any number of threads may read it at once.
+/// All reading goes through its [`view`](Octree::view).
 ///
 /// # Extended octrees
 ///
 /// An octree may have *cuts* ([`build_extended`](crate::build_extended)): a PARTIAL cell then keeps the
-/// surfaces that cross it, up to three, and the function of their sides that the solid is. So it is as exact
-/// as what it was made of. Without its cuts it is a certified octree, and canonical as ever.
+/// surfaces that cross it, up to three, and the function of their sides that describes the solid. So the
+/// octree is as exact as its source. Without its cuts it is an ordinary certified octree in canonical form.
 ///
 /// *Surfaces* are planes, quadrics, sums of powers and tori in exact numbers, under any placements, and
-/// *slabs*, planes with a width, where nothing exact is known. They lie in one table, in the order of their
-/// first use. Exact surfaces are one if their polynomials are proportional, or figure and place are the same;
-/// a complement is the same surface negated. A slab stands for a set that nobody knows: it is the same as
-/// another one only if both have the same origin, a fingerprint of the source and the build, and the same
-/// number there.
+/// *slabs*, planes with a width, where nothing exact is known. They are stored in one table, in the order of
+/// their first use. Two exact surfaces are the same surface if their polynomials are proportional, or if
+/// their figures and placements are the same; a complement uses the same surface negated. A slab stands for
+/// an unknown set: two slabs are the same only if they have the same origin, a fingerprint of the source and
+/// the build, and the same number there.
 ///
-/// *The law* of a cut: at a point of the open cell that lies on no surface, each surface has a side, but for
-/// the slabs in whose width the point lies. Where the function has one value for all sides that these may
-/// have, that is the answer; elsewhere it is undecided. On a surface either answer is right.
+/// *The law* of a cut: consider a point of the open cell that lies on no surface. It has a side with respect
+/// to each surface, except the slabs that contain the point in their width. If the function has the same
+/// value for all possible sides of these slabs, that value is the answer; otherwise the point is undecided.
+/// On a surface either answer is right.
 ///
 /// *Split records.* Where all descendants of a cell are PARTIAL, the tree has no node for them. If the cell's
-/// function takes more than three surfaces, its cut is a split into eight cuts, and so on, down to the
-/// frame's depth. A cell that is still crossed by more there is *given up*: PARTIAL, and nothing is known of
-/// it ([`CutCounts::given_up`](crate::octree::CutCounts::given_up)).
+/// function needs more than three surfaces, its cut is a split into eight cuts, and so on, down to the
+/// frame's depth. A finest cell that is still crossed by more surfaces is *given up*: it is PARTIAL, and
+/// nothing is known about it ([`CutCounts::given_up`](crate::octree::CutCounts::given_up)).
 ///
-/// *Normal form.* A function depends on each of its surfaces; surfaces of a cut ascend; nothing is stored for
-/// cells that are decided, surfaces that no cell uses are not kept. Equality and fingerprints include cuts,
+/// *Normal form.* A function depends on each of its surfaces; the surfaces of a cut ascend; nothing is stored
+/// for decided cells, and surfaces that no cell uses are not kept. Equality and fingerprints include cuts,
 /// and the bytes are the same for any number of threads.
 ///
-/// What takes octrees sees cuts in one of four ways:
+/// Functions that take octrees treat cuts in one of four ways:
 ///
 /// | | functions | |
 /// |---|---|---|
-/// | in place | [`contains`](OctreeRef::contains), [`contains_many`](OctreeRef::contains_many), [`PointCursor`](crate::query::PointCursor), [`PointTable`](crate::query::PointTable), [`cast_ray`](OctreeRef::cast_ray), [`cast_rays`](OctreeRef::cast_rays), [`ray_spans`](OctreeRef::ray_spans), [`classify_box`](OctreeRef::classify_box) | without a worker and without memory; next to a surface rounding leaves points undecided |
-/// | as a solid | whatever takes a [`Solid`](crate::Solid): [`build`](crate::build), [`build_extended`](crate::build_extended), [`contains`](crate::contains), [`cast_rays`](crate::cast_rays), [`measure`](crate::measure), [`surface_area`](crate::query::surface_area), [`section_area`](crate::query::section_area), [`bounding_box`](crate::query::bounding_box), [`distances`](crate::query::distances), [`interference`](crate::interference), [`clearance`](crate::clearance), [`Adaptive`](crate::solid::Adaptive), [`LazyOctree`], [`dexelize`](crate::dexelize), dual contouring of solids, and pictures, also those of trees | what the source would give; cells split below the tree's depth |
+/// | in place | [`contains`](OctreeRef::contains), [`contains_many`](OctreeRef::contains_many), [`PointCursor`](crate::query::PointCursor), [`PointTable`](crate::query::PointTable), [`cast_ray`](OctreeRef::cast_ray), [`cast_rays`](OctreeRef::cast_rays), [`ray_spans`](OctreeRef::ray_spans), [`classify_box`](OctreeRef::classify_box) | without a worker and without allocation; next to a surface, rounding leaves points undecided |
+/// | as a solid | functions of a [`Solid`](crate::Solid): [`build`](crate::build), [`build_extended`](crate::build_extended), [`contains`](crate::contains), [`cast_rays`](crate::cast_rays), [`measure`](crate::measure), [`surface_area`](crate::query::surface_area), [`section_area`](crate::query::section_area), [`bounding_box`](crate::query::bounding_box), [`distances`](crate::query::distances), [`interference`](crate::interference), [`clearance`](crate::clearance), [`Adaptive`](crate::solid::Adaptive), [`LazyOctree`], [`dexelize`](crate::dexelize), dual contouring of solids, and pictures, also those of trees | the same answers as from the source; cells split below the tree's depth |
 /// | set operations | [`union`](crate::union), [`intersection`](crate::intersection), [`difference`](crate::difference), [`xor`](crate::xor), [`complement`](crate::complement), [`union_of`](crate::op::union_of), [`intersection_of`](crate::op::intersection_of), [`difference_of`](crate::op::difference_of), [`xor_of`](crate::op::xor_of) | the result keeps the operands' surfaces |
-/// | of cells | [`tag_at`](OctreeRef::tag_at), [`statistics`](Octree::statistics), [`Cursor`](crate::octree::Cursor), [`cells`](OctreeRef::cells), [`BoundaryFaces`](crate::octree::BoundaryFaces), [`bitmap`](OctreeRef::bitmap), [`columns`](OctreeRef::columns), [`heights`](OctreeRef::heights), [`cells_in_box`](OctreeRef::cells_in_box), [`volume_in_box`](OctreeRef::volume_in_box), [`cells_in`](OctreeRef::cells_in), [`volume_in`](OctreeRef::volume_in), [`distance`](OctreeRef::distance), [`nearest_cells`](OctreeRef::nearest_cells), voxels, components, slices, surfaces of trees, and pictures of the faces of cells | cuts are not seen. What they say is true, and blunt: take the tree of [`plain`](crate::op::plain) |
+/// | of cells | [`tag_at`](OctreeRef::tag_at), [`statistics`](Octree::statistics), [`Cursor`](crate::octree::Cursor), [`cells`](OctreeRef::cells), [`BoundaryFaces`](crate::octree::BoundaryFaces), [`bitmap`](OctreeRef::bitmap), [`columns`](OctreeRef::columns), [`heights`](OctreeRef::heights), [`cells_in_box`](OctreeRef::cells_in_box), [`volume_in_box`](OctreeRef::volume_in_box), [`cells_in`](OctreeRef::cells_in), [`volume_in`](OctreeRef::volume_in), [`distance`](OctreeRef::distance), [`nearest_cells`](OctreeRef::nearest_cells), voxels, components, slices, surfaces of trees, and pictures of the faces of cells | cuts are ignored. The answers are true, but coarse: use the tree of [`plain`](crate::op::plain) |
 ///
-/// [`resolve`](crate::op::resolve) refuses trees with cuts: the cells that they have are few and large.
+/// [`resolve`](crate::op::resolve) refuses trees with cuts, because their cells are few and large.
 /// [`compact`](crate::compact) keeps the cuts.
 ///
 /// ## Set operations
 ///
-/// Set operations keep surfaces, if one operand does. A tree without cuts takes part as a certified octree:
-/// nothing is known in its PARTIAL cells, and nothing is known in those of the result that depend on them.
+/// Set operations keep surfaces if at least one operand does. A tree without cuts takes part as a certified
+/// octree: nothing is known in its PARTIAL cells, or in the cells of the result that depend on them.
 ///
-/// *How cells end.* All operands are walked at once. Subtrees that only one operand cuts are copied as runs
-/// of its arrays, with their cuts. Where several operands end with functions, these become one function, and
-/// the cell ends as soon as three surfaces are left in it. The cell is split otherwise, down to the frame's
-/// depth, where it is given up. A cell that an operand has given up is given up in the result, unless another
-/// operand decides it.
+/// *The end of cells.* All operands are walked at once. Subtrees that only one operand cuts are copied as
+/// runs of its arrays, with their cuts. Where several operands end with functions, these are combined into
+/// one function, and the cell ends as soon as three surfaces are left in it. Otherwise the cell is split,
+/// down to the frame's depth, where it is given up. A cell that an operand has given up is given up in the
+/// result, unless another operand decides it.
 ///
-/// *Identity.* Surfaces that are one are one: a pin fits into a bore of its own radius, and the two touch.
-/// `A ∖ A` is EMPTY where nothing was given up in `A`. Slabs are one only if they have the same origin and
-/// number. `A ∪ A` is `A`, `A ∪ B` is `B ∪ A`, and `¬¬A` is `A`, byte for byte. Associativity and
-/// distributivity hold as sets, but for cells that are given up.
+/// *Identity.* Equal surfaces are recognised as one surface: a pin fits into a bore of its own radius, and
+/// the two touch. `A ∖ A` is EMPTY where nothing was given up in `A`. Slabs are equal only if they have the
+/// same origin and number. `A ∪ A` is `A`, `A ∪ B` is `B ∪ A`, and `¬¬A` is `A`, byte for byte. Associativity
+/// and distributivity hold for the sets, except in cells that are given up.
 ///
 /// *Planes and functions.* Eight cells that one function describes become one cell. So the planes of a result
-/// may be blunter than Kleene's logic of the operands' planes. What those cells decide then stands in the
-/// function.
+/// may be coarser than Kleene's logic of the operands' planes. The function then contains the decisions about
+/// those cells.
 ///
 /// *Cutting a batch.* An operation on two trees copies the larger one.
-/// [`difference_of`](crate::op::difference_of) walks the stock and all tools at once, and copies nothing but
-/// the result. It is the way to cut a part by many tools.
+/// [`difference_of`](crate::op::difference_of) walks the stock and all tools at once, and copies only the
+/// result. It is the way to cut a part with many tools.
 ///
 /// *Cost.* Time and memory are linear in the cells where operands meet. Curved surfaces that nearly coincide,
-/// and are not one, may meet in very many cells of a great depth: set
-/// [`Control::max_bytes`](crate::Control::max_bytes) where operands are not your own choice.
+/// but are not equal, may meet in very many cells of a great depth: set
+/// [`Control::max_bytes`](crate::Control::max_bytes) if the operands come from others.
 ///
-/// Marching cubes and coplanar shrink of solids sample the corners of cells, on a lattice that no stored tree
-/// is known on: they refuse extended trees, too. Instead take
+/// Marching cubes and coplanar shrink of solids sample the corners of cells on a lattice on which stored
+/// trees are not known, so they refuse extended trees, too. Instead use
 /// [`marching_cubes_dexels`](crate::surface::marching_cubes_dexels) of [`dexelize`](crate::dexelize), whose
 /// vertices lie on the surfaces, or the surface of the tree of [`plain`](crate::op::plain) with
-/// [`Rule::Sampled`](crate::Rule::Sampled). So does the program.
+/// [`Rule::Sampled`](crate::Rule::Sampled). The program does so, too.
 ///
 /// [`LazyOctree`]: crate::LazyOctree
 #[derive(Clone)]
@@ -103,11 +104,11 @@ pub struct Octree {
     arrays: Yoke<OctreeRef<'static>, ErasedArcCart>,
     counts: Arc<OnceBox<Vec<LevelCounts>>>,
     metadata: Arc<Metadata>,
-    /// In ascending order of their names, which differ.
+    /// In ascending order of their names, which are distinct.
     channels: Arc<Vec<Channel>>,
 }
 
-/// Most channels that an octree can have, so that its file has no more sections than a reader takes.
+/// Most channels of an octree, so that its file has no more sections than a reader accepts.
 const MOST_CHANNELS: usize = 256;
 
 impl Octree {
@@ -116,8 +117,8 @@ impl Octree {
             .unwrap_or_else(|_: core::convert::Infallible| unreachable!())
     }
 
-    /// Bytes that the arrays of the tree, its cuts and its channels take, in memory or where a file is
-    /// mapped. Arrays may be shared: a clone has the same.
+    /// Returns the bytes of the arrays of the tree, its cuts and its channels, in memory or in a mapped file.
+    /// Arrays may be shared: a clone has the same ones.
     pub fn bytes(&self) -> u64 {
         let OctreeRef { planes, rel, base, bricks, table, .. } = self.view();
         let links = size_of_val(*planes) + size_of_val(*rel) + size_of_val(*base);
@@ -126,7 +127,7 @@ impl Octree {
         tree as u64 + cuts + self.channels.iter().map(Channel::bytes).sum::<u64>()
     }
 
-    /// An octree whose arrays lie in `owner`, wherever that has them.
+    /// Makes an octree whose arrays lie in `owner`.
     pub(crate) fn attach<C: Send + Sync + 'static, E>(
         owner: Arc<C>,
         metadata: Metadata,
@@ -140,8 +141,8 @@ impl Octree {
         })
     }
 
-    /// An octree whose whole universe has one `tag`, and the space around it the tag `exterior`; neither may
-    /// be BRANCH.
+    /// Returns an octree whose whole universe has one `tag`, and the space around it the tag `exterior`;
+    /// neither may be BRANCH.
     pub fn uniform(frame: Frame, tag: Tag, exterior: Tag) -> Result<Octree, Error> {
         if tag == Tag::Branch || exterior == Tag::Branch {
             return Err(Error::Argument { name: "tag", problem: "must be EMPTY, FULL or PARTIAL" });
@@ -154,7 +155,7 @@ impl Octree {
         Ok(Octree::new(Arrays::link(frame, tag, exterior, Vec::new(), bricks, starts)?))
     }
 
-    /// A copy of `tree` with its bricks in the encoding that a file would give them.
+    /// Returns a copy of `tree` with its bricks in the encoding of a file.
     pub(crate) fn recoded(tree: &OctreeRef<'_>) -> Result<Octree, Error> {
         let recoded = Octree::new(Arrays {
             frame: tree.frame,
@@ -174,24 +175,24 @@ impl Octree {
         Ok(recoded.with_proof(tree.proof))
     }
 
-    /// The view that all reading goes through. Free.
+    /// Returns the view through which all reading goes. Free.
     #[inline(always)]
     pub fn view(&self) -> &OctreeRef<'_> {
         self.arrays.get()
     }
 
-    /// Where the tree lies.
+    /// Returns the frame of the tree.
     pub fn frame(&self) -> &Frame {
         self.view().frame()
     }
 
-    /// What is known level by level: nodes, cells of each tag, volumes. O(depth) once the counts are known,
-    /// which for a tree from a file they are and for a new one takes one pass over its arrays.
+    /// Returns the statistics of each level: nodes, cells of each tag, volumes. O(depth) once the counts are
+    /// known. They are known for a tree from a file; for a new tree they take one pass over its arrays.
     ///
-    /// A classical octree has a node for every cell, cut or not: of n leaves and m internal nodes
-    /// m + n = 8 m + 1 in all. A leaf says only EMPTY or FULL, which its parent can say as well. So the
-    /// leaf-free octree has m nodes. The example that the method was published with has 25 nodes with their
-    /// leaves and 3 without; a bar of three cells is such a solid:
+    /// A classical octree has a node for every cell, cut or not: with n leaves and m internal nodes, it has m
+    /// + n = 8 m + 1 nodes. A leaf is only EMPTY or FULL, which its parent can store as well. So the
+    /// leaf-free octree has m nodes. The example in the publication of the method has 25 nodes with leaves
+    /// and 3 without. A bar of three cells is such a solid:
     ///
     /// ```
     /// use leafless::{Control, Csg, Frame, Rule, Tag, build};
@@ -218,14 +219,14 @@ impl Octree {
         }
     }
 
-    /// What the cells prove of the solid that the tree was made from.
+    /// Returns the proof: which tags hold for the solid that the tree was made from.
     pub fn proof(&self) -> Proof {
         self.view().proof
     }
 
-    /// The same tree, of whose cells this is said; the arrays are shared. Whoever makes trees otherwise than
-    /// by this library knows what they prove. With [`Proof::CERTIFIED`] the cells themselves are taken for
-    /// the solid: measures of a sampled tree then are those of its cells, and not of what was sampled.
+    /// Returns the same tree with another proof; the arrays are shared. This is for trees that are made by
+    /// other means than this library. With [`Proof::CERTIFIED`] the cells themselves count as the solid:
+    /// measures of a sampled tree then are those of its cells, and not of the sampled solid.
     #[must_use]
     pub fn with_proof(&self, proof: Proof) -> Octree {
         let mut octree = self.clone();
@@ -233,7 +234,7 @@ impl Octree {
         octree
     }
 
-    /// The same tree without cuts: what its planes say; the arrays are shared.
+    /// Returns the same tree without cuts, with its planes only; the arrays are shared.
     #[must_use]
     pub fn without_cuts(&self) -> Octree {
         let mut octree = self.clone();
@@ -241,8 +242,8 @@ impl Octree {
         octree
     }
 
-    /// The same tree without the moments of the solid that it may keep ([`OctreeRef::moments`]):
-    /// [`measure`](crate::measure) looks at cells and surfaces; the arrays are shared.
+    /// Returns the same tree without the moments of the solid that it may store ([`OctreeRef::moments`]), so
+    /// that [`measure`](crate::measure) evaluates cells and surfaces; the arrays are shared.
     #[must_use]
     pub fn without_moments(&self) -> Octree {
         let mut octree = self.clone();
@@ -254,17 +255,17 @@ impl Octree {
         octree
     }
 
-    /// Facts about the tree that its file carries along: units, name, source.
+    /// Returns the facts about the tree that its file stores: units, name, source.
     pub fn metadata(&self) -> &Metadata {
         &self.metadata
     }
 
-    /// The channels of the solid, in ascending order of their names.
+    /// Returns the channels of the solid, in ascending order of their names.
     pub fn channels(&self) -> &[Channel] {
         &self.channels
     }
 
-    /// The channel with this name.
+    /// Returns the channel with this name.
     pub fn channel(&self, name: &str) -> Option<&Channel> {
         self.place_of(name).ok().and_then(|at| self.channels.get(at))
     }
@@ -273,10 +274,11 @@ impl Octree {
         self.channels.binary_search_by(|channel| channel.name().cmp(name))
     }
 
-    /// The same tree with one more channel, in the place of one of the same name, if there is one; the arrays
-    /// are shared.
+    /// Returns the same tree with one more channel, which replaces a channel of the same name; the arrays are
+    /// shared.
     ///
     /// # Errors
+    ///
     /// [`Error::FrameMismatch`] if the channel lies in another cube than the tree; [`Error::Argument`] if
     /// there are 256 channels already; [`Error::OutOfMemory`].
     pub fn with_channel(&self, channel: Channel) -> Result<Octree, Error> {
@@ -295,20 +297,21 @@ impl Octree {
         Ok(Octree { channels: Arc::new(channels), ..self.clone() })
     }
 
-    /// The same tree with these channels, which lie in its cube, in ascending order of their names.
+    /// Returns the same tree with these channels, which lie in its cube, in ascending order of their names.
     pub(crate) fn with_all_channels(&self, channels: Vec<Channel>) -> Octree {
         Octree { channels: Arc::new(channels), ..self.clone() }
     }
 
-    /// The same tree without channels; the arrays are shared.
+    /// Returns the same tree without channels; the arrays are shared.
     #[must_use]
     pub fn without_channels(&self) -> Octree {
         Octree { channels: Arc::new(Vec::new()), ..self.clone() }
     }
 
-    /// The same tree without the channel of this name; the arrays are shared.
+    /// Returns the same tree without the channel of this name; the arrays are shared.
     ///
     /// # Errors
+    ///
     /// [`Error::OutOfMemory`].
     pub fn without_channel(&self, name: &str) -> Result<Octree, Error> {
         let mut channels = memory::with_capacity(self.channels.len())?;
@@ -316,19 +319,19 @@ impl Octree {
         Ok(Octree { channels: Arc::new(channels), ..self.clone() })
     }
 
-    /// The same tree with the channels of another, which lies in the same cube; they are shared.
+    /// Returns the same tree with the channels of another tree in the same cube; the channels are shared.
     #[must_use]
     pub fn with_channels_from(&self, other: &Octree) -> Octree {
         Octree { channels: other.channels.clone(), ..self.clone() }
     }
 
-    /// The same tree with the metadata of another, which are shared.
+    /// Returns the same tree with the metadata of another tree, which are shared.
     #[must_use]
     pub fn with_metadata_from(&self, other: &Octree) -> Octree {
         Octree { metadata: other.metadata.clone(), ..self.clone() }
     }
 
-    /// The same tree with other metadata; the arrays are shared.
+    /// Returns the same tree with other metadata; the arrays are shared.
     #[must_use]
     pub fn with_metadata(&self, metadata: Metadata) -> Octree {
         Octree { metadata: Arc::new(metadata), ..self.clone() }
@@ -346,8 +349,8 @@ impl core::fmt::Debug for Octree {
     }
 }
 
-/// Equal as sets of cells with the same tags and cuts on the same frame: trees are canonical, so their arrays
-/// agree however the bricks are encoded. Metadata does not count, nor what the cells prove. O(n).
+/// Octrees are equal if they have the same frame, and the same cells with the same tags and cuts. Trees are
+/// canonical, so their arrays agree, however the bricks are encoded. Metadata and proofs do not count. O(n).
 impl PartialEq for Octree {
     fn eq(&self, other: &Octree) -> bool {
         let (a, b) = (self.view(), other.view());
@@ -360,7 +363,7 @@ impl PartialEq for Octree {
     }
 }
 
-/// A copy of bricks that are raw.
+/// Returns a copy of bricks that are raw.
 fn copy_raw(bricks: &Bricks<'_>) -> Result<OwnedBricks, Error> {
     fn copy<T: Brick>(bricks: &BrickArray<'_, T>) -> Result<OwnedArray<T>, Error> {
         let mut copy = memory::with_capacity(bricks.len())?;

@@ -1,4 +1,4 @@
-//! The cells of one level of which nothing is known.
+//! The cells of one level about which nothing is known.
 
 use super::cells::CellFilter;
 use super::cuts::{CellCut, CutsRef};
@@ -9,15 +9,16 @@ use crate::lattice::Cell;
 use crate::memory;
 use alloc::vec::Vec;
 
-/// Most cells that are listed.
+/// Most cells in the list.
 const MOST: usize = 1 << 24;
 
 impl OctreeRef<'_> {
-    /// The cells of `level` of which nothing is known, in Morton order: each is PARTIAL, or lies in a PARTIAL
-    /// cell, and no surfaces are kept there. Of a [top](crate::Shard::Top) of that level these are the cells
-    /// that need a shard. O(cells of the levels above, and of the result).
+    /// Returns the cells of `level` about which nothing is known, in Morton order: each is PARTIAL, or lies
+    /// in a PARTIAL cell, and no surfaces are kept there. For a [top](crate::Shard::Top) of that level, these
+    /// are the cells that need a shard. O(cells of the levels above, and of the result).
     ///
     /// # Errors
+    ///
     /// [`Error::Argument`] if the frame has no such level; [`Error::Limit`] if there are more than 2^24
     /// cells; [`Error::Damaged`] if the cuts of an unverified tree turn out damaged; [`Error::OutOfMemory`].
     pub fn open_cells(&self, level: u8) -> Result<Vec<Cell>, Error> {
@@ -39,7 +40,7 @@ impl OctreeRef<'_> {
     }
 }
 
-/// The open cells of a PARTIAL cell with a record.
+/// Appends the open cells of a PARTIAL cell with a record.
 fn below_record(
     cuts: &CutsRef<'_>,
     record: usize,
@@ -56,7 +57,7 @@ fn below_record(
     }
 }
 
-/// All cells of a level in a cell.
+/// Appends all cells of a level in a cell.
 fn all_in(cell: Cell, level: u8, found: &mut Vec<Cell>) -> Result<(), Error> {
     if cell.level < level {
         return (0..8).try_for_each(|k| all_in(cell.child(k), level, found));

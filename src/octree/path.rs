@@ -1,4 +1,4 @@
-//! Ways from the root to an element.
+//! Paths from the root to an element.
 
 use super::tag::Tag;
 use super::view::MAX_ELEMENT_LEVELS;
@@ -10,13 +10,13 @@ pub(super) type Path = [(usize, Planes); MAX_ELEMENT_LEVELS];
 /// A path that leads nowhere yet.
 pub(super) const NOWHERE: Path = [(usize::MAX, Planes::uniform(Tag::Partial)); MAX_ELEMENT_LEVELS];
 
-/// An element, and where it lies.
+/// An element, and its position.
 #[derive(Clone, Copy)]
 pub(super) struct Place {
-    /// Its element level.
+    /// Element level.
     pub level: usize,
-    /// Its index.
+    /// Index of the element.
     pub index: usize,
-    /// Its own cell's position, on that cell's level.
+    /// Position of its own cell, on that cell's level.
     pub at: [u32; 3],
 }

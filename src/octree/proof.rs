@@ -1,11 +1,11 @@
-//! What the cells of an octree prove.
+//! The proof of an octree: the statements that its cells prove.
 
 use crate::error::Error;
 
-/// What the cells of an octree prove of the solid that it was made from: whoever asks it as a solid is told
-/// no more than that.
+/// The statements that the cells of an octree prove about its source solid. Queries of the octree as a solid
+/// return no more than that.
 ///
-/// Booleans and transforms pass it on, and files keep it:
+/// Booleans and transforms derive it from their operands, and files store it:
 ///
 /// | made | FULL | EMPTY |
 /// |---|---|---|
@@ -20,9 +20,9 @@ use crate::error::Error;
 /// | of [voxel records](crate::voxel::VoxelSolid) | if their boundary voxels are not taken for FULL | nor for EMPTY |
 /// | of a [tri-dexel model](crate::surface::DexelSolid) | | |
 ///
-/// A mesh or a bitmap of an octree is a solid of its own, which says nothing of what the octree was made
-/// from: what is built of it is proven of the region inside of the mesh, or of the union of the voxels. So
-/// are the cells of a [channel's values](crate::attribute::ChannelRef::region).
+/// A mesh or a bitmap of an octree is a separate solid, and proves nothing about the octree's source: an
+/// octree built from it is proven with respect to the region inside the mesh, or to the union of the voxels.
+/// The same holds for the cells of a [channel's values](crate::attribute::ChannelRef::region).
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Proof {
     /// A FULL cell is proven to lie in the solid; so is a FULL exterior.
@@ -33,24 +33,25 @@ pub struct Proof {
 }
 
 impl Proof {
-    /// FULL and EMPTY are proven, and nothing was moved.
+    /// FULL and EMPTY are proven, without displacement.
     pub const CERTIFIED: Proof = Proof::new(true, true);
 
-    /// What is proven, with nothing moved.
+    /// Returns a proof without displacement.
     pub const fn new(full: bool, empty: bool) -> Proof {
         Proof { full, empty, displacement: 0.0 }
     }
 
-    /// How far the surfaces that the cells speak of were moved from those that were handed in, in model
-    /// units: cracks that were sewn, vertices that were rounded, a stated deviation of a tessellation. Finite
-    /// and not negative. Operations keep the greatest of their operands.
+    /// Returns the greatest distance by which the surfaces of the cells were moved from the given surfaces,
+    /// in model units: closed cracks, rounded vertices, a stated deviation of a tessellation. Finite and not
+    /// negative. Operations keep the greatest value of their operands.
     pub fn displacement(self) -> f64 {
         self.displacement
     }
 
-    /// The same with another displacement.
+    /// Returns the same proof with another displacement.
     ///
     /// # Errors
+    ///
     /// [`Error::Argument`] unless the displacement is finite and not negative.
     pub fn with_displacement(self, displacement: f64) -> Result<Proof, Error> {
         if displacement.is_finite() && displacement >= 0.0 {
@@ -60,18 +61,18 @@ impl Proof {
         Err(Error::Argument { name: "displacement", problem: "must be finite and not negative" })
     }
 
-    /// The same with another displacement, which is known to be good. (One that is too large to tell is as
-    /// large as it can be.)
+    /// Returns the same proof with another displacement, which is known to be valid. (An infinite one becomes
+    /// the greatest finite number.)
     pub(crate) fn moved(self, displacement: f64) -> Proof {
         Proof { displacement: displacement.min(f64::MAX), ..self }
     }
 
-    /// Whether FULL and EMPTY are both proven.
+    /// True if FULL and EMPTY are both proven.
     pub fn is_certified(self) -> bool {
         self.full && self.empty
     }
 
-    /// Of the union and of the intersection.
+    /// Returns the proof of a union or an intersection.
     #[must_use]
     pub fn and(self, other: Proof) -> Proof {
         Proof {
@@ -81,25 +82,25 @@ impl Proof {
         }
     }
 
-    /// Of the complement.
+    /// Returns the proof of the complement.
     #[must_use]
     pub fn complement(self) -> Proof {
         Proof { full: self.empty, empty: self.full, ..self }
     }
 
-    /// Of the symmetric difference.
+    /// Returns the proof of a symmetric difference.
     #[must_use]
     pub fn xor(self, other: Proof) -> Proof {
         let both = self.and(other);
         both.and(both.complement())
     }
 
-    /// FULL in bit 0, EMPTY in bit 1; part of the format.
+    /// Returns FULL in bit 0 and EMPTY in bit 1; part of the format.
     pub(crate) fn bits(self) -> u8 {
         self.full as u8 | (self.empty as u8) << 1
     }
 
-    /// The proof of two such bits.
+    /// Returns the proof of two such bits.
     pub(crate) fn from_bits(bits: u8) -> Proof {
         Proof::new(bits & 1 != 0, bits & 2 != 0)
     }

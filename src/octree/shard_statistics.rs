@@ -7,14 +7,15 @@ use crate::lattice::Cell;
 use alloc::vec::Vec;
 
 impl Octree {
-    /// The statistics of the octree that [`join`](crate::op::join) makes of this tree, a
-    /// [top](crate::Shard::Top), and of shards of cells of its level, each with its statistics: nothing is
-    /// joined. A cell that is not among them is PARTIAL. O(cells × depth).
+    /// Returns the statistics of the octree that [`join`](crate::op::join) would make of this tree, a
+    /// [top](crate::Shard::Top), and of shards of cells of its level, each with its statistics. Nothing is
+    /// joined. An open cell without a shard is PARTIAL. O(cells × depth).
     ///
     /// # Errors
-    /// [`Error::Argument`] if the cells do not ascend in Morton order on one level, one is not open in the
-    /// top, or is not split in its shard: what such a shard knows belongs into the top, which
-    /// [`join`](crate::op::join) brings about.
+    ///
+    /// [`Error::Argument`] if the cells do not ascend in Morton order on one level, if a cell is not open in
+    /// the top, or if it is not split in its shard: the content of such a shard belongs into the top, which
+    /// [`join`](crate::op::join) puts there.
     pub fn statistics_with(&self, shards: &[(Cell, Statistics)]) -> Result<Statistics, Error> {
         let mut counts = Vec::from(self.counts());
         let wrong = |problem| Error::Argument { name: "shards", problem };
@@ -33,10 +34,10 @@ impl Octree {
             if levels.len() != counts.len() || levels[usize::from(cell.level)].nodes != 1 {
                 return Err(wrong("must be split on this frame: others belong into the top"));
             }
-            // PARTIAL cells above it become nodes, but for those that the shard before has made nodes.
+            // PARTIAL cells above it become nodes, except those that became nodes with the previous shard.
             let is_new = |level| before.is_none_or(|before| before.ancestor(level) != cell.ancestor(level));
             for level in (open..=cell.level).filter(|&level| is_new(level)) {
-                // (A mapped level table may hold anything.)
+                // (A mapped level table may contain anything.)
                 let at = usize::from(level);
                 counts[at].nodes = counts[at].nodes.saturating_add(1);
                 counts[at].partial = counts[at].partial.saturating_sub(1);

@@ -1,4 +1,4 @@
-//! What a tree holds, level by level.
+//! Statistics of a tree, level by level.
 
 use super::tag::Tag;
 use super::view::{LevelCounts, OctreeRef, starts_half_way};
@@ -9,28 +9,28 @@ use crate::lattice::{Frame, Interval};
 use alloc::vec;
 use alloc::vec::Vec;
 
-/// One level of the canonical octree.
+/// Statistics of one level of the canonical octree.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct LevelStatistics {
-    /// 0 = the universe.
+    /// Level; 0 is the universe.
     pub level: u8,
-    /// Internal nodes at this level: cells that are cut and split.
+    /// Number of internal nodes at this level: cells that are cut and split.
     pub nodes: u64,
-    /// Cells of this level that are EMPTY.
+    /// Number of EMPTY cells of this level.
     pub empty: u64,
-    /// Cells of this level that are FULL.
+    /// Number of FULL cells of this level.
     pub full: u64,
-    /// Cells of this level that are PARTIAL.
+    /// Number of PARTIAL cells of this level.
     pub partial: u64,
-    /// Volume that is surely solid if the tree is cut at this level, in finest cells.
+    /// Surely solid volume of the tree cut at this level, in finest cells.
     pub lower_cells: u64,
-    /// Volume that is possibly solid if the tree is cut at this level, in finest cells.
+    /// Possibly solid volume of the tree cut at this level, in finest cells.
     pub upper_cells: u64,
-    /// The same two in cubic model units, rounded outward.
+    /// Both volumes in cubic model units, rounded outward.
     pub volume: Interval,
 }
 
-/// Nodes, cells and certified volumes of an octree, per level and in all.
+/// Nodes, cells and certified volumes of an octree, for each level and in total.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Statistics {
     levels: Vec<LevelStatistics>,
@@ -41,7 +41,7 @@ impl Statistics {
         let depth = frame.depth();
         let mut levels = Vec::with_capacity(counts.len());
         let (mut lower, mut undecided) = (0u64, 0u64);
-        // A mapped level table may hold anything: nothing here may overflow.
+        // A mapped level table may contain anything: nothing here may overflow.
         let mut above = None;
         for (level, count) in counts.iter().enumerate().take(depth as usize + 1) {
             let cells = 1u64 << (3 * (depth as usize - level));
@@ -65,24 +65,25 @@ impl Statistics {
         Statistics { levels }
     }
 
-    /// The same of numbers that somebody has counted: of each level of the frame, from the universe on, the
-    /// nodes, the FULL and the PARTIAL cells.
+    /// Builds the statistics from given counts: for each level of the frame, from the universe on, the
+    /// numbers of nodes, of FULL and of PARTIAL cells.
     pub fn of_counts(frame: &Frame, counts: &[[u64; 3]]) -> Statistics {
         let level = |&[nodes, full, partial]: &[u64; 3]| LevelCounts { nodes, full, partial };
         Statistics::new(frame, &counts.iter().map(level).collect::<Vec<_>>())
     }
 
-    /// Level by level, from the universe to the finest cells.
+    /// Returns the levels, from the universe to the finest cells.
     pub fn levels(&self) -> &[LevelStatistics] {
         &self.levels
     }
 
-    /// Internal nodes m of the leaf-free octree; a classical octree of the same solid has 8 m + 1.
+    /// Returns the number m of internal nodes of the leaf-free octree; a classical octree of the same solid
+    /// has 8 m + 1 nodes.
     pub fn nodes(&self) -> u64 {
         self.levels.iter().fold(0, |sum, level| sum.saturating_add(level.nodes))
     }
 
-    /// Cells of one tag over all levels; BRANCH counts the nodes.
+    /// Returns the number of cells of one tag over all levels; BRANCH counts the nodes.
     pub fn cells(&self, tag: Tag) -> u64 {
         let of = |level: &LevelStatistics| match tag {
             Tag::Empty => level.empty,
@@ -93,19 +94,19 @@ impl Statistics {
         self.levels.iter().fold(0, |sum, level| sum.saturating_add(of(level)))
     }
 
-    /// The certified volume in cubic model units: the part of the solid inside of the universe is surely at
+    /// Returns the certified volume of the part of the solid inside the universe, in cubic model units: at
     /// least `lower` and at most `upper`.
     pub fn volume(&self) -> Interval {
         self.levels.last().map_or(Interval::exactly(0.0), |level| level.volume)
     }
 
-    /// The certified volume in finest cells: surely and possibly solid.
+    /// Returns the certified volume in finest cells: surely and possibly solid.
     pub fn volume_cells(&self) -> (u64, u64) {
         self.levels.last().map_or((0, 0), |level| (level.lower_cells, level.upper_cells))
     }
 }
 
-/// Numbers of finest cells as cubic model units, rounded outward.
+/// Returns numbers of finest cells as cubic model units, rounded outward.
 pub(crate) fn volume_of(frame: &Frame, lower: u64, upper: u64) -> Interval {
     let size = frame.cell_size();
     let down = |cells: f64| product_down(product_down(product_down(cells, size), size), size);
@@ -195,7 +196,7 @@ impl ElementCounts {
         self.uniform_octants += empty.count_ones() as u64 + full_octants + partial_octants;
         self.full_octants += full_octants;
         self.partial_octants += partial_octants;
-        // Cells of a uniform octant are no cells: the octant is.
+        // The cells of a uniform octant are not cells of the octree: the octant is.
         self.full_cells += planes.full().count_ones() as u64 - 8 * full_octants;
         self.partial_cells += planes.partial().count_ones() as u64 - 8 * partial_octants;
     }

@@ -1,8 +1,8 @@
 //! Sixty-four tags in two words, and the set algebra on them.
 //!
-//! The algebra is Kleene's three-valued logic done on all cells of a block at once. A branch is the
-//! contradictory pair (lower without upper), and the plain words come out right for it except where a branch
-//! meets PARTIAL; [`Planes::clash`] names those cells, and whoever combines trees must descend there.
+//! The algebra is Kleene's three-valued logic, applied to all cells of a block at once. A branch is the
+//! contradictory pair (lower without upper). The plain word operations are right for branches except where a
+//! branch meets PARTIAL. [`Planes::clash`] returns those cells; code that combines trees must descend there.
 
 use super::tag::Tag;
 use bytemuck::{Pod, Zeroable};
@@ -20,7 +20,7 @@ pub struct Planes {
 /// Low bit of every byte.
 const LOW: u64 = 0x0101_0101_0101_0101;
 
-/// One bit per octant (in its byte's low bit) where all eight cells of `word` are set.
+/// Returns one bit per octant (in its byte's low bit) where all eight cells of `word` are set.
 #[inline(always)]
 const fn octants_all(word: u64) -> u64 {
     let a = word & word >> 4;
@@ -29,56 +29,56 @@ const fn octants_all(word: u64) -> u64 {
 }
 
 impl Planes {
-    /// 64 cells that all have `tag`.
+    /// Returns 64 cells that all have `tag`.
     #[inline(always)]
     pub const fn uniform(tag: Tag) -> Planes {
         Planes { lower: if tag.lower() { !0 } else { 0 }, upper: if tag.upper() { !0 } else { 0 } }
     }
 
-    /// Cells that are decided: `solid` are FULL, the others EMPTY.
+    /// Returns decided cells: `solid` are FULL, the others EMPTY.
     #[inline(always)]
     pub const fn binary(solid: u64) -> Planes {
         Planes { lower: solid, upper: solid }
     }
 
-    /// The tag of cell `c` (0 to 63).
+    /// Returns the tag of cell `c` (0 to 63).
     #[inline(always)]
     pub const fn tag(self, c: u32) -> Tag {
         Tag::from_bits(self.lower >> c & 1 != 0, self.upper >> c & 1 != 0)
     }
 
-    /// Gives cell `c` the tag.
+    /// Sets the tag of cell `c`.
     #[inline(always)]
     pub const fn set(&mut self, c: u32, tag: Tag) {
         self.lower = self.lower & !(1 << c) | (tag.lower() as u64) << c;
         self.upper = self.upper & !(1 << c) | (tag.upper() as u64) << c;
     }
 
-    /// The cells that are BRANCH.
+    /// Returns the cells that are BRANCH.
     #[inline(always)]
     pub const fn branch(self) -> u64 {
         self.lower & !self.upper
     }
 
-    /// The cells that are PARTIAL.
+    /// Returns the cells that are PARTIAL.
     #[inline(always)]
     pub const fn partial(self) -> u64 {
         !self.lower & self.upper
     }
 
-    /// The cells that are FULL.
+    /// Returns the cells that are FULL.
     #[inline(always)]
     pub const fn full(self) -> u64 {
         self.lower & self.upper
     }
 
-    /// The cells that are EMPTY.
+    /// Returns the cells that are EMPTY.
     #[inline(always)]
     pub const fn empty(self) -> u64 {
         !self.lower & !self.upper
     }
 
-    /// The one tag that all cells of `real` have, unless they differ or are branches. Cells outside of
+    /// Returns the common tag of all cells of `real`; `None` if they differ or are branches. Cells outside
     /// `real` do not count.
     #[inline(always)]
     pub const fn merged(self, real: u64) -> Option<Tag> {
@@ -96,8 +96,8 @@ impl Planes {
         }
     }
 
-    /// The octree's tag of octant `k`: its own tag if its eight cells agree and are no branches, else
-    /// BRANCH, because the octant is then an internal node.
+    /// Returns the octree's tag of octant `k`: its own tag if its eight cells agree and are no branches;
+    /// otherwise BRANCH, because the octant is then an internal node.
     #[inline(always)]
     pub const fn octant(self, k: u32) -> Tag {
         match ((self.lower >> (8 * k)) as u8, (self.upper >> (8 * k)) as u8) {
@@ -108,50 +108,51 @@ impl Planes {
         }
     }
 
-    /// The octants, as the low bits of their bytes, that are wholly EMPTY, FULL and PARTIAL. The others are
-    /// internal nodes.
+    /// Returns the octants that are completely EMPTY, FULL and PARTIAL, as the low bits of their bytes. The
+    /// others are internal nodes.
     #[inline(always)]
     pub const fn octants(self) -> [u64; 3] {
         [octants_all(self.empty()), octants_all(self.full()), octants_all(self.partial())]
     }
 
-    /// The complement. BRANCH and PARTIAL map to themselves.
+    /// Returns the complement. BRANCH and PARTIAL map to themselves.
     #[inline(always)]
     pub const fn complement(self) -> Planes {
         Planes { lower: !self.upper, upper: !self.lower }
     }
 
-    /// The complement if `flip`, else the same.
+    /// Returns the complement if `flip`, otherwise the same cells.
     #[inline(always)]
     pub const fn complement_if(self, flip: bool) -> Planes {
         if flip { self.complement() } else { self }
     }
 
-    /// Union; wrong in the cells of [`clash`](Self::clash).
+    /// Returns the union; wrong in the cells of [`clash`](Self::clash).
     #[inline(always)]
     pub const fn union(self, b: Planes) -> Planes {
         Planes { lower: self.lower | b.lower, upper: self.upper | b.upper }
     }
 
-    /// Intersection; wrong in the cells of [`clash`](Self::clash).
+    /// Returns the intersection; wrong in the cells of [`clash`](Self::clash).
     #[inline(always)]
     pub const fn intersection(self, b: Planes) -> Planes {
         Planes { lower: self.lower & b.lower, upper: self.upper & b.upper }
     }
 
-    /// Symmetric difference; wrong in the cells of [`clash`](Self::clash), where PARTIAL is right.
+    /// Returns the symmetric difference; wrong in the cells of [`clash`](Self::clash), where PARTIAL is
+    /// right.
     #[inline(always)]
     pub const fn xor(self, b: Planes) -> Planes {
         self.intersection(b.complement()).union(self.complement().intersection(b))
     }
 
-    /// The cells where one operand is BRANCH and the other PARTIAL.
+    /// Returns the cells where one operand is BRANCH and the other PARTIAL.
     #[inline(always)]
     pub const fn clash(self, b: Planes) -> u64 {
         (self.lower ^ b.lower) & (self.upper ^ b.upper) & (self.lower ^ self.upper)
     }
 
-    /// The same cells with every cell outside of `real` made EMPTY.
+    /// Returns the same cells, with every cell outside `real` made EMPTY.
     #[inline(always)]
     pub const fn masked(self, real: u64) -> Planes {
         Planes { lower: self.lower & real, upper: self.upper & real }
@@ -173,7 +174,7 @@ mod tests {
             Tag::Branch => None,
         };
         let constant = |known: &[bool], flip: bool| {
-            // One operand is a branch: decided only if the other decides alone.
+            // One operand is a branch: the cell is decided only if the other operand decides alone.
             let f = |k: bool, x: bool| if flip { op(x, k) } else { op(k, x) };
             let results = known.iter().flat_map(|&k| [f(k, false), f(k, true)]);
             let mut results = results.collect::<alloc::vec::Vec<_>>();

@@ -1,9 +1,9 @@
-//! The one place where trees come into being.
+//! The one place where trees are made.
 //!
-//! Whoever makes a tree walks it depth first and hands over each element after its children. Each level has
-//! an output array of its own; because every level fills up in Morton order, the concatenation *is* the
-//! stored level order. An element whose cells all agree is not stored but reported as that tag, and as it
-//! then has no stored children nothing is ever taken back: the result is canonical by construction.
+//! The maker of a tree walks it depth first, and passes each element after its children. Each level has its
+//! own output array. Every level fills up in Morton order, so the concatenation *is* the stored level order.
+//! An element whose cells all agree is not stored but reported as that tag. As it then has no stored
+//! children, nothing is ever removed again: the result is canonical by construction.
 
 use super::arrays::Arrays;
 use super::brick::{Brick, BrickArray, Bricks, OwnedArray, OwnedBricks};
@@ -22,10 +22,10 @@ use crate::parallel;
 use alloc::vec::Vec;
 use core::ops::Range;
 
-/// Items that several threads copy at once when pieces are joined.
+/// Number of items that each of several threads copies at once when pieces are joined.
 const BLOCK: usize = 64;
 
-/// A vector in pieces: it grows without ever copying what it holds or asking for twice the memory.
+/// A vector in pieces: it grows without copying its contents or requesting twice the memory.
 struct Chunks<T> {
     full: Vec<Vec<T>>,
     tail: Vec<T>,
@@ -34,7 +34,7 @@ struct Chunks<T> {
 impl<T: Copy + Send + Sync> Chunks<T> {
     const SMALLEST: usize = 64;
     const LARGEST: usize = 1 << 17;
-    /// What is joined by copying and not as a piece of its own.
+    /// Longest run of items that is copied when vectors are joined; a longer one stays a separate piece.
     const COPIED: usize = 1 << 10;
 
     fn new() -> Chunks<T> {
@@ -45,7 +45,7 @@ impl<T: Copy + Send + Sync> Chunks<T> {
         self.full.iter().map(Vec::len).sum::<usize>() + self.tail.len()
     }
 
-    /// Makes room for at least `count` more without a further piece.
+    /// Makes room for at least `count` more items without a further piece.
     fn reserve(&mut self, count: usize) -> Result<(), Error> {
         if self.tail.capacity() - self.tail.len() >= count {
             return Ok(());
@@ -55,10 +55,9 @@ impl<T: Copy + Send + Sync> Chunks<T> {
         self.retire(fresh)
     }
 
-    /// The same for all that is to come, which may turn out to be less, if it is to be in `one` piece. An
-    /// allocator that keeps blocks of the sizes that it was given back must see this size once, not only what
-    /// is left of it in the end; else it has fresh pages for every result, and they take as long as the
-    /// result.
+    /// Makes room for all items to come, of which there may turn out to be fewer, if they are to be in `one`
+    /// piece. An allocator that keeps blocks of freed sizes must see this size each time, and not only the
+    /// used part of it. Otherwise each result has fresh pages, and these take as long as the result.
     fn reserve_whole(&mut self, count: usize, one: bool) -> Result<(), Error> {
         drop(core::hint::black_box(memory::with_capacity::<T>(count)?));
         if one { self.reserve(count) } else { Ok(()) }
@@ -94,8 +93,8 @@ impl<T: Copy + Send + Sync> Chunks<T> {
         Ok(())
     }
 
-    /// Everything in one piece; without a copy if it already is. By all threads if several wrote it, which
-    /// are then those of a pool.
+    /// Returns everything in one piece, without a copy if it already is. If several threads wrote it, all
+    /// threads of the pool copy.
     fn into_vec(self, joined: bool) -> Result<Vec<T>, Error> {
         if self.full.is_empty() {
             let mut tail = self.tail;
@@ -107,7 +106,7 @@ impl<T: Copy + Send + Sync> Chunks<T> {
             let count = self.len();
             let pieces = || self.full.iter().chain([&self.tail]).map(Vec::as_slice);
             let mut blocks: Vec<[T; BLOCK]> = memory::with_capacity(count.div_ceil(BLOCK))?;
-            // Each share consists of neighbours, so it looks only for the first of them.
+            // Each share consists of consecutive items, so it searches only for the first of them.
             parallel::extend(
                 true,
                 &mut blocks,
@@ -153,18 +152,18 @@ enum BrickChunks {
     Two(Chunks<Planes>),
 }
 
-/// The working form of a tree that is being made: an output array per level, without links.
+/// The working form of a tree that is being made: an output array for each level, without links.
 pub(crate) struct Writer<'j> {
     job: &'j Job<'j>,
     depth: u8,
     levels: Vec<Chunks<Planes>>,
     bricks: BrickChunks,
-    /// Whether parts were appended.
+    /// True if parts were appended.
     joined: bool,
-    /// Runs of elements that were copied, with their levels, since somebody last asked; nothing if nobody
-    /// asks.
+    /// Runs of elements that were copied since the last query, with their levels; `None` if they are not
+    /// recorded.
     runs: Option<Vec<(usize, Range<usize>)>>,
-    // Written since the job was last told.
+    // Nodes written since the last report to the job.
     nodes: usize,
     bytes: usize,
     untold: u32,
@@ -174,7 +173,7 @@ pub(crate) struct Writer<'j> {
 const REPORT: u32 = 256;
 
 impl<'j> Writer<'j> {
-    /// A writer for a tree of `depth`; `binary` promises that no cell will be PARTIAL.
+    /// Returns a writer for a tree of `depth`; `binary` promises that no cell will be PARTIAL.
     pub(crate) fn new(job: &'j Job<'j>, depth: u8, binary: bool) -> Writer<'j> {
         Writer {
             job,
@@ -189,18 +188,18 @@ impl<'j> Writer<'j> {
         }
     }
 
-    /// An empty writer for a part of the same tree, to be [appended](Self::append) later.
+    /// Returns an empty writer for a part of the same tree, to be [appended](Self::append) later.
     pub(crate) fn sibling(&self) -> Writer<'j> {
         let runs = self.runs.as_ref().map(|_| Vec::new());
         Writer { runs, ..Writer::new(self.job, self.depth, matches!(self.bricks, BrickChunks::One(_))) }
     }
 
-    /// From now on runs that are copied are noted.
+    /// Starts to record the runs that are copied.
     pub(crate) fn note_runs(&mut self) {
         self.runs = Some(Vec::new());
     }
 
-    /// The runs of elements that were copied since the last time, with their levels.
+    /// Returns the runs of elements that were copied since the last query, with their levels.
     pub(crate) fn noted_runs(&mut self) -> Vec<(usize, Range<usize>)> {
         self.runs.replace(Vec::new()).unwrap_or_default()
     }
@@ -209,7 +208,7 @@ impl<'j> Writer<'j> {
         self.job
     }
 
-    /// Reserves room for `count` elements of level `e` if they are to be in `one` piece; memory is only
+    /// Reserves room for `count` elements of level `e` if they are to be in `one` piece. Memory is only
     /// touched when it is used.
     pub(crate) fn reserve(&mut self, e: usize, count: usize, one: bool) -> Result<(), Error> {
         match self.levels.get_mut(e) {
@@ -221,8 +220,8 @@ impl<'j> Writer<'j> {
         }
     }
 
-    /// Hands over an element or brick of level `e` whose children have been handed over: returns the tag of
-    /// its cell, which is BRANCH if it had to be stored.
+    /// Stores an element or brick of level `e` whose children have been stored. Returns the tag of its cell,
+    /// which is BRANCH if it had to be stored.
     #[inline(always)]
     pub(crate) fn put(&mut self, e: usize, planes: Planes) -> Result<Tag, Error> {
         let real = if e == 0 { root_cells(self.depth) } else { !0 };
@@ -318,7 +317,7 @@ impl<'j> Writer<'j> {
         Ok(())
     }
 
-    /// Bytes of each copied brick, or `None` if one is damaged.
+    /// Appends the bricks of `run`, and returns the bytes of each copied brick; `None` if one is damaged.
     fn copy_bricks(
         &mut self,
         from: &Bricks<'_>,
@@ -346,7 +345,7 @@ impl<'j> Writer<'j> {
         }
     }
 
-    /// Takes over what a sibling wrote, which comes after all that this one wrote so far.
+    /// Takes over the output of a sibling, which comes after all output of this writer so far.
     pub(crate) fn append(&mut self, other: Writer<'j>) -> Result<(), Error> {
         for (level, theirs) in self.levels.iter_mut().zip(other.levels) {
             level.append(theirs)?;
@@ -363,13 +362,13 @@ impl<'j> Writer<'j> {
         if self.untold >= REPORT { self.report() } else { Ok(()) }
     }
 
-    /// Makes the tree: concatenates the levels and ranks the children. `root` is what the last
+    /// Makes the tree: concatenates the levels and ranks the children. `root` is the tag that the last
     /// [`put`](Self::put) of level 0 returned.
     pub(crate) fn finish(self, frame: Frame, root: Tag, exterior: Tag) -> Result<Octree, Error> {
         Ok(Octree::new(self.arrays(frame, root, exterior)?))
     }
 
-    /// The same with cuts.
+    /// Makes the tree with cuts.
     pub(crate) fn finish_with(
         self,
         frame: &Frame,
@@ -403,7 +402,7 @@ impl<'j> Writer<'j> {
             }
             BrickChunks::Two(bricks) => {
                 let bricks = bricks.into_vec(self.joined)?;
-                // Without a single brick their kind still says whether anything is undecided.
+                // Even without a brick, the kind of bricks says whether anything is undecided.
                 if root == Tag::Partial || planes.iter().any(undecided) || bricks.iter().any(undecided) {
                     OwnedBricks::Two(OwnedArray::Raw(bricks))
                 } else {
@@ -429,7 +428,8 @@ impl Hot for Branches<'_> {
     }
 }
 
-/// Octree nodes in an element: itself and its cut octants. A root that starts half-way is only its octant.
+/// Returns the number of octree nodes in an element: itself and its cut octants. A root that starts half-way
+/// is only its octant.
 #[inline]
 pub(crate) fn octree_nodes(planes: Planes, half: bool) -> usize {
     if half {

@@ -22,94 +22,94 @@ use serde::Serialize;
 use std::ffi::OsString;
 use std::time::Instant;
 
-/// Gives a solid a channel: a value of one to four numbers at every point inside. The values are those of a
-/// function, a volume or a channel of another solid, at the centres of cells; equal neighbours are stored as
-/// one. The channel travels in the solid's file, and through the Boolean commands.
+/// Gives a solid a channel: a value of one to four numbers at every point inside. The values come from a
+/// function, a volume, a mesh or a channel of another solid, and are taken at the centres of cells. Equal
+/// neighbours are stored as one. The channel is stored in the solid's file, and the Boolean commands carry it
+/// along.
 ///
-/// Without a detail, every cell of the channel's finest level has its own value, wherever it is not proven
-/// that all of a larger cell has one. With --coarse, --fine and --tolerance cells are split as far as the
-/// values demand it.
+/// Without --tolerance every cell of the channel's finest level gets its own value, unless a larger cell is
+/// proven to have one value. With --coarse, --fine and --tolerance, cells are split as far as the values
+/// demand it.
 #[derive(Args)]
 #[command(group = clap::ArgGroup::new("values").required(true).args(["from", "bodies", "expr", "value", "remove"]))]
 pub struct Arguments {
     /// Solid (.lfl)
     file: OsString,
-    /// Name of the channel. One of this name is replaced, or changed with --in
+    /// Name of the channel. An existing channel of this name is replaced, or changed with --in
     #[arg(long, value_name = "NAME")]
     name: String,
     /// Take the values from this file: the samples of a volume (NRRD, MetaImage, raw), the colours or
-    /// materials of a mesh (3MF, PLY) at the nearest point of its surface, or the channel of this name of
+    /// materials of a mesh (3MF, PLY) at the nearest point of its surface, or the channel of the same name of
     /// another solid (.lfl)
     #[arg(long, value_name = "FILE")]
     from: Option<OsString>,
-    /// Take the number of the nearest body of this mesh (STL, OBJ, PLY, OFF, 3MF), counted from 0 in the
-    /// order of their first triangles
-    #[arg(long, value_name = "MESH")]
-    bodies: Option<OsString>,
-    /// Which values of a mesh. Without it: those of the channel's name, or the only ones
-    #[arg(long, value_name = "NAME", requires = "from")]
-    pick: Option<String>,
     /// Take the values from a function of x, y and z; given up to four times, once for each number of a value
     #[arg(long, value_name = "EXPR", allow_hyphen_values = true, long_help = expression_help())]
     expr: Vec<String>,
     /// Take one value everywhere: one to four numbers
     #[arg(long, value_name = "V,…", value_parser = numbers, allow_hyphen_values = true)]
     value: Option<Numbers>,
-    /// Take the channel away
+    /// Take the number of the nearest body of this mesh (STL, OBJ, PLY, OFF, 3MF). Bodies are counted from 0,
+    /// in the order of their first triangles
+    #[arg(long, value_name = "MESH")]
+    bodies: Option<OsString>,
+    /// Remove the channel
     #[arg(long)]
     remove: bool,
-    /// Change an existing channel, and only inside of this solid (.lfl), which lies in the same cube
-    #[arg(long = "in", value_name = "REGION.lfl", conflicts_with = "remove")]
-    region: Option<OsString>,
-    /// Type in which numbers are stored. Without it: f32, or that of the channel that is copied or changed
-    #[arg(long, value_parser = scalars(), value_name = "TYPE")]
-    store: Option<ScalarType>,
-    /// Levels of the channel's cells, 1 to 20. Without it: those of the solid, or 8 if its cells keep
-    /// surfaces
-    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u8).range(1..=MAX_DEPTH as i64))]
-    depth: Option<u8>,
-    /// Edge that no cell may exceed where the solid is. Without it: no limit
-    #[arg(long, value_name = "EDGE", requires = "tolerance", allow_hyphen_values = true)]
-    coarse: Option<f64>,
-    /// Edge at which cells are not split any more. Without it: that of the finest cells
-    #[arg(long, value_name = "EDGE", requires = "tolerance", allow_hyphen_values = true)]
-    fine: Option<f64>,
-    /// Split cells until the values in them are proven to differ by no more than this, in each number; where
-    /// nothing is proven, to the fine edge
-    #[arg(long, value_name = "V", allow_hyphen_values = true)]
-    tolerance: Option<f64>,
-    /// Compare the values at the eight corners of a cell instead, as published: their standard deviation must
-    /// be no more than the tolerance. Details between the corners are missed
-    #[arg(long, requires = "tolerance")]
-    corners: bool,
-    /// Take the sample of the nearest voxel, and do not interpolate
-    #[arg(long, requires = "from")]
-    nearest: bool,
-    /// Keep values outside of the solid, too
-    #[arg(long)]
-    everywhere: bool,
-    /// Unit of the values, which is kept beside them
-    #[arg(long, value_name = "TEXT")]
-    unit: Option<String>,
-    /// What the values mean, which is kept beside them: colour, density, material
-    #[arg(long, value_name = "TEXT")]
-    meaning: Option<String>,
-    /// File to write, or `-` for standard output. Without it: the solid's own
+    /// File to write, or `-` for standard output [default: the solid's own file]
     #[arg(short, long, value_name = "OUT.lfl")]
     output: Option<OsString>,
-    #[command(flatten)]
-    sampling: Sampling,
-    /// Threads to use; 0: as many as there are processors. The result is the same
-    #[arg(long, default_value_t = 0, value_name = "N", value_parser = threads)]
-    threads: usize,
+    /// Change an existing channel, and only inside this solid (.lfl), which must lie in the same cube
+    #[arg(long = "in", value_name = "REGION.lfl", conflicts_with = "remove")]
+    region: Option<OsString>,
+    /// Keep values outside the solid, too
+    #[arg(long)]
+    everywhere: bool,
+    /// Which values of the mesh of --from to take [default: those of the channel's name, or the only ones]
+    #[arg(long, value_name = "NAME", requires = "from")]
+    pick: Option<String>,
+    /// Take the sample of the nearest voxel of a volume, without interpolation
+    #[arg(long, requires = "from")]
+    nearest: bool,
     /// Print one JSON object
     #[arg(long)]
     json: bool,
+    /// Levels of the channel's cells, 1 to 20 [default: those of the solid, or 8 if its cells keep surfaces]
+    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u8).range(1..=MAX_DEPTH as i64))]
+    depth: Option<u8>,
+    /// Split cells until the values in a cell are proven to differ by no more than this, in each number;
+    /// where nothing is proven, down to the edge --fine
+    #[arg(long, value_name = "V", allow_hyphen_values = true)]
+    tolerance: Option<f64>,
+    /// Longest edge of a cell inside the solid, in the solid's units [default: no limit]
+    #[arg(long, value_name = "EDGE", requires = "tolerance", allow_hyphen_values = true)]
+    coarse: Option<f64>,
+    /// Edge at which cells are no longer split, in the solid's units [default: the edge of the finest cells]
+    #[arg(long, value_name = "EDGE", requires = "tolerance", allow_hyphen_values = true)]
+    fine: Option<f64>,
+    /// Compare only the values at the eight corners of a cell, as in the published method: their standard
+    /// deviation must be no more than the tolerance. Details between the corners are missed
+    #[arg(long, requires = "tolerance")]
+    corners: bool,
+    /// Threads to use, 0 to 1024; 0: one for each processor. The result does not depend on it
+    #[arg(long, default_value_t = 0, value_name = "N", value_parser = threads)]
+    threads: usize,
+    /// Type in which numbers are stored [default: f32, or the type of the channel that is copied or changed]
+    #[arg(long, value_parser = scalars(), value_name = "TYPE", help_heading = "Stored with the values")]
+    store: Option<ScalarType>,
+    /// Unit of the values: a text
+    #[arg(long, value_name = "TEXT", help_heading = "Stored with the values")]
+    unit: Option<String>,
+    /// What the values mean: a text, such as colour, density or material
+    #[arg(long, value_name = "TEXT", help_heading = "Stored with the values")]
+    meaning: Option<String>,
+    #[command(flatten)]
+    sampling: Sampling,
 }
 
 fn expression_help() -> String {
     format!(
-        "Take the values from a function of x, y and z; given up to four times, once for each number of a value.\n\nIt may have {SYNTAX}. A point at which it is not defined has no value"
+        "Take the values from a function of x, y and z; given up to four times, once for each number of a value.\n\nA function consists of {SYNTAX}. A point at which it is not defined has no value"
     )
 }
 
@@ -135,7 +135,7 @@ struct Report {
     seconds: f64,
 }
 
-/// Depth of a new channel of a solid whose cells keep surfaces, if none is asked for.
+/// Depth of a new channel of a solid whose cells keep surfaces, without --depth.
 const DEPTH: u8 = 8;
 
 pub fn run(arguments: &Arguments) -> Result<(), Failure> {
@@ -176,7 +176,7 @@ fn made(arguments: &Arguments, input: &Input, octree: &Octree) -> Result<Channel
     let values = values(arguments, octree)?;
     let kind = arguments.store.or(values.kind);
     let own_depth = match octree.view().cuts() {
-        // Its own cells end at any size, and the frame is as deep as can be.
+        // The solid's own cells end at any size, and its frame is as deep as possible.
         Some(_) => DEPTH.min(octree.frame().depth()),
         None => octree.frame().depth(),
     };

@@ -16,36 +16,37 @@ use serde::Serialize;
 use std::ffi::OsString;
 use std::path::Path;
 
-/// Each cell of the finest level in the whole universe is a byte, 255 inside and 0 outside.
+/// Each cell of the chosen level in the whole cube of the solid becomes one byte: 255 inside, 0 outside.
+/// `leafless voxelize` makes the same solid from the volume again.
 ///
-/// `leafless voxelize` makes the same solid of the volume.
+/// A raw volume has no header. Its extents are printed: remember them to read the file again.
 #[derive(Args)]
 pub struct Arguments {
     /// Solid (.lfl), or `-` for standard input
     file: OsString,
-    /// Where to write: the extension .nrrd or .raw tells the format; `-` is standard output
+    /// File to write, with the extension .nrrd or .raw, or `-` for standard output
     #[arg(short, long, value_name = "OUTPUT")]
     output: OsString,
-    /// Format to write. Without it: what the extension of the output says, or NRRD for standard output
-    #[arg(long, value_enum)]
-    write: Option<WriteName>,
-    /// Compress the samples of a NRRD
-    #[arg(long)]
-    gzip: bool,
-    /// What undecided cells count as, and cells of the level that are cut further. Without it: what their
-    /// centres are, where cells keep surfaces, and outer in other files, which is told
-    #[arg(long, value_enum)]
-    resolve: Option<ResolveName>,
-    /// Level of the cells, 0 to the solid's depth. Without it: the finest one, or 8 if the cells keep
-    /// surfaces
-    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u8).range(0..=MAX_DEPTH as i64))]
-    level: Option<u8>,
-    /// Threads to use; 0: as many as there are processors. The result is the same
-    #[arg(long, default_value_t = 0, value_name = "N", value_parser = threads)]
-    threads: usize,
     /// Print one JSON object
     #[arg(long)]
     json: bool,
+    /// Level of the cells, from 0 to the solid's depth [default: the finest one, or 8 if the cells keep
+    /// surfaces]
+    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u8).range(0..=MAX_DEPTH as i64))]
+    level: Option<u8>,
+    /// What undecided cells count as, and cells of this level that are split further [default: what their
+    /// centres are, where cells keep surfaces; otherwise outer, and a note says so]
+    #[arg(long, value_enum)]
+    resolve: Option<ResolveName>,
+    /// Threads to use, 0 to 1024; 0: one for each processor. The result does not depend on it
+    #[arg(long, default_value_t = 0, value_name = "N", value_parser = threads)]
+    threads: usize,
+    /// Format to write [default: by the extension of the output; NRRD for standard output]
+    #[arg(long, value_enum)]
+    write: Option<WriteName>,
+    /// Compress the samples of an NRRD
+    #[arg(long)]
+    gzip: bool,
 }
 
 #[derive(Debug, Clone, Copy, PartialEq, ValueEnum)]
@@ -54,7 +55,7 @@ enum WriteName {
     Raw,
 }
 
-/// Level of the cells of a solid whose cells keep surfaces, if none is asked for.
+/// Level of the cells of a solid whose cells keep surfaces, without --level.
 const LEVEL: u8 = 8;
 
 #[derive(Serialize)]
@@ -65,7 +66,7 @@ struct Report {
     extents: [u32; 3],
     spacing: f64,
     corner: [f64; 3],
-    /// Samples that are inside.
+    /// Number of samples that are inside.
     inside: u64,
     bytes: u64,
 }
@@ -88,7 +89,7 @@ pub fn run(arguments: &Arguments) -> Result<(), Failure> {
         let problem = format!("--level {level} is beyond the depth of {input}, which is {}", frame.depth());
         return Err(Failure::Usage(problem));
     }
-    // Its own cells are large, and say little: the surfaces decide smaller ones.
+    // The solid's own cells are large, and say little: its surfaces decide smaller ones.
     let rule = arguments.resolve.map_or(Rule::Sampled, Rule::from);
     let octree = match keeps_surfaces {
         true => watched("bitmap", arguments.threads, |control| plain(&octree, level.max(1), rule, control))
@@ -105,7 +106,7 @@ pub fn run(arguments: &Arguments) -> Result<(), Failure> {
         complain(&format!("{input}: {UNDECIDED}"));
     }
     if octree.view().exterior() != Tag::Empty {
-        let warning = "warning: the solid may go on outside of its bounds, which a volume does not tell";
+        let warning = "warning: the solid may extend beyond its bounds; a volume does not record that";
         complain(&format!("{input}: {warning}"));
     }
     let n = 1u32 << level;
@@ -141,7 +142,7 @@ pub fn run(arguments: &Arguments) -> Result<(), Failure> {
     output.tell(arguments.json, &report, Report::text)
 }
 
-/// Says if the corner does not come back: the format has the first voxel's centre, rounded.
+/// Warns if the corner is not read back exactly: the format stores the centre of the first voxel, rounded.
 fn warn_of_rounding(grid: &VoxelGrid, output: &Output) -> Result<(), Error> {
     let one = VoxelGrid::new([1; 3], grid.corner(), grid.spacing())?;
     let header = write_nrrd(&vec![0u8].into(), &one, NrrdEncoding::Raw)?;
@@ -154,7 +155,7 @@ fn warn_of_rounding(grid: &VoxelGrid, output: &Output) -> Result<(), Error> {
     Ok(())
 }
 
-/// The format to write.
+/// Returns the format to write.
 fn format(arguments: &Arguments, path: Option<&Path>) -> Result<WriteName, Failure> {
     if let Some(name) = arguments.write {
         return Ok(name);
@@ -170,7 +171,7 @@ fn format(arguments: &Arguments, path: Option<&Path>) -> Result<WriteName, Failu
     }
 }
 
-/// A byte for each cell of a level, x fastest.
+/// Returns a byte for each cell of a level, x fastest.
 fn samples(octree: &Octree, level: u8, is_outer: bool, control: &Control<'_>) -> Result<Vec<u8>, Error> {
     let n = 1usize << level;
     let row = n.div_ceil(64);

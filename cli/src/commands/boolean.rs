@@ -15,34 +15,34 @@ use leafless::Frame;
 use leafless::attribute::CarryRule;
 use std::ffi::OsString;
 
-/// Solids from files (.lfl) must lie on one frame: `leafless voxelize --like part.lfl` makes one on that of
-/// another. Meshes, scenes and volumes are cut into cells on the frame of the first solid; without any, on
-/// the voxels of a volume that comes first, or on a cube around all of them:
-/// `leafless xor old.stl new.stl -o changes.lfl`. The result may replace one of the files. Tri-dexel models
-/// can be combined with each other, made with the same --bounds and --resolution.
+/// Solids from files (.lfl) must lie on one frame, that is, in the same cube with the same depth: `leafless
+/// voxelize --like part.lfl` makes a solid on the frame of another one. Meshes, scenes and volumes are cut
+/// into cells on the frame of the first solid. Without any solid, the frame is that of the voxels of a volume
+/// that comes first, or a cube around all operands. The result may replace one of the files. Tri-dexel models
+/// can be combined with each other if they were made with the same --bounds and --resolution.
 ///
-/// Meshes, scenes and volumes make a triangle mesh, too, if the output has the extension .stl, .ply, .obj,
-/// .off or .3mf, as `leafless mesh` makes one of a scene: `leafless difference part.stl tool.stl -o cut.stl`.
+/// Meshes, scenes and volumes can also make a triangle mesh: give the output the extension .stl, .ply, .obj,
+/// .off or .3mf. The surface is made as `leafless mesh` makes that of a scene.
 ///
 /// --translate, --rotate, --scale and --place move the file that they stand behind, and put it onto the frame
-/// of the first file: `leafless difference part.lfl pin.lfl --rotate z,30 pin.lfl --rotate z,60 -o out.lfl`
-/// cuts two pins. What was moved by whole cells and quarter turns, or keeps surfaces, stays exact; otherwise
-/// its cells blur by about one.
+/// of the first file. A solid that is moved by whole cells and quarter turns, or whose cells keep surfaces,
+/// stays exact; otherwise its cells blur by about one cell.
 ///
 /// If a solid keeps surfaces (`leafless csg --surfaces`), the result keeps them, too, and is as exact. Give
-/// all tools in one command: they are cut at once, and what is larger than they are is copied once. A solid
+/// all tools in one command: they are cut at once, and cells larger than the tools are copied once. A solid
 /// without surfaces takes part with its cells.
 #[derive(Args)]
 pub struct Arguments {
     #[command(flatten)]
-    operands: Operands,
-    #[command(flatten)]
     common: Common,
+    #[command(flatten)]
+    operands: Operands,
 }
 
-/// Solid where there was none, and none where there was some.
+/// The complement is solid where the operand is empty, and empty where the operand is solid.
 ///
-/// That is so outside of the bounds, too, but for tri-dexel models, which end at them.
+/// This also holds outside the cube of the solid. Tri-dexel models are the exception: they end at their
+/// bounds.
 #[derive(Args)]
 pub struct ComplementArguments {
     /// Solid or tri-dexel model (.lfl), mesh (STL, OBJ, PLY, OFF, 3MF), scene (.csg) or volume (NRRD,
@@ -54,32 +54,33 @@ pub struct ComplementArguments {
 
 #[derive(Args)]
 struct Common {
-    /// File to write, or `-` for standard output; it is written whole or not at all. The extension of a mesh
-    /// makes it one
+    /// File to write (.lfl), or `-` for standard output; written completely or not at all. The extension of a
+    /// mesh format makes a triangle mesh
     #[arg(short, long, value_name = "OUT.lfl")]
     output: OsString,
-    /// Threads to use; 0: as many as there are processors. The result is the same
+    /// Whose value a channel takes where several solids have one: that of the first (left) or last (right)
+    /// solid, the greatest, or the mean [default: left]
+    #[arg(long, value_name = "NAME=left|right|max|mean", value_parser = carry)]
+    carry: Vec<(String, CarryRule)>,
+    /// Levels of the cells of meshes, scenes and volumes without a solid among them, 1 to 20 [default: 10, 8
+    /// for a triangle mesh, or those of the voxels]
+    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u8).range(1..=leafless::lattice::MAX_DEPTH as i64))]
+    depth: Option<u8>,
+    /// Drop the surfaces that undecided cells of the result keep. Only the cells remain, and they may be few
+    /// and large. With a level N, 1 to 20, the surfaces first decide the cells of that level
+    #[arg(long, value_name = "N", num_args = 0..=1, require_equals = true, value_parser = clap::value_parser!(u8).range(1..=leafless::lattice::MAX_DEPTH as i64))]
+    plain: Option<Option<u8>>,
+    /// Threads to use, 0 to 1024; 0: one for each processor. The result does not depend on it
     #[arg(long, default_value_t = 0, value_name = "N", value_parser = crate::options::threads)]
     threads: usize,
     /// Lower corner and edge length of the cube of cells, for meshes, scenes and volumes without a solid
-    /// among them. Without it: the voxels of a volume that comes first, or the cube around all of them
+    /// among them [default: the voxels of a volume that comes first, or the cube around all operands]
     #[arg(long, value_name = "X0,Y0,Z0,EDGE", value_parser = crate::options::bounds, allow_hyphen_values = true)]
     bounds: Option<Frame>,
-    /// Levels of cells there, 1 to 20. Without it: 10, or 8 for a triangle mesh, or those of the voxels
-    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u8).range(1..=leafless::lattice::MAX_DEPTH as i64))]
-    depth: Option<u8>,
     #[command(flatten)]
     reading: Reading,
     #[command(flatten)]
     drawing: Drawing,
-    /// Whose value of a channel counts where several solids have one: that of the first, the last, the
-    /// greatest, or the mean. Without it: that of the first
-    #[arg(long, value_name = "NAME=left|right|max|mean", value_parser = carry)]
-    carry: Vec<(String, CarryRule)>,
-    /// Drop the surfaces that undecided cells of the result keep, so that the cells are left alone, which may
-    /// be few and large. With a level, 1 to 20, the surfaces first decide the cells of that level
-    #[arg(long, value_name = "N", num_args = 0..=1, require_equals = true, value_parser = clap::value_parser!(u8).range(1..=leafless::lattice::MAX_DEPTH as i64))]
-    plain: Option<Option<u8>>,
 }
 
 impl Common {
@@ -113,9 +114,8 @@ impl Args for Operands {
         let files =
             Arg::new("files").value_name("FILE").required(true).num_args(1..).action(ArgAction::Append);
         let files = files.value_parser(value_parser!(OsString)).help(
-            "Solids or tri-dexel models (.lfl), meshes (STL, OBJ, PLY, OFF, 3MF), scenes (.csg) or volumes (NRRD, MetaImage), two \
-             or more; one of them may be `-` for standard input. --translate, --rotate, --scale and --place move the file that they stand behind, and put it onto the common \
-             frame: `difference part.lfl pin.lfl --rotate z,30 pin.lfl --rotate z,60 -o out.lfl`",
+            "Two or more solids or tri-dexel models (.lfl), meshes (STL, OBJ, PLY, OFF, 3MF), scenes (.csg) or volumes (NRRD, MetaImage); \
+             one of them may be `-` for standard input. --translate, --rotate, --scale and --place move the file that they stand behind",
         );
         Placing::augment_args(command.arg(files))
     }

@@ -12,9 +12,10 @@ use std::ffi::OsString;
 /// Reads points from standard input, one a line: x, y and z in the solid's units, separated by blanks, tabs
 /// or commas. Empty lines and lines that begin with # are skipped.
 ///
-/// Prints a line for each point: `inside` and `outside` are proven if the solid is certified; `undecided` are
-/// points in cells that the surface may pass through, points outside of the solid's bounds, and such as
-/// `nan`. Answers come as soon as lines are there, so that another program can ask and wait.
+/// Prints one line for each point: `inside`, `outside` or `undecided`. `inside` and `outside` are proven if
+/// the solid is certified. `undecided` are points in cells that the surface may pass through, points outside
+/// the solid's bounds, and points with a coordinate such as `nan`. Answers are printed as soon as lines
+/// arrive, so that another program can ask and wait.
 #[derive(Args)]
 pub struct Arguments {
     /// Solid (.lfl)
@@ -23,7 +24,7 @@ pub struct Arguments {
 
 pub fn run(arguments: &Arguments) -> Result<(), Failure> {
     let input = Input::file(&arguments.file, "points")?;
-    // Proven answers need a file that is what its maker wrote.
+    // Proven answers need an intact file.
     let (octree, _) = input.octree(true)?;
     let tree = octree.view();
     let solid = tree.cuts().map(|_| Prepared::new(AnySolid::new(octree.clone())));
@@ -33,7 +34,7 @@ pub fn run(arguments: &Arguments) -> Result<(), Failure> {
 /// Points that are answered together.
 struct Batch<'t, 'a> {
     tree: &'t OctreeRef<'a>,
-    /// The same if its cells keep surfaces.
+    /// The octree as a solid, if its cells keep surfaces.
     solid: Option<Prepared>,
     points: Vec<[f64; 3]>,
     answers: Vec<Membership>,
@@ -52,7 +53,7 @@ impl Questions<3> for Batch<'_, '_> {
         }
         self.answers.resize(self.points.len(), Membership::Undecided);
         let answered = match &self.solid {
-            // Exact signs decide points next to surfaces too.
+            // Exact signs decide points next to surfaces, too.
             Some(solid) => {
                 contains(solid, self.tree.frame(), &self.points, &mut self.answers, &Control::default())
             }

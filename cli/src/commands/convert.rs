@@ -21,65 +21,69 @@ use leafless::{Frame, Octree, Rule, TriDexel};
 use std::ffi::OsString;
 use std::time::Instant;
 
-/// Makes an octree, a tri-dexel model or a triangle mesh of any of them, or of a scene or a volume, as
-/// `leafless voxelize`, `csg`, `dexelize` and `mesh` do where nothing more is asked for.
+/// Makes an octree, a tri-dexel model or a triangle mesh from any of the three, or from a scene or a volume,
+/// as `leafless voxelize`, `csg`, `dexelize` and `mesh` do with their default options.
 ///
-/// Of a tri-dexel model an octree has the cells whose centres lie inside, and the materials as the channel
+/// From a tri-dexel model to an octree: a cell is inside if its centre is. Materials become the channel
 /// `material`. With --by-ends a cell is inside or outside if all rays through it are so all the way, and
-/// undecided if one begins or ends in it: what is thinner than a cell is not lost. Neither proves anything of
-/// the part between the rays. Of an octree a tri-dexel model has just the cells, exactly; undecided ones
-/// count as --resolve says. An octree of a mesh or a scene is certified, and its undecided cells stay so
-/// without --resolve. Of an octree whose cells keep surfaces, an octree without them has the cells that the
-/// surfaces decide. A mesh that becomes a mesh keeps its triangles, unless --resolution, --bounds or
-/// --resolve asks for samples.
+/// undecided if an interval begins or ends in it, so that features thinner than a cell are not lost. Neither
+/// way proves anything about the part between the rays.
 ///
-/// With --translate, --rotate, --scale and --place all of them are moved. Without --to an octree or a
-/// tri-dexel model then stays what it is, surfaces and channels included: on the image of its own cube, or,
-/// if that is not along the axes, on a cube around its image. Moved by whole cells and quarter turns, an
-/// octree stays exact; otherwise its cells blur by about one.
+/// From an octree to a tri-dexel model: the model contains exactly the cells; undecided cells count as
+/// --resolve says. From an octree whose cells keep surfaces to one without: the surfaces decide the cells.
+///
+/// From a mesh or a scene to an octree: the octree is certified, and without --resolve its undecided cells
+/// stay undecided. From a mesh to a mesh: the triangles stay, unless --resolution, --bounds or --resolve asks
+/// for samples.
+///
+/// --translate, --rotate, --scale and --place move any of them. Without --to, an octree or tri-dexel model
+/// then stays what it is, with its surfaces and channels. It lies on the image of its own cube or, if that
+/// image is not parallel to the axes, on a cube around the image. An octree that is moved by whole cells and
+/// quarter turns stays exact; otherwise its cells blur by about one cell.
 #[derive(Args)]
 pub struct Arguments {
     /// Octree or tri-dexel model (.lfl), mesh (STL, OBJ, PLY, OFF, 3MF), scene (.csg) or volume (NRRD,
     /// MetaImage), or `-` for standard input
     #[arg(value_name = "FILE")]
     input: OsString,
-    /// File to write, or `-` for standard output; it is written whole or not at all
+    /// File to write, or `-` for standard output; written completely or not at all
     #[arg(short, long, value_name = "OUT")]
     output: OsString,
-    /// What to make. The extension .ply, .stl, .obj, .off or .3mf of the output says that it is a mesh; .lfl
-    /// says nothing, as octrees and tri-dexel models both have it. What is moved stays what it is without it
+    /// What to make. The extension .lfl does not decide, as octrees and tri-dexel models both have it
+    /// [default: a mesh if the output has the extension .ply, .stl, .obj, .off or .3mf; what the input is if
+    /// it is moved]
     #[arg(id = "target", long = "to", value_enum, value_name = "KIND")]
     kind: Option<KindName>,
-    /// What cells count as that the surface passes through, or that are undecided
-    #[arg(long, value_enum)]
-    resolve: Option<ResolveName>,
-    /// Let the ends of a tri-dexel model's intervals decide the cells of an octree, and not the centres of
-    /// cells
-    #[arg(long, conflicts_with = "resolve")]
-    by_ends: bool,
-    /// Cells to an axis of the cube around a mesh or scene, a power of two. Without it: 256, and of a volume
-    /// the voxels; a mesh that becomes a mesh keeps its triangles
-    #[arg(long, value_name = "N", value_parser = resolution)]
-    resolution: Option<u8>,
-    /// Lower corner and edge length of the cube, for a mesh, a scene, or what is moved. Without it: the cube
-    /// around it
-    #[arg(long, value_name = "X0,Y0,Z0,EDGE", value_parser = bounds, allow_hyphen_values = true)]
-    bounds: Option<Frame>,
-    #[command(flatten)]
-    taking: Taking,
-    /// Take triangles out of a mesh, and move its surface by this at the most, in model units. Edges of the
-    /// shape and values of triangles stay, and how far the surface moved is proven
+    /// Remove triangles from a mesh, moving its surface by at most T, in model units. Edges of the shape and
+    /// values of triangles stay. How far the surface moved is proven
     #[arg(long, value_name = "T", value_parser = tolerance, allow_hyphen_values = true)]
     simplify: Option<f64>,
-    /// Write an STL also if rounding to its 32-bit coordinates breaks the surface
-    #[arg(long)]
-    lossy: bool,
-    /// Threads to use; 0: as many as there are processors. The result is the same
-    #[arg(long, default_value_t = 0, value_name = "N", value_parser = threads)]
-    threads: usize,
     /// Print one JSON object, that of the subcommand that does the work
     #[arg(long)]
     json: bool,
+    /// Cells along an axis of the cube around a mesh or scene, a power of two from 2 to 524288. Without it, a
+    /// mesh that becomes a mesh keeps its triangles [default: 256; the voxels of a volume]
+    #[arg(long, value_name = "N", value_parser = resolution)]
+    resolution: Option<u8>,
+    /// What undecided cells count as, and cells that the surface passes through
+    #[arg(long, value_enum)]
+    resolve: Option<ResolveName>,
+    /// Decide the cells of an octree by the ends of a tri-dexel model's intervals instead of by the centres
+    /// of the cells
+    #[arg(long, conflicts_with = "resolve")]
+    by_ends: bool,
+    /// Threads to use, 0 to 1024; 0: one for each processor. The result does not depend on it
+    #[arg(long, default_value_t = 0, value_name = "N", value_parser = threads)]
+    threads: usize,
+    /// Lower corner and edge length of the cube, for a mesh, a scene, or an input that is moved [default: the
+    /// cube around it]
+    #[arg(long, value_name = "X0,Y0,Z0,EDGE", value_parser = bounds, allow_hyphen_values = true)]
+    bounds: Option<Frame>,
+    /// Write an STL even if rounding to its 32-bit coordinates breaks the surface
+    #[arg(long)]
+    lossy: bool,
+    #[command(flatten)]
+    taking: Taking,
 }
 
 #[derive(Debug, Clone, Copy, PartialEq, ValueEnum)]
@@ -92,7 +96,7 @@ enum KindName {
     Mesh,
 }
 
-/// The depth of octrees, if none is asked for.
+/// Depth of octrees without --resolution.
 const DEPTH: u8 = 8;
 
 pub fn run(arguments: &Arguments) -> Result<(), Failure> {
@@ -116,7 +120,7 @@ pub fn run(arguments: &Arguments) -> Result<(), Failure> {
                 ResolveName::Outer => surface::ResolveName::Outer,
             });
             let copy = job.depth.is_none() && bounds.is_none() && resolve.is_none();
-            // Cells of one size are asked for.
+            // The user requests cells of one size.
             let is_sampled = job.depth.is_some() || bounds.is_some();
             let method = if is_sampled { Some(Method::Mc) } else { resolve.map(|_| Method::Nets) };
             let wanted = Wanted { method, resolve, simplify, lossy, copy, ..Default::default() };
@@ -130,7 +134,7 @@ pub fn run(arguments: &Arguments) -> Result<(), Failure> {
     }
 }
 
-/// What to make; `None` is what the file is already, in another place.
+/// Returns the kind to make; `None` keeps the kind of the file, in another place.
 fn kind(arguments: &Arguments, job: &Job) -> Result<Option<KindName>, Failure> {
     let Job { input, output, .. } = job;
     let extension = output.path().and_then(|path| path.extension()?.to_str());
@@ -140,18 +144,18 @@ fn kind(arguments: &Arguments, job: &Job) -> Result<Option<KindName>, Failure> {
         None if arguments.taking.placing.map().is_some() && input.begins_as_solid() => Ok(None),
         None => {
             let choices = "--to octree, --to dexels or --to mesh";
-            let problem = "its name does not say what it is to be";
+            let problem = "its name does not say what to make";
             Err(Failure::Usage(format!("{output}: {problem}: choose {choices}")))
         }
         Some(KindName::Octree | KindName::Dexels) if is_mesh => {
-            let problem = "its name is that of a mesh, which neither an octree nor a tri-dexel model is";
+            let problem = "its name is that of a mesh, but an octree or a tri-dexel model is to be written";
             Err(Failure::Usage(format!("{output}: {problem}")))
         }
         kind => Ok(kind),
     }
 }
 
-/// A stored solid in another place.
+/// Moves a stored solid to another place.
 fn moved(job: &Job, taking: &Taking, resolve: Option<ResolveName>) -> Result<(), Failure> {
     let Job { input, output, .. } = job;
     output.check()?;
@@ -237,12 +241,12 @@ fn refused_by_ends(input: &Input) -> Failure {
 fn to_octree(job: &Job, taking: &Taking, resolve: Option<ResolveName>, by_ends: bool) -> Result<(), Failure> {
     let Job { input, output, .. } = job;
     if input.path().is_none_or(|path| !path.is_file()) {
-        let problem = "must be a regular file, because it is looked at first; `leafless voxelize` and `leafless csg` \
-                       can read what comes through a pipe";
+        let problem = "must be a regular file, because its kind is examined first; `leafless voxelize` \
+                       and `leafless csg` can read from a pipe";
         return Err(Failure::of(input, problem));
     }
     if input.begins_as_solid() {
-        // A damaged file is told to be damaged.
+        // A damaged file is reported as damaged.
         return match Stored::read(input, true)?.0 {
             Stored::Dexels(model) => from_dexels(job, taking, model, (resolve, by_ends)),
             Stored::Octree(_) if by_ends => Err(refused_by_ends(input)),

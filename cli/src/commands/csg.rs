@@ -19,13 +19,13 @@ use std::time::Instant;
 /// Splits space where the surface of a scene passes, down to cells of 2^-N of its extent. By the certified
 /// rule every cell is proven inside, proven outside, or undecided.
 ///
-/// A scene is a text in the language of the CSG dumps that OpenSCAD writes
-/// (`openscad -o part.csg part.scad`): group union difference intersection multmatrix translate rotate scale
-/// mirror color render cube sphere cylinder polyhedron linear_extrude rotate_extrude square circle polygon,
-/// import of meshes, and some of ours: halfspace([a,b,c,d]) power([A,a,n1],[B,b,n2],[C,c,n3],R) quadric([10
-/// numbers]) torus(major,minor) mesh("file.stl") octree("file.lfl"). Curved surfaces are exact, but for those
-/// with a $fn of 12 or less, which are the prisms and pyramids that OpenSCAD draws: --fn exact or --fn
-/// polygon decides for all.
+/// A scene is a text in the language of the CSG dumps that OpenSCAD writes (`openscad -o part.csg
+/// part.scad`): group union difference intersection multmatrix translate rotate scale mirror color render
+/// cube sphere cylinder polyhedron linear_extrude rotate_extrude square circle polygon, import of meshes.
+/// Leafless adds: halfspace([a,b,c,d]) power([A,a,n1],[B,b,n2],[C,c,n3],R) quadric([10 numbers])
+/// torus(major,minor) mesh("file.stl") octree("file.lfl"). Curved surfaces are exact, except those with a $fn
+/// of 12 or less: these are the prisms and pyramids that OpenSCAD draws. --fn exact or --fn polygon decides
+/// for all curves.
 ///
 /// The file records the scene's name, length and checksum, and the rule. Equal input gives equal bytes, for
 /// any number of threads.
@@ -34,47 +34,47 @@ pub struct Arguments {
     /// Scene (.csg), or `-` for standard input
     #[arg(value_name = "SCENE")]
     input: OsString,
-    /// File to write, or `-` for standard output, whose summary then goes to standard error; it is written
-    /// whole or not at all
+    /// File to write (.lfl), or `-` for standard output, in which case the summary goes to standard error;
+    /// written completely or not at all
     #[arg(short, long, value_name = "OUT.lfl")]
     output: OsString,
-    /// Levels of the octree, 1 to 20: each halves the cells, and the error, and makes the file some four
-    /// times as long. With --surfaces and --like it may be left out
+    /// Print one JSON object with timings, splits, evaluations of half-spaces and the volume, level by level
+    /// (on standard error if the solid goes to standard output)
+    #[arg(long)]
+    json: bool,
+    /// Levels of the octree, 1 to 20. Each level halves the cells and the error, and makes the file about
+    /// four times as long. Optional with --surfaces and --like
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u8).range(1..=leafless::lattice::MAX_DEPTH as i64), required_unless_present_any = ["surfaces", "like"])]
     depth: Option<u8>,
-    /// What becomes of the finest cells that the surface passes through
-    #[arg(long, value_parser = octree_rules(), default_value = "certified")]
-    rule: Rule,
-    /// Leave cells whole in which the surface is known to lie within a layer of this thickness, in the units
-    /// of the scene: flat faces take few cells, curves more, and edges as many as the depth allows. Such
-    /// cells are undecided
-    #[arg(long, value_name = "T", value_parser = thickness, allow_hyphen_values = true)]
-    adaptive: Option<f64>,
     #[command(flatten)]
     surfaces: Surfaces,
-    /// What counts as touching
+    /// What the finest cells that the surface passes through become
+    #[arg(long, value_parser = octree_rules(), default_value = "certified")]
+    rule: Rule,
+    /// Do not split cells in which the surface is known to lie within a layer of this thickness, in the units
+    /// of the scene. Flat faces then take few cells, curved ones more, and edges as many as the depth allows.
+    /// Such cells are undecided
+    #[arg(long, value_name = "T", value_parser = thickness, allow_hyphen_values = true)]
+    adaptive: Option<f64>,
+    /// What counts as contact of a solid and a cell
     #[arg(long, value_enum, default_value_t = TouchName::Exact)]
     touch: TouchName,
-    /// Lower corner and edge length of the cube to cut into cells, in the units of the scene. Solids can be
-    /// combined if they were given the same bounds and depth. What sticks out is cut off, and reported.
-    /// Without it: a cube around the scene whose edge and cells are powers of two, so that faces at round
-    /// numbers lie between cells; if the scene's bounds are no round numbers, the cube around their middle,
-    /// its edge 33/32 of their longest extent
+    /// Threads to use, 0 to 1024; 0: one for each processor. The result does not depend on it
+    #[arg(long, default_value_t = 0, value_name = "N", value_parser = threads)]
+    threads: usize,
+    /// Lower corner and edge length of the cube that is cut into cells, in the units of the scene. Solids
+    /// with the same bounds and depth can be combined. What sticks out is cut off, and reported [default: a
+    /// cube around the scene whose edge and cells are powers of two, so that faces at round numbers lie
+    /// between cells; if the scene's bounds are not round numbers, the cube around their middle with 33/32 of
+    /// the longest extent as its edge]
     #[arg(long, value_name = "X0,Y0,Z0,EDGE", value_parser = bounds, allow_hyphen_values = true)]
     bounds: Option<Frame>,
     #[command(flatten)]
     like: Like,
     #[command(flatten)]
-    drawing: Drawing,
-    #[command(flatten)]
     placing: Placing,
-    /// Threads to use; 0: as many as there are processors. The result is the same
-    #[arg(long, default_value_t = 0, value_name = "N", value_parser = threads)]
-    threads: usize,
-    /// Print one JSON object with timings, splits, evaluations of half-spaces and the volume, level by level
-    /// (on standard error if the solid goes to standard output)
-    #[arg(long)]
-    json: bool,
+    #[command(flatten)]
+    drawing: Drawing,
 }
 
 fn thickness(text: &str) -> Result<f64, String> {
@@ -92,7 +92,7 @@ pub fn run(arguments: &Arguments) -> Result<(), Failure> {
         let useless = match (touch, adaptive) {
             (TouchName::Exact, None) => None,
             (_, Some(_)) => Some("--adaptive: cells end where few surfaces are left"),
-            _ => Some("--touch paper, by which no surfaces are known"),
+            _ => Some("--touch paper, which provides no surfaces"),
         };
         if let Some(useless) = useless {
             return Err(surfaces.refusal(useless));
@@ -101,8 +101,8 @@ pub fn run(arguments: &Arguments) -> Result<(), Failure> {
     if adaptive.is_some() {
         let useless = match (rule, touch) {
             (Rule::Certified, TouchName::Exact) => None,
-            (Rule::Certified, TouchName::Paper) => Some("--touch paper, by which no layers are known"),
-            _ => Some("a --rule but certified: the cells that it leaves whole are undecided"),
+            (Rule::Certified, TouchName::Paper) => Some("--touch paper, which provides no layers"),
+            _ => Some("a --rule other than certified: the cells that it leaves whole are undecided"),
         };
         if let Some(useless) = useless {
             return Err(Failure::Usage(format!("--adaptive does not go with {useless}")));

@@ -1,4 +1,4 @@
-//! `leafless demo`: the main job end to end.
+//! `leafless demo`: the main workflow end to end.
 
 use crate::failure::{Failure, Of};
 use crate::making::part;
@@ -13,13 +13,14 @@ use std::path::{Path, PathBuf};
 use std::sync::Arc;
 use std::time::Instant;
 
-/// Makes a flanged, ribbed and drilled part and a tool to cut it with, writes both as STL files, reads them
-/// back, turns them into octrees of 1024³ cells, cuts, saves, maps, verifies and queries the result.
+/// Makes a flanged, ribbed and drilled part and a tool to cut it with, and writes both as STL files. Then it
+/// reads the files back, turns them into octrees of 1024³ cells, cuts, saves, maps and verifies the result,
+/// and asks questions about it.
 ///
-/// Every file stays in the folder to be looked at.
+/// All files stay in the folder.
 #[derive(Args)]
 pub struct Arguments {
-    /// Folder for the files; made if it does not exist [default: leafless-demo in the folder for temporary
+    /// Folder for the files; created if it does not exist [default: leafless-demo in the folder for temporary
     /// files]
     dir: Option<PathBuf>,
 }
@@ -94,7 +95,7 @@ pub fn run(arguments: &Arguments) -> Result<(), Failure> {
     let ((), time) = fallible(|| mapped.contains_many(&points, &mut answers)).of(&input)?;
     row("a million points, in a batch", &per_point(time), time)?;
     if answers != single {
-        return Err(Failure::of(&input, "the batch was answered differently from the single points"));
+        return Err(Failure::of(&input, "the answers for the batch differ from those for the single points"));
     }
     let share = |wanted: Membership| {
         let hits = answers.iter().filter(|&&answer| answer == wanted).count();
@@ -107,15 +108,15 @@ pub fn run(arguments: &Arguments) -> Result<(), Failure> {
     )
 }
 
-/// The folder to work in, which exists then.
+/// Creates the folder for the files.
 fn folder(asked: Option<&Path>) -> Result<PathBuf, Failure> {
     let folder = asked.map_or_else(|| std::env::temp_dir().join("leafless-demo"), Path::to_path_buf);
     std::fs::create_dir_all(&folder).of(folder.display())?;
     #[cfg(unix)]
     if asked.is_none() {
         use std::os::unix::fs::MetadataExt;
-        // The name can be guessed and others can write beside it: what stands there may be theirs, with links
-        // in it that lead to files of ours.
+        // The name can be guessed, and other users can write beside it: an existing folder may be theirs,
+        // with links in it that lead to our files.
         let owner = std::fs::symlink_metadata(&folder).of(folder.display())?;
         let own = tempfile::tempfile().and_then(|file| file.metadata()).of(folder.display())?;
         if !owner.is_dir() || owner.uid() != own.uid() {
@@ -141,7 +142,7 @@ fn around(meshes: &[(&str, Arc<TriangleMesh>)]) -> Result<Frame, Failure> {
     Frame::fitted(min, max, DEPTH).of("bounds")
 }
 
-/// Points all over the universe, the same ones every time.
+/// Returns points all over the universe, the same ones every time.
 fn points(frame: &Frame) -> Vec<[f64; 3]> {
     // SplitMix64.
     let mut state = 1994u64;
@@ -155,20 +156,20 @@ fn points(frame: &Frame) -> Vec<[f64; 3]> {
     (0..POINTS).map(|_| frame.origin().map(|x| x + frame.edge() * random())).collect()
 }
 
-/// Runs `work`; its result and the seconds that it took.
+/// Runs `work`, and returns its result and the time in seconds.
 fn timed<T>(work: impl FnOnce() -> T) -> (T, f64) {
     let start = Instant::now();
     let result = work();
     (result, start.elapsed().as_secs_f64())
 }
 
-/// As [`timed`], for work that can fail.
+/// Runs work that can fail, as [`timed`].
 fn fallible<T, E>(work: impl FnOnce() -> Result<T, E>) -> Result<(T, f64), E> {
     let (result, time) = timed(work);
     Ok((result?, time))
 }
 
-/// Prints a row of the table at once: it is the progress bar too.
+/// Prints a row of the table at once: the table serves as the progress bar.
 fn row(step: &str, outcome: &str, time: f64) -> Result<(), Failure> {
     sink::print(format!("{step:<32}{outcome:<40}{:>10}\n", seconds(time)).as_bytes())
 }

@@ -1,4 +1,4 @@
-//! `leafless deviation`: how far are the boundaries of two solids from each other?
+//! `leafless deviation`: the distance between the boundaries of two solids.
 
 use super::interfere::common_frame;
 use crate::failure::{Failure, Of};
@@ -17,13 +17,14 @@ use leafless::{Affine, Control, Deviation, Frame, Interval, deviation};
 use serde::Serialize;
 use std::ffi::OsString;
 
-/// Prints the greatest distance of a point of one boundary from the nearest point of the other, both ways:
-/// intervals that hold the true numbers, and where the points are. The greater one is the Hausdorff distance
-/// of the boundaries.
+/// Prints the greatest distance of a point of one boundary from the nearest point of the other boundary, in
+/// both directions: as intervals that contain the true numbers, and with the points at which they occur. The
+/// greater one is the Hausdorff distance of the boundaries.
 ///
-/// Closed meshes whose triangles do not intersect are compared as they are, to rounding. Of everything else,
-/// cells are split as far as the tolerance asks. With --within the exit code is 0 if the boundaries are
-/// proven to be that near to each other, else 1, with the reason. What is not known is null in JSON.
+/// Closed meshes whose triangles do not intersect are compared as they are, up to rounding. For all other
+/// inputs, cells are split as far as the tolerance demands. With --within the exit code is 0 if the
+/// boundaries are proven to be within that distance of each other, and otherwise 1, with the reason. Unknown
+/// numbers are null in JSON.
 #[derive(Args)]
 #[command(mut_arg("place", |place| place.visible_alias("place-b")))]
 pub struct Arguments {
@@ -31,48 +32,50 @@ pub struct Arguments {
     /// for standard input
     #[arg(value_name = "A")]
     a: OsString,
-    /// Second solid, mesh or scene; --translate, --rotate, --scale and --place move it
+    /// Second solid, mesh, scene or volume. The moves --translate, --rotate, --scale and --place apply to it
     #[arg(value_name = "B")]
     b: OsString,
-    /// How wide the intervals may be. Without it: a ten-thousandth of the cube that is looked at
-    #[arg(long, value_name = "T", value_parser = tolerance, allow_hyphen_values = true)]
-    tolerance: Option<f64>,
-    /// Say whether the boundaries are within this distance of each other
+    /// Tell whether the boundaries are within this distance of each other, in model units
     #[arg(long, value_name = "D", value_parser = tolerance, allow_hyphen_values = true)]
     within: Option<f64>,
-    /// Levels to look at, 1 to 20. Without it: as many as the solid has that is read from a file (.lfl), or
-    /// 20
-    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u8).range(1..=MAX_DEPTH as i64))]
-    depth: Option<u8>,
-    /// Lower corner and edge length of the cube to look at. Without it: the cube around both
-    #[arg(long, value_name = "X0,Y0,Z0,EDGE", value_parser = bounds, allow_hyphen_values = true)]
-    bounds: Option<Frame>,
-    /// Cells of a solid to split at most. Without it: 262144, or as many as --seconds allow
-    #[arg(long, value_name = "N")]
-    splits: Option<u64>,
-    /// Seconds after which it ends with what is known by then. The result then depends on the machine
-    #[arg(long, value_name = "S", value_parser = seconds, allow_hyphen_values = true)]
-    seconds: Option<f64>,
-    /// Take the cells of solids from files (.lfl) for the solids themselves, whatever they prove of what they
-    /// were made from
-    #[arg(long)]
-    cells: bool,
-    #[command(flatten)]
-    taking: Taking,
     /// Print one JSON object
     #[arg(long)]
     json: bool,
+    /// Greatest width of the intervals, in model units [default: a ten-thousandth of the edge of the cube
+    /// that is examined]
+    #[arg(long, value_name = "T", value_parser = tolerance, allow_hyphen_values = true)]
+    tolerance: Option<f64>,
+    /// Finest level of cells, 1 to 20 [default: that of the solid from a file (.lfl), or 20]
+    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u8).range(1..=MAX_DEPTH as i64))]
+    depth: Option<u8>,
+    /// Take the cells of solids from files (.lfl) as the solids themselves, whatever the cells prove about
+    /// their source
+    #[arg(long)]
+    cells: bool,
+    /// Time limit in seconds: the command then ends with the bounds found so far. The result then depends on
+    /// the machine
+    #[arg(long, value_name = "S", value_parser = seconds, allow_hyphen_values = true)]
+    seconds: Option<f64>,
+    /// Most cells of a solid to split [default: 262144, or no limit with --seconds]
+    #[arg(long, value_name = "N")]
+    splits: Option<u64>,
+    /// Lower corner and edge length of the cube to examine [default: the cube around both]
+    #[arg(long, value_name = "X0,Y0,Z0,EDGE", value_parser = bounds, allow_hyphen_values = true)]
+    bounds: Option<Frame>,
+    #[command(flatten)]
+    taking: Taking,
 }
 
-/// Without a tolerance: this part of the cube's edge.
+/// Tolerance without --tolerance, relative to the cube's edge.
 const FINE: f64 = 1e-4;
 
-/// One direction; null where nothing is known.
+/// One direction; null where unknown.
 #[derive(Serialize)]
 struct Way {
     lower: Option<f64>,
     upper: Option<f64>,
-    /// A point next to the one boundary, how near that is to it at least, and the nearest point of the other.
+    /// A point near the first boundary, a bound of its distance from it, and the nearest point of the other
+    /// boundary.
     point: Option<[f64; 3]>,
     apart: Option<f64>,
     nearest: Option<[f64; 3]>,
@@ -95,15 +98,15 @@ impl From<&OneWay> for Way {
 struct Report {
     a: String,
     b: String,
-    /// With a distance: "within", "beyond" or "undecided"; else absent (null).
+    /// With --within: "within", "beyond" or "undecided"; otherwise null.
     verdict: Option<&'static str>,
     within: Option<f64>,
-    /// The greater of both directions.
+    /// The greater distance of both directions.
     lower: Option<f64>,
     upper: Option<f64>,
     a_to_b: Way,
     b_to_a: Way,
-    /// Why the search ended.
+    /// The reason why the search ended.
     measured: &'static str,
     tolerance: f64,
     proof_a: Proven,
@@ -115,7 +118,7 @@ struct Report {
     depth: u8,
     origin: [f64; 3],
     edge: f64,
-    /// Whether a solid may go on outside of the cube that was looked at.
+    /// True if a solid may extend beyond the cube that was examined.
     clipped_a: bool,
     clipped_b: bool,
 }
@@ -127,7 +130,7 @@ pub fn run(arguments: &Arguments) -> Result<(), Failure> {
     }
     let [a, b] = &inputs;
     let placement = arguments.taking.placing.map().copied().unwrap_or(Affine::IDENTITY);
-    // What is moved as a solid blurs no more than its cells, and keeps what is known of a mesh.
+    // A source that is moved as a solid blurs no more than its cells, and keeps what is known about a mesh.
     let taking = arguments.taking.unmoved();
     let [first, second] =
         [Source::read(a, &taking)?, Source::read(b, &taking)?].map(|source| source.taken(arguments.cells));
@@ -161,7 +164,7 @@ pub fn run(arguments: &Arguments) -> Result<(), Failure> {
     match report.verdict {
         Some("within") => Ok(()),
         Some("beyond") => Err(Failure::of(b, format!("is not within {distance} of {a}"))),
-        _ => Err(Failure::of(b, format!("is not known to be within {distance} of {a}"))),
+        _ => Err(Failure::of(b, format!("is not proven to be within {distance} of {a}"))),
     }
 }
 
@@ -205,7 +208,7 @@ impl Report {
     }
 }
 
-/// The same for people.
+/// Returns the report for people.
 fn text(found: &Deviation, report: &Report) -> String {
     let mut text = String::new();
     let mut line = |name: &str, value: String| put_line(&mut text, name, &value);

@@ -15,13 +15,13 @@ use leafless::{Frame, Rule};
 use std::ffi::OsString;
 use std::time::Instant;
 
-/// Writes a tri-dexel model: along rays through the centres of N × N × N cells, in three directions, the
-/// intervals that lie inside. Where a ray enters and leaves is known as finely as a fixed-point number can
-/// tell, not as finely as cells are.
+/// Writes a tri-dexel model: the intervals that lie inside, along rays through the centres of N × N × N
+/// cells, in three directions. The points where a ray enters and leaves are as precise as fixed-point numbers
+/// allow; their precision does not depend on the size of the cells.
 ///
-/// Rays of meshes, scenes of half-spaces and stored octrees are exact. A stored octree has a frame of its
-/// own, and cells that may be undecided: these count as inside, which is told, unless the rule inner leaves
-/// them out.
+/// Rays through meshes, scenes of half-spaces and stored octrees are exact. A stored octree has its own
+/// frame, and its cells may be undecided. Undecided cells count as inside, and a note says so; the rule inner
+/// leaves them out.
 ///
 /// The file records the input's name, length and checksum, the rule, and the unit if it is known. Equal input
 /// gives equal bytes, for any number of threads.
@@ -31,49 +31,50 @@ pub struct Arguments {
     /// standard input
     #[arg(value_name = "FILE")]
     input: OsString,
-    /// File to write, or `-` for standard output, whose summary then goes to standard error; it is written
-    /// whole or not at all
+    /// File to write (.lfl), or `-` for standard output, in which case the summary goes to standard error;
+    /// written completely or not at all
     #[arg(short, long, value_name = "OUT.lfl")]
     output: OsString,
-    /// Cells to an axis of the cube, a power of two from 2 to 524288. Without it: 256, or those of an octree
-    /// or a volume
+    /// How the ends of intervals are stored
+    #[arg(long, value_enum, default_value_t = EndsName::Fixed, help_heading = "Stored in the model")]
+    ends: EndsName,
+    /// How the surface's normals at the ends of intervals are stored. Normals keep edges sharp in `leafless
+    /// mesh --method dual`
+    #[arg(long, value_enum, default_value_t = NormalsName::None, help_heading = "Stored in the model")]
+    normals: NormalsName,
+    /// Store which triangle of the mesh or half-space of the scene each end lies on
+    #[arg(long, help_heading = "Stored in the model")]
+    surfaces: bool,
+    /// Store this material, a number of your choice, for the whole model
+    #[arg(long, value_name = "M", help_heading = "Stored in the model")]
+    material: Option<u32>,
+    /// Print one JSON object with the contents of each direction (on standard error if the model goes to
+    /// standard output)
+    #[arg(long)]
+    json: bool,
+    /// Cells along an axis of the cube, a power of two from 2 to 524288 [default: 256, or those of an octree
+    /// or a volume]
     #[arg(long, value_name = "N", value_parser = resolution)]
     resolution: Option<u8>,
-    /// Axes that rays run along: of x, y and z one, two or all
+    /// Axes that rays run along: one, two or all of x, y and z
     #[arg(long, default_value = "xyz", value_name = "AXES", value_parser = directions)]
     directions: Directions,
-    /// How the ends of intervals are stored
-    #[arg(long, value_enum, default_value_t = EndsName::Fixed)]
-    ends: EndsName,
-    /// How the surface's normals at ends are stored, which keep edges sharp in `leafless mesh --method dual`
-    #[arg(long, value_enum, default_value_t = NormalsName::None)]
-    normals: NormalsName,
-    /// Store on which triangle of the mesh or half-space of the scene an end lies
-    #[arg(long)]
-    surfaces: bool,
-    /// Store that all of it is of this material, a number of your own
-    #[arg(long, value_name = "M")]
-    material: Option<u32>,
-    /// What intervals are
+    /// What the intervals contain
     #[arg(long, value_parser = dexel_rules(), default_value = "sampled")]
     rule: Rule,
-    /// Lower corner and edge length of the cube, in the units of the mesh once it is converted and scaled.
-    /// Models can be combined if they were given the same bounds and resolution. What sticks out is cut off,
-    /// and reported. Without it: the cube that `leafless voxelize` takes
+    /// Threads to use, 0 to 1024; 0: one for each processor. The result does not depend on it
+    #[arg(long, default_value_t = 0, value_name = "N", value_parser = threads)]
+    threads: usize,
+    /// Lower corner and edge length of the cube, in the units of the mesh after conversion and scaling.
+    /// Models with the same bounds and resolution can be combined. What sticks out is cut off, and reported
+    /// [default: the cube that `leafless voxelize` takes]
     #[arg(long, value_name = "X0,Y0,Z0,EDGE", value_parser = bounds, allow_hyphen_values = true)]
     bounds: Option<Frame>,
     #[command(flatten)]
     taking: Taking,
-    /// Threads to use; 0: as many as there are processors. The result is the same
-    #[arg(long, default_value_t = 0, value_name = "N", value_parser = threads)]
-    threads: usize,
-    /// Print one JSON object with what each direction holds (on standard error if the model goes to standard
-    /// output)
-    #[arg(long)]
-    json: bool,
 }
 
-/// Which axes rays run along.
+/// The axes that rays run along.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 struct Directions([bool; 3]);
 
@@ -101,7 +102,7 @@ enum EndsName {
 
 #[derive(Debug, Clone, Copy, ValueEnum)]
 enum NormalsName {
-    /// Not at all
+    /// Not stored
     None,
     /// In 16 bits, within a degree
     #[value(name = "16")]
@@ -113,12 +114,9 @@ enum NormalsName {
 
 fn dexel_rules() -> impl TypedValueParser<Value = Rule> {
     rules([
-        (Rule::Sampled, "Those of the solid on each ray"),
-        (Rule::Inner, "Those of cells that are wholly inside: the result lies within the solid"),
-        (
-            Rule::Outer,
-            "Those of cells that are not wholly outside: the result contains what the solid holds of each ray",
-        ),
+        (Rule::Sampled, "The points of each ray that lie in the solid"),
+        (Rule::Inner, "Cells that are wholly inside: the result lies within the solid"),
+        (Rule::Outer, "Cells that are not wholly outside: the result contains the solid on each ray"),
     ])
 }
 

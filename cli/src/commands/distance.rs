@@ -1,4 +1,4 @@
-//! `leafless distance`: how far are these points from the solid?
+//! `leafless distance`: the distance of points from a solid.
 
 use crate::failure::{Failure, Of};
 use crate::options::tolerance;
@@ -19,9 +19,9 @@ use std::fmt::Write;
 /// Reads points from standard input, one a line: x, y and z in the solid's units, separated by blanks, tabs
 /// or commas. Empty lines and lines that begin with # are skipped.
 ///
-/// Prints a line for each point: two numbers between which its distance lies. The second is `inf` where
-/// nothing is proven to be solid, and both are where it is proven that there is nothing. Answers come as soon
-/// as lines are there, so that another program can ask and wait.
+/// Prints one line for each point: a lower and an upper bound of its distance. The upper bound is `inf` where
+/// nothing is proven to be solid; both are `inf` if it is proven that there is no solid. Answers are printed
+/// as soon as lines arrive, so that another program can ask and wait.
 #[derive(Args)]
 pub struct Arguments {
     /// Solid (.lfl), mesh (STL, OBJ, PLY, OFF, 3MF), scene (.csg) or volume (NRRD, MetaImage)
@@ -32,32 +32,32 @@ pub struct Arguments {
     /// Distance from the boundary, negative inside: short for --target boundary
     #[arg(long, conflicts_with = "target")]
     signed: bool,
-    /// How wide the interval may be, in the solid's units. Without it: a millionth of the cube that is looked
-    /// at. A solid from a file (.lfl) is asked for what its cells tell
+    /// Print one line of JSON for each point; infinite bounds are `null`
+    #[arg(long)]
+    json: bool,
+    /// Greatest width of the interval, in the solid's units. Does not apply to a solid from a file (.lfl),
+    /// whose cells give the bounds [default: a millionth of the edge of the cube that is examined]
     #[arg(long, value_name = "T", value_parser = tolerance, allow_hyphen_values = true)]
     tolerance: Option<f64>,
-    /// Level to which cells are split, 1 to 20. Without it: as deep as the solid is, or 20 for a mesh or
-    /// scene
+    /// Finest level to which cells are split, 1 to 20 [default: the depth of the solid, or 20 for a mesh or
+    /// scene]
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u8).range(1..=MAX_DEPTH as i64))]
     depth: Option<u8>,
-    /// Cells to split at most for a point; where much of the surface is about as near, there is no end of
-    /// them
+    /// Most cells to split for a point. Without a limit, a point that is about equally near to much of the
+    /// surface would take very many
     #[arg(long, value_name = "N", default_value_t = DISTANCE_SPLITS)]
     splits: u64,
     #[command(flatten)]
     looking: Looking,
-    /// Print a line of JSON for each point, in which what is not finite is `null`
-    #[arg(long)]
-    json: bool,
 }
 
 #[derive(Debug, Clone, Copy, ValueEnum)]
 enum To {
-    /// To the solid: 0 for its points
+    /// The solid: 0 for points inside
     Solid,
-    /// To what is not solid: 0 for points outside
+    /// The complement of the solid: 0 for points outside
     Complement,
-    /// To the boundary: negative inside
+    /// The boundary: negative inside
     Boundary,
 }
 
@@ -71,7 +71,7 @@ impl From<To> for DistanceTo {
     }
 }
 
-/// Without a tolerance: this part of the cube's edge.
+/// Tolerance without --tolerance, relative to the cube's edge.
 const FINE: f64 = 1e-6;
 
 pub fn run(arguments: &Arguments) -> Result<(), Failure> {
@@ -110,7 +110,7 @@ impl Batch<'_> {
     }
 }
 
-/// An interval, of which what is not finite is absent (null).
+/// An interval whose infinite ends are null.
 #[derive(Serialize)]
 struct Distance {
     lower: Option<f64>,

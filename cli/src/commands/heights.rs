@@ -1,4 +1,4 @@
-//! `leafless heights`: how far does a solid reach in each column of cells?
+//! `leafless heights`: the height of a solid in each column of cells.
 
 use crate::failure::{Failure, Of};
 use crate::progress::watched;
@@ -12,39 +12,40 @@ use leafless::lattice::MAX_DEPTH;
 use leafless::query::{Columns, Heights, Side, heights};
 use std::ffi::OsString;
 
-/// Columns are those of cells along an axis. Heights are in the solid's units; what is empty is `nan`.
+/// Prints one height for each column of cells along an axis, in the solid's units; `nan` for an empty column.
 ///
-/// Columns lie in rows: along a row the first of the other two axes ascends, from row to row the second.
+/// The columns of one row are printed in one line: along a row the first of the other two axes ascends, from
+/// row to row the second.
 #[derive(Args)]
 pub struct Arguments {
     /// Solid (.lfl), mesh (STL, OBJ, PLY, OFF, 3MF), scene (.csg) or volume (NRRD, MetaImage), or `-` for
     /// standard input
     file: OsString,
-    /// The axis of the columns
+    /// Axis of the columns
     #[arg(long, value_enum)]
     axis: Axis,
-    /// Where the columns are looked at from: `above` are higher coordinates
+    /// Side from which the columns are seen: `above` is the side of higher coordinates
     #[arg(long, value_enum, default_value_t = From::Above)]
     from: From,
-    /// Which cells count: those proven to be solid (the solid reaches at least that far), or those that may
-    /// be (it reaches no farther)
-    #[arg(long, value_enum, default_value_t = On::Upper)]
-    on: On,
-    /// Where to write; `-` is standard output
+    /// File to write, or `-` for standard output
     #[arg(short, long, default_value = "-", value_name = "OUTPUT")]
     output: OsString,
-    /// Write doubles, 8 bytes each, little-endian, instead of lines with commas
-    #[arg(long)]
-    raw: bool,
-    /// Level of the cells, 1 to 20: there are 2^N times 2^N columns. Without it: as deep as the solid is, or
-    /// 9 for a mesh or scene
+    /// Which cells count: those proven to be solid, so that the solid reaches at least that far, or also
+    /// those that may be solid, so that it reaches no farther
+    #[arg(long, value_enum, default_value_t = On::Upper)]
+    on: On,
+    /// Level of the cells, 1 to 20; there are 2^N × 2^N columns [default: the depth of the solid, or 9 for a
+    /// mesh or scene]
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u8).range(1..=MAX_DEPTH as i64))]
     depth: Option<u8>,
     #[command(flatten)]
     looking: Looking,
+    /// Write doubles, 8 bytes each, little-endian, instead of text with commas
+    #[arg(long)]
+    raw: bool,
 }
 
-/// The depth of meshes and scenes, if none is asked for.
+/// Depth of meshes and scenes without --depth.
 const DEPTH: u8 = 9;
 
 #[derive(Debug, Clone, Copy, ValueEnum)]
@@ -62,9 +63,9 @@ enum From {
 
 #[derive(Debug, Clone, Copy, ValueEnum)]
 enum On {
-    /// Those that are proven to be solid
+    /// Cells that are proven to be solid
     Full,
-    /// Those that may be solid
+    /// Cells that may be solid
     Upper,
 }
 
@@ -80,7 +81,7 @@ pub fn run(arguments: &Arguments) -> Result<(), Failure> {
     };
     let map = watched("heights", arguments.looking.threads, |control| {
         let columns = Columns::all(target.frame(), arguments.axis as usize)?;
-        // Two bounds, and a number in a text or eight bytes.
+        // Two bounds, and a number as text or eight bytes.
         let needed = columns.count().saturating_mul(16);
         if let Some(limit) = control.max_bytes.filter(|&limit| needed > limit) {
             return Err(Error::TooLarge { what: "the heights", needed, limit });
@@ -95,18 +96,18 @@ pub fn run(arguments: &Arguments) -> Result<(), Failure> {
     output.write(&written)
 }
 
-/// The height of a column.
+/// Returns the height of a column.
 fn height(map: &Heights, on: On, index: usize) -> f64 {
     let Some(between) = map.height(index) else { return f64::NAN };
     let height = match (on, map.side()) {
         (On::Full, Side::Above) | (On::Upper, Side::Below) => between.lower,
         (On::Full, Side::Below) | (On::Upper, Side::Above) => between.upper,
     };
-    // Nothing is proven of this column.
+    // Nothing is proven about this column.
     if height.is_finite() { height } else { f64::NAN }
 }
 
-/// How many columns lie in a row, and how many rows there are.
+/// Returns the number of columns in a row, and the number of rows.
 fn size(map: &Heights) -> [usize; 2] {
     map.columns().size().map(|n| n as usize)
 }

@@ -1,4 +1,4 @@
-//! `leafless info`: what a solid, a mesh or a scene consists of.
+//! `leafless info`: the contents of a file.
 
 use crate::failure::{Failure, Of};
 use crate::progress::at_work;
@@ -11,21 +11,21 @@ use crate::source::input::Input;
 use clap::Args;
 use std::ffi::OsString;
 
-/// Of a solid only the file's header and level table are read, so this takes the same short time for files of
-/// any size. Run `leafless verify` to know whether the rest of the file is good. Of a tri-dexel model (.lfl)
-/// all intervals are read.
+/// For a solid, only the file's header and level table are read, so the command is quick for files of any
+/// size. `leafless verify` checks the rest of the file. For a tri-dexel model (.lfl), all intervals are read.
 ///
-/// Of a mesh everything is read: what its triangles bound, and what is wrong with them. Of a scene the bounds
-/// are told, how its curves are drawn, and what is wrong with the meshes in it; `leafless measure` tells its
-/// volume.
+/// For a mesh, everything is read: the report tells what its triangles bound and what is wrong with them. For
+/// a scene, the report tells its bounds, how its curves are drawn, and what is wrong with the meshes in it;
+/// `leafless measure` tells its volume.
 #[derive(Args)]
 pub struct Arguments {
     /// Solid (.lfl), mesh (STL, OBJ, PLY, OFF, 3MF), scene (.csg) or volume (NRRD, MetaImage), or `-` for
     /// standard input
     file: OsString,
-    /// Say in a line whether a mesh is fit to be printed and to be made a solid of: closed, all facets facing
-    /// outward, no triangles that intersect, repeat others or have no thickness between them, no edge of more
-    /// than two. The exit code is 0 if it is, and 1 with the reasons if not
+    /// Tell in one line whether a mesh is fit for printing and for making a solid: it is closed, all facets
+    /// face outward, no triangles intersect, repeat others or have no thickness between them, and no edge has
+    /// more than two triangles. The exit code is 0 if the mesh is fit; otherwise it is 1, and the reasons are
+    /// printed
     #[arg(long)]
     check: bool,
     /// Print one JSON object
@@ -41,16 +41,13 @@ pub fn run(arguments: &Arguments) -> Result<(), Failure> {
     let found = Found::look(input, reading.told())?;
     let bytes = found.length();
     if arguments.check && found.content != Content::Mesh {
-        let problem = "is none; `leafless verify` checks the file of a solid";
+        let problem = "is not a mesh; `leafless verify` checks the file of a solid";
         return Err(Failure::Usage(format!("--check is for meshes: {input} {problem}")));
     }
     match found.content {
         Content::Solid => {
             taking.refuse(input, "a solid")?;
-            placing.refuse(
-                input,
-                "what is told is what the file says; `leafless convert` makes a moved solid",
-            )?;
+            placing.refuse(input, "the report describes the file; `leafless convert` makes a moved solid")?;
             match found.stored(false)? {
                 (Stored::Octree(octree), bytes) => {
                     print_told(as_json, &octree::Info::new(&octree, bytes), octree::Info::text)

@@ -1,4 +1,4 @@
-//! `leafless interfere`: do two solids overlap, and how far are they apart?
+//! `leafless interfere`: the overlap and the distance of two solids.
 
 use super::poses;
 use crate::failure::{Failure, Of};
@@ -21,16 +21,16 @@ use leafless::{
 use serde::Serialize;
 use std::ffi::OsString;
 
-/// Says whether two solids have inner points in common: `disjoint` and `overlapping` are proven, `undecided`
-/// comes with the reason: the depth or the number of splits does not decide it, the cells of a file do not
-/// prove enough, or both solids go on outside of the bounds. Solids that touch are disjoint, and their
-/// clearance is 0. Of scenes and of solids that keep surfaces this is proven also where the surfaces on which
-/// they touch are one.
+/// Tells whether two solids have inner points in common. `disjoint` and `overlapping` are proven. `undecided`
+/// comes with the reason: the depth or the number of splits is too small, the cells of a file do not prove
+/// enough, or both solids may extend outside the bounds. Solids that touch are disjoint, and their clearance
+/// is 0. For scenes and for solids that keep surfaces, this is proven even if they touch along a common
+/// surface.
 ///
 /// The volume that the solids have in common and the clearance, the least distance between them, are
-/// intervals that hold the true ones. The clearance of two closed meshes is found by their triangles, to
-/// rounding. Of other solids an upper bound of the clearance needs cells that are proven to be inside. What
-/// is not known is null in JSON.
+/// intervals that contain the true values. The clearance of two closed meshes is computed from their
+/// triangles, up to rounding. For other solids, an upper bound of the clearance needs cells that are proven
+/// to be inside. Unknown numbers are null in JSON.
 #[derive(Args)]
 #[command(mut_arg("place", |place| place.visible_alias("place-b")))]
 pub struct Arguments {
@@ -38,46 +38,46 @@ pub struct Arguments {
     /// for standard input
     #[arg(value_name = "A")]
     a: OsString,
-    /// Second solid, mesh or scene; --translate, --rotate, --scale and --place move it
+    /// Second solid, mesh, scene or volume. The moves --translate, --rotate, --scale and --place apply to it
     #[arg(value_name = "B")]
     b: OsString,
-    /// Levels to look at, 1 to 20. Without it: as many as the first solid has, or 10 for a mesh or scene
-    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u8).range(1..=leafless::lattice::MAX_DEPTH as i64))]
-    depth: Option<u8>,
-    /// Lower corner and edge length of the cube to look at. Without it: the cube around both
-    #[arg(long, value_name = "X0,Y0,Z0,EDGE", value_parser = bounds, allow_hyphen_values = true)]
-    bounds: Option<Frame>,
-    /// Cells to split at most, for each of the three answers. Without it: 100000, or as many as --seconds
-    /// allow
-    #[arg(long, value_name = "N")]
-    splits: Option<u64>,
-    /// Seconds after which it ends with what is known by then. The result then depends on the machine
-    #[arg(long, value_name = "S", value_parser = seconds, allow_hyphen_values = true)]
-    seconds: Option<f64>,
-    /// Take the cells of solids from files (.lfl) for the solids themselves, whatever they prove of what they
-    /// were made from
-    #[arg(long)]
-    cells: bool,
-    #[command(flatten)]
-    taking: Taking,
-    /// Ask for the verdict alone, of B under each of the matrices in a file: a line for each as --place takes
-    /// it, after the other moves. With --gap-at-least, say of each place whether the solids are that far
-    /// apart
-    #[arg(long, value_name = "FILE", conflicts_with = "seconds")]
-    poses: Option<std::path::PathBuf>,
-    /// With --poses, tell the clearance in each place, too, and a point of each solid that are as near
-    #[arg(long, requires = "poses", conflicts_with = "gap_at_least")]
-    clearance: bool,
-    /// Say no more than whether no two points of them are nearer than that, in units of the model, and print
-    /// two points if some are. The exit code is 0 if that is proven, and 1 if not
+    /// Tell only whether the distance of the solids is at least D, in model units, and print two points that
+    /// are nearer if there are any. The exit code is 0 if the distance is proven, and otherwise 1
     #[arg(long, value_name = "D", conflicts_with = "seconds", allow_hyphen_values = true)]
     gap_at_least: Option<f64>,
+    /// Tell only the verdict, for B under each of the matrices in a file: one line for each, as --place takes
+    /// it, applied after the other moves. With --gap-at-least, tell for each pose whether the solids are that
+    /// far apart
+    #[arg(long, value_name = "FILE", conflicts_with = "seconds")]
+    poses: Option<std::path::PathBuf>,
+    /// With --poses, tell also the clearance in each pose, and a point of each solid at that distance
+    #[arg(long, requires = "poses", conflicts_with = "gap_at_least")]
+    clearance: bool,
     /// Print one JSON object
     #[arg(long)]
     json: bool,
+    /// Finest level of cells, 1 to 20 [default: that of the first solid, or 10 for a mesh or scene]
+    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u8).range(1..=leafless::lattice::MAX_DEPTH as i64))]
+    depth: Option<u8>,
+    /// Take the cells of solids from files (.lfl) as the solids themselves, whatever the cells prove about
+    /// their source
+    #[arg(long)]
+    cells: bool,
+    /// Time limit in seconds: the command then ends with the bounds found so far. The result then depends on
+    /// the machine
+    #[arg(long, value_name = "S", value_parser = seconds, allow_hyphen_values = true)]
+    seconds: Option<f64>,
+    /// Most cells to split for each of the three answers [default: 100000, or no limit with --seconds]
+    #[arg(long, value_name = "N")]
+    splits: Option<u64>,
+    /// Lower corner and edge length of the cube to examine [default: the cube around both]
+    #[arg(long, value_name = "X0,Y0,Z0,EDGE", value_parser = bounds, allow_hyphen_values = true)]
+    bounds: Option<Frame>,
+    #[command(flatten)]
+    taking: Taking,
 }
 
-/// A cell in the units of the model, and a ball in it that lies in both solids.
+/// A cell in model units, and a ball in it that lies in both solids.
 #[derive(Serialize)]
 struct Witness {
     level: u8,
@@ -88,19 +88,19 @@ struct Witness {
     radius: f64,
 }
 
-/// Why a verdict is undecided, in a word and in a sentence.
+/// Returns why a verdict is undecided, in a word and in a sentence.
 fn reason(found: &Interference, is_spent: bool) -> Option<(&'static str, &'static str)> {
     let certified = |proof: Proof| proof.full && proof.empty;
     match found.verdict {
-        // (What lies outside of such a solid's universe is not proven, either.)
+        // (What lies outside the universe of such a solid is not proven, either.)
         Overlap::Undecided if !found.proofs.into_iter().all(certified) => {
-            Some(("unproven", "the cells of a file do not prove enough; --cells takes them for the solid"))
+            Some(("unproven", "the cells of a file do not prove enough; --cells takes them as the solid"))
         }
         Overlap::Undecided if found.clipped => {
-            Some(("clipped", "both solids may go on outside of the bounds; give larger --bounds"))
+            Some(("clipped", "both solids may extend beyond the bounds; give larger --bounds"))
         }
         Overlap::Undecided if is_spent => {
-            Some(("budget", "the splits are spent; give more --splits or --seconds"))
+            Some(("budget", "all splits are used; give more --splits or --seconds"))
         }
         Overlap::Undecided => {
             Some(("depth", "cells of the finest level are undecided; give a greater --depth"))
@@ -114,29 +114,29 @@ struct Report {
     a: String,
     b: String,
     verdict: &'static str,
-    /// Why nothing is decided: "clipped", "unproven", "budget" or "depth"; else absent (null).
+    /// The reason why nothing is decided: "clipped", "unproven", "budget" or "depth"; otherwise null.
     reason: Option<&'static str>,
     overlap: Range,
     clearance: Range,
-    /// A point of each solid, as near as the clearance's upper bound says; null if the solids overlap.
+    /// A point of each solid, at the distance of the clearance's upper bound; null if the solids overlap.
     points: Option<[[f64; 3]; 2]>,
-    /// Why the search for the clearance ended.
+    /// The reason why the search for the clearance ended.
     clearance_measured: &'static str,
     witness: Option<Witness>,
-    /// What of both is proven; what is not counts as undecided.
+    /// The proof of each solid; unproven cells count as undecided.
     proof_a: Proven,
     proof_b: Proven,
-    /// Of both, for the verdict.
+    /// Splits of both solids, for the verdict.
     splits: u64,
     splits_a: u64,
     splits_b: u64,
     evaluations: u64,
-    /// The finest level of which cells were looked at for the verdict.
+    /// The finest level of the cells that were examined for the verdict.
     level: u8,
     depth: u8,
     origin: [f64; 3],
     edge: f64,
-    /// Whether a solid may go on outside of the cube that was looked at.
+    /// True if a solid may extend beyond the cube that was examined.
     clipped: bool,
 }
 
@@ -147,7 +147,7 @@ pub fn run(arguments: &Arguments) -> Result<(), Failure> {
     }
     let [a, b] = &inputs;
     let placement = arguments.taking.placing.map().copied().unwrap_or(Affine::IDENTITY);
-    // What is moved as a solid blurs no more than its cells, and keeps what is known of a mesh.
+    // A source that is moved as a solid blurs no more than its cells, and keeps what is known about a mesh.
     let taking = arguments.taking.unmoved();
     let [first, second] =
         [Source::read(a, &taking)?, Source::read(b, &taking)?].map(|source| source.taken(arguments.cells));
@@ -212,7 +212,7 @@ pub fn run(arguments: &Arguments) -> Result<(), Failure> {
     print_told(arguments.json, &report, |report| text(&found, report, reason.map(|reason| reason.1)))
 }
 
-/// Whether two solids are far enough apart.
+/// The report of --gap-at-least.
 #[derive(Serialize)]
 struct GapReport {
     /// "yes", "no" or "undecided".
@@ -224,7 +224,7 @@ struct GapReport {
     clipped: bool,
 }
 
-/// Says whether no two points are nearer than `least`; that they may be is a failure.
+/// Tells whether the distance is at least `least`. A possible smaller distance is a failure.
 fn gap(
     arguments: &Arguments,
     least: f64,
@@ -268,13 +268,13 @@ fn gap(
     }
 }
 
-/// Two points for people.
+/// Formats two points for people.
 fn ends([p, q]: &[[f64; 3]; 2]) -> String {
     format!("{} and {}", p.map(number).join(" "), q.map(number).join(" "))
 }
 
-/// The cube that holds both: of a solid its own, as often doubled as it takes, so that its cells stay whole;
-/// else the one that `around` makes of their bounds.
+/// Returns the cube that contains both: the own cube of a solid, doubled until it is large enough, so that
+/// its cells stay whole; otherwise the cube that `around` makes of their bounds.
 pub fn common_frame(
     own: Option<&Frame>,
     ((mut min, mut max), (low, high)): (Corners, Corners),
@@ -309,34 +309,33 @@ pub fn common_frame(
     Ok(frame)
 }
 
-/// Splits for each answer if nobody says how many, or how long.
+/// Splits for each answer without --splits and --seconds.
 const SPLITS: u64 = 100_000;
 
-/// How well the volume in common is to be known, as a share of it.
+/// Accuracy of the common volume, relative to it.
 const DIGITS: f64 = 1e-5;
 
-/// What was found.
+/// The answers.
 struct Answers {
     found: Interference,
     near: Clearance,
-    /// Of half-spaces, for the verdict.
+    /// Evaluated half-spaces, for the verdict.
     evaluations: u64,
-    /// Whether more splits might tell more.
+    /// True if more splits might improve the answers.
     is_spent: bool,
 }
 
-/// How well a clearance is to be known: where surfaces are known, as well as one likes; else as cells tell
-/// it.
+/// Returns the tolerance of a clearance: almost exact if surfaces are known, otherwise that of the cells.
 fn tolerance(is_exact: bool, frame: &Frame) -> f64 {
     if is_exact { 1e-9 * frame.edge() } else { 4.0 * frame.cell_size() }
 }
 
-/// Whether triangles tell distances from a solid.
+/// True if distances from a solid can be computed from triangles.
 fn has_walls<S: Solid>(solid: &S, frame: &Frame, control: &Control<'_>) -> Result<bool, Error> {
     Ok(solid.on(frame, control)?.walls(control)?.is_some())
 }
 
-/// The verdict; then how much, or how far.
+/// Computes the verdict, then the common volume or the clearance.
 fn ask(
     [a, b]: [&Prepared; 2],
     is_exact: bool,
@@ -347,7 +346,7 @@ fn ask(
     let mut found = interference(a, b, frame, f64::INFINITY, control)?;
     let evaluations = evaluations(a.solid()) + evaluations(b.solid());
     if found.verdict == Overlap::Overlapping {
-        // About how much it is, and then to so many digits of that.
+        // First a rough volume, then the accuracy relative to it.
         let some = Control { max_splits: control.max_splits.map(|most| most / 8), ..*control };
         let mut measured = interference(a, b, frame, 0.0, &some)?;
         let wanted = DIGITS * measured.volume.lower;
@@ -411,13 +410,13 @@ impl Report {
     }
 }
 
-/// The same for people.
+/// Returns the report for people.
 fn text(found: &Interference, report: &Report, reason: Option<&str>) -> String {
     let mut text = String::new();
     let mut line = |name: &str, value: String| put_line(&mut text, name, &value);
     line("verdict", reason.map_or(report.verdict.into(), |reason| format!("{}: {reason}", report.verdict)));
     line("overlap", report.overlap.text());
-    // (Where the solids overlap it is 0, and nothing was searched.)
+    // (The clearance of overlapping solids is 0, and nothing was searched.)
     let ended = match report.clearance_measured {
         "budget" if report.clearance.upper != Some(0.0) => " (as far as the splits go)",
         _ => "",

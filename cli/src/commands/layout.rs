@@ -1,4 +1,4 @@
-//! `leafless layout`: how many copies of parts go into a container, and where?
+//! `leafless layout`: copies of parts in a container.
 
 use crate::failure::{Failure, Of};
 use crate::making::laid::{Scenery, package, surfaces};
@@ -22,101 +22,102 @@ use std::path::Path;
 use std::time::Instant;
 
 /// Places copies of parts in a container. Each copy that is placed is proven to lie in the container, to
-/// overlap with no other copy and with no obstacle, and to be as far from all of them as it should be. What
-/// cannot be proven is not placed. The exit code is 0 if all copies are placed, and 1 if some are left; the
-/// layout is written in both cases.
+/// overlap with no other copy and no obstacle, and to keep the required distances. A copy for which this
+/// cannot be proven is not placed. The exit code is 0 if all copies are placed, and 1 if some are left over.
+/// The layout is written in both cases.
 ///
-/// The JSON says which copy stands where, and --check proves it again. The 3MF has an object for each item
-/// and its copies in their places, ready to be printed: a mesh is taken as it is, and of anything else the
-/// surface is made as `leafless mesh` makes it, which is near to the solid. The scene is for
-/// `leafless render` and OpenSCAD: the container is marked by % in it. The picture shows the copies of each
-/// item in a colour of their own, obstacles in grey, and a box around the container.
+/// The JSON tells which copy stands where, and --check proves it again. The 3MF has one object for each item,
+/// and the item's copies in their places, ready to be printed. A mesh is stored as it is; for other items,
+/// the surface is made as `leafless mesh` makes it, and approximates the solid. The scene (.csg) is for
+/// `leafless render` and OpenSCAD; the container is marked by % in it. The picture (.png) shows the copies of
+/// each item in one colour, obstacles in grey, and a box around the container.
 ///
-/// Lengths are those of the model. What is not known is null in JSON. Copies and obstacles have
-/// numbers from 0, in the order in which they stand in the JSON.
+/// Lengths are in model units. Unknown numbers are null in JSON. Copies and obstacles are numbered from 0, in
+/// the order of the JSON.
 #[derive(Args)]
 #[command(
     override_usage = "leafless layout [OPTIONS] --output <OUTPUT> <CONTAINER> <ITEM[*COUNT]>...\n       \
                             leafless layout --check <LAYOUT> [--splits <N>] [--threads <N>] [--json]"
 )]
 pub struct Arguments {
-    /// What holds everything: a solid (.lfl), mesh (STL, OBJ, PLY, OFF, 3MF), scene (.csg) or volume (NRRD,
+    /// The container: a solid (.lfl), mesh (STL, OBJ, PLY, OFF, 3MF), scene (.csg) or volume (NRRD,
     /// MetaImage), or `box:X,Y,Z`, a box with its lower corner at the origin
     #[arg(value_name = "CONTAINER", required_unless_present = "check", conflicts_with = "check")]
     container: Option<OsString>,
-    /// What is placed, of the same kinds: `part.stl`, or `part.stl*30` for thirty copies; 10,000 copies of
-    /// all items at the most
+    /// The parts to place, of the same kinds: `part.stl`, or `part.stl*30` for thirty copies. All items
+    /// together may have 10,000 copies
     #[arg(value_name = "ITEM[*COUNT]", required_unless_present = "check", conflicts_with = "check")]
     items: Vec<OsString>,
-    /// Where to write the layout: the extension .json, .3mf, .csg or .png tells the format; `-` is standard
+    /// File for the layout: the extension .json, .3mf, .csg or .png decides the format; `-` is standard
     /// output, for JSON. May be given several times
     #[arg(short, long, value_name = "OUTPUT", required_unless_present = "check", conflicts_with = "check")]
     output: Vec<OsString>,
-    /// Check the layout in a file (.json): read all files in it again, and say which copies are in conflict
-    /// with what. The exit code is 0 if all of them are proven to stand as they should, and 1 if not
+    /// Check the layout in a file (.json): read all files in it again, and tell which copies are in conflict,
+    /// and with what. The exit code is 0 if all copies are proven to stand as they should, and otherwise 1
     #[arg(long, value_name = "LAYOUT")]
     check: Option<OsString>,
-    /// Least distance between two copies, and between a copy and an obstacle, in model units. Without it: 0
+    /// Least distance between two copies, and between a copy and an obstacle, in model units [default: 0]
     #[arg(long, value_name = "C", value_parser = tolerance, allow_hyphen_values = true, conflicts_with = "check")]
     clearance: Option<f64>,
-    /// Least distance between a copy and what lies outside of the container. Without it: 0
+    /// Least distance between a copy and the outside of the container, in model units [default: 0]
     #[arg(long, value_name = "W", value_parser = tolerance, allow_hyphen_values = true, conflicts_with = "check")]
     wall_clearance: Option<f64>,
-    /// A file of something that stands in the container already. May be given several times
+    /// File of an obstacle that stands in the container already. May be given several times
     #[arg(long, value_name = "FILE", conflicts_with = "check")]
     obstacle: Vec<OsString>,
     /// How copies may be turned: `as-given`, not at all; `24`, by quarter turns; `free:N`, as given and by N
-    /// turns of any kind; or by the matrices in a file, a line for each as --place takes it elsewhere, of
-    /// which only the turn counts. Without it: 24
+    /// arbitrary turns; or a file of matrices, one a line as --place of other commands takes it, of which
+    /// only the rotation counts [default: 24]
     #[arg(long, value_name = "TURNS", conflicts_with = "check")]
     orientations: Option<OsString>,
-    /// Mass of a cubic unit: one number for all items, or one for each, separated by commas; or with units,
-    /// g/cm3, kg/dm3, kg/m3 or lb/in3, if the unit of the model is known. It counts for the mass, the
-    /// centroid and the objective `balance`. Without it: 1
-    #[arg(long, value_name = "D[,D]...", value_parser = density, value_delimiter = ',', allow_hyphen_values = true, conflicts_with = "check")]
-    density: Vec<Density>,
-    /// The unit of the model where no file tells it: um, mm, cm, m, in or ft. The 3MF has it, too
-    #[arg(long, value_name = "UNIT", value_parser = unit, conflicts_with = "check")]
-    unit: Option<LengthUnit>,
-    /// What is sought: `count`, as many copies as possible; `height`, these as low as possible along z;
-    /// `density`, as much volume as possible; `balance=X,Y,Z`, as many copies as possible with the centre of
-    /// gravity near to a point. Without it: count
+    /// What to achieve: `count`, as many copies as possible; `height`, the same, as low as possible along z;
+    /// `density`, as much volume as possible; `balance=X,Y,Z`, as many copies as possible with their centre
+    /// of gravity near a point [default: count]
     #[arg(long, value_name = "AIM", value_parser = objective, conflicts_with = "check")]
     objective: Option<Objective>,
-    /// All copies can be taken out along this direction, the last one first, without meeting another one: +x,
-    /// -x, +y, -y, +z or -z
+    /// All copies can be taken out along this direction, the last one first, without hitting another copy:
+    /// +x, -x, +y, -y, +z or -z
     #[arg(long, value_name = "WAY", value_parser = direction, allow_hyphen_values = true, conflicts_with = "check")]
     free_along: Option<Direction>,
-    /// What chance depends on: the same seed gives the same layout. Without it: 0
-    #[arg(long, value_name = "S", conflicts_with = "check")]
-    seed: Option<u64>,
-    /// How often everything is placed anew, 1 or more; the best layout stays. Without it: 4
-    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(1..), conflicts_with = "check")]
-    rounds: Option<u32>,
-    /// Cells along the longest side of the container to search by, 4 to 512. Without it: as the items ask for
-    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(4..=512), conflicts_with = "check")]
-    cells: Option<u32>,
-    /// Places to look at by the solids themselves, at the most
-    #[arg(long, value_name = "N", conflicts_with = "check")]
-    tests: Option<u64>,
-    /// Cells to split for proofs, at the most; with --check, for each pair
-    #[arg(long, value_name = "N")]
-    splits: Option<u64>,
-    /// Seconds after which the search ends with the best layout so far. The result then depends on the
-    /// machine
-    #[arg(long, value_name = "S", value_parser = seconds, allow_hyphen_values = true, conflicts_with = "check")]
-    seconds: Option<f64>,
-    /// Threads to use; 0: as many as there are processors. The result is the same
-    #[arg(long, default_value_t = 0, value_name = "N", value_parser = threads)]
-    threads: usize,
     /// Print one JSON object
     #[arg(long)]
     json: bool,
+    /// Cells along the longest side of the container that the search uses, 4 to 512 [default: as many as the
+    /// items need]
+    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(4..=512), conflicts_with = "check", help_heading = "Accuracy")]
+    cells: Option<u32>,
+    /// How often everything is placed anew, 1 or more; the best layout is kept [default: 4]
+    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(1..), conflicts_with = "check", help_heading = "Limits")]
+    rounds: Option<u32>,
+    /// Time limit of the search in seconds: the command then ends with the best layout so far. The result
+    /// then depends on the machine
+    #[arg(long, value_name = "S", value_parser = seconds, allow_hyphen_values = true, conflicts_with = "check")]
+    seconds: Option<f64>,
+    /// Most places that are tried with the solids themselves
+    #[arg(long, value_name = "N", conflicts_with = "check")]
+    tests: Option<u64>,
+    /// Most cells to split for proofs; with --check, for each pair
+    #[arg(long, value_name = "N")]
+    splits: Option<u64>,
+    /// Seed of the random numbers: the same seed gives the same layout [default: 0]
+    #[arg(long, value_name = "S", conflicts_with = "check", help_heading = "Limits")]
+    seed: Option<u64>,
+    /// Threads to use, 0 to 1024; 0: one for each processor. The result does not depend on it
+    #[arg(long, default_value_t = 0, value_name = "N", value_parser = threads)]
+    threads: usize,
+    /// Mass of a cubic unit: one number for all items, or one for each, separated by commas; or with a unit,
+    /// g/cm3, kg/dm3, kg/m3 or lb/in3, if the unit of the model is known. Used for the mass, the centroid and
+    /// the objective `balance` [default: 1]
+    #[arg(long, value_name = "D[,D]...", value_parser = density, value_delimiter = ',', allow_hyphen_values = true, conflicts_with = "check")]
+    density: Vec<Density>,
+    /// Unit of the model, if no file tells it: um, mm, cm, m, in or ft. It is written into the 3MF
+    #[arg(long, value_name = "UNIT", value_parser = unit, conflicts_with = "check")]
+    unit: Option<LengthUnit>,
 }
 
-/// How well volumes are to be known, as a part of them; …
+/// Accuracy of volumes, relative to them, …
 const DIGITS: f64 = 1e-4;
-/// … and what may be split for each.
+/// … and the splits for each of them.
 const SPLITS: u64 = 1 << 18;
 
 fn objective(text: &str) -> Result<Objective, String> {
@@ -188,7 +189,7 @@ fn format(output: &Output) -> Result<Format, Failure> {
         Some("csg") => Ok(Format::Scene),
         Some("png") => Ok(Format::Picture),
         _ => {
-            let problem = "has none of the extensions .json, .3mf, .csg and .png, which tell the format";
+            let problem = "has none of the extensions .json, .3mf, .csg and .png, which decide the format";
             Err(Failure::Usage(format!("{output}: {problem}")))
         }
     }
@@ -221,7 +222,7 @@ pub fn run(arguments: &Arguments) -> Result<(), Failure> {
         wall: arguments.wall_clearance.unwrap_or(0.0),
     };
     let solids = stock.read(&turns, clearances, arguments.unit)?;
-    // What cannot be written is told before the search.
+    // Scenes that cannot be written are reported before the search.
     let scenes = outputs.iter().zip(&formats).map(|(output, format)| match format {
         Format::Scene => Scenery::new(&stock, &solids, folder_of(output.path())).map(Some),
         _ => Ok(None),
@@ -283,7 +284,7 @@ pub fn run(arguments: &Arguments) -> Result<(), Failure> {
     let names = outputs.iter().map(Output::to_string).collect();
     let seconds = start.elapsed().as_secs_f64();
     let report = Found::new(stock.holder.to_string(), items, measures, &search, names, seconds);
-    // (Where standard output carries a layout, the report stands on standard error.)
+    // (If standard output carries a layout, the report goes to standard error.)
     let carrier = outputs.iter().find(|output| output.path().is_none()).or(outputs.first());
     match carrier {
         Some(output) => output.tell(arguments.json, &report, Found::text)?,
@@ -292,7 +293,7 @@ pub fn run(arguments: &Arguments) -> Result<(), Failure> {
     report.rest().map_or(Ok(()), |rest| Err(Failure::Failed(rest)))
 }
 
-/// What is next to each copy, and what is known of all.
+/// Returns the neighbour of each copy, and the measures of all copies.
 fn known(
     layout: &Layout,
     mass_unit: MassUnit,

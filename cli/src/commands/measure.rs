@@ -26,67 +26,68 @@ use leafless::{
 use serde::Serialize;
 use std::ffi::OsString;
 
-/// Measures a solid of density 1, or of --density, without making an octree of it: the cells of which most is
-/// in doubt are split first, until the volume is known well enough. All numbers are intervals that hold the
-/// true ones.
+/// Measures a solid of density 1, or of --density, without making an octree: the cells with the greatest
+/// uncertainty are split first, until the volume is known well enough. All numbers are intervals that contain
+/// the true values.
 ///
-/// A solid from a file (.lfl) knows no more about its undecided cells, so its own bounds are told, as well as
-/// it was made; a mesh or a scene is split as deep as it takes.
+/// A solid from a file (.lfl) has no more information about its undecided cells, so its own bounds are
+/// printed. A mesh or a scene is split as deep as necessary.
 #[derive(Args)]
 pub struct Arguments {
     /// Solid (.lfl), mesh (STL, OBJ, PLY, OFF, 3MF), scene (.csg) or volume (NRRD, MetaImage), or `-` for
     /// standard input
     file: OsString,
-    /// How wide the interval of the volume may be, relative to its middle; 0 goes on to the depth. Without
-    /// it: 0.01, or 0 if --splits is given; much less costs little where surfaces are those of half-spaces
-    #[arg(long, value_name = "T", value_parser = tolerance, allow_hyphen_values = true)]
-    tolerance: Option<f64>,
-    /// How wide it may be otherwise, in cubic units. Without it: a billionth of the cube that is looked at,
-    /// or 0 if --tolerance or --splits is given
-    #[arg(long, value_name = "A", value_parser = tolerance, allow_hyphen_values = true)]
-    absolute: Option<f64>,
-    /// Cells to split at most. Without it: 67108864, a minute or so
-    #[arg(long, value_name = "N")]
-    splits: Option<u64>,
-    /// Seconds after which it ends with what is known by then. The result then depends on the machine
-    #[arg(long, value_name = "S", value_parser = seconds, allow_hyphen_values = true)]
-    seconds: Option<f64>,
-    /// Mass of a cubic unit, which makes the volume a mass and the inertia that of this mass; or with a unit,
-    /// g/cm3, kg/dm3, kg/m3 or lb/in3, if the unit of the model is known or told by --unit: --unit mm
-    /// --density 7.85g/cm3 tells grams
+    /// Mass of a cubic unit: tells the mass, and the inertia for this mass. A unit g/cm3, kg/dm3, kg/m3 or
+    /// lb/in3 needs the unit of the model, from the file or from --unit: with --unit mm and 7.85g/cm3 the
+    /// mass is in grams
     #[arg(long, value_name = "D", value_parser = density, allow_hyphen_values = true)]
     density: Option<Density>,
-    /// Deepest level to split to, 1 to 20. Without it: as deep as the solid is, or 20 for a mesh or scene
-    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u8).range(1..=MAX_DEPTH as i64))]
-    depth: Option<u8>,
-    /// Lower corner and edge length of the cube to measure in, for a mesh or scene. Without it: the cube
-    /// around it
-    #[arg(long, value_name = "X0,Y0,Z0,EDGE", value_parser = bounds, allow_hyphen_values = true)]
-    bounds: Option<Frame>,
-    /// Take the cells of a solid from a file (.lfl) for the solid itself, whatever they prove of what they
-    /// were made from
-    #[arg(long)]
-    cells: bool,
-    #[command(flatten)]
-    taking: Taking,
-    /// Threads to use; 0: as many as there are processors. The result is the same
-    #[arg(long, default_value_t = 0, value_name = "N", value_parser = threads)]
-    threads: usize,
     /// Print one JSON object
     #[arg(long)]
     json: bool,
+    /// Greatest width of the volume's interval, relative to its middle; 0 continues to the depth. Small
+    /// values cost little if the surfaces are those of half-spaces [default: 0.01, or 0 with --splits]
+    #[arg(long, value_name = "T", value_parser = tolerance, allow_hyphen_values = true)]
+    tolerance: Option<f64>,
+    /// Width of the volume's interval that suffices in any case, in cubic units [default: a billionth of the
+    /// cube that is examined, or 0 with --tolerance or --splits]
+    #[arg(long, value_name = "A", value_parser = tolerance, allow_hyphen_values = true)]
+    absolute: Option<f64>,
+    /// Finest level to split to, 1 to 20 [default: the depth of the solid, or 20 for a mesh or scene]
+    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u8).range(1..=MAX_DEPTH as i64))]
+    depth: Option<u8>,
+    /// Take the cells of a solid from a file (.lfl) as the solid itself, whatever the cells prove about their
+    /// source
+    #[arg(long)]
+    cells: bool,
+    /// Time limit in seconds: the command then ends with the bounds found so far. The result then depends on
+    /// the machine
+    #[arg(long, value_name = "S", value_parser = seconds, allow_hyphen_values = true)]
+    seconds: Option<f64>,
+    /// Most cells to split [default: 67108864, about a minute]
+    #[arg(long, value_name = "N")]
+    splits: Option<u64>,
+    /// Threads to use, 0 to 1024; 0: one for each processor. The result does not depend on it
+    #[arg(long, default_value_t = 0, value_name = "N", value_parser = threads)]
+    threads: usize,
+    /// Lower corner and edge length of the cube to measure in, for a mesh or scene [default: the cube around
+    /// it]
+    #[arg(long, value_name = "X0,Y0,Z0,EDGE", value_parser = bounds, allow_hyphen_values = true)]
+    bounds: Option<Frame>,
+    #[command(flatten)]
+    taking: Taking,
 }
 
-/// Sides of the bounding box are told to this part of the universe's edge where that is cheap, …
+/// Accuracy of the sides of the bounding box, relative to the universe's edge, if it is cheap, …
 const FINE_SIDES: f64 = 1e-9;
-/// … which means that it takes no more splits than this …
+/// … that is, if it takes no more splits than this …
 const FEW_SPLITS: u64 = 1 << 14;
-/// … and else to this part …
+/// … and otherwise this accuracy, …
 const SIDES: f64 = 0.001;
 /// … unless that takes more splits than this.
 const MOST_SPLITS: u64 = 1 << 22;
 
-/// The bounding box, as well as it is known cheaply.
+/// Returns the bounding box, as accurately as it is cheap.
 fn sides<S: Solid>(
     solid: &S,
     frame: &Frame,
@@ -108,7 +109,7 @@ fn sides<S: Solid>(
     Ok(fine)
 }
 
-/// Cells that are split for the area at most, if --splits does not say otherwise.
+/// Most splits for the area without --splits.
 const AREA_SPLITS: u64 = 1 << 17;
 
 /// Lower and upper bounds of the elements of a vector or a matrix.
@@ -135,30 +136,30 @@ impl From<[[Interval; 3]; 3]> for Bounds<[[f64; 3]; 3]> {
 struct Report {
     input: String,
     volume: Volume,
-    /// Absent (null) without a density.
+    /// Null without a density.
     mass: Option<Volume>,
-    /// Of the mass and the inertia: `g`, or empty where the density has no unit.
+    /// Unit of the mass and the inertia: `g`, or empty if the density has no unit.
     mass_unit: &'static str,
-    /// What of the solid is proven; what is not counts as undecided.
+    /// The proof of the solid; unproven cells count as undecided.
     proof: Proven,
-    /// Absent (null) if nothing is proven to be inside.
+    /// Null if nothing is proven to be inside.
     centroid: Option<Bounds<[f64; 3]>>,
     /// About the centroid.
     inertia: Bounds<[[f64; 3]; 3]>,
     inertia_about_origin: Bounds<[[f64; 3]; 3]>,
-    /// Corners of the bounding box; absent (null) if the solid is proven empty.
+    /// Corners of the bounding box; null if the solid is proven to be empty.
     min: Option<Bounds<[f64; 3]>>,
     max: Option<Bounds<[f64; 3]>>,
-    /// Of the boundary; absent (null) if nothing is known of it.
+    /// Area of the boundary; null if unknown.
     area: Option<Volume>,
-    /// How far the boundary may lie beside the mesh whose area this is, along an axis: what vertices were
-    /// moved by, and what was stated.
+    /// Greatest distance of the boundary from the mesh with this area, along an axis: the moves of vertices,
+    /// and the stated deviation.
     area_displacement: f64,
     area_measured: &'static str,
     area_splits: u64,
-    /// Why it ended.
+    /// The reason why the computation ended.
     measured: &'static str,
-    /// Without those for the bounding box and for the area.
+    /// Splits other than those for the bounding box and the area.
     splits: u64,
     evaluations: u64,
     level: u8,
@@ -166,12 +167,12 @@ struct Report {
     origin: [f64; 3],
     edge: f64,
     clipped: bool,
-    /// Whether all is known up to rounding, without splitting cells, as of a closed mesh whose triangles do
-    /// not intersect; absent (null) for what is no mesh.
+    /// True if everything is known up to rounding, without splitting cells, as for a closed mesh whose
+    /// triangles do not intersect; null for other inputs than meshes.
     exact: Option<bool>,
-    /// Why not.
+    /// The reason why not.
     inexact_reason: Option<String>,
-    /// How the curves of a scene were drawn; else absent (null).
+    /// The way in which the curves of a scene were drawn; null for other inputs.
     curves: Option<Curves>,
 }
 
@@ -195,7 +196,7 @@ pub fn run(arguments: &Arguments) -> Result<(), Failure> {
     };
     let solid = Prepared::new(source.placed(&input, &placement, &frame)?);
     let own = match solid.solid().sole_mesh().filter(|_| is_scene) {
-        // By any rule it is the same solid, unless bodies are inside out.
+        // By any fill rule it is the same solid, unless bodies are inside out.
         Some(mesh) => {
             let corners = Corners::new(&input, mesh, FillRule::Positive)?;
             let sewn = if corners.are_exact() { as_sewn(&input, mesh, FillRule::Positive)? } else { None };
@@ -206,7 +207,7 @@ pub fn run(arguments: &Arguments) -> Result<(), Failure> {
     let (corners, sewn) = own.map_or((None, None), |(corners, sewn)| (Some(corners), sewn));
     let asked = arguments.tolerance.is_some() || arguments.splits.is_some();
     let relative = arguments.tolerance.unwrap_or(if arguments.splits.is_some() { 0.0 } else { 0.01 });
-    // What is flat or empty has no volume to be relative to.
+    // A flat or empty solid has no volume that the tolerance could refer to.
     let absolute = arguments.absolute.unwrap_or(if asked { 0.0 } else { 1e-9 * frame.edge().powi(3) });
     let tolerance = Tolerance { relative, absolute };
     let asking =
@@ -230,37 +231,38 @@ pub fn run(arguments: &Arguments) -> Result<(), Failure> {
     sink::print(text.as_bytes())
 }
 
-/// What is measured, and how well.
+/// The task of a measurement.
 struct Asking<'a> {
     solid: &'a Prepared,
     frame: &'a Frame,
     tolerance: Tolerance,
-    /// Of a mesh the corners of its triangles.
+    /// The corners of the triangles of a mesh.
     corners: Option<&'a Corners>,
-    /// Of a mesh whose hair cracks were closed, or that is known within a deviation only, that mesh as it is.
+    /// The mesh without its displacement, if its hair cracks were closed, or if it is known within a
+    /// deviation only.
     sewn: Option<&'a AsItIs>,
 }
 
-/// A mesh that the boundary may lie beside, as if it did not.
+/// A mesh without the displacement of its boundary.
 struct AsItIs {
     solid: MeshSolid,
-    /// Whether that was stated of the mesh, and not only vertices were moved.
+    /// True if the displacement was stated, and not only vertices were moved.
     is_stated: bool,
 }
 
-/// What was found.
+/// The results.
 struct Found {
     mass: MassProperties,
-    /// What was multiplied by the density, if there is one.
+    /// The density by which the results were multiplied, if there is one.
     weight: Option<Interval>,
     extent: Extent,
     surface: SurfaceArea,
-    /// How far the boundary may lie beside the mesh whose area this is.
+    /// Greatest distance of the boundary from the mesh with this area.
     area_displacement: f64,
-    /// Whether that was stated of the mesh, and not only vertices were moved.
+    /// True if the displacement was stated, and not only vertices were moved.
     is_stated: bool,
     evaluations: u64,
-    /// Of a mesh why its moments were not known without splitting cells, if they were not.
+    /// For a mesh, the reason why its moments were not known without splitting cells, if they were not.
     inexact: Option<Option<String>>,
 }
 
@@ -270,7 +272,7 @@ impl Asking<'_> {
         let mass = measure(solid, frame, tolerance, control)?;
         let evaluations = evaluations(solid.solid());
         let quiet = Control { progress: None, ..*control };
-        // `measure` has found it out before, as a rule.
+        // Usually, `measure` has found this out before.
         let inexact = match solid.solid().get::<MeshSolid>() {
             Some(mesh) => Some(inexact_reason(mesh, mass.clipped, &quiet)?),
             None => None,
@@ -296,7 +298,7 @@ impl Asking<'_> {
         let few = Control { max_splits: most, ..quiet };
         let mut surface = surface_area(solid.solid(), frame, tolerance.relative, &few)?;
         let mut area_displacement = 0.0;
-        // A surface that is known to lie beside the mesh may have any area; that of the mesh is told instead.
+        // A surface that may lie beside the mesh may have any area; the area of the mesh is reported instead.
         let is_stated = sewn.is_some_and(|sewn| sewn.is_stated);
         if let Some(AsItIs { solid, .. }) = sewn.filter(|_| !is_known(&surface)) {
             surface = surface_area(solid, frame, tolerance.relative, &few)?;
@@ -307,7 +309,7 @@ impl Asking<'_> {
 }
 
 impl Found {
-    /// Makes the volume a mass, if a cubic unit has this one, and the inertia that of this mass.
+    /// Multiplies the volume and the inertia by the mass of a cubic unit.
     fn weigh(&mut self, mass: f64) {
         self.weight = Some(times(self.mass.volume, mass));
         for tensor in [&mut self.mass.inertia_about_centroid, &mut self.mass.inertia_about_origin] {
@@ -316,8 +318,7 @@ impl Found {
     }
 }
 
-/// A mesh whose hair cracks were closed as if it had never had any, and one with a deviation as if it had
-/// none.
+/// Returns a mesh whose hair cracks were closed, or that has a deviation, as if its boundary were exact.
 fn as_sewn(input: &Input, mesh: &TriangleMesh, fill: FillRule) -> Result<Option<AsItIs>, Failure> {
     if mesh.displacement() == 0.0 {
         return Ok(None);
@@ -327,8 +328,8 @@ fn as_sewn(input: &Input, mesh: &TriangleMesh, fill: FillRule) -> Result<Option<
     Ok(Some(AsItIs { solid, is_stated: mesh.deviation() > 0.0 }))
 }
 
-/// What is left to move, and the frame to look at. A solid from a file is moved as a solid: cells of any size
-/// tell of it what its own ones tell.
+/// Returns the rest of the placement, and the frame to examine. A solid from a file is moved as a solid:
+/// cells of any size then tell as much as its own ones.
 fn place(arguments: &Arguments, input: &Input, source: &Source) -> Result<(Affine, Frame), Failure> {
     let (bounds, depth) = (arguments.bounds.as_ref(), arguments.depth);
     let (Source::Octree(octree), Some(map)) = (source, arguments.taking.placing.map()) else {
@@ -343,7 +344,7 @@ fn place(arguments: &Arguments, input: &Input, source: &Source) -> Result<(Affin
     Ok((*map, frame.with_depth(depth).of(input)?))
 }
 
-/// Why a mesh's moments were not known without splitting cells; `None` if they were.
+/// Returns the reason why a mesh's moments were not known without splitting cells; `None` if they were.
 fn inexact_reason(mesh: &MeshSolid, clipped: bool, control: &Control<'_>) -> Result<Option<String>, Error> {
     Ok(match mesh.moments(control)? {
         MeshMoments::Known(_) if clipped => Some("the mesh reaches beyond the bounds, or may".into()),
@@ -389,7 +390,7 @@ fn is_known(surface: &SurfaceArea) -> bool {
     surface.area.upper < f64::INFINITY
 }
 
-/// The same for people.
+/// Returns the report for people.
 fn text(
     found: &Found,
     frame: &Frame,
@@ -442,7 +443,7 @@ fn text(
     }
     if let Some([min, max]) = extent.corners {
         for (axis, name) in ["x", "y", "z"].into_iter().enumerate() {
-            // What goes on beyond the cube may reach any further.
+            // A solid that continues beyond the cube may extend any further.
             let (start, end) = (frame.origin()[axis], frame.origin()[axis] + frame.edge());
             let wall = |is_wall: bool| {
                 if is_wall && mass.clipped { ", where the cube ends that is looked at" } else { "" }

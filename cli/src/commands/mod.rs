@@ -1,4 +1,4 @@
-//! The subcommands, one a file: what each takes, and what it asks.
+//! The subcommands, one in each file: their arguments and their tasks.
 
 pub mod attribute;
 pub mod bitmap;

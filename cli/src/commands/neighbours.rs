@@ -1,4 +1,4 @@
-//! `leafless neighbours`: what lies beside these cells?
+//! `leafless neighbours`: the cells beside given cells.
 
 use crate::failure::Failure;
 use crate::rows::{Questions, serve};
@@ -11,24 +11,24 @@ use serde::Serialize;
 use std::ffi::OsString;
 use std::fmt::Write;
 
-/// Reads cells from standard input, one a line: the level, and the cell's x, y and z among those of its
+/// Reads cells from standard input, one a line: the level, and the cell's x, y and z among the cells of its
 /// level, counted from 0. Empty lines and lines that begin with # are skipped.
 ///
-/// Prints for each cell a line for each neighbour: the steps along x, y and z that lead to it, its tag
-/// (empty, full, partial or branch, which means split), its level, and its x, y and z. The neighbour is as
-/// large as the cell, or the larger one that is not split. There is none beyond the universe. An empty line
-/// ends the answer.
+/// Prints one line for each neighbour of a cell: the steps along x, y and z that lead to it, its tag (empty,
+/// full, partial, or branch for a cell that is split), its level, and its x, y and z. The neighbour is as
+/// large as the cell, or a larger cell that is not split. There is none outside the cube of the solid. An
+/// empty line ends the answer.
 #[derive(Args)]
 pub struct Arguments {
     /// Solid (.lfl)
     file: OsString,
-    /// Which neighbours
+    /// Which neighbours to list
     #[arg(long, value_enum, default_value_t = Through::Faces)]
     through: Through,
-    /// Tell in place of a neighbour that is split all the smaller cells in it that touch the cell
+    /// In place of a neighbour that is split, list all smaller cells in it that touch the cell
     #[arg(long)]
     smaller: bool,
-    /// Print a line of JSON for each cell
+    /// Print one line of JSON for each cell
     #[arg(long)]
     json: bool,
 }
@@ -60,7 +60,7 @@ pub fn run(arguments: &Arguments) -> Result<(), Failure> {
     serve(&mut Batch { tree, cursor: Cursor::new(tree), arguments, text: String::new() })
 }
 
-/// Cells, and what is told of them so far.
+/// The answers to the cells so far.
 struct Batch<'t, 'a> {
     tree: &'t OctreeRef<'a>,
     cursor: Cursor<'a>,
@@ -88,7 +88,7 @@ impl Neighbour {
     }
 }
 
-/// The whole number that is meant, if it is one.
+/// Returns the number as a whole number, if it is one.
 fn whole(number: f64) -> Option<u32> {
     let whole = number as u32;
     (f64::from(whole) == number).then_some(whole)
@@ -97,7 +97,7 @@ fn whole(number: f64) -> Option<u32> {
 impl Questions<4> for Batch<'_, '_> {
     fn ask(&mut self, numbers: [f64; 4]) -> Result<(), String> {
         let [Some(level), Some(x), Some(y), Some(z)] = numbers.map(whole) else {
-            return Err("the level and the place of a cell are whole numbers from 0 on".into());
+            return Err("the level and the coordinates of a cell must be whole numbers, 0 or more".into());
         };
         let level = u8::try_from(level).unwrap_or(u8::MAX);
         let depth = self.tree.frame().depth();
@@ -120,7 +120,8 @@ impl Questions<4> for Batch<'_, '_> {
             }
         }
         if self.arguments.json {
-            self.text.push_str(&sink::json_line(&neighbours).map_err(|_| "cannot be told".to_owned())?);
+            self.text
+                .push_str(&sink::json_line(&neighbours).map_err(|_| "cannot be written as JSON".to_owned())?);
             return Ok(());
         }
         for Neighbour { steps: [dx, dy, dz], tag, level, cell: [x, y, z] } in neighbours {

@@ -1,5 +1,5 @@
-//! `leafless interfere --poses`: one solid under many placements. With `--clearance` it tells how far the
-//! solids are apart in each, with `--gap-at-least` whether that is far enough.
+//! `leafless interfere --poses`: one solid under many placements. With `--clearance` the report contains the
+//! distance of the solids in each of them, with `--gap-at-least` whether the distance is large enough.
 
 use crate::failure::{Failure, Of};
 use crate::progress::watched;
@@ -11,22 +11,22 @@ use leafless::query::{Ball, Gap, GapVerdict, clearance_at, gap_at_least_at, inte
 use leafless::{Affine, AnySolid, Clearance, Control, Frame, Interference};
 use serde::Serialize;
 
-/// What is asked under all placements.
+/// The solids under all placements.
 pub struct Asked<'a> {
     pub inputs: &'a [Input; 2],
     pub solids: &'a [AnySolid; 2],
-    /// Where to look, and where the second solid is known.
+    /// The frame to examine, and the frame of the second solid.
     pub frames: [&'a Frame; 2],
 }
 
-/// What is to be known of each placement.
+/// The question about each placement.
 #[derive(Clone, Copy)]
 pub enum Wanted {
-    /// Whether the solids overlap.
+    /// The overlap verdict.
     Verdict,
-    /// That, and how far they are apart, to a tolerance.
+    /// The verdict and the clearance, to a tolerance.
     Clearance(f64),
-    /// Whether they are at least so far apart.
+    /// Whether the distance is at least this number.
     Gap(f64),
 }
 
@@ -34,7 +34,7 @@ pub enum Wanted {
 #[derive(Serialize)]
 struct Pose {
     verdict: &'static str,
-    /// A ball that lies in both.
+    /// The centre of a ball that lies in both.
     centre: Option<[f64; 3]>,
     radius: Option<f64>,
     #[serde(flatten)]
@@ -42,15 +42,15 @@ struct Pose {
     splits: u64,
 }
 
-/// How far the solids are apart.
+/// The distance of the solids.
 #[derive(Serialize)]
 struct Near {
     clearance: Range,
-    /// A point of each solid, as near as the upper bound says; null if none are known.
+    /// A point of each solid, at the distance of the upper bound; null if none are known.
     points: Option<[[f64; 3]; 2]>,
 }
 
-/// Whether the solids are far enough apart under one placement.
+/// The answer of --gap-at-least for one placement.
 #[derive(Serialize)]
 struct PoseGap {
     /// "yes", "no" or "undecided".
@@ -67,7 +67,7 @@ struct Report<P> {
     depth: u8,
     origin: [f64; 3],
     edge: f64,
-    /// How far the solids are to be apart, if that was asked for.
+    /// The required distance, if there is one.
     #[serde(skip_serializing_if = "Option::is_none")]
     least: Option<f64>,
     poses: Vec<P>,
@@ -94,7 +94,7 @@ impl Asked<'_> {
         Report { a: a.to_string(), b: b.to_string(), depth: frame.depth(), origin, edge, least, poses }
     }
 
-    /// Whether the solids overlap and, to a tolerance, how far they are apart.
+    /// Reports whether the solids overlap and, to a tolerance, how far they are apart.
     fn verdicts(
         &self,
         placements: &[Affine],
@@ -118,7 +118,7 @@ impl Asked<'_> {
         print_told(json, &self.report(None, poses), |report| text(report, tolerance.is_some()))
     }
 
-    /// Whether the solids are far enough apart; that they may be nearer in a place is a failure.
+    /// Reports whether the distances are large enough. A possible smaller distance is a failure.
     fn gaps(
         &self,
         placements: &[Affine],
@@ -167,7 +167,7 @@ impl Near {
         Near { clearance: Range::new(found.distance, found.clipped), points: found.points }
     }
 
-    /// For people: the interval, and the points.
+    /// Returns the interval and the points, for people.
     fn cells(&self) -> [String; 2] {
         let points = self.points.map(|ends| ends.map(|end| end.map(number).join(" ")).join(" and "));
         [self.clearance.text(), points.unwrap_or_default()]
@@ -184,7 +184,7 @@ impl PoseGap {
     }
 }
 
-/// The same for people.
+/// Returns the report for people.
 fn text(report: &Report<Pose>, has_clearance: bool) -> String {
     let near: &[&str] = if has_clearance { &["clearance", "nearest"] } else { &[] };
     let head = [&["pose", "verdict", "a ball in both: radius", "around"], near, &["splits"]].concat();
@@ -207,7 +207,7 @@ fn text(report: &Report<Pose>, has_clearance: bool) -> String {
     table(&head, &rows)
 }
 
-/// The same for people.
+/// Returns the report for people.
 fn text_of_gaps(report: &Report<PoseGap>) -> String {
     let least = report.least.unwrap_or_default();
     let head = [

@@ -1,4 +1,4 @@
-//! `leafless ray`: where do these rays meet the solid?
+//! `leafless ray`: the first hits of rays.
 
 use crate::failure::{Failure, Of};
 use crate::progress::watched;
@@ -19,10 +19,11 @@ use std::fmt::Write;
 /// direction of any length, separated by blanks, tabs or commas. Empty lines and lines that begin with # are
 /// skipped.
 ///
-/// Prints a line for each ray: `miss`, or two numbers between which the first hit lies, in lengths of the
-/// direction, and the outward normal there, 0 0 0 if the ray starts in the cell that stops it. Before the
-/// first number the ray is proven to be outside, at the second to be inside; that is `inf` if it is nowhere
-/// proven to be. Answers come as soon as lines are there, so that another program can ask and wait.
+/// Prints one line for each ray: `miss`, or a lower and an upper bound of the first hit, in lengths of the
+/// direction, and the outward normal there (0 0 0 if the ray starts in the cell that stops it). Before the
+/// lower bound the ray is proven to be outside, at the upper bound it is proven to be inside. The upper bound
+/// is `inf` if the ray is nowhere proven to be inside. Answers are printed as soon as lines arrive, so that
+/// another program can ask and wait.
 #[derive(Args)]
 pub struct Arguments {
     /// Solid (.lfl), mesh (STL, OBJ, PLY, OFF, 3MF), scene (.csg) or volume (NRRD, MetaImage)
@@ -30,28 +31,28 @@ pub struct Arguments {
     /// What stops a ray
     #[arg(long, value_enum, default_value_t = On::Upper)]
     on: On,
-    /// Level to which cells that a ray meets are split, 1 to 20. Without it: as deep as the solid is, or 20
-    /// for a mesh or scene
+    /// Print one line of JSON for each ray: an object, or `null` for a miss. `surface` is the number of the
+    /// triangle of a mesh that is hit, counted from 0. It is `null` at a hole, for a ray that starts inside,
+    /// and for inputs that do not answer rays themselves
+    #[arg(long)]
+    json: bool,
+    /// Finest level to which cells that a ray meets are split, 1 to 20 [default: the depth of the solid, or
+    /// 20 for a mesh or scene]
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u8).range(1..=MAX_DEPTH as i64))]
     depth: Option<u8>,
-    /// Cells to split at most for a ray; a ray along a surface would take a million. Rays along what is left
-    /// unsplit know less
+    /// Most cells to split for a ray: a ray along a surface would take a million. Bounds are wider in cells
+    /// that are left unsplit
     #[arg(long, value_name = "N", default_value_t = 1 << 14)]
     splits: u64,
     #[command(flatten)]
     looking: Looking,
-    /// Print a line of JSON for each ray: an object, or `null` for a miss. `surface` is the number of the
-    /// triangle that a mesh is met in, counted from 0; `null` over a hole, for what does not answer rays
-    /// itself, and for a ray that starts within
-    #[arg(long)]
-    json: bool,
 }
 
 #[derive(Debug, Clone, Copy, ValueEnum)]
 enum On {
-    /// What is proven to be solid
+    /// Cells that are proven to be solid
     Full,
-    /// What may be solid, so that a miss is proven
+    /// Cells that may be solid, so that a miss is proven
     Upper,
 }
 
@@ -95,7 +96,7 @@ struct Batch<'a> {
     text: String,
 }
 
-/// A hit, of which ∞ is absent (null).
+/// A hit; an infinite end is null.
 #[derive(Serialize)]
 struct Hit {
     t_lower: f64,

@@ -1,4 +1,4 @@
-//! `leafless render`: what does it look like?
+//! `leafless render`: pictures.
 
 use crate::failure::{Failure, Of};
 use crate::making::clipped::Planes;
@@ -20,87 +20,87 @@ use serde::Serialize;
 use std::ffi::OsString;
 use std::time::Instant;
 
-/// Makes a picture (PNG) of a solid, a mesh, a scene, a volume or a tri-dexel model, or shows one on the
+/// Makes a picture (PNG) of a solid, a mesh, a scene, a volume or a tri-dexel model, or shows it on the
 /// terminal.
 ///
-/// A solid from a file is shown as its cells make its surface likely to be; with --faces, as its cells are. A
-/// mesh, a scene, a volume, or a solid from a file whose cells keep surfaces is shown itself, without an
-/// octree. A tri-dexel model that stores materials is shown by its cells, in the colours of the channel
-/// `material`.
+/// A solid from a file is shown with the surface that its cells suggest; with --faces the cells themselves
+/// are shown. A mesh, a scene, a volume, and a solid from a file whose cells keep surfaces are shown
+/// directly, without an octree. A tri-dexel model that stores materials is shown by its cells, in the colours
+/// of the channel `material`.
 ///
-/// What --clip and --clip-box cut away is not shown, and the camera fits what is left. What is cut open shows
-/// its inside in orange; so does a mesh, if it is closed, unless --edges all asks for its triangles.
+/// --clip and --clip-box cut parts away, and the camera fits what is left. Cut faces show the inside in
+/// orange. So do those of a closed mesh, unless --edges all shows its triangles.
 ///
-/// A slice is seen along its plane's normal, with its scale and the extents of the whole solid along x, y and
-/// z beside it.
+/// A slice is seen along its plane's normal. Beside it are its scale and the extents of the whole solid along
+/// x, y and z.
 #[derive(Args)]
 pub struct Arguments {
     /// Solid or tri-dexel model (.lfl), mesh (STL, OBJ, PLY, OFF, 3MF), scene (.csg) or volume (NRRD,
     /// MetaImage), or `-` for standard input
     #[arg(value_name = "FILE")]
     input: OsString,
-    /// File to write, which is a PNG, or `-` for standard output; it is written whole or not at all
+    /// PNG file to write, or `-` for standard output; written completely or not at all
     #[arg(short, long, value_name = "OUT", required_unless_present = "show")]
     output: Option<OsString>,
-    /// Show the picture on the terminal, smaller if it does not fit. Without a protocol, the best that the
-    /// terminal understands; with one, also where standard output is no terminal: then as it is, or in half
-    /// blocks for 80x24 cells or COLUMNS x LINES
+    /// Show the picture on the terminal, smaller if it does not fit. Without a protocol: the best one that
+    /// the terminal understands. With a protocol, standard output need not be a terminal: the picture is then
+    /// not made smaller, or, as half blocks, made for 80x24 cells or COLUMNS x LINES
     #[arg(long, value_enum, value_name = "PROTOCOL", num_args = 0..=1, require_equals = true,
           default_missing_value = "auto", conflicts_with = "json")]
     show: Option<Protocol>,
     /// Width and height in pixels [default: 1024x768; only shown: what fits the terminal]
     #[arg(long, value_name = "WxH", value_parser = size)]
     size: Option<[u32; 2]>,
-    /// From where to look, in degrees: 0,0 is from the front (−y) with z upward, a positive azimuth from
-    /// further right, a positive elevation from further above [default: 30,25; of a slice its plane from in
-    /// front]
-    #[arg(long, value_name = "AZIMUTH,ELEVATION", value_parser = numbers::<2>, allow_hyphen_values = true,
-          verbatim_doc_comment, conflicts_with = "eye")]
-    from: Option<[f64; 2]>,
-    /// Where the eye is, instead of --from
-    #[arg(long, value_name = "X,Y,Z", value_parser = numbers::<3>, allow_hyphen_values = true)]
-    eye: Option<[f64; 3]>,
-    /// What the eye looks at [default: the middle]
-    #[arg(long, value_name = "X,Y,Z", value_parser = numbers::<3>, allow_hyphen_values = true, requires = "eye")]
-    at: Option<[f64; 3]>,
-    /// What is upward [default: 0,0,1, or where one looks along it 0,1,0]
-    #[arg(long, value_name = "X,Y,Z", value_parser = numbers::<3>, allow_hyphen_values = true, requires = "eye")]
-    up: Option<[f64; 3]>,
-    /// Field of view from the lower to the upper edge, in degrees
-    #[arg(long, value_name = "DEGREES", default_value_t = FIELD_OF_VIEW)]
-    fov: f64,
-    /// Parallel lines stay parallel
-    #[arg(long, conflicts_with = "fov")]
-    ortho: bool,
-    /// Cut away the points x, y, z with a x + b y + c z + d < 0; may be given more than once
-    #[arg(long, value_name = "A,B,C,D", value_parser = numbers::<4>, allow_hyphen_values = true)]
-    clip: Vec<[f64; 4]>,
-    /// Cut away what lies outside of this box
-    #[arg(long, value_name = "X0,Y0,Z0,X1,Y1,Z1", value_parser = numbers::<6>, allow_hyphen_values = true)]
-    clip_box: Option<[f64; 6]>,
-    /// Samples of a pixel: 1, 4, 9, 16, 25, 36, 49 or 64
-    #[arg(id = "per_pixel", long = "samples", value_name = "N", default_value_t = 4)]
-    samples: u32,
-    /// Channel of the solid whose values are shown. Without it: the only one, if there is one
-    #[arg(long, value_name = "NAME")]
-    channel: Option<String>,
-    /// Level of the cells that a mesh, a scene, a volume, or a solid from a file whose cells keep surfaces is
-    /// split to for a slice, a volume or --faces, 1 to 20
-    #[arg(long, value_name = "N", default_value_t = DEPTH, value_parser = clap::value_parser!(u8).range(1..=MAX_DEPTH as i64))]
-    depth: u8,
-    /// Colour of what is seen where nothing is, as in #ffffff, or `none`
-    #[arg(long, value_name = "COLOUR", default_value = "#ffffff", value_parser = colour)]
-    background: [u8; 4],
     #[command(flatten)]
     looks: Looks,
-    #[command(flatten)]
-    taking: Taking,
-    /// Threads to use; 0: as many as there are processors. The picture is the same
-    #[arg(long, default_value_t = 0, value_name = "N", value_parser = threads)]
-    threads: usize,
     /// Print one JSON object
     #[arg(long)]
     json: bool,
+    /// Direction to look from, in degrees: 0,0 is from the front (−y) with z upward; a positive azimuth is
+    /// further right, a positive elevation further above [default: 30,25; for a slice, perpendicular to its
+    /// plane]
+    #[arg(long, value_name = "AZIMUTH,ELEVATION", value_parser = numbers::<2>, allow_hyphen_values = true,
+          conflicts_with = "eye", help_heading = "Camera")]
+    from: Option<[f64; 2]>,
+    /// Parallel projection: parallel lines stay parallel
+    #[arg(long, conflicts_with = "fov", help_heading = "Camera")]
+    ortho: bool,
+    /// Position of the eye, instead of --from
+    #[arg(long, value_name = "X,Y,Z", value_parser = numbers::<3>, allow_hyphen_values = true, help_heading = "Camera")]
+    eye: Option<[f64; 3]>,
+    /// Point that the eye looks at [default: the middle]
+    #[arg(long, value_name = "X,Y,Z", value_parser = numbers::<3>, allow_hyphen_values = true, requires = "eye", help_heading = "Camera")]
+    at: Option<[f64; 3]>,
+    /// Upward direction [default: 0,0,1; 0,1,0 if the view is along z]
+    #[arg(long, value_name = "X,Y,Z", value_parser = numbers::<3>, allow_hyphen_values = true, requires = "eye", help_heading = "Camera")]
+    up: Option<[f64; 3]>,
+    /// Field of view from the lower to the upper edge, in degrees
+    #[arg(long, value_name = "DEGREES", default_value_t = FIELD_OF_VIEW, help_heading = "Camera")]
+    fov: f64,
+    /// Cut away the points x, y, z with a x + b y + c z + d < 0. May be given several times
+    #[arg(long, value_name = "A,B,C,D", value_parser = numbers::<4>, allow_hyphen_values = true, help_heading = "Slices and cuts")]
+    clip: Vec<[f64; 4]>,
+    /// Cut away everything outside this box
+    #[arg(long, value_name = "X0,Y0,Z0,X1,Y1,Z1", value_parser = numbers::<6>, allow_hyphen_values = true, help_heading = "Slices and cuts")]
+    clip_box: Option<[f64; 6]>,
+    /// Channel of the solid whose values are shown [default: the only one, if there is one]
+    #[arg(long, value_name = "NAME", help_heading = "Colours and values")]
+    channel: Option<String>,
+    /// Colour of the background, such as #ffffff, or `none`
+    #[arg(long, value_name = "COLOUR", default_value = "#ffffff", value_parser = colour, help_heading = "Colours and values")]
+    background: [u8; 4],
+    /// Level to which cells are split for a slice, a volume or --faces, 1 to 20. Applies to a mesh, a scene,
+    /// a volume, and a solid from a file whose cells keep surfaces
+    #[arg(long, value_name = "N", default_value_t = DEPTH, value_parser = clap::value_parser!(u8).range(1..=MAX_DEPTH as i64))]
+    depth: u8,
+    /// Samples for each pixel: 1, 4, 9, 16, 25, 36, 49 or 64
+    #[arg(id = "per_pixel", long = "samples", value_name = "N", default_value_t = 4)]
+    samples: u32,
+    /// Threads to use, 0 to 1024; 0: one for each processor. The picture does not depend on it
+    #[arg(long, default_value_t = 0, value_name = "N", value_parser = threads)]
+    threads: usize,
+    #[command(flatten)]
+    taking: Taking,
 }
 
 fn size(text: &str) -> Result<[u32; 2], String> {
@@ -112,10 +112,10 @@ fn size(text: &str) -> Result<[u32; 2], String> {
 /// Width and height of a picture that goes to a file.
 const SIZE: [u32; 2] = [1024, 768];
 
-/// Levels of cells of what has none of its own.
+/// Levels of cells of shapes without cells.
 const DEPTH: u8 = 8;
 
-/// What is told of a picture.
+/// The report on a picture.
 #[derive(Serialize)]
 struct Made {
     width: u32,
@@ -124,7 +124,7 @@ struct Made {
     view: View,
     eye: [f64; 3],
     forward: [f64; 3],
-    /// Pixels that are not as the background, those of a legend too.
+    /// Number of pixels that differ from the background, including those of a legend.
     covered: usize,
     bytes: usize,
     seconds: f64,
@@ -136,14 +136,14 @@ pub fn run(arguments: &Arguments) -> Result<(), Failure> {
     let output = arguments.output.as_deref().map(Output::from);
     if let Some(output) = &output {
         if arguments.show.is_some() && output.path().is_none() {
-            let problem = "both -o - and --show want standard output: name a file, or leave one of them out";
+            let problem = "both -o - and --show use standard output: name a file, or leave one of them out";
             return Err(Failure::Usage(problem.into()));
         }
         check_name(output)?;
         output.check()?;
     }
     arguments.looks.check()?;
-    // Before any work: what is shown may depend on the terminal, which may be none.
+    // Before any work: the picture may depend on the terminal, which may be missing.
     let screen = arguments.show.map(Screen::of).transpose()?;
     let shown_size = screen.as_ref().filter(|_| output.is_none()).and_then(Screen::size);
     let size = arguments.size.or(shown_size).unwrap_or(SIZE);
@@ -190,7 +190,7 @@ pub fn run(arguments: &Arguments) -> Result<(), Failure> {
         bytes: bytes.len(),
         seconds: start.elapsed().as_secs_f64(),
     };
-    // Standard output carries the picture where it is shown.
+    // If the picture is shown, standard output carries it.
     let told = output.as_ref().filter(|_| screen.is_none()).unwrap_or(&Output::Standard);
     if arguments.json {
         return told.report(&json(&made)?);
@@ -212,7 +212,7 @@ pub fn run(arguments: &Arguments) -> Result<(), Failure> {
     })
 }
 
-/// Pictures are PNG files, whatever their name says: a name that says something else is refused.
+/// Refuses a name with another extension than .png: pictures are PNG files.
 fn check_name(output: &Output) -> Result<(), Failure> {
     match output.path().and_then(|path| path.extension()) {
         Some(extension) if !extension.eq_ignore_ascii_case("png") => {
@@ -245,7 +245,7 @@ fn shot(
         kept = Some(bounds);
     }
     let planes = match looks.view {
-        // Its volume is not cut.
+        // The volume is not cut.
         View::Hybrid => Planes::default(),
         _ => Planes::new(&arguments.clip, kept.as_ref()),
     };
@@ -259,7 +259,7 @@ fn shot(
                 None if is_slice => [0.0, 0.0],
                 _ => [30.0, 25.0],
             });
-            // What is shown is as far from both sides as the legend is wide.
+            // The margins on both sides are as wide as the legend.
             let free = |end: u32, side: u32| (2.0 * f64::from(end) / f64::from(side) - 1.0).max(LEAST_FREE);
             let across = legend.map_or(1.0, |[left, ..]| free(left, width));
             let upward = scale.filter(|_| is_slice).map_or(1.0, |[_, top, ..]| free(top, height));
@@ -280,7 +280,7 @@ fn shot(
             let is_upright = along[0].hypot(along[1]) < 1e-6 * along[2].abs();
             let up = arguments.up.unwrap_or(if is_upright { [0.0, 1.0, 0.0] } else { [0.0, 0.0, 1.0] });
             let distance = along.iter().map(|c| c * c).sum::<f64>().sqrt();
-            // As high as what a perspective shows at the distance of what it looks at.
+            // The height that a perspective shows at the distance of the point that the eye looks at.
             let parallel = 2.0 * distance * (0.5 * FIELD_OF_VIEW.to_radians()).tan();
             Camera::new(eye, at, up, field.map_or(Lens::Parallel(parallel), Lens::Perspective))?
         }
@@ -289,10 +289,10 @@ fn shot(
     Ok(Shot { camera, size, samples, clip, background })
 }
 
-/// The least part of a picture's width or height that is left between what a legend takes.
+/// The least part of a picture's width or height that a legend leaves free.
 const LEAST_FREE: f64 = 0.3;
 
-/// The middle of the box around points.
+/// Returns the middle of the box around points.
 fn middle(points: &[[f64; 3]]) -> [f64; 3] {
     let (low, high) = extremes(points);
     [0, 1, 2].map(|axis| 0.5 * low[axis] + 0.5 * high[axis])

@@ -14,19 +14,19 @@ use std::ffi::OsString;
 /// Reads points from standard input, one a line: x, y and z in the solid's units, separated by blanks, tabs
 /// or commas. Empty lines and lines that begin with # are skipped.
 ///
-/// Prints a line for each point: the numbers of the channel's value there, separated by blanks; `none` where
-/// there is no value, and where the point lies outside of the solid. Answers come as soon as lines are there.
+/// Prints one line for each point: the numbers of the channel's value there, separated by blanks, or `none`
+/// where there is no value or the point lies outside the solid. Answers are printed as soon as lines arrive.
 #[derive(Args)]
 pub struct Arguments {
     /// Solid with channels (.lfl)
     file: OsString,
-    /// Name of the channel. Without it: the only one
+    /// Name of the channel [default: the only one]
     #[arg(long, value_name = "NAME")]
     name: Option<String>,
-    /// Print what the channel says outside of the solid, too
+    /// Print the channel's values outside the solid, too
     #[arg(long)]
     everywhere: bool,
-    /// Print a line of JSON for each point: the numbers in an array, or `null`
+    /// Print one line of JSON for each point: an array of numbers, or `null`
     #[arg(long)]
     json: bool,
 }

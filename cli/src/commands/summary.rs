@@ -1,4 +1,4 @@
-//! `leafless summary`: what a channel amounts to in a solid.
+//! `leafless summary`: statistics of a channel in a solid.
 
 use crate::failure::{Failure, Of};
 use crate::options::numbers;
@@ -15,27 +15,29 @@ use serde::Serialize;
 use std::ffi::OsString;
 use std::fmt::Write;
 
-/// Tells the least, the greatest and the mean value of a channel in a solid, and the integral: of a density,
-/// the mass. With --materials, volume, centroid and inertia of the part of the solid that has each value.
+/// Tells the least, the greatest and the mean value of a channel in a solid, and its integral: for a density,
+/// the mass. With --materials it tells the volume, centroid and inertia of the part of the solid that has
+/// each value.
 ///
-/// Volumes, integrals and means are intervals that hold the true ones, as far as the cells of the solid and
-/// of the channel tell it: FULL cells bound them on one side, FULL and PARTIAL cells on the other.
+/// Volumes, integrals and means are intervals that contain the true values, as far as the cells of the solid
+/// and of the channel determine them: FULL cells bound them on one side, FULL and PARTIAL cells on the other.
 #[derive(Args)]
 pub struct Arguments {
     /// Solid with channels (.lfl)
     file: OsString,
-    /// Name of the channel. Without it: the only one
+    /// Name of the channel [default: the only one]
     #[arg(long, value_name = "NAME")]
     name: Option<String>,
+    /// Report each value separately
+    #[arg(long, conflicts_with = "bounds")]
+    materials: bool,
+    /// Density of the material with this value, or its lower and upper bound; the masses are added up. May be
+    /// given several times
+    #[arg(long, value_name = "VALUE=DENSITY|LOW..HIGH", value_parser = density, requires = "materials")]
+    density: Vec<(f64, Interval)>,
     /// Only in this box: its lower and its upper corner
     #[arg(long = "box", value_name = "X0,Y0,Z0,X1,Y1,Z1", value_parser = cuboid, allow_hyphen_values = true)]
     bounds: Option<Bounds>,
-    /// Tell of each value by itself
-    #[arg(long, conflicts_with = "bounds")]
-    materials: bool,
-    /// Density of the material with this value, or its bounds; the masses are added up
-    #[arg(long, value_name = "VALUE=DENSITY|LOW..HIGH", value_parser = density, requires = "materials")]
-    density: Vec<(f64, Interval)>,
     /// Print one JSON object
     #[arg(long)]
     json: bool,
@@ -75,7 +77,7 @@ struct Whole {
     unit: Option<String>,
     volume: Volume,
     volume_without: Volume,
-    /// One for each number of a value.
+    /// One element for each number of a value.
     values: Vec<Numbers>,
 }
 

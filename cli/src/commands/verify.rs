@@ -1,4 +1,4 @@
-//! `leafless verify`: is a file good?
+//! `leafless verify`: a complete check of a file.
 
 use crate::failure::Failure;
 use crate::report::dexels;
@@ -11,12 +11,12 @@ use leafless::Octree;
 use std::ffi::OsString;
 
 /// Checks every checksum, the order and the links of all nodes, that the tree is in canonical form, and that
-/// the level table describes it; of a tri-dexel model the order of all intervals.
+/// the level table describes it. For a tri-dexel model it checks the order of all intervals.
 ///
-/// The exit code is 0 if the file is good and 1, with the reason, if it is not.
+/// The exit code is 0 if the file is good; otherwise it is 1, and the reason is printed.
 #[derive(Args)]
 pub struct Arguments {
-    /// Solid (.lfl), or `-` for standard input
+    /// Solid or tri-dexel model (.lfl), or `-` for standard input
     file: OsString,
 }
 

@@ -18,19 +18,19 @@ use leafless::{Frame, Rule};
 use std::ffi::OsString;
 use std::time::Instant;
 
-/// Cuts the space around a mesh into 2^N × 2^N × 2^N cells, of which only those near the surface are kept
-/// apart. By the certified rule every cell is proven inside, proven outside, or undecided because the surface
-/// may pass through it; no such cell is ever missed.
+/// Cuts the cube around a mesh into 2^N × 2^N × 2^N cells. Only cells near the surface are stored one by one.
+/// By the certified rule every cell is proven inside, proven outside, or undecided because the surface may
+/// pass through it. No cell that the surface passes through is missed.
 ///
-/// The mesh should be closed: every edge shared by an even number of triangles that face the same side. Where
-/// it has holes, or facets that are turned round, the winding number decides what is inside, and cells near
-/// them may stay undecided; a warning says so. Bodies may overlap. Vertices that differ by no more than
-/// single precision can tell are joined, and it is reported how many.
+/// The mesh should be closed: every edge is shared by an even number of triangles that face the same side.
+/// Where the mesh has holes or inverted facets, the winding number decides what is inside. Cells near them
+/// may stay undecided, and a warning says so. Bodies may overlap. Vertices that differ by no more than single
+/// precision can express are merged, and the report tells how many.
 ///
-/// With --surfaces a tri-dexel model is taken, too, if it stores normals: its surface is reconstructed from
-/// the ends and normals of its intervals (as by `leafless mesh --method dual`), and the octree keeps that.
-/// What is certified is then certified of the reconstructed surface. Nothing is proven of the part that the
-/// model was sampled from.
+/// With --surfaces the input may also be a tri-dexel model that stores normals. Its surface is reconstructed
+/// from the ends and normals of its intervals (as by `leafless mesh --method dual`), and the octree keeps
+/// this surface. Certified cells are certified with respect to the reconstructed surface. Nothing is proven
+/// about the part that the model was sampled from.
 ///
 /// The file records the input's name, length and checksum, the rule, and the unit if it is known. Equal input
 /// gives equal bytes, for any number of threads.
@@ -40,40 +40,40 @@ pub struct Arguments {
     /// (.lfl), or `-` for standard input
     #[arg(value_name = "MESH")]
     input: OsString,
-    /// File to write, or `-` for standard output, whose summary then goes to standard error; it is written
-    /// whole or not at all
+    /// File to write (.lfl), or `-` for standard output, in which case the summary goes to standard error;
+    /// written completely or not at all
     #[arg(short, long, value_name = "OUT.lfl")]
     output: OsString,
-    /// Levels of the octree, 1 to 20: each halves the cells, and the error, and makes the file some four
-    /// times as long. With --surfaces and --like it may be left out, and so may it for a volume: then its
-    /// voxels are the finest cells
-    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u8).range(1..=leafless::lattice::MAX_DEPTH as i64))]
-    depth: Option<u8>,
-    /// What becomes of the finest cells that the surface passes through
-    #[arg(long, value_parser = octree_rules(), default_value = "certified")]
-    rule: Rule,
-    #[command(flatten)]
-    surfaces: Surfaces,
-    #[command(flatten)]
-    reading: Reading,
-    #[command(flatten)]
-    placing: Placing,
-    /// Lower corner and edge length of the cube to cut into cells, in the units of the mesh once it is
-    /// converted and moved. Solids can be combined if they were given the same bounds and depth. What sticks
-    /// out is cut off, and reported. Without it: a cube around the mesh whose edge and cells are powers of
-    /// two, so that faces at round numbers lie between cells; if the mesh's bounds are no round numbers, the
-    /// cube around its middle, its edge 33/32 of its longest extent
-    #[arg(long, value_name = "X0,Y0,Z0,EDGE", value_parser = bounds, allow_hyphen_values = true)]
-    bounds: Option<Frame>,
-    #[command(flatten)]
-    like: Like,
-    /// Threads to use; 0: as many as there are processors. The result is the same
-    #[arg(long, default_value_t = 0, value_name = "N", value_parser = threads)]
-    threads: usize,
     /// Print one JSON object with timings, counts, the mesh report and the volume (on standard error if the
     /// solid goes to standard output)
     #[arg(long)]
     json: bool,
+    /// Levels of the octree, 1 to 20. Each level halves the cells and the error, and makes the file about
+    /// four times as long. Optional with --surfaces and --like, and for a volume, whose voxels are then the
+    /// finest cells
+    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u8).range(1..=leafless::lattice::MAX_DEPTH as i64))]
+    depth: Option<u8>,
+    #[command(flatten)]
+    surfaces: Surfaces,
+    /// What the finest cells that the surface passes through become
+    #[arg(long, value_parser = octree_rules(), default_value = "certified")]
+    rule: Rule,
+    /// Threads to use, 0 to 1024; 0: one for each processor. The result does not depend on it
+    #[arg(long, default_value_t = 0, value_name = "N", value_parser = threads)]
+    threads: usize,
+    /// Lower corner and edge length of the cube that is cut into cells, in the units of the mesh after
+    /// conversion and moves. Solids with the same bounds and depth can be combined. What sticks out is cut
+    /// off, and reported [default: a cube around the mesh whose edge and cells are powers of two, so that
+    /// faces at round numbers lie between cells; if the mesh's bounds are not round numbers, the cube around
+    /// its middle with 33/32 of its longest extent as its edge]
+    #[arg(long, value_name = "X0,Y0,Z0,EDGE", value_parser = bounds, allow_hyphen_values = true)]
+    bounds: Option<Frame>,
+    #[command(flatten)]
+    like: Like,
+    #[command(flatten)]
+    reading: Reading,
+    #[command(flatten)]
+    placing: Placing,
 }
 
 pub fn run(arguments: &Arguments) -> Result<(), Failure> {

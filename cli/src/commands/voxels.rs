@@ -23,30 +23,40 @@ use std::ffi::OsString;
 use std::path::Path;
 
 /// Writes the voxels of a solid as records, sorted by linear octree code: inside voxels, boundary voxels, and
-/// others that are asked for.
+/// others on request.
 ///
-/// In the text form (.csv) a record is a line: its kind, its level, its code (an octal digit a level of the
-/// lattice, of which as many count as the level says), its minimum corner and its edge. The binary form
-/// (.npz, for NumPy) has the arrays `codes`, `levels`, `kinds` (0 outside, 1 inside, 2 boundary, 3 refined),
-/// `corners`, `origin`, `edge`, `depth`, `exterior`, `proof`, `boundary`, `seal`, with values `values`, and
-/// with triangles `triangle_offsets` and `triangles`.
+/// In the text form (.csv) each record is one line: its kind, its level, its code, its minimum corner and its
+/// edge. The code has one octal digit for each level of the lattice; only as many digits count as the level
+/// says. The binary form (.npz, for NumPy) has the arrays `codes`, `levels`, `kinds` (0 outside, 1 inside, 2
+/// boundary, 3 refined), `corners`, `origin`, `edge`, `depth`, `exterior`, `proof`, `boundary` and `seal`;
+/// `values` if there are values; `triangle_offsets` and `triangles` if there are triangles.
 ///
-/// What --import makes proves what the records do: inside voxels the inside, and outside voxels and what no
-/// record speaks of the outside. Boundary voxels that count as inside or outside take that back, but for
-/// those of a solid in which all cells are decided, which are inside. Records that were changed since they
-/// were written, which `seal` tells, prove nothing.
+/// The solid that --import makes proves what the records prove: inside voxels prove the inside; outside
+/// voxels, and places without a record, prove the outside. If boundary voxels become inside or outside, that
+/// side is no longer proven, except for the boundary voxels of a solid in which all cells are decided, which
+/// are inside. Records that were changed after they were written prove nothing; `seal` detects the change.
 #[derive(Args)]
 pub struct Arguments {
     /// Solid (.lfl), mesh (STL, OBJ, PLY, OFF, 3MF), scene (.csg) or volume (NRRD, MetaImage), or `-` for
-    /// standard input; with --import records (.npz)
+    /// standard input; with --import, records (.npz)
     file: OsString,
-    /// Where to write: the extension .npz or .csv tells the form; with --import a solid (.lfl)
+    /// File to write, with the extension .npz or .csv; with --import a solid (.lfl)
     #[arg(short, long, value_name = "OUTPUT")]
     output: OsString,
-    /// Form to write. Without it: what the extension of the output says
-    #[arg(long, value_enum)]
-    write: Option<WriteName>,
-    /// Make a solid of records
+    /// Channel of the solid whose values are listed and which inside voxels follow [default: the only one, if
+    /// there is one]
+    #[arg(long, value_name = "NAME", conflicts_with = "import")]
+    channel: Option<String>,
+    /// Add to each boundary voxel the triangles of this mesh that meet it, counted from 0
+    #[arg(long, value_name = "MESH")]
+    triangles: Option<OsString>,
+    /// List outside voxels, too
+    #[arg(long)]
+    outside: bool,
+    /// List refined voxels, too, each before the voxels that it consists of
+    #[arg(long)]
+    refined: bool,
+    /// Make a solid from records
     #[arg(long, conflicts_with_all = ["write", "coarse", "fine", "tolerance", "boundary_depth", "outside", "refined",
         "boundary", "triangles", "depth", "bounds", "format", "unit", "to", "translate", "rotate", "scale", "place", "fill", "facets", "threshold", "extents",
         "kind", "spacing", "corner", "skip", "big_endian"])]
@@ -54,50 +64,40 @@ pub struct Arguments {
     /// What boundary voxels become in the solid
     #[arg(long, value_enum, default_value_t = BecomeName::Partial, requires = "import")]
     boundary_as: BecomeName,
-    /// Longest edge of inside voxels, in the solid's units. Without it: as long as the solid's cells
-    #[arg(long, value_name = "EDGE", value_parser = length)]
-    coarse: Option<f64>,
-    /// Edge below which inside voxels are not split, whatever the attribute
-    #[arg(long, value_name = "EDGE", value_parser = length, requires = "tolerance")]
-    fine: Option<f64>,
-    /// How much the solid's attribute may change in an inside voxel that is longer than --fine
-    #[arg(long, value_name = "NUMBER", requires = "fine")]
-    tolerance: Option<f64>,
-    /// Compare the values at the eight corners of a voxel, as published, instead of proving that they change
-    /// by no more than the tolerance: their standard deviation must be no more than it. Details between the
-    /// corners are missed
-    #[arg(long, requires = "tolerance")]
-    corners: bool,
-    /// Channel of the solid that inside voxels follow, and whose values are listed. Without it: the only one,
-    /// if there is one
-    #[arg(long, value_name = "NAME", conflicts_with = "import")]
-    channel: Option<String>,
-    /// Level of boundary voxels. Without it: the solid's finest cells
-    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u8).range(0..=MAX_DEPTH as i64))]
-    boundary_depth: Option<u8>,
-    /// Which voxels are boundary voxels. Without it: touching for a solid in which all cells are decided
-    #[arg(long, value_enum)]
-    boundary: Option<BoundaryName>,
-    /// List outside voxels too
-    #[arg(long)]
-    outside: bool,
-    /// List voxels that are refined too, before those that they consist of
-    #[arg(long)]
-    refined: bool,
-    /// Add to each boundary voxel the triangles of this mesh that meet it, counted from 0
-    #[arg(long, value_name = "MESH")]
-    triangles: Option<OsString>,
-    /// Level of the cells, 1 to 20. Without it: as deep as the solid is, or 7 for a mesh or scene
-    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u8).range(1..=MAX_DEPTH as i64))]
-    depth: Option<u8>,
-    #[command(flatten)]
-    looking: Looking,
     /// Print one JSON object
     #[arg(long)]
     json: bool,
+    /// Level of the cells, 1 to 20 [default: the depth of the solid, or 7 for a mesh or scene]
+    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u8).range(1..=MAX_DEPTH as i64))]
+    depth: Option<u8>,
+    /// Which voxels are boundary voxels [default: touching for a solid in which all cells are decided,
+    /// otherwise undecided]
+    #[arg(long, value_enum)]
+    boundary: Option<BoundaryName>,
+    /// Level of boundary voxels, 0 to 20 [default: that of the solid's finest cells]
+    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u8).range(0..=MAX_DEPTH as i64))]
+    boundary_depth: Option<u8>,
+    /// Longest edge of inside voxels, in the solid's units [default: that of the solid's cells]
+    #[arg(long, value_name = "EDGE", value_parser = length)]
+    coarse: Option<f64>,
+    /// Edge below which inside voxels are not split, in the solid's units, whatever the channel's values are
+    #[arg(long, value_name = "EDGE", value_parser = length, requires = "tolerance")]
+    fine: Option<f64>,
+    /// Greatest change of the channel's value in an inside voxel that is longer than --fine
+    #[arg(long, value_name = "NUMBER", requires = "fine")]
+    tolerance: Option<f64>,
+    /// Compare only the values at the eight corners of a voxel, as in the published method: their standard
+    /// deviation must be no more than the tolerance. Details between the corners are missed
+    #[arg(long, requires = "tolerance")]
+    corners: bool,
+    #[command(flatten)]
+    looking: Looking,
+    /// Form to write [default: by the extension of the output]
+    #[arg(long, value_enum)]
+    write: Option<WriteName>,
 }
 
-/// The depth of meshes and scenes, if none is asked for.
+/// Depth of meshes and scenes without --depth.
 const DEPTH: u8 = 7;
 
 #[derive(Debug, Clone, Copy, PartialEq, ValueEnum)]
@@ -108,7 +108,7 @@ enum WriteName {
 
 #[derive(Debug, Clone, Copy, PartialEq, ValueEnum)]
 enum BoundaryName {
-    /// Those that the surface may go through: cells that are not decided
+    /// Undecided cells: those that the surface may pass through
     Undecided,
     /// Also inside cells that touch an outside one
     Touching,
@@ -116,7 +116,7 @@ enum BoundaryName {
 
 #[derive(Debug, Clone, Copy, PartialEq, ValueEnum)]
 enum BecomeName {
-    /// Not decided
+    /// Undecided
     Partial,
     /// Inside
     Full,
@@ -142,7 +142,7 @@ struct Report {
     refined: u64,
     /// Levels of the lattice: digits of a code.
     depth: u8,
-    /// Pairs of a boundary voxel and a triangle.
+    /// Number of pairs of a boundary voxel and a triangle.
     #[serde(skip_serializing_if = "Option::is_none")]
     triangles: Option<u64>,
     bytes: u64,
@@ -154,7 +154,7 @@ pub fn run(arguments: &Arguments) -> Result<(), Failure> {
     if arguments.import { import(arguments, &input, &output) } else { list(arguments, &input, &output) }
 }
 
-/// The attribute that inside voxels follow, and whose values records have.
+/// Returns the attribute that inside voxels follow, and whose values records have.
 fn attribute(
     arguments: &Arguments,
     input: &Input,
@@ -180,7 +180,7 @@ fn list(arguments: &Arguments, input: &Input, output: &Output) -> Result<(), Fai
         })
         .of(input)?,
     };
-    // Whatever the cells are taken for, records prove what the cells were said to prove.
+    // Even with --cells, records prove no more than the cells proved in their file.
     let octree = octree.with_proof(octree.proof().and(proof));
     let attribute = attribute(arguments, input, &octree)?;
     let options = options(arguments, &octree, attribute.is_some())?;
@@ -256,7 +256,7 @@ impl Report {
     }
 }
 
-/// The form to write.
+/// Returns the form to write.
 fn form(arguments: &Arguments, path: Option<&Path>) -> Result<WriteName, Failure> {
     if let Some(name) = arguments.write {
         return Ok(name);
@@ -271,7 +271,7 @@ fn form(arguments: &Arguments, path: Option<&Path>) -> Result<WriteName, Failure
     }
 }
 
-/// Which voxels are wanted.
+/// Returns the options for the voxels to list.
 fn options(arguments: &Arguments, octree: &Octree, has_attribute: bool) -> Result<VoxelOptions, Failure> {
     let refused = |error: leafless::Error| Failure::Usage(error.to_string());
     if arguments.tolerance.is_some() && !has_attribute {
@@ -304,7 +304,7 @@ fn options(arguments: &Arguments, octree: &Octree, has_attribute: bool) -> Resul
     })
 }
 
-/// A mesh as it is in its file.
+/// Reads a mesh as it is in its file.
 fn mesh(input: &Input) -> Result<TriangleMesh, Failure> {
     let bytes = input.read()?;
     let read = exchange::read_mesh(&bytes, &exchange::MeshOptions::default()).of(input)?;

@@ -1,4 +1,4 @@
-//! `leafless within`: how much of a solid lies in a ball, a box or another solid?
+//! `leafless within`: the part of a solid in a ball, a box or another solid.
 
 use crate::failure::{Failure, Of};
 use crate::options::{bounds, numbers};
@@ -17,16 +17,16 @@ use serde::Serialize;
 use std::ffi::OsString;
 
 /// Counts the finest cells of a solid that lie in a ball, a box or another solid, and bounds the volume that
-/// both have in common. No octree of it is made.
+/// both have in common. No octree of the solid is made.
 ///
-/// Both are told as what is certain and what is possible. A cell that the region cuts may lie in it; so the
-/// counts hold whether a cell counts that lies in the region as a whole, whose centre does, or that only
-/// meets it. Cells of a solid from a file (.lfl) are taken as they are, FULL or PARTIAL.
+/// Each number is a certain and a possible one. A cell that the boundary of the region cuts may lie in it, so
+/// the counts hold for cells that lie in the region completely, whose centre lies in it, or that only meet
+/// it. The cells of a solid from a file (.lfl) are taken as they are, FULL or PARTIAL.
 #[derive(Args)]
 #[command(group = clap::ArgGroup::new("region").required(true))]
 pub struct Arguments {
     /// Solid (.lfl), mesh (STL, OBJ, PLY, OFF, 3MF), scene (.csg) or volume (NRRD, MetaImage), or `-` for
-    /// standard input; --translate, --rotate, --scale and --place move it, and not the region
+    /// standard input. The moves --translate, --rotate, --scale and --place apply to it, not to the region
     file: OsString,
     /// The region is a ball: its centre and its radius
     #[arg(long, group = "region", value_name = "X,Y,Z,R", value_parser = ball, allow_hyphen_values = true)]
@@ -37,29 +37,29 @@ pub struct Arguments {
     /// The region is the solid, mesh, scene or volume in this file
     #[arg(long = "in", group = "region", value_name = "FILE")]
     other: Option<OsString>,
-    /// Levels of cells, 1 to 20. Without it: as many as the solid has, or 8 for a mesh or scene
-    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u8).range(1..=MAX_DEPTH as i64))]
-    depth: Option<u8>,
-    /// Lower corner and edge length of the cube of cells, for a mesh or scene. Without it: the cube around it
-    #[arg(long, value_name = "X0,Y0,Z0,EDGE", value_parser = bounds, allow_hyphen_values = true)]
-    bounds: Option<Frame>,
-    /// Cells to split at most, of both, for each of the two answers; what is not split is not certain
-    #[arg(long, default_value_t = SPLITS, value_name = "N")]
-    splits: u64,
-    /// Take the cells of a region from a file (.lfl) for the region itself, whatever they prove of what they
-    /// were made from; and those of the solid, with --depth
-    #[arg(long)]
-    cells: bool,
-    #[command(flatten)]
-    taking: Taking,
     /// Print one JSON object
     #[arg(long)]
     json: bool,
+    /// Level of the cells, 1 to 20 [default: the depth of the solid, or 8 for a mesh or scene]
+    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u8).range(1..=MAX_DEPTH as i64))]
+    depth: Option<u8>,
+    /// Take the cells of a region from a file (.lfl) as the region itself, whatever the cells prove about
+    /// their source; with --depth, also those of the solid
+    #[arg(long)]
+    cells: bool,
+    /// Most cells to split, of both, for each of the two answers. Cells that are not split are not certain
+    #[arg(long, default_value_t = SPLITS, value_name = "N")]
+    splits: u64,
+    /// Lower corner and edge length of the cube of cells, for a mesh or scene [default: the cube around it]
+    #[arg(long, value_name = "X0,Y0,Z0,EDGE", value_parser = bounds, allow_hyphen_values = true)]
+    bounds: Option<Frame>,
+    #[command(flatten)]
+    taking: Taking,
 }
 
-/// Splits that take a second or so.
+/// Splits that take about a second.
 const SPLITS: u64 = 1 << 20;
-/// Levels of cells of what has none of its own.
+/// Levels of cells of shapes without cells.
 const DEPTH: u8 = 8;
 
 fn ball(text: &str) -> Result<Csg, String> {
@@ -76,7 +76,7 @@ fn cuboid(text: &str) -> Result<Csg, String> {
     }
 }
 
-/// What is certain and what is possible.
+/// A certain and a possible number.
 #[derive(Serialize)]
 struct Range {
     least: u64,
@@ -92,9 +92,9 @@ impl Range {
 
 #[derive(Serialize)]
 struct Cells {
-    /// FULL ones.
+    /// FULL cells.
     full: Range,
-    /// FULL and PARTIAL ones.
+    /// FULL and PARTIAL cells.
     upper: Range,
 }
 
@@ -109,7 +109,7 @@ struct Report {
     edge: f64,
 }
 
-/// What is asked: an octree about its own cells, and whatever else about those of a frame.
+/// The solid: an octree is queried about its own cells, other solids about those of a frame.
 enum Subject {
     Octree(Box<Octree>),
     Solid(AnySolid),
@@ -172,7 +172,7 @@ pub fn run(arguments: &Arguments) -> Result<(), Failure> {
     })
 }
 
-/// The region, and what it is called.
+/// Returns the region, and its name.
 fn region(arguments: &Arguments, frame: &Frame) -> Result<(AnySolid, String), Failure> {
     if let Some(ball) = &arguments.ball {
         return Ok((AnySolid::new(ball.clone()), "ball".into()));

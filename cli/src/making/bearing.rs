@@ -12,21 +12,21 @@ use leafless::mesh::MeshAttribute;
 use leafless::op::octree_from_dexels;
 use leafless::{Error, TriangleMesh};
 
-/// What the triangles of a surface are to bear.
+/// The values for the triangles of a surface.
 pub struct Bearing {
     attribute: Box<dyn Attribute>,
     name: String,
-    /// How far behind a triangle its value is looked for (model units).
+    /// The distance behind a triangle at which its value is taken (model units).
     depth: f64,
-    /// What numbers of materials are called.
+    /// The names of materials by number.
     names: Vec<String>,
 }
 
-/// No number of a material beyond that has a name.
+/// Material numbers beyond this one have no names.
 const NAMES: usize = 1 << 16;
 
 impl Bearing {
-    /// What a solid says under a name.
+    /// Finds the values of a solid under a name.
     pub fn of(shape: &Shape, input: &Input, name: &str, threads: usize) -> Result<Bearing, Failure> {
         match shape {
             Shape::Source(Source::Octree(octree)) => {
@@ -72,7 +72,7 @@ impl Bearing {
         Bearing { attribute: Box::new(channel), name, depth, names }
     }
 
-    /// The name under which a format has a place for the values.
+    /// Returns the name under which a format stores the values.
     pub fn called(&self, format: MeshFormat) -> Result<&str, Failure> {
         let is_colour = self.attribute.components() >= 3;
         Ok(match format {
@@ -90,7 +90,7 @@ impl Bearing {
         })
     }
 
-    /// The mesh with the values on its triangles.
+    /// Returns the mesh with the values on its triangles.
     pub fn on(
         &self,
         mut mesh: TriangleMesh,
@@ -103,7 +103,7 @@ impl Bearing {
             sample_triangles(&mesh, &*self.attribute, name, self.depth, control)
         });
         let values = values.of(input)?.named(self.names.clone());
-        // (Those of a mesh that stays as it is have the name already.)
+        // (The values of an unchanged mesh have the name already.)
         let mut kept = mesh.take_attributes();
         kept.retain(|own| own.name() != name);
         let mut add = |attribute| -> Result<(), Error> { mesh.add_attribute(attribute) };

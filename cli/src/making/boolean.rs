@@ -17,7 +17,7 @@ use leafless::exchange::MeshFormat;
 use leafless::{Control, Error, Octree, OctreeRef, Rule, TriDexel};
 use std::time::Instant;
 
-/// Reads the operands, at least one (a difference has two), moves them, combines them, saves the result.
+/// Reads the operands, at least one (two for a difference), moves them, combines them, and saves the result.
 pub fn combine(combining: &Combining, files: &[(Input, Placing)], output: &Output) -> Result<(), Failure> {
     let (start, operation) = (Instant::now(), combining.operation);
     output.check()?;
@@ -48,12 +48,12 @@ pub fn combine(combining: &Combining, files: &[(Input, Placing)], output: &Outpu
             warn_of_units(inputs, &places);
             warn_of_clipping(files, octrees, &result);
             let bytes = output.save(&result)?;
-            // What is told of the result may take longer than to make it.
+            // The report on the result may take longer than making it.
             let time = start.elapsed();
             let info = octree::Info::new(&result, bytes);
             let kept = info.kept_text().map_or(String::new(), |kept| format!(", {kept}"));
             let nodes = counted(info.nodes, "node", "nodes");
-            // Nobody has said how large the cells of other files are.
+            // The size of cells is stated only for stored solids.
             let is_made = inputs.iter().any(|input| !input.begins_as_solid());
             let cells = if is_made {
                 format!(", cells of {}", short(result.frame().cell_size()))
@@ -79,7 +79,7 @@ pub fn combine(combining: &Combining, files: &[(Input, Placing)], output: &Outpu
     output.report(&format!("{output}: {name} of {solids}, {result}, {bytes} bytes, in {time}\n"))
 }
 
-/// The result without surfaces, if that is asked for.
+/// Returns the result without surfaces, if --plain is given.
 fn plain(result: Octree, combining: &Combining) -> Result<Octree, String> {
     match combining.plain {
         None => Ok(result),
@@ -90,7 +90,7 @@ fn plain(result: Octree, combining: &Combining) -> Result<Octree, String> {
     }
 }
 
-/// Complains of what reaches beyond the frame that it was put onto, if that is missing in the result.
+/// Warns of operands that extend beyond the common frame, if the result lacks those parts.
 fn warn_of_clipping(files: &[(Input, Placing)], octrees: &[Octree], result: &Octree) {
     if !result.view().is_clipped() {
         return;
@@ -102,7 +102,7 @@ fn warn_of_clipping(files: &[(Input, Placing)], octrees: &[Octree], result: &Oct
             continue;
         }
         let place = if placing.map().is_some() { "where it was moved to " } else { "" };
-        complain(&format!("{input}: warning: {place}it may reach beyond {frame}, and was cut off"));
+        complain(&format!("{input}: warning: {place}it may extend beyond {frame}, and was cut off"));
     }
 }
 
@@ -119,7 +119,7 @@ fn check_directions(inputs: &[Input], models: &[TriDexel]) -> Result<(), Failure
     Ok(())
 }
 
-/// The result with the channels of the operands.
+/// Returns the result with the channels of the operands.
 fn carried(result: Octree, octrees: &[Octree], combining: &Combining) -> Result<Octree, String> {
     if octrees.iter().all(|octree| octree.channels().is_empty()) {
         return Ok(result);
@@ -132,14 +132,14 @@ fn carried(result: Octree, octrees: &[Octree], combining: &Combining) -> Result<
     watched("channels", combining.threads, |control| carry_channels(&result, &operands, rule, control))
 }
 
-/// What is combined: all of one kind.
+/// The operands, all of one kind.
 enum Operands {
     Octrees(Vec<Octree>),
     Dexels(Vec<TriDexel>),
 }
 
-/// Reads all operands, of which there is one at least. What is proven of the result is proven only if the
-/// operands are what their makers wrote.
+/// Reads all operands; there is at least one. The files are verified, as the result is proven only if the
+/// operands are intact.
 fn operands(files: &[(Input, Placing)], combining: &Combining) -> Result<Operands, Failure> {
     let read = |(input, placing): &(Input, Placing)| Shape::among_others(input, combining.taking, placing);
     let shapes = files.iter().map(read).collect::<Result<Vec<_>, Failure>>()?;
@@ -189,7 +189,7 @@ fn of_dexels(operation: Operation, models: &[TriDexel], control: &Control<'_>) -
         match operation {
             Operation::Union => whole.union(other, control),
             Operation::Intersection => whole.intersection(other, control),
-            // What lies in an odd number of them, one after the other.
+            // The points that lie in an odd number of operands, combined one after the other.
             Operation::Xor => whole.xor(other, control),
             Operation::Difference | Operation::Complement => whole.difference(other, control),
         }

@@ -1,23 +1,23 @@
-//! What clip planes leave of boxes and triangles: the points that a camera is fitted to.
+//! Boxes and triangles cut by clip planes: the points that a camera is fitted to.
 
 use leafless::Bounds;
 
-/// Half-spaces a x + b y + c z + d ≥ 0, of which what lies in all is kept.
+/// Half-spaces a x + b y + c z + d ≥ 0. Points that lie in all of them are kept.
 #[derive(Default)]
 pub struct Planes(Vec<[f64; 4]>);
 
-/// Where a point lies to a plane: kept if it is not negative.
+/// Returns the signed position of a point relative to a plane; points that are not negative are kept.
 fn height([a, b, c, d]: [f64; 4], [x, y, z]: [f64; 3]) -> f64 {
     a * x + b * y + c * z + d
 }
 
 impl Planes {
-    /// Those of the planes, and of the sides of the box.
+    /// Returns the half-spaces of the planes, and of the sides of the box.
     pub fn new(planes: &[[f64; 4]], kept: Option<&Bounds>) -> Planes {
         Planes(planes.iter().copied().chain(kept.into_iter().flat_map(sides)).collect())
     }
 
-    /// Appends the corners of what is left of a triangle.
+    /// Appends the corners of the kept part of a triangle.
     pub fn of_triangle(&self, corners: [[f64; 3]; 3], points: &mut Vec<[f64; 3]>) {
         let mut polygon = corners.to_vec();
         for &plane in &self.0 {
@@ -42,7 +42,7 @@ impl Planes {
         points.append(&mut polygon);
     }
 
-    /// Appends the corners of what is left of a box.
+    /// Appends the corners of the kept part of a box.
     pub fn of_box(&self, bounds: &Bounds, points: &mut Vec<[f64; 3]>) {
         let corners = bounds.corners();
         let mut cutting = Vec::new();
@@ -57,7 +57,7 @@ impl Planes {
         if cutting.is_empty() {
             return points.extend(corners);
         }
-        // Corners are where three planes meet that all others keep.
+        // A corner is a common point of three planes that all others keep.
         cutting.extend(sides(bounds));
         let size = (0..3).map(|axis| bounds.max[axis] - bounds.min[axis]).fold(0.0, f64::max);
         let slack = |[a, b, c, _]: [f64; 4]| -1e-9 * size * (a.abs() + b.abs() + c.abs());
@@ -74,7 +74,7 @@ impl Planes {
     }
 }
 
-/// The half-spaces whose common part is a box.
+/// Returns the half-spaces whose intersection is a box.
 fn sides(bounds: &Bounds) -> [[f64; 4]; 6] {
     let unit = |axis: usize, sign: f64, offset: f64| {
         let [x, y, z] = [0, 1, 2].map(|i| if i == axis { sign } else { 0.0 });
@@ -86,7 +86,7 @@ fn sides(bounds: &Bounds) -> [[f64; 4]; 6] {
     })
 }
 
-/// The point in which three planes meet, if it is but one.
+/// Returns the intersection point of three planes, if it is a single point.
 fn common_point(planes: [[f64; 4]; 3]) -> Option<[f64; 3]> {
     let cross = |u: [f64; 4], v: [f64; 4]| {
         [u[1] * v[2] - u[2] * v[1], u[2] * v[0] - u[0] * v[2], u[0] * v[1] - u[1] * v[0]]
@@ -120,7 +120,7 @@ mod tests {
         assert_eq!(of(&[], None).len(), 8);
         assert_eq!(around(&of(&[[1.0, 0.0, 0.0, -3.0]], None)), [[3.0, 0.0, 0.0], [4.0, 2.0, 2.0]]);
         assert!(of(&[[1.0, 0.0, 0.0, -5.0]], None).is_empty());
-        // A corner that lies inside of the box.
+        // A corner that lies inside the box.
         let inner = Bounds::new([1.0; 3], [1.5; 3]).unwrap();
         assert_eq!(around(&of(&[], Some(&inner))), [[1.0; 3], [1.5; 3]]);
         // x + y ≤ 2.

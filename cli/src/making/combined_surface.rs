@@ -16,11 +16,11 @@ use leafless::exchange::MeshFormat;
 use leafless::{Affine, AnySolid, Csg, Error};
 use std::time::Instant;
 
-/// The depth if none is asked for.
+/// Levels of cells without --depth.
 const DEPTH: u8 = 8;
 
-/// Combines meshes, scenes and volumes as they are, and writes the surface, with vertices where edges of
-/// cells cross it.
+/// Combines meshes, scenes and volumes directly, and writes the surface, with vertices where edges of cells
+/// cross it.
 pub fn make(
     combining: &Combining,
     files: &[(Input, Placing)],
@@ -31,7 +31,7 @@ pub fn make(
     let refusal =
         |problem: String| Err(Failure::Usage(format!("{output}: its name is that of a mesh, and {problem}")));
     if let Operation::Complement = combining.operation {
-        return refusal("a complement has no end".into());
+        return refusal("a complement is infinite".into());
     }
     if !combining.carry.is_empty() || combining.plain.is_some() {
         return refusal("--carry and --plain are for octrees".into());
@@ -40,7 +40,7 @@ pub fn make(
     let shapes = files.iter().map(read).collect::<Result<Vec<_>, Failure>>()?;
     if let Some(((input, _), _)) = files.iter().zip(&shapes).find(|(_, shape)| shape.is_stored()) {
         return refusal(format!(
-            "{input} is a solid, which makes one (.lfl); `leafless mesh` makes a mesh of that"
+            "{input} is a solid, so the result is one (.lfl); `leafless mesh` makes a mesh of it"
         ));
     }
     let depth = combining.depth.unwrap_or(DEPTH);

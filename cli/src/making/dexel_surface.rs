@@ -9,22 +9,22 @@ use leafless::surface::{DexelSurfaceReport, dual_contouring_dexels, marching_cub
 use leafless::{TriDexel, TriangleMesh};
 use serde::Serialize;
 
-/// How exactly a surface follows the rays of a model.
+/// Statistics of a surface that follows the rays of a model.
 #[derive(Serialize)]
 pub struct Followed {
-    /// Places between neighbouring centres of cells where a ray crosses the surface.
+    /// Pairs of neighbouring cell centres between which a ray crosses the surface.
     crossings: u64,
-    /// Those where it crosses more than once.
+    /// Pairs between which the ray crosses more than once.
     several: u64,
-    /// Those that were put half-way, because no rays run along them.
+    /// Crossings that were put half-way, because no rays run along that direction.
     without_rays: u64,
-    /// Those that were put half-way, because directions disagree.
+    /// Crossings that were put half-way, because directions disagree.
     disagreeing: u64,
-    /// Vertices that would fit better outside of their cells. By dual contouring alone.
+    /// Vertices that would fit better outside their cells; by dual contouring only.
     clamped: u64,
-    /// Bodies that are not shown, because doubles cannot tell their surface from their centres.
+    /// Bodies that are missing because doubles cannot distinguish their surface from their centres.
     vanished: u64,
-    /// Intervals that hold no centre of a cell, and are not shown.
+    /// Intervals that contain no centre of a cell and are missing.
     without_centres: u64,
 }
 
@@ -37,7 +37,7 @@ impl From<DexelSurfaceReport> for Followed {
 }
 
 impl Followed {
-    /// The same for people.
+    /// Returns the report for people.
     pub fn text(&self) -> String {
         let mut text = counted(self.crossings, "crossing", "crossings");
         for (number, what) in [
@@ -64,17 +64,17 @@ impl Followed {
     }
 }
 
-/// The surface by marching cubes.
+/// Returns the surface by marching cubes.
 pub fn cubes(model: &TriDexel, input: &Input, threads: usize) -> Result<(TriangleMesh, Followed), Failure> {
     let made = watched("mesh", threads, |control| marching_cubes_dexels(model.view(), control));
     let (mesh, report) = made.of(input)?;
     Ok((mesh, report.into()))
 }
 
-/// The surface by dual contouring, for which the model needs normals.
+/// Returns the surface by dual contouring; the model must have normals.
 pub fn dual(model: &TriDexel, input: &Input, threads: usize) -> Result<(TriangleMesh, Followed), Failure> {
     if model.view().format().normals == DexelNormals::None {
-        let problem = "stores no normals, which dual contouring needs: make it anew of its source, by \
+        let problem = "stores no normals, which dual contouring needs: make it again from its source, by \
                        `leafless dexelize --normals 32`";
         return Err(Failure::of(input, problem));
     }

@@ -14,14 +14,14 @@ use leafless::op::DexelOptions;
 use leafless::{Affine, Frame, MeshSolid, Metadata, Octree, Rule, Solid, Tag, TriDexel, dexelize};
 use serde::Serialize;
 
-/// Levels of the lattice, if nobody says how many.
+/// Levels of the lattice without --resolution.
 const DEPTH: u8 = 8;
 
-/// What of a solid is stored.
+/// The stored properties of a model.
 #[derive(Default)]
 pub struct Storing {
     pub options: DexelOptions,
-    /// The material that all of it is of.
+    /// The material of the whole model.
     pub material: Option<u32>,
 }
 
@@ -30,15 +30,15 @@ struct Report {
     input: String,
     output: String,
     rule: &'static str,
-    /// Cells to an axis.
+    /// Cells along an axis.
     resolution: u32,
-    /// Rays that cross the solid, in all directions.
+    /// Number of rays that cross the solid, in all directions.
     rays: u64,
-    /// Rays that pierce an open mesh an odd number of times, in all directions.
+    /// Number of rays that pierce an open mesh an odd number of times, in all directions.
     odd_rays: u64,
-    /// What the direction estimates whose rays cross the solid most often, in cubic model units.
+    /// Estimate of the direction with the most rays that cross the solid, in cubic model units.
     volume: f64,
-    /// The least and the greatest that the directions estimate.
+    /// The least and the greatest estimate of the directions.
     volume_range: [f64; 2],
     seconds: f64,
     #[serde(flatten)]
@@ -79,7 +79,7 @@ pub fn make(job: &Job, taking: &Taking, rule: Rule, mut storing: Storing) -> Res
     output.tell(job.json, &report, Report::summary)
 }
 
-/// The lattice that the solid is asked on.
+/// Returns the lattice on which the solid is queried.
 fn frame(job: &Job, source: &Source) -> Result<Frame, Failure> {
     let input = &job.input;
     match source {
@@ -103,8 +103,8 @@ fn frame(job: &Job, source: &Source) -> Result<Frame, Failure> {
     }
 }
 
-/// The rule by which cells are decided. Those of an octree have no centres that could be asked where they are
-/// undecided, as are cells that are cut further than the lattice goes.
+/// Returns the rule by which cells are decided. An octree cannot be queried at the centres of undecided
+/// cells, or of cells that are split further than the lattice.
 fn decided(rule: Rule, input: &Input, source: &Source, frame: &Frame) -> Rule {
     let is_open = match source {
         Source::Octree(octree) if source.is_of_cells() => {
@@ -120,7 +120,8 @@ fn decided(rule: Rule, input: &Input, source: &Source, frame: &Frame) -> Rule {
     Rule::Outer
 }
 
-/// The model, and how many rays of each direction pierce an open mesh an odd number of times.
+/// Returns the model, and the numbers of rays of each direction that pierce an open mesh an odd number of
+/// times.
 fn made(
     source: Source,
     job: &Job,
@@ -156,18 +157,18 @@ fn of_solid<S: Solid>(solid: &S, job: &Job, frame: &Frame, storing: &Storing) ->
     made.of(&job.input)
 }
 
-/// Says what of the solid the model does not hold.
+/// Warns of parts of the solid that the model does not contain.
 fn warn(input: &Input, source: &Source, frame: &Frame) {
     if let Source::Octree(octree) = source {
         if octree.view().exterior() != Tag::Empty {
-            let problem = "the solid may go on outside of its bounds, which a tri-dexel model does not tell";
+            let problem = "the solid may extend beyond its bounds; a tri-dexel model does not record that";
             complain(&format!("{input}: warning: {problem}"));
         }
         return;
     }
     let Ok((min, max)) = source.bounds(input) else {
-        // Nobody knows how far a scene reaches that takes in half-spaces.
-        let problem = "the solid may go on outside of the bounds, where it was cut off";
+        // The extent of a scene with half-spaces is unknown.
+        let problem = "the solid may extend beyond the bounds, where it was cut off";
         return complain(&format!("{input}: warning: {problem}"));
     };
     let sticks_out = |axis: usize| {
@@ -179,7 +180,7 @@ fn warn(input: &Input, source: &Source, frame: &Frame) {
     }
 }
 
-/// What the model's file says of its making: nothing that differs from run to run.
+/// Returns the metadata of the model: nothing that differs from run to run.
 fn metadata(
     input: &Input,
     source: &Source,

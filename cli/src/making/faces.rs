@@ -6,24 +6,24 @@ use leafless::solid::SurfaceShape;
 use leafless::surface::{Boundary, BoundaryFaces, BoundaryRegion};
 use serde::Serialize;
 
-/// The faces of a boundary, and what their surfaces are.
+/// The faces of a boundary, and the shapes of their surfaces.
 pub struct Faces {
     faces: BoundaryFaces,
-    /// Of each region.
+    /// The shape of each region's surface.
     shapes: Vec<Option<SurfaceShape>>,
 }
 
-/// What is told of a region: what hangs together on one surface.
+/// The report on a region: a connected part of the boundary on one surface.
 #[derive(Serialize)]
 pub struct Region {
-    /// The number of its surface; none where the boundary is known to a cell only.
+    /// Number of its surface; absent where the boundary is known to a cell only.
     surface: Option<u32>,
     #[serde(flatten)]
     shape: Shape,
-    /// Whether the normal of the surface points into the solid, as that of a bore does.
+    /// True if the normal of the surface points into the solid, as that of a bore does.
     turned: bool,
     triangles: u32,
-    /// Polygons with holes: one of a plane region, else one for each triangle.
+    /// Number of polygons with holes: one for a plane region, otherwise one for each triangle.
     faces: usize,
     loops: u32,
     area: f64,
@@ -67,7 +67,7 @@ impl Faces {
         Ok(Faces { faces, shapes })
     }
 
-    /// What is told of the regions.
+    /// Returns the reports on the regions.
     pub fn regions(&self) -> Vec<Region> {
         let arrays = self.faces.arrays();
         let regions = self.faces.regions().iter().zip(&self.shapes);
@@ -83,7 +83,8 @@ impl Faces {
         regions.map(region).collect()
     }
 
-    /// A file of polygons. In an OBJ each region is a group, and all regions on one surface are another one.
+    /// Returns a file of polygons. In an OBJ each region is a group, and all regions on one surface form
+    /// another group.
     pub fn file(&self, format: MeshFormat, options: &WriteOptions) -> Result<Vec<u8>, Error> {
         let regions = self.faces.regions().iter().zip(&self.shapes).enumerate();
         let name = |(number, (region, shape)): (usize, (&BoundaryRegion, &Option<SurfaceShape>))| match (

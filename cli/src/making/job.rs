@@ -1,4 +1,4 @@
-//! What is wanted of a result of any kind, and what all octrees have in common that are made of something.
+//! A task for any kind of result, and the common parts of all octrees that are made.
 
 use crate::options::rule_name;
 use crate::report::octree::Info;
@@ -10,23 +10,24 @@ use leafless::{Frame, Metadata, Octree, Rule};
 use serde::Serialize;
 use std::time::Instant;
 
-/// What is made of which file, where it goes, and how it is told.
+/// A task: the input, the output, and the form of the report.
 #[derive(Clone)]
 pub struct Job {
     pub input: Input,
     pub output: Output,
-    /// When the work began.
+    /// Time when the work began.
     pub start: Instant,
-    /// Levels of cells. Without it: those that the source has, or that suit the result.
+    /// Levels of cells. Without it: those of the source, or levels that suit the result.
     pub depth: Option<u8>,
-    /// The cube to look at; its depth is a placeholder. Without it: the source's own, or the one around it.
+    /// The cube to examine; its depth is a placeholder. Without it: the source's own cube, or the one around
+    /// it.
     pub bounds: Option<Frame>,
     pub threads: usize,
     pub json: bool,
 }
 
 impl Job {
-    /// What people are told of an octree; `more` is a part of it.
+    /// Returns the report on an octree for people; `more` is a part of it.
     pub fn summary(&self, rule: &str, octree: &Octree, info: &Info, more: &str, timings: &Timings) -> String {
         let frame = octree.frame();
         let Timings { read, build, save, total } = *timings;
@@ -51,18 +52,18 @@ impl Job {
     }
 }
 
-/// Seconds.
+/// Times, in seconds.
 #[derive(Serialize)]
 pub struct Timings {
-    /// Reading the source; welding and sewing a mesh, and checking that it is closed.
+    /// Reading the source; merging the vertices of a mesh, closing its cracks, and checking that it is
+    /// closed.
     pub read: f64,
     pub build: f64,
     pub save: f64,
     pub total: f64,
 }
 
-/// The rule that an octree's file names. What is certified of a source that proves less proves no more than
-/// that.
+/// Returns the rule that an octree's file names. A result is no more certified than its source.
 pub fn proven_rule(rule: Rule, octree: &Octree) -> Rule {
     let proof = octree.proof();
     match (rule, proof.full, proof.empty) {
@@ -73,7 +74,7 @@ pub fn proven_rule(rule: Rule, octree: &Octree) -> Rule {
     }
 }
 
-/// What a result's file says of its making, to begin with: nothing that differs from run to run.
+/// Returns the first metadata of a result: nothing that differs from run to run.
 pub fn named(input: &Input) -> Metadata {
     let mut metadata = Metadata::new();
     if let Some(stem) = input.path().and_then(|path| path.file_stem()) {
@@ -82,7 +83,7 @@ pub fn named(input: &Input) -> Metadata {
     metadata
 }
 
-/// The same of what is made by a rule of a file with this fingerprint.
+/// Returns the metadata of a result that a rule made from a file with this fingerprint.
 pub fn facts(input: &Input, fingerprint: String, rule: Rule, unit: Option<LengthUnit>) -> Metadata {
     let mut metadata = named(input);
     metadata.insert("source", fingerprint);

@@ -1,4 +1,4 @@
-//! Files of layouts: 3MF packages and scenes.
+//! Layout files: 3MF packages and scenes.
 
 use crate::failure::Failure;
 use crate::making::surface::usual_surface;
@@ -11,7 +11,7 @@ use leafless::layout::Placed;
 use leafless::{Affine, TriangleMesh};
 use std::path::Path;
 
-/// The surfaces of what is in files.
+/// Makes the surfaces of the parts in files.
 pub fn surfaces<'i>(
     inputs: impl Iterator<Item = &'i Input>,
     threads: usize,
@@ -19,7 +19,7 @@ pub fn surfaces<'i>(
     inputs.map(|input| usual_surface(input, threads)).collect()
 }
 
-/// A 3MF: an object for each item, and an item of the build for each copy.
+/// Returns a 3MF: one object for each item, and one item of the build for each copy.
 pub fn package(
     stock: &Stock,
     surfaces: &[TriangleMesh],
@@ -37,21 +37,21 @@ pub fn package(
 /// Longest text of a scene.
 const LONGEST: usize = 1 << 28;
 
-/// What takes the place of each file in a scene.
+/// The texts that stand for each file in a scene.
 pub struct Scenery {
-    /// The container, which is left out but for programs that show what is marked so.
+    /// The container, which only programs show that display marked parts.
     holder: String,
     obstacles: Vec<String>,
     items: Vec<String>,
 }
 
 impl Scenery {
-    /// For a scene in a folder.
+    /// Prepares a scene in a folder.
     pub fn new(stock: &Stock, solids: &Solids, folder: &Path) -> Result<Scenery, Failure> {
         let call = |input: &Input, kind: Kind| call(input, kind, folder);
         let holder = match (&stock.holder, solids.holder) {
             (Holder::Box(sides), _) => format!("cube({});", list(sides)),
-            // (Nobody reads what is left out.)
+            // (The container is not part of the result.)
             (Holder::File(_), None | Some(Kind::Volume)) => "group();".into(),
             (Holder::File(input), Some(kind)) => call(input, kind)?,
         };
@@ -64,7 +64,7 @@ impl Scenery {
         })
     }
 
-    /// The scene.
+    /// Returns the text of the scene.
     pub fn text(&self, placed: &[Placed]) -> Result<String, String> {
         let length = |placed: &Placed| self.items[placed.item].len();
         if placed.iter().map(length).sum::<usize>() > LONGEST {
@@ -87,7 +87,7 @@ impl Scenery {
     }
 }
 
-/// Numbers in brackets.
+/// Formats numbers in brackets.
 fn list(numbers: &[f64]) -> String {
     let mut text = String::from("[");
     for (k, number) in numbers.iter().enumerate() {
@@ -97,7 +97,7 @@ fn list(numbers: &[f64]) -> String {
     text + "]"
 }
 
-/// A file in a scene.
+/// Returns the call of a file in a scene.
 fn call(input: &Input, kind: Kind, folder: &Path) -> Result<String, Failure> {
     let name = || Ok::<_, Failure>(quoted(&relative(input, folder)?));
     match kind {
@@ -122,13 +122,13 @@ fn call(input: &Input, kind: Kind, folder: &Path) -> Result<String, Failure> {
         }
         Kind::Volume => {
             let problem =
-                "is a volume, for which a scene has no place: make a mesh of it first, by `leafless mesh`";
+                "is a volume, which a scene cannot contain: make a mesh of it first, by `leafless mesh`";
             Err(Failure::of(input, problem))
         }
     }
 }
 
-/// A text between quotes.
+/// Returns a text in quotation marks.
 fn quoted(text: &str) -> String {
     let mut quoted = String::from("\"");
     for c in text.chars() {
@@ -143,7 +143,7 @@ fn quoted(text: &str) -> String {
     quoted + "\""
 }
 
-/// What a text between quotes says.
+/// Returns the content of a text in quotation marks.
 fn unquoted(text: &str) -> String {
     let (mut plain, mut rest) = (String::new(), text.chars());
     while let Some(c) = rest.next() {
@@ -160,10 +160,10 @@ fn unquoted(text: &str) -> String {
     plain
 }
 
-/// The text of a scene, which is known to be one, with other names for the files in it.
+/// Returns the text of a valid scene with other names for its files.
 fn with_files(text: &str, mut moved: impl FnMut(&str) -> Result<String, Failure>) -> Result<String, Failure> {
     let mut out = String::with_capacity(text.len());
-    // The last word, the call whose brackets are open, and the argument that is named in these.
+    // The last word, the calls with open brackets, and the name of the argument in the innermost one.
     let (mut word, mut calls, mut argument) = (String::new(), Vec::new(), String::new());
     let mut rest = text;
     while let Some(c) = rest.chars().next() {

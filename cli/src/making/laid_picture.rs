@@ -1,21 +1,21 @@
-//! Pictures of layouts: the copies of each item in a colour of its own, obstacles in grey, and the edges of a
-//! box around the container.
+//! Pictures of layouts: the copies of each item in one colour, obstacles in grey, and the edges of a box
+//! around the container.
 
 use leafless::exchange::write_png;
 use leafless::layout::{Layout, Placed};
 use leafless::render::{Camera, LinesLayer, MeshEdges, MeshLayer, Shot, render};
 use leafless::{Affine, Bounds, Control, Error, TriangleMesh};
 
-/// Width and height.
+/// Width and height in pixels.
 const SIZE: [u32; 2] = [1024, 768];
 /// Azimuth and elevation in degrees.
 const FROM: [f64; 2] = [30.0, 25.0];
 const FIELD_OF_VIEW: f64 = 30.0;
-/// Most triangles of all copies together, which take some ten gigabytes.
+/// Most triangles of all copies together; they take about ten gigabytes.
 const MOST: usize = 50_000_000;
 
-/// Colours that are told apart by nearly everybody (Okabe & Ito 2008), one for each item; the eighth item has
-/// the first one again.
+/// Colours that nearly everybody can distinguish (Okabe & Ito 2008), one for each item; the eighth item has
+/// the first colour again.
 const COLOURS: [[u8; 4]; 7] = [
     [86, 180, 233, 255],
     [230, 159, 0, 255],
@@ -29,7 +29,7 @@ const OBSTACLE: [u8; 4] = [178, 187, 196, 255];
 const EDGES: [u8; 4] = [40, 40, 40, 120];
 const BOX: [u8; 4] = [120, 120, 120, 255];
 
-/// A PNG of a layout; of its items and obstacles the surfaces are given.
+/// Returns a PNG of a layout from the surfaces of its items and obstacles.
 pub fn picture(
     layout: &Layout,
     items: &[TriangleMesh],
@@ -46,7 +46,7 @@ pub fn picture(
     write_png(&render(&Shot::new(camera, SIZE), &[&solids, &lines], control)?)
 }
 
-/// The triangles of all copies and obstacles, with their colours.
+/// Returns the triangles of all copies and obstacles, with their colours.
 fn all(
     placed: &[Placed],
     items: &[TriangleMesh],
@@ -71,7 +71,7 @@ fn all(
     Ok((TriangleMesh::new(vertices, triangles)?, colours))
 }
 
-/// The edges of a box.
+/// Returns the edges of a box.
 fn edges(bounds: &Bounds) -> Vec<[[f64; 3]; 2]> {
     let corners = bounds.corners();
     let mut edges = vec![];

@@ -1,4 +1,4 @@
-//! The frame of another solid: the option that asks for it.
+//! The frame of another solid, and the option that names it.
 
 use crate::failure::Failure;
 use crate::source::file::Stored;
@@ -7,7 +7,7 @@ use clap::Args;
 use leafless::Frame;
 use std::ffi::OsString;
 
-/// The solid whose frame is taken.
+/// The option for the frame of another solid.
 #[derive(Args)]
 pub struct Like {
     /// Take the cube of another solid (.lfl), and its levels unless --depth is given, so that both can be
@@ -17,7 +17,7 @@ pub struct Like {
 }
 
 impl Like {
-    /// The cube and the levels: what the user gives, or those of the other solid.
+    /// Returns the cube and the levels that the user gave, or those of the other solid.
     pub fn frame(
         &self,
         bounds: Option<Frame>,
@@ -31,7 +31,7 @@ impl Like {
             Stored::Octree(octree) => (octree.frame(), octree.view().cuts().is_some()),
             Stored::Dexels(model) => (model.frame(), false),
         };
-        // The levels of such a solid are far too many for cells that keep none.
+        // A solid whose cells keep surfaces has far too many levels for an octree without surfaces.
         if keeps_surfaces && !surfaces && depth.is_none() {
             let problem = format!(
                 "the cells of {input} keep surfaces, and go to level {}: --surfaces keeps some, too",

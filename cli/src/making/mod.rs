@@ -1,7 +1,7 @@
-//! What is made of sources: octrees, tri-dexel models, surfaces, pictures.
+//! Results from sources: octrees, tri-dexel models, surfaces, pictures.
 //!
-//! A subcommand says in a `job` what it wants; each file here makes one kind of result of it. Nothing here
-//! knows the arguments of a subcommand, so that several can ask for the same.
+//! A subcommand describes its task in a `job`; each file here makes one kind of result. Nothing here depends
+//! on the arguments of a subcommand, so several subcommands can share it.
 
 pub mod askew;
 pub mod bearing;

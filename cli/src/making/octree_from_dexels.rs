@@ -1,4 +1,4 @@
-//! Octrees of tri-dexel models.
+//! Octrees from tri-dexel models.
 
 use crate::failure::{Failure, Of};
 use crate::making::job::Job;
@@ -15,15 +15,16 @@ struct Report {
     input: String,
     output: String,
     seconds: f64,
-    /// What decides cells: their centres, or the ends of intervals.
+    /// The criterion for cells: their centres, or the ends of intervals.
     by: &'static str,
-    /// Intervals that hold no centre of a cell, and are lost where centres decide.
+    /// Intervals that contain no centre of a cell, and are lost if centres decide.
     without_centres: u64,
     #[serde(flatten)]
     info: Info,
 }
 
-/// The octree of a tri-dexel model, by the centres of cells or `by_ends`, with its materials as a channel.
+/// Returns the octree of a tri-dexel model, by the centres of cells or `by_ends`, with its materials as a
+/// channel.
 pub fn octree(model: &TriDexel, by_ends: bool, control: &Control<'_>) -> Result<Octree, Error> {
     let octree = match by_ends {
         true => octree_from_dexel_ends(model.view(), control)?,

@@ -15,7 +15,7 @@ use leafless::{FillRule, MeshSolid, Metadata, Rule, SurfaceOptions, build_extend
 use serde::Serialize;
 use std::time::Instant;
 
-/// What is certified.
+/// The surface that is certified.
 const OF: &str = "surface reconstructed from a tri-dexel model";
 
 #[derive(Serialize)]
@@ -23,19 +23,19 @@ struct Report {
     input: String,
     output: String,
     rule: &'static str,
-    /// What the rule is certified of.
+    /// The surface to which the rule refers.
     certified_of: &'static str,
-    /// The thickness of layers that stand for the surface in the cells that keep it.
+    /// Thickness of the layers in which cells keep the surface.
     surfaces: f64,
     timings: Timings,
     triangles: usize,
-    /// How exactly the surface follows the rays.
+    /// Statistics of the surface that follows the rays.
     surface: Followed,
     #[serde(flatten)]
     info: Info,
 }
 
-/// Makes an octree with surfaces of a tri-dexel model that stores normals, and saves it.
+/// Makes an octree that keeps the surface of a tri-dexel model with normals, and saves it.
 pub fn make(job: &Job, found: Found<'_>, wanted: &Voxelizing) -> Result<(), Failure> {
     let Job { input, output, start, .. } = job;
     let Stored::Dexels(model) = found.stored(true)?.0 else {
@@ -43,8 +43,8 @@ pub fn make(job: &Job, found: Found<'_>, wanted: &Voxelizing) -> Result<(), Fail
     };
     wanted.reading.refuse(input, "a tri-dexel model")?;
     let Some(part) = wanted.surfaces.part() else {
-        let problem = "is a tri-dexel model, whose surface is not known exactly: say how thick the layers around it may be, as a \
-                       part of its longest side: --surfaces=1e-4";
+        let problem = "is a tri-dexel model, whose surface is not known exactly: give the thickness of \
+                       the layers around it, relative to its longest side: --surfaces=1e-4";
         return Err(Failure::Usage(format!("--surfaces: {input} {problem}")));
     };
     let (mesh, followed) = dual(&model, input, job.threads)?;

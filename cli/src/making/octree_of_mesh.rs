@@ -1,4 +1,4 @@
-//! Octrees of meshes, and of volumes in their place.
+//! Octrees of meshes, and of volumes given in their place.
 
 use crate::failure::{Failure, Of, complain};
 use crate::making::job::{Job, Timings, facts};
@@ -29,16 +29,15 @@ struct Report {
     output: String,
     rule: &'static str,
     fill: &'static str,
-    /// The thickness of layers that stand for the surface in the cells that keep it; absent (null) if none
-    /// do.
+    /// Thickness of the layers in which cells keep the surface; null if they keep none.
     surfaces: Option<f64>,
     format: &'static str,
-    /// Absent (null) where nobody knows it.
+    /// Null if the unit is unknown.
     unit: Option<&'static str>,
-    /// Objects of a 3MF that are no solids.
+    /// Objects of a 3MF that are not solids.
     skipped: u64,
     timings: Timings,
-    /// Where the file departs from its format, though it could be read.
+    /// Departures of the file from its format that did not prevent reading it.
     warnings: Vec<String>,
     mesh: Mesh,
     /// Volume of the undecided cells.
@@ -47,7 +46,7 @@ struct Report {
     info: Info,
 }
 
-/// How a mesh or a volume is taken, and what is kept of it.
+/// The options of reading a mesh or a volume, and of keeping its surfaces.
 pub struct Voxelizing<'a> {
     pub reading: &'a Reading,
     pub placing: &'a Placing,
@@ -76,8 +75,8 @@ pub fn make(job: &Job, found: Found<'_>, wanted: &Voxelizing) -> Result<(), Fail
         Content::Mesh | Content::Volume => {}
     }
     if surfaces.are_kept() && surfaces.part().is_none() {
-        let problem = "no surface of a mesh is known exactly: say how thick the layers around it may be, as a part of its \
-                       longest side: --surfaces=1e-4";
+        let problem = "the surface of a mesh is not known exactly: give the thickness of the layers \
+                       around it, relative to its longest side: --surfaces=1e-4";
         return Err(Failure::Usage(format!("--surfaces: {input} is a mesh, and {problem}")));
     }
     let fingerprint = found.fingerprint();
@@ -87,7 +86,7 @@ pub fn make(job: &Job, found: Found<'_>, wanted: &Voxelizing) -> Result<(), Fail
     if mesh_report.triangles == 0 {
         return Err(Failure::of(input, MeshError::Empty));
     }
-    // The mesh is about to be taken over.
+    // The mesh is moved into the solid below.
     let told = if job.json { Some(Mesh::new(&mesh).of(input)?) } else { None };
     let (min, max) = mesh.bounds();
     let tolerance = surfaces.tolerance((min, max));
@@ -140,7 +139,7 @@ pub fn make(job: &Job, found: Found<'_>, wanted: &Voxelizing) -> Result<(), Fail
     output.report(&json(&report)?)
 }
 
-/// The frame that a mesh is split on, whose surface may be kept to a tolerance.
+/// Returns the frame on which a mesh is split, whose surface may be kept within a tolerance.
 pub fn frame_for(job: &Job, mesh: &TriangleMesh, tolerance: Option<f64>) -> Result<Frame, Error> {
     let depth = job.depth.unwrap_or(MAX_DEPTH);
     let frame = match &job.bounds {
@@ -153,7 +152,7 @@ pub fn frame_for(job: &Job, mesh: &TriangleMesh, tolerance: Option<f64>) -> Resu
     })
 }
 
-/// Where the mesh sticks out of the bounds. If it does not, it is open, and what it encloses may.
+/// Describes where the mesh sticks out of the bounds. If it does not, it is open, and its solid may.
 pub fn clipping(frame: &Frame, min: [f64; 3], max: [f64; 3]) -> String {
     let mut text = String::new();
     for (axis, name) in ["x", "y", "z"].iter().enumerate() {
@@ -165,12 +164,12 @@ pub fn clipping(frame: &Frame, min: [f64; 3], max: [f64; 3]) -> String {
         }
     }
     if text.is_empty() {
-        return "what the open mesh encloses may go on outside of the bounds, where it was cut off".into();
+        return "the solid of the open mesh may extend beyond the bounds, where it was cut off".into();
     }
     format!("the mesh sticks out of the bounds and was cut off{text}")
 }
 
-/// What people are told of the mesh, in a line.
+/// Returns the report on the mesh for people, in one line.
 fn head(job: &Job, mesh: &MeshReport, skipped: u64) -> String {
     let mut text = format!(
         "{}: {}, {}",

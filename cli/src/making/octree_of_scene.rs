@@ -21,16 +21,16 @@ use std::time::Instant;
 
 #[derive(Debug, Clone, Copy, ValueEnum)]
 pub enum TouchName {
-    /// Contact is not overlap: a cell that the solid touches from outside is empty
+    /// Contact is not overlap: a cell touched from outside is empty
     Exact,
-    /// As in the paper that the method comes from: such a cell is undecided
+    /// As in the paper of the method: a cell touched from outside is undecided
     Paper,
 }
 
-/// How space is split.
+/// The way in which space is split.
 pub struct Splitting {
     pub rule: Rule,
-    /// The thickness of layers that are not split. Without it all are.
+    /// Thickness of layers that are not split. Without it, all cells are split to the depth.
     pub adaptive: Option<f64>,
     pub surfaces: Surfaces,
     pub touch: TouchName,
@@ -42,19 +42,19 @@ struct Report {
     output: String,
     rule: &'static str,
     touch: String,
-    /// The thickness of layers that are not split; absent (null) if all are.
+    /// Thickness of layers that are not split; null if all are split.
     adaptive: Option<f64>,
-    /// The thickness of layers that stand for surfaces in the cells that keep them: 0 if exact surfaces alone
-    /// are kept, absent (null) if none are.
+    /// Thickness of the layers in which cells keep surfaces: 0 if only exact surfaces are kept, null if none
+    /// are.
     surfaces: Option<f64>,
     timings: Timings,
-    /// Cells that were split; null if there are meshes or octrees in the scene, which work in bulk.
+    /// Number of split cells; null for a scene with meshes or octrees, which are processed in bulk.
     splits: Option<u64>,
-    /// Half-spaces that were evaluated, at a point or over a box.
+    /// Number of half-spaces that were evaluated, at a point or over a box.
     evaluations: u64,
     /// Volume of the undecided cells.
     undecided_volume: f64,
-    /// How the curves of the scene were drawn.
+    /// The way in which the curves of the scene were drawn.
     curves: Curves,
     #[serde(flatten)]
     info: Info,
@@ -94,7 +94,7 @@ pub fn make(
         TouchName::Exact => Touch::Exact,
         TouchName::Paper => Touch::Paper,
     });
-    // To count splits turns off what meshes and octrees do in bulk.
+    // Counting the splits would turn off the bulk processing of meshes and octrees.
     let counted = (solid.nesting() == 0).then(|| SplitCounter::new(solid.clone()));
     let read = start.elapsed().as_secs_f64();
 
@@ -128,7 +128,7 @@ pub fn make(
     let save = saving.elapsed().as_secs_f64();
 
     if octree.view().is_clipped() {
-        let warning = "the solid may go on outside of the bounds, where it was cut off";
+        let warning = "the solid may extend beyond the bounds, where it was cut off";
         complain(&format!("{input}: warning: {warning}"));
     }
     let mut info = Info::new(&octree, bytes);

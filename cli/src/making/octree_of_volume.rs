@@ -22,7 +22,7 @@ struct Report {
     info: Info,
 }
 
-/// Makes an octree of a volume and saves it: on the frame of the voxels, or on the one that is wanted.
+/// Makes an octree of a volume and saves it, on the frame of the voxels or on the requested one.
 pub fn make(job: &Job, rule: Rule, volume: &Voxels) -> Result<(), Failure> {
     let Job { input, output, start, threads, .. } = job;
     let bounds = volume.solid.bounds().map(|bounds| (bounds.min, bounds.max));
@@ -60,12 +60,12 @@ pub fn make(job: &Job, rule: Rule, volume: &Voxels) -> Result<(), Failure> {
     })
 }
 
-/// The octree whose finest cells are the voxels.
+/// Returns the octree whose finest cells are the voxels.
 pub fn of_voxels(volume: &Voxels, input: &Input, threads: usize) -> Result<Octree, Failure> {
     on(volume, input, voxels(volume, input)?, Rule::Sampled, threads)
 }
 
-/// The frame whose finest cells are the voxels.
+/// Returns the frame whose finest cells are the voxels.
 pub fn voxels<'a>(volume: &'a Voxels, input: &Input) -> Result<&'a Frame, Failure> {
     volume.frame.as_ref().ok_or_else(|| {
         let problem = "its voxels are no cubes along the axes, so that its cells need --bounds and --depth of \
@@ -74,7 +74,7 @@ pub fn voxels<'a>(volume: &'a Voxels, input: &Input) -> Result<&'a Frame, Failur
     })
 }
 
-/// The octree on a frame.
+/// Returns the octree on a frame.
 pub fn on(
     volume: &Voxels,
     input: &Input,

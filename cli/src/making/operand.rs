@@ -1,4 +1,4 @@
-//! What a set operation takes: files of any kind, on one frame.
+//! Operands of set operations: files of any kind, on one frame.
 
 use crate::failure::{Failure, Of, complain};
 use crate::making::job::named;
@@ -13,26 +13,26 @@ use crate::source::solid::{Shape, Source};
 use crate::words::number;
 use leafless::{Affine, Frame, Octree, Rule, SurfaceOptions, build, build_extended};
 
-/// The depth of the common frame if no operand has its own, and none is asked for.
+/// Depth of the common frame if no operand has its own, without --depth.
 const DEPTH: u8 = 10;
 
-/// How thick layers of a mesh's surface are where another operand keeps surfaces, as a part of the mesh's
+/// Thickness of the layers of a mesh's surface if another operand keeps surfaces, relative to the mesh's
 /// longest side.
 const LAYERS: f64 = 1e-4;
 
-/// What is wanted of the frame: a cube, and levels of cells.
+/// The requested frame: a cube, and levels of cells.
 pub type Wanted = (Option<Frame>, Option<u8>);
 
-/// Where operands are combined.
+/// The common frame of the operands.
 pub struct Common {
     pub frame: Frame,
-    /// Whether cells keep surfaces, as those of an operand do.
+    /// True if the cells of an operand keep surfaces, so that the others must.
     keeps_surfaces: bool,
 }
 
 impl Common {
-    /// The frame of the first stored solid, or else of the voxels if the first operand is a volume; or else a
-    /// cube around all.
+    /// Returns the frame of the first stored solid; otherwise that of the voxels if the first operand is a
+    /// volume; otherwise a cube around all operands.
     pub fn new(
         files: &[(Input, Placing)],
         shapes: &[Shape],
@@ -69,7 +69,7 @@ impl Common {
         Ok(Common { frame, keeps_surfaces })
     }
 
-    /// An operand on the frame. What is stored there already stays as it is.
+    /// Puts an operand on the frame. An operand that is stored on it stays as it is.
     pub fn place(
         &self,
         input: &Input,
@@ -89,7 +89,7 @@ impl Common {
         moved::stored(input, stored, placing, Onto::Frame(&self.frame), threads)
     }
 
-    /// The cells of a mesh or a scene, which keep its surfaces if those of another operand do.
+    /// Returns the cells of a mesh or a scene. They keep its surfaces if those of another operand do.
     fn cells(&self, input: &Input, source: Source, threads: usize) -> Result<Octree, Failure> {
         let mut metadata = named(input);
         metadata.insert("rule", rule_name(Rule::Certified));
@@ -122,14 +122,15 @@ impl Common {
     }
 }
 
-/// A cube around all operands, none of which is stored.
+/// Returns a cube around all operands, none of which is stored.
 fn around(files: &[(Input, Placing)], shapes: &[Shape], depth: u8) -> Result<Frame, Failure> {
     let (low, high, ends) = reach(files, shapes)?;
-    // What may go on beyond its bounds needs a margin.
+    // A solid that may extend beyond its bounds needs a margin.
     if ends { Frame::fitted(low, high, depth) } else { Frame::around(low, high, depth) }.of(&files[0].0)
 }
 
-/// The corners of a box around all operands, none of which is stored, and whether nothing lies beyond.
+/// Returns the corners of a box around all operands, none of which is stored, and whether no operand extends
+/// beyond it.
 pub fn reach(files: &[(Input, Placing)], shapes: &[Shape]) -> Result<([f64; 3], [f64; 3], bool), Failure> {
     let (mut low, mut high, mut ends) = ([f64::INFINITY; 3], [f64::NEG_INFINITY; 3], true);
     for ((input, _), shape) in files.iter().zip(shapes) {

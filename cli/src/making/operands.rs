@@ -1,4 +1,4 @@
-//! The operands of set operations: where they lie, and what their files say.
+//! The operands of set operations: their frames, and their metadata.
 
 use crate::failure::{Failure, Of, complain};
 use crate::source::file::Taking;
@@ -7,7 +7,7 @@ use crate::words::number;
 use leafless::attribute::CarryRule;
 use leafless::{Frame, Metadata};
 
-/// What is made of the solids.
+/// A set operation.
 #[derive(Debug, Clone, Copy)]
 pub enum Operation {
     Union,
@@ -29,29 +29,29 @@ impl Operation {
     }
 }
 
-/// What is made of solids.
+/// A set operation with its options.
 pub struct Combining<'a> {
     pub operation: Operation,
-    /// How meshes, scenes and volumes among them are taken.
+    /// The options of reading meshes, scenes and volumes.
     pub taking: &'a Taking,
-    /// The cube that they are combined on, and its levels, if none of them has its own.
+    /// The cube for the combination, and its levels, if no operand has its own.
     pub bounds: Option<Frame>,
     pub depth: Option<u8>,
     /// Rules for channels by their names.
     pub carry: &'a [(String, CarryRule)],
-    /// Whether the result has no surfaces, and the level of its cells if that is asked for.
+    /// Whether the result drops its surfaces, and the level of its cells if one is given.
     pub plain: Option<Option<u8>>,
     pub threads: usize,
 }
 
-/// Where an operand lies, and what its file says.
+/// The frame and the metadata of an operand.
 pub struct Place<'a> {
     frame: &'a Frame,
     metadata: &'a Metadata,
 }
 
 impl Place<'_> {
-    /// That of an operand.
+    /// Builds the place of an operand.
     pub fn new<'a>(frame: &'a Frame, metadata: &'a Metadata) -> Place<'a> {
         Place { frame, metadata }
     }
@@ -63,7 +63,7 @@ impl Place<'_> {
     }
 }
 
-/// Refuses operands that lie on different frames; `depth` is the option that says how fine they are.
+/// Refuses operands on different frames; `depth` is the option that sets their resolution.
 pub fn check_places(inputs: &[Input], places: &[Place<'_>], depth: &str) -> Result<(), Failure> {
     for (input, place) in inputs.iter().zip(places).skip(1) {
         if place.frame != places[0].frame {
@@ -83,7 +83,7 @@ pub fn check_places(inputs: &[Input], places: &[Place<'_>], depth: &str) -> Resu
     Ok(())
 }
 
-/// Complains of operands whose units differ from that of the first one.
+/// Warns of operands whose units differ from that of the first one.
 pub fn warn_of_units(inputs: &[Input], places: &[Place<'_>]) {
     for (input, place) in inputs.iter().zip(places).skip(1) {
         let units = [&places[0], place].map(|place| place.metadata.get("units"));
@@ -99,8 +99,8 @@ pub fn warn_of_units(inputs: &[Input], places: &[Place<'_>]) {
     }
 }
 
-/// What the operands' files say that holds of the result: name and unit, if it is the same in all; and by
-/// which rule cells were resolved, if they say it: the common one, or `mixed`.
+/// Returns the metadata of the operands that hold for the result: name and unit, if they are the same in all,
+/// and the rule by which cells were resolved, if all state one: the common rule, or `mixed`.
 pub fn facts(places: &[Place<'_>]) -> Result<Metadata, Failure> {
     let mut metadata = Metadata::common(places.iter().map(|place| place.metadata)).of("metadata")?;
     let rules: Option<Vec<&str>> = places.iter().map(|place| place.metadata.get("rule")).collect();

@@ -34,8 +34,8 @@ const BOLT_HOLE_RADIUS: f64 = 4.5;
 const BOLT_HOLE_CHAMFER: f64 = 1.0;
 const RIBS: usize = 6;
 const RIB_THICKNESS: f64 = 5.0;
-/// Outline of a rib, radius and height. Its first and last point lie inside of the hub's wall, the first two
-/// inside of the flange, and the toe ends before the bolt holes begin.
+/// Outline of a rib, radius and height. Its first and last point lie inside the hub's wall, the first two
+/// inside the flange, and the toe ends before the bolt holes begin.
 const RIB: [[f64; 2]; 5] = [[20.0, 6.0], [40.0, 6.0], [40.0, 15.0], [27.0, 46.0], [20.0, 46.0]];
 const CROSS_DRILL_RADIUS: f64 = 4.5;
 const CROSS_DRILL_HEIGHT: f64 = 51.0;
@@ -43,7 +43,7 @@ const CROSS_DRILL_REACH: f64 = 30.0;
 const KEYWAY_WIDTH: f64 = 5.0;
 /// The keyway's floor, measured from the axis, and a start that lies within the bore.
 const KEYWAY: [f64; 2] = [10.0, 17.3];
-/// How far the keyway's tool stands out at both ends of the hub.
+/// Length by which the keyway's tool stands out at both ends of the hub.
 const KEYWAY_OVERRUN: f64 = 1.0;
 
 /// The part: a flange with a hub, a stepped bore, eight bolt holes and six ribs; 120 mm wide, 60 mm high.
@@ -232,7 +232,7 @@ mod tests {
     use super::*;
     use leafless::FillRule;
 
-    /// How often the surface winds around a point, from the solid angles of its triangles.
+    /// Returns the winding number of the surface around a point, from the solid angles of its triangles.
     fn winding_number(mesh: &TriangleMesh, p: [f64; 3]) -> i32 {
         let dot = |a: [f64; 3], b: [f64; 3]| a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
         let angle: f64 = (mesh.triangles().iter())
@@ -256,7 +256,7 @@ mod tests {
         PI * radius * radius * height
     }
 
-    /// Pappus: a cross-section's area times the way of its centroid.
+    /// Returns the volume by Pappus's theorem: a cross-section's area times the path of its centroid.
     fn swept(area: f64, centroid_radius: f64) -> f64 {
         area * TAU * centroid_radius
     }
@@ -338,7 +338,7 @@ mod tests {
         let report = mesh.report().unwrap();
         assert_eq!((report.bodies, report.degenerate, report.non_manifold_edges), (2, 0, 0));
         assert_within_one_percent(mesh.volume(), cylinder(4.5, 60.0) + 5.0 * 7.3 * 62.0);
-        // Both tools meet material of the part, and pass it wholly.
+        // Both tools meet material of the part, and pass completely through it.
         let part = flange();
         for p in [[20.0, 0.0, 51.0], [-20.0, 0.0, 51.0], [0.0, 16.0, 30.0], [1.0, 17.0, 8.0]] {
             assert_eq!((winding_number(&mesh, p), winding_number(&part, p)), (1, 1), "{p:?}");

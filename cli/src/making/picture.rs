@@ -1,4 +1,4 @@
-//! What pictures show: solids, meshes and volumes, in each view.
+//! Pictures of solids, meshes and volumes, in each view.
 
 use crate::failure::{Failure, Of, complain};
 use crate::making::clipped::Planes;
@@ -28,50 +28,50 @@ use leafless::{
 };
 use serde::Serialize;
 
-/// What is shown, and in which colours.
+/// The view, and its colours.
 #[derive(Args)]
 pub struct Looks {
     /// What to show
     #[arg(long, value_enum, default_value_t = View::Surface)]
     pub view: View,
-    /// Plane of the slice: the points x, y, z with a x + b y + c z + d = 0. One looks at it against its
-    /// normal a,b,c: at 0,0,1,d from above, at 0,-1,0,d from the front, at 1,0,0,d from the right. +z is
-    /// upward; where the plane is level, +x is to the right. It is never mirrored. Without --plane: the one
-    /// through the middle that is seen best of those along the axes
-    #[arg(long, value_name = "A,B,C,D", value_parser = numbers::<4>, allow_hyphen_values = true)]
-    pub plane: Option<[f64; 4]>,
-    /// Colours of values: viridis, cividis, inferno, magma, plasma or grey
-    #[arg(long, value_name = "NAME", default_value = "viridis", value_parser = map)]
-    map: ColourMap,
-    /// Values at both ends of the colours. Without it: the least and the greatest
-    #[arg(long, value_name = "A,B", value_parser = numbers::<2>, allow_hyphen_values = true)]
-    range: Option<[f64; 2]>,
-    /// Opacity of a volume as thick as the solid's longest side, 0 to 1
-    #[arg(long, value_name = "ALPHA", default_value_t = 0.95, value_parser = share)]
-    opacity: f64,
-    /// Show voxels as published: of an edge of k finest voxels as k layers, wherever a line of sight crosses
-    /// them
-    #[arg(long)]
-    published: bool,
-    /// Draw edges: those at which faces meet at more than 30 degrees, or of a mesh those of all its triangles
-    #[arg(long, value_enum, value_name = "WHICH", num_args = 0..=1, default_missing_value = "features")]
+    /// Colour of the surface, such as #b2bbc4
+    #[arg(long, value_name = "COLOUR", value_parser = colour, help_heading = "Colours and values")]
+    colour: Option<[u8; 4]>,
+    /// Draw edges: those at which faces meet at more than 30 degrees, or those of all triangles of a mesh
+    #[arg(long, value_enum, value_name = "WHICH", num_args = 0..=1, default_missing_value = "features", help_heading = "Colours and values")]
     edges: Option<Edges>,
-    /// Show a slice without cells: what of the plane is inside. The surface of what is no octree of cells is
-    /// then drawn as a line, of cells as small as a pixel
+    /// Show the cells of a solid by their faces
     #[arg(long)]
-    no_cells: bool,
-    /// What becomes of the undecided cells of an octree whose cells keep no surfaces
+    faces: bool,
+    /// How the undecided cells of an octree are shown whose cells keep no surfaces
     #[arg(long, value_enum, default_value_t = Undecided::Shown)]
     undecided: Undecided,
     /// Leave out the legend, and the scale and the extents of a slice
     #[arg(long)]
     pub no_legend: bool,
-    /// Show the cells of a solid by their faces
-    #[arg(long)]
-    faces: bool,
-    /// Colour of the surface, as in #b2bbc4
-    #[arg(long, value_name = "COLOUR", value_parser = colour)]
-    colour: Option<[u8; 4]>,
+    /// Plane of the slice: the points x, y, z with a x + b y + c z + d = 0, seen against its normal a,b,c:
+    /// 0,0,1,d from above, 0,-1,0,d from the front, 1,0,0,d from the right. +z is upward; if the plane is
+    /// horizontal, +x is to the right. The slice is never mirrored [default: the plane through the middle,
+    /// across the axis that is nearest to the direction of view]
+    #[arg(long, value_name = "A,B,C,D", value_parser = numbers::<4>, allow_hyphen_values = true, help_heading = "Slices and cuts")]
+    pub plane: Option<[f64; 4]>,
+    /// Show a slice without cells: only what is inside. Unless the input is an octree of cells, its surface
+    /// is then drawn as a line, made of cells as small as a pixel
+    #[arg(long, help_heading = "Slices and cuts")]
+    no_cells: bool,
+    /// Colours of values: viridis, cividis, inferno, magma, plasma or grey
+    #[arg(long, value_name = "NAME", default_value = "viridis", value_parser = map, help_heading = "Colours and values")]
+    map: ColourMap,
+    /// Values at both ends of the colours [default: the least and the greatest]
+    #[arg(long, value_name = "A,B", value_parser = numbers::<2>, allow_hyphen_values = true, help_heading = "Colours and values")]
+    range: Option<[f64; 2]>,
+    /// Opacity of a volume as thick as the solid's longest side, 0 to 1
+    #[arg(long, value_name = "ALPHA", default_value_t = 0.95, value_parser = share, help_heading = "Colours and values")]
+    opacity: f64,
+    /// Show voxels as in the published method: a voxel with an edge of k finest voxels counts as k layers,
+    /// wherever a line of sight crosses it
+    #[arg(long, help_heading = "Colours and values")]
+    published: bool,
 }
 
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, ValueEnum)]
@@ -81,19 +81,19 @@ pub enum View {
     Surface,
     /// The inside, translucent
     Volume,
-    /// Both: clip planes cut only the surface, which is translucent without any
+    /// Both; clip planes cut only the surface, else translucent
     Hybrid,
-    /// A plane through it, with its cells and what they are
+    /// A plane section, with its cells and their tags
     Slice,
 }
 
 #[derive(Debug, Clone, Copy, PartialEq, ValueEnum)]
 enum Undecided {
-    /// As those that are FULL
+    /// Like FULL cells
     Shown,
-    /// Translucent, around those that are FULL
+    /// Translucent, around FULL cells
     Faint,
-    /// Only what is FULL is shown
+    /// Only FULL cells are shown
     Hidden,
 }
 
@@ -101,12 +101,12 @@ enum Undecided {
 enum Edges {
     /// Where faces meet at more than 30 degrees
     Features,
-    /// Those of all triangles, fainter where these are seen small
+    /// All edges of triangles, fainter where triangles are small
     All,
 }
 
 impl Looks {
-    /// Refuses options that say nothing in the view.
+    /// Refuses options that have no effect in the view.
     pub fn check(&self) -> Result<(), Failure> {
         let (view, is_surface) = (self.view, self.view == View::Surface);
         for (is_misplaced, option, of) in [
@@ -123,7 +123,7 @@ impl Looks {
         Ok(())
     }
 
-    /// Whether the view shows cells, into which what has none is split.
+    /// True if the view shows cells, so that a shape without cells is split.
     fn is_of_cells(&self) -> bool {
         match self.view {
             View::Surface => self.faces,
@@ -162,17 +162,17 @@ fn map(text: &str) -> Result<ColourMap, String> {
     ColourMap::from_name(text).map_err(|error| error.to_string())
 }
 
-/// What is shown.
+/// The subject of a picture.
 pub enum Subject {
-    /// With what it was made of, if that is known.
+    /// An octree, with its source if that is known.
     Octree(Box<Octree>, Option<Box<AnySolid>>),
     Mesh(Box<TriangleMesh>),
     Solid(Box<AnySolid>, Frame),
 }
 
 impl Subject {
-    /// What the view shows of a file; what has no cells of its own is split to `depth` where it needs them.
-    /// What is cut open is a solid, if it bounds one, so that its inside is seen.
+    /// Returns the subject of a file. A shape without cells is split to `depth` if the view needs cells. A
+    /// subject that is cut open is a solid, if it bounds one, so that its inside is seen.
     pub fn of(
         shape: Shape,
         input: &Input,
@@ -183,7 +183,7 @@ impl Subject {
     ) -> Result<Subject, Failure> {
         let is_of_cells = looks.is_of_cells();
         let shape = match shape {
-            // Materials are those of cells.
+            // Materials belong to cells.
             Shape::Dexels(model)
                 if is_of_cells || looks.view == View::Slice || model.view().format().materials =>
             {
@@ -197,7 +197,7 @@ impl Subject {
             }
             shape => shape,
         };
-        // Edges of all triangles are those of a mesh, which has no inside.
+        // Only a mesh shows the edges of all triangles, and a mesh has no inside.
         let is_capped = match &shape {
             Shape::Source(Source::Mesh(mesh, ..)) if is_cut && looks.edges != Some(Edges::All) => {
                 openness(&mesh.report().of(input)?).is_none()
@@ -228,7 +228,7 @@ impl Subject {
         }
     }
 
-    /// The octree from a file whose channels may be shown.
+    /// Returns the octree from a file whose channels may be shown.
     pub fn octree(&self) -> Option<&Octree> {
         match self {
             Subject::Octree(octree, _) => Some(octree),
@@ -237,7 +237,7 @@ impl Subject {
         }
     }
 
-    /// Says so where undecided cells hide those that are FULL.
+    /// Prints a note if undecided cells hide FULL ones.
     pub fn note_undecided(&self, input: &Input, looks: &Looks) {
         let Subject::Octree(octree, None) = self else { return };
         let volume = octree.statistics().volume();
@@ -255,11 +255,11 @@ impl Subject {
         });
     }
 
-    /// Its extents along x, y and z, as far as they are known.
+    /// Returns the extents along x, y and z, as far as they are known.
     fn extents(&self, control: &Control<'_>) -> Result<Option<[[Interval; 2]; 3]>, Error> {
         let quiet = Control { progress: None, ..*control };
         let found = match self {
-            // What cells prove does not matter here.
+            // The proof of the cells does not matter here.
             Subject::Octree(octree, _) => {
                 let cells = octree.with_proof(Proof::CERTIFIED);
                 bounding_box(&cells, cells.frame(), 0.0, &quiet)?
@@ -276,8 +276,8 @@ impl Subject {
         Ok(found.corners.map(|[min, max]| [0, 1, 2].map(|axis| [min[axis], max[axis]])))
     }
 
-    /// Points that whoever sees sees all of it that clip planes leave: corners of coarse cells around it,
-    /// those of the universe if it is empty.
+    /// Returns points such that a view of all of them shows everything that clip planes leave: corners of
+    /// coarse cells around the subject, or those of the universe if the subject is empty.
     pub fn points(&self, planes: &Planes, control: &Control<'_>) -> Result<Vec<[f64; 3]>, Error> {
         let coarse = |octree: &Octree| {
             let frame = *octree.frame();
@@ -303,7 +303,7 @@ impl Subject {
                 for triangle in mesh.triangles() {
                     planes.of_triangle(corners(triangle), &mut points);
                 }
-                // What is cut away as a whole is as large as before.
+                // If everything is cut away, the size is that before cutting.
                 if points.is_empty() {
                     points.extend(mesh.triangles().iter().flat_map(corners));
                 }
@@ -319,16 +319,16 @@ impl Subject {
 /// Level of the cells that a camera is fitted to.
 const COARSE: u8 = 6;
 
-/// A channel, and what its values look like.
+/// A channel, and the colours of its values.
 pub struct Values<'a> {
     channel: &'a Channel,
     transfer: Transfer,
-    /// The value, if there is but one.
+    /// The value, if there is only one.
     sole: Option<f64>,
 }
 
 impl<'a> Values<'a> {
-    /// Those of a channel of an octree.
+    /// Returns the values of a channel of an octree.
     pub fn new(
         looks: &Looks,
         octree: &Octree,
@@ -345,14 +345,14 @@ impl<'a> Values<'a> {
         Ok(Values { channel, transfer: transfer(looks, octree, range, control)?, sole })
     }
 
-    /// The colour of a value on a surface.
+    /// Returns the colour of a value on a surface.
     fn colour(&self) -> impl Fn(Option<[f64; 4]>) -> [u8; 4] + use<'_, 'a> {
         let components = self.channel.value_type().components();
         move |value| self.transfer.opaque(value, components)
     }
 }
 
-/// A picture of it, with a legend.
+/// Returns a picture of the subject, with a legend.
 pub fn picture(
     looks: &Looks,
     subject: &Subject,
@@ -382,7 +382,7 @@ pub fn picture(
     Ok(picture)
 }
 
-/// Whether a slice is seen along its normal, so that it has one scale.
+/// True if a slice is seen along its normal, so that it has one scale.
 fn is_along_normal(looks: &Looks, shot: &Shot) -> bool {
     let [x, y, z] = shot.camera.forward();
     let across = match looks.plane {
@@ -392,7 +392,7 @@ fn is_along_normal(looks: &Looks, shot: &Shot) -> bool {
     looks.view == View::Slice && across >= 1.0 - 1e-9
 }
 
-/// How long something is between two planes.
+/// Formats the distance between two planes.
 fn extent_text([low, high]: [Interval; 2]) -> String {
     let ends = [(high.lower - low.upper).max(0.0), high.upper - low.lower];
     let length = Interval::new(ends[0], ends[1]).unwrap_or(Interval::ALL);
@@ -400,8 +400,8 @@ fn extent_text([low, high]: [Interval; 2]) -> String {
     if is_sure { short(0.5 * length.lower + 0.5 * length.upper) } else { length.to_string() }
 }
 
-/// Where the legend of a picture of this size will lie, and the scale of a slice that is seen along its
-/// normal; `None` if there is none.
+/// Returns the boxes of the legend of a picture of this size, and of the scale of a slice that is seen along
+/// its normal; `None` if there is none.
 pub fn legend_boxes(
     looks: &Looks,
     subject: &Subject,
@@ -417,7 +417,7 @@ pub fn legend_boxes(
     Ok([legend(looks, subject, values, &mut blank)?, scale])
 }
 
-/// Draws the legend on the right, and tells where it lies; `None` if there is none.
+/// Draws the legend on the right, and returns its box; `None` if there is none.
 fn legend(
     looks: &Looks,
     subject: &Subject,
@@ -427,7 +427,7 @@ fn legend(
     let (is_slice, side) = (looks.view == View::Slice, LegendSide::Right);
     match values {
         _ if looks.no_legend => Ok(None),
-        // Of two numbers the first one has a colour; three are a colour themselves.
+        // The first of two numbers has a colour; three numbers are a colour themselves.
         Some(Values { channel, transfer, sole: Some(value) }) if channel.value_type().components() == 1 => {
             let colour = transfer.opaque(Some([*value, 0.0, 0.0, 0.0]), 1);
             Ok(draw_names(picture, channel.name(), &[(&short(*value), colour)], side))
@@ -441,7 +441,7 @@ fn legend(
             let shown = match subject {
                 Subject::Octree(..) if looks.no_cells => &names[1..],
                 Subject::Octree(..) => &names[..],
-                // Nothing but the inside has a colour.
+                // Only the inside has a colour.
                 _ => &[],
             };
             Ok(draw_names(picture, "", shown, side))
@@ -511,10 +511,10 @@ fn surface(
 /// The colour of lines.
 const INK: [u8; 4] = [35, 40, 45, 255];
 
-/// The opacity of undecided cells around those that are FULL.
+/// Opacity of undecided cells around FULL ones.
 const FAINT: u8 = 50;
 
-/// What values in a range look like: for a solid without a channel, all the same.
+/// Returns the colours of values in a range; without a channel, there is one colour.
 fn transfer(
     looks: &Looks,
     octree: &Octree,
@@ -529,7 +529,7 @@ fn transfer(
     Transfer::new(looks.map, range, looks.opacity, longest)
 }
 
-/// The voxels of an octree, with surfaces before and between them.
+/// Shows the voxels of an octree, with surfaces before and between them.
 fn volume(
     looks: &Looks,
     octree: &Octree,
@@ -557,7 +557,7 @@ fn volume(
         true => Compositing::Published { unit: octree.frame().cell_size() },
         false => Compositing::Exact,
     };
-    // Undecided cells weigh what of them is solid, where that can be known.
+    // The weight of an undecided cell is its solid part, if that can be computed.
     let weights = source.map(|source| records.view().solid_parts(source, &quiet)).transpose()?;
     let mut layer = VolumeLayer::new(records.view(), transfer).compositing(compositing)?;
     if let Some(weights) = &weights {
@@ -581,23 +581,23 @@ fn hybrid(
     if shot.clip.is_empty() && looks.colour.is_none() {
         colour[3] = 70;
     }
-    // Through a translucent skin all of its sides are seen.
+    // A translucent skin shows all of its sides.
     let has_mesh = source.is_some() || colour[3] < 255;
     let mesh = if has_mesh { Some(skin_mesh(octree, source, &quiet)?) } else { None };
     let triangles = mesh.as_ref().map(|mesh| MeshLayer::new(mesh).colour(colour).inside(colour));
-    // Of an octree the steps of its lattice would be seen; what is cut open shows the inside.
+    // The surface of an octree would show the steps of its lattice; a cut shows the inside.
     let cells = OctreeLayer::new(octree.view(), Finish { colour, cut: [0; 4], ..Finish::default() });
     let skin: &dyn Layer = triangles.as_ref().map_or(&cells, |triangles| triangles);
-    // Clip planes cut the skin away, and show what is behind it.
+    // Clip planes cut the skin away, and uncover the voxels behind it.
     let cut = ClippedLayer::new(skin, shot.clip.clone());
     let whole = Shot { clip: Clip::new(), ..shot.clone() };
     volume(looks, octree, source, values, &whole, &[&cut], control)
 }
 
-/// Bytes that the triangles of a skin may take: some two million, as many as a picture has pixels.
+/// Bytes for the triangles of a skin: about two million triangles, as many as a picture has pixels.
 const SKIN: u64 = 128 << 20;
 
-/// The surface as triangles, with the finest cells that memory allows.
+/// Returns the surface as triangles, with the finest cells that memory allows.
 fn skin_mesh(
     octree: &Octree,
     source: Option<&AnySolid>,
@@ -609,7 +609,7 @@ fn skin_mesh(
     loop {
         let frame = octree.frame().with_depth(depth)?;
         let mesh = match source {
-            // A tree is known on its own lattice alone: rays through the cells' centres find its surfaces.
+            // A tree is known on its own lattice only: rays through the cells' centres find its surfaces.
             Some(source) if source.get::<Octree>().is_some() => {
                 dexelize(source, &frame, &DexelOptions::default(), &limited)
                     .and_then(|model| Ok(marching_cubes_dexels(model.view(), &limited)?.0))
@@ -632,16 +632,16 @@ fn skin_mesh(
     }
 }
 
-/// From where one looks at a slice along its normal: azimuth and elevation in degrees.
+/// Returns the direction from which a slice is seen along its normal: azimuth and elevation in degrees.
 pub fn facing([a, b, c]: [f64; 3]) -> [f64; 2] {
     let level = a.hypot(b);
-    // At a level plane one looks with +x to the right. (A negative zero would turn it.)
+    // A level plane is seen with +x to the right. (A negative zero would turn the view.)
     let azimuth = if level <= 1e-9 * c.abs() { 0.0 } else { a.atan2(-b).to_degrees() };
     [azimuth, c.atan2(level).to_degrees()]
 }
 
-/// Cells of a slice that is shown without them: as small as a pixel, but no more to an axis than 2 to the
-/// power of this.
+/// Finest level of a slice without cells: its cells are as small as a pixel, but there are at most 2 to this
+/// power along an axis.
 const FINEST: u8 = 14;
 
 fn slice(

@@ -1,4 +1,4 @@
-//! Octrees without surfaces, of octrees whose cells keep some.
+//! Octrees without surfaces, from octrees whose cells keep some.
 
 use crate::failure::{Failure, Of};
 use crate::making::job::{Job, proven_rule};
@@ -20,7 +20,7 @@ struct Report {
     info: Info,
 }
 
-/// Makes the octree whose cells the surfaces of another one decide, to a depth, and saves it.
+/// Makes the octree whose cells are decided by the surfaces of another one, to a depth, and saves it.
 pub fn make(job: &Job, octree: &Octree, depth: u8, rule: Rule) -> Result<(), Failure> {
     let Job { input, output, start, .. } = job;
     let cells = watched("convert", job.threads, |control| plain(octree, depth, rule, control)).of(input)?;

@@ -38,33 +38,33 @@ use std::fmt::Write;
 use std::path::Path;
 use std::time::Instant;
 
-/// What is said of layers.
+/// The warning about layers.
 const LAYERS: &str = "its cells keep layers in which the surface lies, which decide no points: this is the surface of what may be solid, by \
                       --method nets, and with --resolve inner that of what is proven to be";
 
-/// The depth of meshes, scenes, and octrees whose cells keep surfaces, if none is asked for.
+/// Depth of meshes, scenes, and octrees whose cells keep surfaces, without --depth.
 const DEPTH: u8 = 8;
 
-/// The same where cells end by themselves.
+/// The same depth for the method faces, where cells end by themselves.
 const DEEP: u8 = 14;
 
-/// The same where one vertex must do for what lies in a cell.
+/// The same depth for the method adaptive, where a cell has one vertex.
 const FINE: u8 = 12;
 
-/// The tolerance of curved faces, if none is asked for, as a part of the longest extent.
+/// Tolerance of curved faces without --tolerance, relative to the longest extent.
 const FACES: f64 = 1e-3;
 
-/// How a surface is made and written.
+/// The requested surface and file.
 #[derive(Default)]
 pub struct Wanted {
-    /// Without it: as sharp as what is known of the shape allows.
+    /// Without it: as sharp as the known shape allows.
     pub method: Option<Method>,
     pub snap: Option<SnapName>,
     pub vertices: Option<At>,
-    /// How far the surface may be from the solid (model units), by the methods that know.
+    /// Greatest distance of the surface from the solid (model units), for the methods that guarantee one.
     pub tolerance: Option<f64>,
     pub resolve: Option<ResolveName>,
-    /// The format to write. Without it the name of the output tells.
+    /// The format to write. Without it, the name of the output decides.
     pub format: Option<MeshFormat>,
     pub text: bool,
     pub normals: bool,
@@ -74,14 +74,14 @@ pub struct Wanted {
     pub copy: bool,
     /// Whether plane faces are written as polygons.
     pub polygons: bool,
-    /// The values that triangles are to bear.
+    /// Name of the values for the triangles.
     pub channel: Option<String>,
-    /// How far the surface may move where triangles are taken out of it once it is made (model units).
+    /// Greatest move of the surface when triangles are removed from it (model units).
     pub simplify: Option<f64>,
 }
 
 impl Wanted {
-    /// Whether vertices lie where edges cross the surface.
+    /// True if vertices lie where edges cross the surface.
     fn is_crossed(&self, method: Method) -> bool {
         method == Method::Mc && self.vertices != Some(At::Midpoint) && self.resolve.is_none()
     }
@@ -89,26 +89,21 @@ impl Wanted {
 
 #[derive(Debug, Clone, Copy, PartialEq, ValueEnum)]
 pub enum Method {
-    /// Marching cubes: between samples of one distance
+    /// Marching cubes: the surface between samples at equal distances
     Mc,
-    /// Surface nets: the same samples, with a vertex in each cube between them. Smoother; of a mesh, a scene
-    /// or a volume an octree is made first
+    /// Surface nets: smoother, with a vertex in each cube between samples
     Nets,
-    /// Dual contouring, which keeps edges and corners: of a tri-dexel model with normals. Of a mesh, a scene
-    /// or a volume one is made first
+    /// Dual contouring of a tri-dexel model with normals: keeps edges and corners
     Dual,
-    /// The surfaces themselves, of a scene and of a solid whose cells keep surfaces: plane faces as they are,
-    /// with sharp edges, and curved ones in chords (--tolerance). Of a closed mesh its triangles, merged. Few
-    /// triangles
+    /// The surfaces themselves, plane faces exactly, with few triangles
     Faces,
-    /// Adaptive dual contouring: few triangles where the surface is flat, about as near as --tolerance says,
-    /// with sharp edges. Of whatever has a shape
+    /// Adaptive dual contouring: few triangles where flat, sharp edges
     Adaptive,
-    /// Simple marching cubes: all vertices are samples, all normals have one of 13 directions
+    /// Simple marching cubes: vertices are samples, normals have 13 directions
     Smc,
-    /// The surface of smc, with one region of few triangles for all that lies in one plane; no cracks
+    /// The surface of smc, with few triangles for each coplanar part; no cracks
     Shrink,
-    /// Coplanar shrink as it was published, to compare with: it has cracks
+    /// Coplanar shrink as published, for comparison: it has cracks
     ShrinkPublished,
 }
 
@@ -141,11 +136,11 @@ pub enum At {
 
 #[derive(Debug, Clone, Copy, ValueEnum)]
 pub enum ResolveName {
-    /// Outside: the surface is that of what is proven to be solid
+    /// Outside: the surface is that of the part that is proven to be solid
     Inner,
-    /// Inside: the surface is that of what may be solid
+    /// Inside: the surface is that of the part that may be solid
     Outer,
-    /// Where the mesh or the scene says: at the cell's centre
+    /// As the mesh or the scene says at the cell's centre
     Source,
 }
 
@@ -181,14 +176,14 @@ pub fn make(job: &Job, taking: &Taking, wanted: &Wanted) -> Result<(), Failure> 
     let bearing = bearing.transpose()?;
     bearing.as_ref().map(|bearing| bearing.called(format)).transpose()?;
     let certain = match &shape {
-        // Vertices that are samples lie beside the surface; those of the other methods lie on it, or between
+        // Vertices that are samples lie beside the surface. Those of the other methods lie on it, or between
         // samples.
         Shape::Source(source) if method.moves_to_samples() => certain_volume(source).of(input)?,
         _ => None,
     };
     let is_copy = wanted.copy && matches!(shape, Shape::Source(Source::Mesh(..)));
     let Found { mesh, unit, faces, followed } = surface_of(shape, job, wanted, &mut method)?;
-    // (Of what is moved after that, they would lie elsewhere.)
+    // (Moving the mesh afterwards would leave the faces behind.)
     let mut faces = faces.filter(|_| !is_stored || taking.placing.map().is_none());
     if let Some(certain) = certain.filter(|certain| !certain.contains(mesh.volume())) {
         let (volume, name) = (short(mesh.volume()), name_of(method));
@@ -202,12 +197,12 @@ pub fn make(job: &Job, taking: &Taking, wanted: &Wanted) -> Result<(), Failure> 
         Some(bearing) => bearing.on(mesh, format, input, job.threads)?,
         None => mesh,
     };
-    // The surface of a stored solid is sharper than that of what would be made of the solid in another place.
+    // The surface of a stored solid is sharper than the surface of a solid that is remade in another place.
     let mesh = if is_stored { taking.placing.mesh(mesh).of(input)? } else { mesh };
     let mut mesh = mesh;
     if let Some(most) = wanted.simplify {
         mesh = simplified(mesh, is_copy, most, job)?;
-        // (They have other triangles now.)
+        // (The faces have other triangles now.)
         faces = None;
     }
     let method = if is_copy { "copy".into() } else { name_of(method) };
@@ -222,7 +217,7 @@ struct Found {
     followed: Option<Followed>,
 }
 
-/// The surface of a shape by a method, which may become another one.
+/// Makes the surface of a shape by a method, which may be changed.
 fn surface_of(shape: Shape, job: &Job, wanted: &Wanted, method: &mut Method) -> Result<Found, Failure> {
     let (unit, mesh, faces, followed) = match shape {
         Shape::Dexels(model) => {
@@ -247,7 +242,7 @@ fn surface_of(shape: Shape, job: &Job, wanted: &Wanted, method: &mut Method) -> 
     Ok(Found { mesh, unit, faces, followed })
 }
 
-/// The surface of a file as it is made where nothing more is said; a mesh is its own.
+/// Makes the surface of a file by the default method; a mesh stays as it is.
 pub fn usual_surface(input: &Input, threads: usize) -> Result<TriangleMesh, Failure> {
     let job = Job {
         input: input.clone(),
@@ -264,8 +259,8 @@ pub fn usual_surface(input: &Input, threads: usize) -> Result<TriangleMesh, Fail
     Ok(surface_of(shape, &job, &wanted, &mut method)?.mesh)
 }
 
-/// The mesh with fewer triangles. How far it is from the solid is known if it was known before, or if the
-/// mesh is the solid.
+/// Returns the mesh with fewer triangles. Its distance from the solid is known if it was known before, or if
+/// the mesh is the solid.
 fn simplified(mesh: TriangleMesh, is_solid: bool, most: f64, job: &Job) -> Result<TriangleMesh, Failure> {
     let input = &job.input;
     let is_known = is_solid || mesh.deviation() > 0.0;
@@ -280,7 +275,8 @@ impl Method {
     }
 }
 
-/// The method where none is named: what knows most of the shape, or what an option belongs to.
+/// Returns the default method: the one that uses most of the known shape, or the one that an option belongs
+/// to.
 fn usual(shape: &Shape, input: &Input, wanted: &Wanted) -> Method {
     let (method, option) = match shape {
         // (It refuses these options.)
@@ -299,7 +295,7 @@ fn usual(shape: &Shape, input: &Input, wanted: &Wanted) -> Method {
         Shape::Source(Source::Scene(_) | Source::Volume(_)) if wanted.tolerance.is_some() => {
             (Method::Adaptive, Some("--tolerance"))
         }
-        // (Contours take minutes where several meshes are cut with each other: rays are as sharp.)
+        // (Contours take minutes where several meshes are cut with each other; rays are as sharp.)
         Shape::Source(Source::Scene(_)) => (Method::Dual, None),
         // (As a solid a volume consists of boxes; marching cubes interpolates between its samples.)
         Shape::Source(Source::Volume(_)) => (Method::Mc, None),
@@ -315,33 +311,33 @@ fn usual(shape: &Shape, input: &Input, wanted: &Wanted) -> Method {
 pub struct Made {
     pub mesh: TriangleMesh,
     pub unit: Option<LengthUnit>,
-    /// How, in a word.
+    /// Name of the method.
     pub method: String,
-    /// How exactly it follows rays, if it does.
+    /// Statistics of the rays that the surface follows, if it does.
     pub followed: Option<Followed>,
-    /// Its faces, if these are known.
+    /// Its faces, if they are known.
     pub faces: Option<Faces>,
 }
 
-/// Refuses what does not go with polygons.
+/// Refuses options that exclude polygons.
 fn polygons_of(wanted: &Wanted, method: Method, format: MeshFormat) -> Result<(), Failure> {
     let problem = if method != Method::Faces {
-        "is for --method faces, which knows plane faces"
+        "is for --method faces, which provides plane faces"
     } else if !matches!(format, MeshFormat::Obj | MeshFormat::Off) {
-        "is for OBJ and OFF: other formats have triangles alone"
+        "is for OBJ and OFF: other formats have triangles only"
     } else if wanted.normals {
         "does not go with --normals"
     } else if wanted.channel.is_some() {
         "does not go with --channel, whose values are on triangles"
     } else if wanted.simplify.is_some() {
-        "does not go with --simplify, which knows triangles alone: --tolerance makes fewer of them"
+        "does not go with --simplify, which makes triangles only: --tolerance makes fewer of them"
     } else {
         return Ok(());
     };
     Err(Failure::Usage(format!("--polygons {problem}")))
 }
 
-/// Writes a surface, and says what it is.
+/// Writes a surface, and reports on it.
 pub fn write(job: &Job, format: MeshFormat, wanted: &Wanted, made: Made) -> Result<(), Failure> {
     let Job { input, output, start, .. } = job;
     let Made { mesh, unit, method, followed, faces } = made;
@@ -359,7 +355,7 @@ pub fn write(job: &Job, format: MeshFormat, wanted: &Wanted, made: Made) -> Resu
         Some(faces) if wanted.polygons => faces.file(format, &options).of(output)?,
         _ => write_mesh(&kept.written, format, &options).of(output)?,
     };
-    // What is told is what a reader gets, who makes triangles of polygons.
+    // The report describes the mesh that a reader gets: readers triangulate polygons.
     let mesh = match wanted.polygons {
         true => Cow::Owned(read_mesh(&bytes, &Default::default()).of(output)?.mesh),
         false => kept.read,
@@ -401,7 +397,7 @@ pub fn write(job: &Job, format: MeshFormat, wanted: &Wanted, made: Made) -> Resu
     output.tell(job.json, &told, |told| told.summary(&report))
 }
 
-/// The format to write.
+/// Returns the format to write.
 fn format(named: Option<MeshFormat>, path: Option<&Path>) -> Result<MeshFormat, Failure> {
     if let Some(format) = named {
         return Ok(format);
@@ -415,8 +411,8 @@ fn format(named: Option<MeshFormat>, path: Option<&Path>) -> Result<MeshFormat, 
     })
 }
 
-/// What is certain of the volume of a solid: of a closed mesh its own, to a hundredth, and of an octree what
-/// its cells prove.
+/// Returns certain bounds of the volume of a solid: that of a closed mesh to a hundredth, and that of an
+/// octree as its cells prove it.
 fn certain_volume(source: &Source) -> Result<Option<Interval>, Error> {
     match source {
         Source::Octree(octree) if octree.proof().is_certified() && !octree.view().is_clipped() => {
@@ -433,7 +429,7 @@ fn certain_volume(source: &Source) -> Result<Option<Interval>, Error> {
     }
 }
 
-/// The surface of a tri-dexel model.
+/// Makes the surface of a tri-dexel model.
 fn of_dexels(
     model: &TriDexel,
     job: &Job,
@@ -449,7 +445,7 @@ fn of_dexels(
         ("--snap", wanted.snap.is_some() && !method.moves_to_samples()),
     ];
     if let Some((option, _)) = given.into_iter().find(|option| option.1) {
-        let problem = "is a tri-dexel model, whose rays leave nothing to choose";
+        let problem = "is a tri-dexel model, whose rays determine the samples";
         return Err(Failure::Usage(format!("{option} is not for {input}: it {problem}")));
     }
     match method {
@@ -463,14 +459,14 @@ fn of_dexels(
     }
 }
 
-/// Whether the surface follows rays: by dual contouring, and of octrees whose cells keep surfaces, whose
-/// lattice is their own.
+/// True if the surface follows rays: by dual contouring, and for octrees whose cells keep surfaces, which
+/// have their own lattice.
 fn asks_rays(source: &Source, wanted: &Wanted, method: Method) -> bool {
     let keeps_surfaces = matches!(source, Source::Octree(_)) && !source.is_of_cells();
     method == Method::Dual || keeps_surfaces && wanted.is_crossed(method)
 }
 
-/// The surface of anything else that follows rays: of a tri-dexel model that is made for it.
+/// Makes the surface of any other shape that follows rays, by way of a tri-dexel model.
 fn by_rays(
     source: Source,
     job: &Job,
@@ -479,12 +475,12 @@ fn by_rays(
 ) -> Result<(TriangleMesh, Followed), Failure> {
     let input = &job.input;
     if source.is_of_cells() {
-        let problem = "is an octree, whose cells know no normals, which dual contouring needs: make a tri-dexel model \
-                       of what it was made of, by `leafless dexelize --normals 32`";
+        let problem = "is an octree, whose cells have no normals, which dual contouring needs: make a \
+                       tri-dexel model from its source, by `leafless dexelize --normals 32`";
         return Err(Failure::of(input, problem));
     }
     if wanted.resolve.is_some() {
-        return Err(Failure::Usage("--resolve does not go with --method dual, which asks rays".into()));
+        return Err(Failure::Usage("--resolve does not go with --method dual, which follows rays".into()));
     }
     let frame = source.frame_to(input, job.bounds.as_ref(), job.depth, DEPTH)?;
     let solid = source.placed(input, &Affine::IDENTITY, &frame)?;
@@ -508,8 +504,8 @@ fn by_rays_of(
     }
 }
 
-/// The surface within a tolerance, and the method that made it: where none is named, another one makes what
-/// the first cannot.
+/// Makes the surface within a tolerance, and returns it with the method used. If no method is named, another
+/// one replaces a method that fails.
 fn to_tolerance(
     source: Source,
     job: &Job,
@@ -530,7 +526,7 @@ fn to_tolerance(
     };
     if method == Method::Faces && !knows_surfaces {
         let problem =
-            "is neither a scene, a mesh, nor a solid whose cells keep surfaces, which --method faces is for";
+            "is no scene, no mesh and no solid whose cells keep surfaces: --method faces is for these";
         return Err(Failure::of(input, problem));
     }
     let tolerance = tolerance(&source, job, wanted)?;
@@ -556,7 +552,7 @@ fn to_tolerance(
     if let Some(mesh) = by_contour(&solid, &frame, tolerance, job, is_named)? {
         return Ok((mesh, Method::Adaptive, None, None));
     }
-    let problem = "its surface does not end in the cube that is looked at";
+    let problem = "its surface extends beyond the cube that is examined";
     complain(&format!("{input}: note: {problem}, and is cut off there by --method mc"));
     let depth = job.depth.unwrap_or(DEPTH);
     let frame = match job.bounds {
@@ -568,8 +564,8 @@ fn to_tolerance(
     Ok((mesh.of(input)?, Method::Mc, None, None))
 }
 
-/// The surface of an octree whose cells keep surfaces in layers, or no surface in many of them: by rays if
-/// points can be decided, else that of its cells.
+/// Makes the surface of an octree whose cells keep surfaces in layers, or in many cells no surface: by rays
+/// if points can be decided, otherwise from its cells.
 fn of_layers(
     solid: &AnySolid,
     frame: &Frame,
@@ -592,7 +588,8 @@ fn of_layers(
     Ok((mesh.of(input)?, Method::Nets, None))
 }
 
-/// The surface of a solid that knows its surfaces. Nothing if it does not, and the method is not named.
+/// Makes the surface of a solid that provides its surfaces. Returns nothing if it does not, and the method is
+/// not named.
 fn by_surfaces(
     solid: &AnySolid,
     frame: &Frame,
@@ -608,14 +605,14 @@ fn by_surfaces(
     let Some(found) = found.of(input)? else { return Ok(None) };
     let &BoundaryReport { intersecting_pairs, deviation, .. } = found.report();
     warn_of_pairs(input, intersecting_pairs);
-    // (Of a mesh no surfaces are known.)
+    // (A mesh provides no surfaces.)
     let is_known = !found.surfaces().is_empty();
     let faces = is_known.then(|| Faces::of(&found)).transpose().of(input)?;
     let mesh = with_deviation(found.into_mesh(), deviation, tolerance, input)?;
     Ok(Some((mesh, faces)))
 }
 
-/// The mesh, which says how far it is from the solid, if that is proven.
+/// Returns the mesh with its proven distance from the solid, if there is one.
 fn with_deviation(
     mesh: TriangleMesh,
     deviation: f64,
@@ -633,7 +630,7 @@ fn with_deviation(
     if deviation.is_finite() { mesh.with_deviation(deviation).of(input) } else { Ok(mesh) }
 }
 
-/// How far a surface may be from the solid: a part of the longest extent, if nothing is said.
+/// Returns the greatest distance of a surface from the solid; by default relative to the longest extent.
 fn tolerance(source: &Source, job: &Job, wanted: &Wanted) -> Result<f64, Failure> {
     let (low, high) = source.bounds(&job.input)?;
     let size = (0..3).map(|axis| high[axis] - low[axis]).fold(0.0, f64::max);
@@ -649,8 +646,8 @@ fn warn_of_pairs(input: &Input, pairs: u64) {
     }
 }
 
-/// The surface in cells that end where one vertex will do. Nothing if the solid does not end in the cube, and
-/// the method is not named.
+/// Makes the surface in cells that end where one vertex suffices. Returns nothing if the solid extends beyond
+/// the cube, and the method is not named.
 fn by_contour(
     solid: &AnySolid,
     frame: &Frame,
@@ -676,8 +673,7 @@ fn extract(source: Source, job: &Job, wanted: &Wanted, method: Method) -> Result
         (Some(ResolveName::Inner), _) => Some(Resolve::Inner),
         (Some(ResolveName::Outer), _) => Some(Resolve::Outer),
         (Some(ResolveName::Source), source) if source.is_of_cells() => {
-            let problem =
-                "a solid from a file has no source: undecided cells can be resolved as inner or outer";
+            let problem = "a solid from a file has no source to ask: --resolve can be inner or outer";
             return Err(Failure::of(input, problem));
         }
         (Some(ResolveName::Source), _) => None,
@@ -726,7 +722,7 @@ fn extract(source: Source, job: &Job, wanted: &Wanted, method: Method) -> Result
     .of(input)
 }
 
-/// The surface of a volume by marching cubes, with vertices where the samples cross the threshold.
+/// Makes the surface of a volume by marching cubes, with vertices where the samples cross the threshold.
 fn of_volume(voxels: &Voxels, job: &Job) -> Result<TriangleMesh, Failure> {
     let mesh = watched("mesh", job.threads, |control| marching_cubes_volume(&voxels.volume, control));
     let mesh = mesh.of(&job.input)?;
@@ -736,7 +732,7 @@ fn of_volume(voxels: &Voxels, job: &Job) -> Result<TriangleMesh, Failure> {
     }
 }
 
-/// The octree with cells no smaller than --depth says; those that are cut further are undecided.
+/// Returns the octree with cells no smaller than --depth says; cells that are split further become undecided.
 fn coarser(octree: &Octree, job: &Job) -> Result<Octree, Failure> {
     let input = &job.input;
     let own = octree.frame().depth();
@@ -753,7 +749,7 @@ fn coarser(octree: &Octree, job: &Job) -> Result<Octree, Failure> {
     }
 }
 
-/// The surface of an octree.
+/// Makes the surface of an octree.
 fn of_cells(
     octree: &Octree,
     resolve: Option<Resolve<'_>>,
@@ -764,7 +760,7 @@ fn of_cells(
     let snap = wanted.snap.unwrap_or_default().into();
     match method {
         Method::Dual | Method::Faces | Method::Adaptive => {
-            unreachable!("rays, surfaces and cells of several sizes are asked elsewhere")
+            unreachable!("this method does not sample the cells of an octree")
         }
         Method::Mc => marching_cubes(octree.view(), resolve, control),
         Method::Nets => surface_nets(octree.view(), resolve, control),
@@ -774,7 +770,7 @@ fn of_cells(
     }
 }
 
-/// The surface of a solid that is sampled at the corners of cells.
+/// Makes the surface of a solid that is sampled at the corners of cells.
 pub fn of_solid(
     solid: &AnySolid,
     frame: &Frame,
@@ -789,7 +785,7 @@ pub fn of_solid(
     let snap = wanted.snap.unwrap_or_default().into();
     match method {
         Method::Dual | Method::Faces | Method::Adaptive | Method::Nets => {
-            unreachable!("rays, surfaces, and cells of octrees are asked elsewhere")
+            unreachable!("this method does not sample the corners of cells")
         }
         Method::Mc => marching_cubes_solid(solid, frame, placement, control),
         Method::Smc => simple_marching_cubes_solid(solid, frame, snap, control),
@@ -798,46 +794,45 @@ pub fn of_solid(
     }
 }
 
-/// What is told of a surface, as a reader gets it back from the file.
+/// The report on a surface, as a reader gets it back from the file.
 #[derive(Serialize)]
 struct Report {
     input: String,
     output: String,
     method: String,
     format: &'static str,
-    /// What a 3MF says; others have none.
+    /// The unit in a 3MF; other formats have none.
     unit: Option<&'static str>,
     vertices: u64,
     triangles: u64,
-    /// Whether there is no triangle.
+    /// True if there is no triangle.
     empty: bool,
-    /// Whether the surface bounds a solid. An empty one does not, as `leafless info` has it.
+    /// True if the surface bounds a solid. An empty surface does not, as in `leafless info`.
     closed: bool,
     manifold: bool,
-    /// Edges that an odd number of triangles use.
+    /// Number of edges that an odd number of triangles use.
     open_edges: u64,
-    /// Edges that more than two triangles use.
+    /// Number of edges that more than two triangles use.
     non_manifold_edges: u64,
     components: u64,
     euler: i64,
     area: f64,
     volume: f64,
-    /// No point of the surface is further from the solid's boundary, and none of the boundary from the
-    /// surface, if that is proven.
+    /// Proven bound of the distance between surface and boundary, in both directions; null if there is none.
     #[serde(skip_serializing_if = "Option::is_none")]
     deviation: Option<f64>,
     #[serde(flatten)]
     losses: Losses,
-    /// Pairs of triangles that intersect, if they were asked for.
+    /// Number of pairs of triangles that intersect, if they were counted.
     #[serde(skip_serializing_if = "Option::is_none")]
     intersecting: Option<u64>,
-    /// Whether these are all.
+    /// True if these are all pairs.
     #[serde(skip_serializing_if = "Option::is_none")]
     all_intersecting_pairs: Option<bool>,
-    /// How exactly the surface follows rays, if it does.
+    /// Statistics of the rays that the surface follows, if it does.
     #[serde(flatten)]
     followed: Option<Followed>,
-    /// What lies on one surface each, if that is known.
+    /// The parts of the boundary on one surface each, if they are known.
     #[serde(skip_serializing_if = "Option::is_none")]
     regions: Option<Vec<Region>>,
     seconds: f64,

@@ -1,4 +1,4 @@
-//! Surfaces that undecided cells keep: the option that asks for them.
+//! The surfaces that undecided cells keep, and the option that requests them.
 
 use crate::failure::Failure;
 use crate::options::number;
@@ -7,13 +7,13 @@ use clap::Args;
 use leafless::lattice::MAX_DEPTH;
 use leafless::{Frame, Rule};
 
-/// Whether surfaces are kept.
+/// The option to keep surfaces.
 #[derive(Clone, Copy, Args)]
 pub struct Surfaces {
-    /// Keep the surfaces that cross undecided cells: the file is small, and as exact as what it is made of.
-    /// Cells end where three surfaces are left, at any size; the depth bounds where more meet. Of meshes,
-    /// which need one, the surface is kept within layers of this thickness, as a part of the longest side; of
-    /// scenes exact surfaces alone are kept without it
+    /// Keep the surfaces that cross undecided cells: the file is small, and as exact as the input. Cells of
+    /// any size are not split further once three surfaces are left; the depth limits the splitting where more
+    /// meet. A mesh needs the tolerance: its surface is kept within layers of this thickness, relative to its
+    /// longest side. For a scene without it, only exact surfaces are kept
     #[arg(long, value_name = "TOLERANCE", num_args = 0..=1, require_equals = true, value_parser = tolerance)]
     surfaces: Option<Option<f64>>,
 }
@@ -26,37 +26,37 @@ impl Surfaces {
     /// No surfaces.
     pub const NONE: Surfaces = Surfaces { surfaces: None };
 
-    /// Whether they are kept.
+    /// True if surfaces are kept.
     pub fn are_kept(&self) -> bool {
         self.surfaces.is_some()
     }
 
-    /// How thick layers may be, as a part of the longest side.
+    /// Returns the greatest thickness of layers, relative to the longest side.
     pub fn part(&self) -> Option<f64> {
         self.surfaces.flatten()
     }
 
-    /// How thick layers may be in what has these corners.
+    /// Returns the greatest thickness of layers in a solid with these corners.
     pub fn tolerance(&self, (min, max): Corners) -> Option<f64> {
         let longest = (0..3).map(|axis| max[axis] - min[axis]).fold(0.0, f64::max);
         self.part().map(|part| part * longest)
     }
 
-    /// Refuses surfaces where cells are decided by a rule.
+    /// Refuses surfaces if a rule decides the cells.
     pub fn check_rule(&self, rule: Rule) -> Result<(), Failure> {
         if self.are_kept() && rule != Rule::Certified {
-            return Err(self.refusal("a --rule but certified: undecided cells keep them"));
+            return Err(self.refusal("a --rule other than certified: undecided cells keep them"));
         }
         Ok(())
     }
 
-    /// What they do not go with.
+    /// Refuses an option that surfaces make useless.
     pub fn refusal(&self, useless: &str) -> Failure {
         Failure::Usage(format!("--surfaces does not go with {useless}"))
     }
 }
 
-/// The frame with cells that are no finer than layers of this thickness need to be.
+/// Returns the frame with cells that are no finer than layers of this thickness require.
 pub fn deep_enough(frame: Frame, tolerance: f64) -> Frame {
     let is_fine = |frame: &Frame| frame.cell_size() <= tolerance;
     (1..MAX_DEPTH).find_map(|depth| frame.with_depth(depth).ok().filter(is_fine)).unwrap_or(frame)

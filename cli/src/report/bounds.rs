@@ -1,4 +1,4 @@
-//! What is told of what is known: volumes as intervals, what cells prove, and why a search ended.
+//! Reports of bounds: volumes as intervals, the proof of cells, and the reason why a search ended.
 
 use crate::words::number;
 use leafless::query::{GapVerdict, Overlap, StopReason};
@@ -13,12 +13,12 @@ pub struct Volume {
 }
 
 impl Volume {
-    /// The interval.
+    /// Returns the interval.
     pub fn interval(&self) -> Interval {
         Interval::new(self.lower, self.upper).unwrap_or(Interval::ALL)
     }
 
-    /// How much is undecided.
+    /// Returns the undecided volume.
     pub fn width(&self) -> f64 {
         self.upper - self.lower
     }
@@ -30,7 +30,7 @@ impl From<Interval> for Volume {
     }
 }
 
-/// Bounds of a number that is not negative; null where nothing is known.
+/// Bounds of a non-negative number; null where unknown.
 #[derive(Serialize)]
 pub struct Range {
     pub lower: Option<f64>,
@@ -38,13 +38,14 @@ pub struct Range {
 }
 
 impl Range {
-    /// Of what lies in the universe only, if `clipped`: then the lower bound says nothing of the rest.
+    /// Builds the bounds. If `clipped`, they hold for the universe only, and a lower bound of 0 becomes
+    /// unknown.
     pub fn new(interval: Interval, clipped: bool) -> Range {
         let upper = interval.upper.is_finite().then_some(interval.upper);
         Range { lower: (!clipped || interval.lower > 0.0).then_some(interval.lower), upper }
     }
 
-    /// The same for people.
+    /// Returns the report for people.
     pub fn text(&self) -> String {
         match (self.lower, self.upper) {
             (None, None) => "unknown".into(),
@@ -56,7 +57,7 @@ impl Range {
     }
 }
 
-/// Whether solids are far enough apart, in a word.
+/// Returns, in a word, whether solids are far enough apart.
 pub fn gap_word(verdict: GapVerdict) -> &'static str {
     match verdict {
         GapVerdict::Yes => "yes",
@@ -65,7 +66,7 @@ pub fn gap_word(verdict: GapVerdict) -> &'static str {
     }
 }
 
-/// Why a search ended, in a word.
+/// Returns, in a word, why a search ended.
 pub fn stop_word(reason: StopReason) -> &'static str {
     match reason {
         StopReason::Tolerance => "tolerance",
@@ -74,7 +75,7 @@ pub fn stop_word(reason: StopReason) -> &'static str {
     }
 }
 
-/// What cells prove of the solid that they were made from.
+/// The proof of cells: which statements hold for the solid that the cells were made from.
 #[derive(Serialize)]
 pub struct Proven {
     full: bool,
@@ -89,17 +90,17 @@ impl From<Proof> for Proven {
 }
 
 impl Proven {
-    /// Whether all cells say what is true.
+    /// True if all cells are proven.
     pub fn is_certified(&self) -> bool {
         self.full && self.empty
     }
 
-    /// What is not proven, if that is anything, and what can be done.
+    /// Returns the unproven statements and a remedy, if there are any.
     pub fn doubt(&self) -> Option<String> {
         (!self.is_certified()).then(|| format!("{} (--cells takes the cells for the solid)", self.text()))
     }
 
-    /// The same for people.
+    /// Returns the report for people.
     pub fn text(&self) -> String {
         let proven = match (self.full, self.empty) {
             (true, true) => "inside and outside",
@@ -114,7 +115,7 @@ impl Proven {
     }
 }
 
-/// A verdict in a word.
+/// Returns a verdict in a word.
 pub fn verdict_word(verdict: Overlap) -> &'static str {
     match verdict {
         Overlap::Disjoint => "disjoint",

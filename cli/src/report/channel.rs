@@ -1,11 +1,11 @@
-//! What is told of a channel.
+//! Reports of channels.
 
 use crate::words::{count, counted};
 use leafless::attribute::Channel;
 use serde::Serialize;
 use std::collections::BTreeMap;
 
-/// A channel in a few words. Nothing of its arrays is read.
+/// A short description of a channel. The arrays of the channel are not read.
 #[derive(Serialize)]
 pub struct ChannelInfo {
     name: String,
@@ -13,7 +13,7 @@ pub struct ChannelInfo {
     scalar: &'static str,
     components: usize,
     depth: u8,
-    /// Values that are stored.
+    /// Number of stored values.
     values: u64,
     bytes: u64,
     metadata: BTreeMap<String, String>,
@@ -33,7 +33,7 @@ impl ChannelInfo {
         }
     }
 
-    /// The same for people, on one line.
+    /// Returns the report for people, in one line.
     pub fn text(&self) -> String {
         let ChannelInfo { scalar, components, depth, bytes, .. } = self;
         let fact = |key: &str| self.metadata.get(key).map(|value| value.escape_debug().to_string());

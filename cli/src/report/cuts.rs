@@ -1,11 +1,11 @@
-//! What is told of the surfaces that cells of an octree keep.
+//! Reports of the surfaces that cells of an octree keep.
 
 use crate::words::{count, counted};
 use leafless::octree::SurfaceKind;
 use leafless::{Control, Interval, Octree, measure};
 use serde::Serialize;
 
-/// Surfaces by their kind.
+/// Numbers of surfaces by their kind.
 #[derive(Serialize, Default)]
 struct Surfaces {
     planes: u64,
@@ -15,23 +15,23 @@ struct Surfaces {
     slabs: u64,
 }
 
-/// What the undecided cells keep.
+/// The contents of the undecided cells.
 #[derive(Serialize)]
 pub struct Cuts {
-    /// Cells of which it is known which function of surfaces the solid is.
+    /// Cells whose solid is a known function of surfaces.
     cells: u64,
-    /// Cells of which nothing is known.
+    /// Cells about which nothing is known.
     given_up: u64,
     splits: u64,
     surfaces: Surfaces,
     bytes: u64,
 }
 
-/// Cells that are split to find the volume: a moment's work.
+/// Most cells to split for the volume: a moment's work.
 const MOST_SPLITS: u64 = 1 << 14;
 
 impl Cuts {
-    /// Of an octree; `None` if its cells keep nothing. O(n).
+    /// Counts the surfaces of an octree; `None` if its cells keep none. O(n).
     pub fn new(octree: &Octree) -> Option<Cuts> {
         let view = octree.view();
         let found = view.cuts()?;
@@ -50,19 +50,19 @@ impl Cuts {
         Some(Cuts { cells, given_up, splits, surfaces, bytes: found.bytes })
     }
 
-    /// Whether some of the surfaces are layers with a width, as those of a mesh.
+    /// True if some of the surfaces are layers with a width, as those of a mesh.
     pub fn has_layers(&self) -> bool {
         self.surfaces.slabs > 0
     }
 
-    /// The volume that the surfaces tell; `None` of a file that is damaged.
+    /// Returns the volume that the surfaces bound; `None` for a damaged file.
     pub fn volume(octree: &Octree) -> Option<Interval> {
         let finest = octree.frame().with_depth(leafless::lattice::MAX_DEPTH).ok()?;
         let control = Control { max_splits: Some(MOST_SPLITS), ..Control::default() };
         Some(measure(octree, &finest, 1e-9, &control).ok()?.volume)
     }
 
-    /// For people, in a few words.
+    /// Returns a short report for people.
     pub fn short_text(&self) -> String {
         let Surfaces { planes, quadrics, powers, tori, slabs } = self.surfaces;
         let surfaces = counted(planes + quadrics + powers + tori + slabs, "surface", "surfaces");
@@ -74,7 +74,7 @@ impl Cuts {
         format!("{surfaces} in {cells}{given_up}")
     }
 
-    /// For people.
+    /// Returns the report for people.
     pub fn text(&self) -> String {
         let Surfaces { planes, quadrics, powers, tori, slabs } = self.surfaces;
         let kinds = [

@@ -1,4 +1,4 @@
-//! Densities, and the masses that they make of volumes.
+//! Densities, and the masses that follow from volumes.
 
 use leafless::Interval;
 use leafless::exchange::LengthUnit;
@@ -7,16 +7,15 @@ use leafless::exchange::LengthUnit;
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Density {
     number: f64,
-    /// The kilograms and the metres of its unit, if it has one: the mass in grams, and the edge of the volume
-    /// in micrometres.
+    /// Grams and micrometres of the unit, if there is one: the unit of mass, and the edge of the cube.
     unit: Option<(f64, f64)>,
 }
 
-/// Names of units of density, the grams, and the micrometres of the edge.
+/// Names of units of density, with their grams and the micrometres of the edge.
 const UNITS: [(&str, f64, f64); 4] =
     [("g/cm3", 1.0, 1e4), ("kg/m3", 1e3, 1e6), ("kg/dm3", 1e3, 1e5), ("lb/in3", 453.59237, 25_400.0)];
 
-/// A density: a number, and its unit behind it or not.
+/// Parses a density: a number, with or without a unit.
 pub fn density(text: &str) -> Result<Density, String> {
     let known =
         UNITS.into_iter().find_map(|(name, grams, edge)| Some((text.strip_suffix(name)?, (grams, edge))));
@@ -29,24 +28,24 @@ pub fn density(text: &str) -> Result<Density, String> {
 }
 
 impl Density {
-    /// The mass of a cubic unit of the model, whatever that unit is.
+    /// Returns a density without a unit: the mass of a cubic model unit.
     pub fn of_number(number: f64) -> Density {
         Density { number, unit: None }
     }
 
-    /// The mass of a cubic unit of the model, and the unit of that mass.
+    /// Returns the mass of a cubic model unit, and the unit of that mass.
     pub fn of_cube(&self, unit: Option<LengthUnit>) -> Result<(f64, &'static str), String> {
         let Some((grams, edge)) = self.unit else { return Ok((self.number, "")) };
         let unit = unit.ok_or(
-            "nobody knows the unit of the model: say it by --unit mm, for instance; or give the mass of a \
-                               cubic unit as a number alone",
+            "the unit of the model is unknown: give it, as in --unit mm, or give the mass of a cubic \
+             unit as a plain number",
         )?;
         let part = f64::from(unit.micrometres()) / edge;
         Ok((self.number * grams * part * part * part, "g"))
     }
 }
 
-/// The product with a number above 0, rounded outward.
+/// Returns the product with a positive number, rounded outward.
 pub fn times(interval: Interval, factor: f64) -> Interval {
     let [lower, upper] = [interval.lower * factor, interval.upper * factor];
     let end = |product: f64, rounded: f64| if product == 0.0 { 0.0 } else { rounded };

@@ -1,4 +1,4 @@
-//! What is told of tri-dexel models.
+//! Reports of tri-dexel models.
 
 use crate::words::{count, counted, number, put_line, short};
 use leafless::TriDexel;
@@ -6,22 +6,22 @@ use leafless::dexel::{DexelEnds, DexelNormals};
 use serde::Serialize;
 use std::collections::BTreeMap;
 
-/// What one direction holds.
+/// The contents of one direction.
 #[derive(Serialize)]
 struct Direction {
     axis: &'static str,
-    /// Rays that cross the solid.
+    /// Number of rays that cross the solid.
     rays: u64,
     intervals: u64,
     bytes: u64,
-    /// An estimate, in cubic model units.
+    /// Estimated volume, in cubic model units.
     volume: f64,
-    /// Rays that pierce an open mesh an odd number of times, where they were counted.
+    /// Number of rays that pierce an open mesh an odd number of times, if they were counted.
     #[serde(skip_serializing_if = "Option::is_none")]
     odd_rays: Option<u64>,
 }
 
-/// What a tri-dexel model consists of.
+/// The description of a tri-dexel model.
 #[derive(Serialize)]
 pub struct Info {
     kind: &'static str,
@@ -40,7 +40,7 @@ pub struct Info {
 }
 
 impl Info {
-    /// Of a model whose file has so many bytes. O(n).
+    /// Describes a model whose file has `bytes` bytes. O(n).
     pub fn new(model: &TriDexel, bytes: u64) -> Info {
         let (view, frame, format) = (model.view(), model.frame(), model.view().format());
         let direction = |axis: usize| {
@@ -76,7 +76,7 @@ impl Info {
         }
     }
 
-    /// The same with the rays along each axis that pierce an open mesh an odd number of times.
+    /// Adds the numbers of rays along each axis that pierce an open mesh an odd number of times.
     pub fn with_odd(mut self, odd: [u64; 3]) -> Info {
         for direction in &mut self.directions {
             direction.odd_rays =
@@ -85,21 +85,23 @@ impl Info {
         self
     }
 
-    /// Rays that cross the solid, in all directions.
+    /// Returns the number of rays that cross the solid, in all directions.
     pub fn rays(&self) -> u64 {
         self.directions.iter().map(|direction| direction.rays).sum()
     }
 
-    /// Rays that pierce an open mesh an odd number of times, in all directions, as far as they were counted.
+    /// Returns the number of rays that pierce an open mesh an odd number of times, in all directions in which
+    /// they were counted.
     pub fn odd_rays(&self) -> u64 {
         self.directions.iter().filter_map(|direction| direction.odd_rays).sum()
     }
 
-    /// What the direction estimates whose rays cross the solid most often: of equal ones the first. 0 without
-    /// any.
+    /// Returns the estimate of the direction with the most rays that cross the solid; the first one if
+    /// several have equally many. 0 without any direction.
     ///
-    /// Each direction is exact along its rays, and samples across them. It is off where the surface runs
-    /// along the rays, by about a cell of it; the more rays cross the solid, the less of the surface does.
+    /// Each direction is exact along its rays, and samples across them. Its error is largest where the
+    /// surface runs along the rays: about one cell. The more rays cross the solid, the smaller that part of
+    /// the surface is.
     pub fn best_volume(&self) -> f64 {
         self.best().map_or(0.0, |direction| direction.volume)
     }
@@ -108,7 +110,7 @@ impl Info {
         self.directions.iter().reduce(|best, other| if other.rays > best.rays { other } else { best })
     }
 
-    /// The least and the greatest that directions estimate.
+    /// Returns the least and the greatest estimate.
     pub fn volume_range(&self) -> [f64; 2] {
         let volumes = || self.directions.iter().map(|direction| direction.volume);
         match self.directions.len() {
@@ -117,7 +119,7 @@ impl Info {
         }
     }
 
-    /// The volume, and what other directions say, for people.
+    /// Returns the volume and the estimates of the other directions, for people.
     pub fn volume_text(&self) -> String {
         let about = format!("volume about {}", short(self.best_volume()));
         match (self.volume_range().map(short), self.best()) {
@@ -128,12 +130,12 @@ impl Info {
         }
     }
 
-    /// The axes that rays run along.
+    /// Returns the axes that rays run along.
     pub fn axes(&self) -> String {
         self.directions.iter().map(|direction| direction.axis).collect()
     }
 
-    /// The same for people.
+    /// Returns the report for people.
     pub fn text(&self) -> String {
         let mut text = String::new();
         let mut line = |name: &str, value: String| put_line(&mut text, name, &value);
@@ -158,14 +160,14 @@ impl Info {
         }
         line("bytes", count(self.bytes));
         for (key, value) in &self.metadata {
-            // A file may hold any text; a terminal should not obey it.
+            // A file may contain any text; a terminal should not obey it.
             line(&key.escape_debug().to_string(), value.escape_debug().to_string());
         }
         text
     }
 }
 
-/// A model in some words.
+/// Returns a one-line summary of a model.
 pub fn summary(model: &TriDexel, bytes: u64) -> String {
     let axes = Info::new(model, bytes).axes();
     let intervals = counted(model.view().interval_count(), "interval", "intervals");

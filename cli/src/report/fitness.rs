@@ -1,4 +1,4 @@
-//! The verdict on a mesh: whether it is fit to be printed, and to be made a solid of.
+//! The verdict on a mesh: whether it is fit for printing and for making a solid.
 
 use crate::failure::{Failure, Of};
 use crate::source::input::Input;
@@ -12,9 +12,9 @@ use serde::Serialize;
 pub struct Fitness {
     input: String,
     pub fit: bool,
-    /// Why not.
+    /// The reasons against it.
     reasons: Vec<String>,
-    /// Vertices that were moved to close hair cracks, and how far at most; the file has these cracks.
+    /// Vertices that were moved to close hair cracks, and the greatest move. The file has these cracks.
     sewn: u64,
     displacement: f64,
 }
@@ -58,7 +58,7 @@ impl Fitness {
         })
     }
 
-    /// The verdict in a line, without the name of the file.
+    /// Returns the verdict in one line, without the name of the file.
     pub fn verdict(&self) -> String {
         if !self.fit {
             return format!("not fit: {}", self.reasons.join("; "));
@@ -76,7 +76,7 @@ impl Fitness {
         )
     }
 
-    /// The same with the name.
+    /// Returns the verdict in one line, with the name of the file.
     pub fn text(&self) -> String {
         format!("{}: {}\n", self.input, self.verdict())
     }

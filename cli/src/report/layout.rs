@@ -1,4 +1,4 @@
-//! What is told of layouts.
+//! Reports of layouts.
 
 use crate::report::bounds::gap_word;
 use crate::source::plan::{Ends, Measures, Other, Plan, name_of};
@@ -9,7 +9,7 @@ use leafless::query::GapVerdict;
 use serde::Serialize;
 use std::fmt::Write;
 
-/// How many copies of an item stand somewhere.
+/// The number of placed copies of an item.
 #[derive(Serialize)]
 pub struct Item {
     pub name: String,
@@ -18,7 +18,7 @@ pub struct Item {
     pub left: u64,
 }
 
-/// What a search came to.
+/// The result of a search.
 #[derive(Serialize)]
 pub struct Found {
     container: String,
@@ -30,7 +30,7 @@ pub struct Found {
     tests: u64,
     splits: u64,
     rounds: u64,
-    /// "complete", "rounds", "budget" or "time".
+    /// The reason for its end: "complete", "rounds", "budget" or "time".
     end: &'static str,
     outputs: Vec<String>,
     seconds: f64,
@@ -55,7 +55,7 @@ impl Found {
         Found { container, items, placed, left, measures, tests, splits, rounds, end, outputs, seconds }
     }
 
-    /// What is left, if anything is.
+    /// Returns the copies that were not placed, if there are any.
     pub fn rest(&self) -> Option<String> {
         let names = self.items.iter().filter(|item| item.left > 0);
         let names: Vec<String> = names.map(|item| format!("{} of {}", count(item.left), item.name)).collect();
@@ -68,7 +68,7 @@ impl Found {
         (self.left > 0).then(|| format!("{copies} left, {}: {hint}", names.join(", ")))
     }
 
-    /// The same for people.
+    /// Returns the report for people.
     pub fn text(&self) -> String {
         let mut text = String::new();
         let of = |placed, all| format!("{} of {}", count(placed), count(all));
@@ -101,30 +101,30 @@ impl Found {
     }
 }
 
-/// What is in the way of a copy, or may be.
+/// A proven or possible obstruction of a copy.
 #[derive(Serialize)]
 pub struct Conflict {
     placed: usize,
     name: String,
     other: Other,
-    /// Of the other one, if it is a copy or an obstacle.
+    /// Name of the other body, if it is a copy or an obstacle.
     other_name: Option<String>,
-    /// Whether it is known that they stand as they should: "no" or "undecided".
+    /// Whether the two are proven to stand as they should: "no" or "undecided".
     verdict: &'static str,
     gap: Ends,
 }
 
-/// Whether a layout is what it should be.
+/// The result of a check.
 #[derive(Serialize)]
 pub struct Checked {
     layout: String,
     copies: u64,
-    /// Copies that are proven to stand as they should.
+    /// Number of copies that are proven to stand as they should.
     proven: u64,
-    /// Copies that are proven not to.
+    /// Number of copies that are proven not to.
     wrong: u64,
     undecided: u64,
-    /// Each pair once.
+    /// The conflicts, each pair once.
     conflicts: Vec<Conflict>,
     clearance: f64,
     wall_clearance: f64,
@@ -143,7 +143,7 @@ impl Checked {
                 let other_name = match other {
                     Other::Wall => None,
                     Other::Obstacle(number) => plan.obstacles.get(number).map(|file| name_of(file)),
-                    // (It was told of the other one.)
+                    // (The other copy has reported this pair.)
                     Other::Placed(number) if number < placed => continue,
                     Other::Placed(number) => Some(name(number)),
                 };
@@ -172,7 +172,7 @@ impl Checked {
         }
     }
 
-    /// What is wrong, or not proven.
+    /// Returns the copies that are wrong or not proven, if there are any.
     pub fn problem(&self) -> Option<String> {
         let copies = counted(self.copies, "copy", "copies");
         let told = match (self.wrong, self.undecided) {
@@ -187,7 +187,7 @@ impl Checked {
         Some(told)
     }
 
-    /// The same for people.
+    /// Returns the report for people.
     pub fn text(&self) -> String {
         let mut text = String::new();
         put_line(&mut text, "copies", &count(self.copies));

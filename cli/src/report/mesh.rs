@@ -1,4 +1,4 @@
-//! What is told of a mesh.
+//! Reports of meshes.
 
 use crate::failure::{Failure, Of};
 use crate::report::bounds::Volume;
@@ -11,7 +11,7 @@ use leafless::mesh::{DefectKind, IntersectingPair, MeshDefect, MeshReport};
 use leafless::{Control, Error, FillRule, Interval, MeshSolid, TriangleMesh, measure};
 use serde::Serialize;
 
-/// What was found while a mesh was taken in.
+/// The findings while a mesh was read.
 #[derive(Serialize)]
 pub struct Mesh {
     facets_read: u64,
@@ -39,7 +39,7 @@ pub struct Mesh {
     pub defects: Vec<Defect>,
 }
 
-/// One of the worst places.
+/// One of the worst defects.
 #[derive(Serialize)]
 pub struct Defect {
     kind: &'static str,
@@ -49,7 +49,7 @@ pub struct Defect {
     max: [f64; 3],
 }
 
-/// Defects that are told of.
+/// Most defects to list.
 const DEFECTS: usize = 10;
 
 impl Mesh {
@@ -57,7 +57,7 @@ impl Mesh {
         let report = mesh.report()?;
         let MeshReport { boundary_edges, misoriented_edges, non_manifold_edges, .. } = report;
         let faults = [boundary_edges, misoriented_edges, non_manifold_edges, report.duplicate, report.flat];
-        // Looking for them takes time.
+        // The search for defects takes time.
         let is_faultless = faults == [0; 5] && report.opposite == 0;
         let defects = if is_faultless { Vec::new() } else { mesh.defects(DEFECTS)? };
         Ok(Mesh {
@@ -101,13 +101,13 @@ impl Defect {
         Defect { kind, count: defect.count, length: defect.length, min, max }
     }
 
-    /// Two triangles that intersect.
+    /// Describes two triangles that intersect.
     pub fn intersecting(pair: &IntersectingPair) -> Defect {
         let (min, max) = pair.bounds;
         Defect { kind: "intersecting", count: 2, length: 0.0, min, max }
     }
 
-    /// The same for people, in columns.
+    /// Returns a table of defects for people.
     pub fn table(defects: &[Defect]) -> String {
         let rows: Vec<_> = (defects.iter())
             .map(|defect| {
@@ -119,8 +119,8 @@ impl Defect {
     }
 }
 
-/// The volume that a mesh encloses by a fill rule, to a ten thousandth, or what is known of it after a
-/// moment: `leafless measure` has more patience.
+/// Returns the volume that a mesh encloses by a fill rule, to a ten-thousandth, or the bounds known after a
+/// moment. `leafless measure` has more patience.
 fn volume_by(rule: FillRule, mesh: &TriangleMesh) -> Result<Interval, Error> {
     const TOLERANCE: f64 = 1e-4;
     const SPLITS: u64 = 1 << 14;
@@ -130,10 +130,10 @@ fn volume_by(rule: FillRule, mesh: &TriangleMesh) -> Result<Interval, Error> {
     Ok(measure(&solid, &frame, TOLERANCE, &control)?.volume)
 }
 
-/// Pairs of triangles that intersect, of which `info` tells the place.
+/// Most pairs of intersecting triangles that `info` locates.
 const PAIRS: usize = 5;
 
-/// What `info` tells of a mesh.
+/// The report of `info` on a mesh.
 #[derive(Serialize)]
 pub struct Info {
     format: &'static str,
@@ -141,25 +141,25 @@ pub struct Info {
     bytes: u64,
     min: [f64; 3],
     max: [f64; 3],
-    /// The sum of signed volumes, by the divergence theorem; absent (null) for a mesh that bounds no solid.
+    /// The sum of signed volumes, by the divergence theorem; null for a mesh that bounds no solid.
     volume: Option<f64>,
-    /// What is enclosed by the rule; absent (null) unless bodies overlap, or may, and make it another volume.
+    /// The volume enclosed by the rule; null unless bodies overlap or may overlap, and the volume differs.
     volume_by_rule: Option<Volume>,
     /// The rule: `nonzero`, `positive` or `evenodd`.
     rule: &'static str,
     closed: bool,
-    /// Objects of a 3MF that are no solids.
+    /// Objects of a 3MF that are not solids.
     skipped: u64,
-    /// How far the true boundary may lie from the mesh, as the file says; absent (null) if it does not. It is
-    /// not believed.
+    /// Greatest distance of the true boundary from the mesh, as the file states it; null if it does not. The
+    /// program does not rely on it.
     told_deviation: Option<f64>,
-    /// The same as the user stated it; 0 if nothing was stated.
+    /// The same distance as the user stated it; 0 if the user did not.
     deviation: f64,
-    /// Where the file departs from its format, though it could be read.
+    /// Departures of the file from its format that did not prevent reading it.
     warnings: Vec<String>,
-    /// Pairs of triangles that intersect.
+    /// Number of pairs of triangles that intersect.
     intersecting_pairs: u64,
-    /// Whether these are all: too many triangles close to each other end the search.
+    /// True if these are all pairs: too many triangles close to each other end the search.
     all_intersecting_pairs: bool,
     mesh: Mesh,
 }
@@ -194,7 +194,7 @@ impl Info {
         })
     }
 
-    /// The same for people.
+    /// Returns the report for people.
     pub fn text(&self, report: &MeshReport) -> String {
         let mut text = String::new();
         let mut line = |name: &str, value: String| put_line(&mut text, name, &value);

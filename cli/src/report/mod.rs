@@ -1,4 +1,4 @@
-//! What is told of solids and of what they are made of, for programs (JSON) and for people.
+//! Reports of solids and of their sources, for programs (JSON) and for people.
 
 pub mod bounds;
 pub mod channel;

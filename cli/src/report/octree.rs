@@ -1,4 +1,4 @@
-//! What is told of an octree, for programs (JSON) and for people.
+//! Reports of octrees, for programs (JSON) and for people.
 
 use crate::report::bounds::{Proven, Volume};
 use crate::report::channel::ChannelInfo;
@@ -9,7 +9,7 @@ use leafless::{Interval, Octree, Tag};
 use serde::Serialize;
 use std::collections::BTreeMap;
 
-/// Cells of the canonical octree over all levels; together they are its classical nodes.
+/// Cells of the canonical octree over all levels. Together they are its classical nodes.
 #[derive(Serialize)]
 struct Cells {
     empty: u64,
@@ -18,19 +18,19 @@ struct Cells {
     full: u64,
 }
 
-/// What one level holds, and the volume with the tree cut there.
+/// The contents of one level, and the volume of the tree cut at it.
 #[derive(Serialize)]
 struct Level {
     level: u8,
     nodes: u64,
-    /// Cells above the level that were split on the way, where that was counted.
+    /// Cells above the level that were split while the tree was built, if they were counted.
     #[serde(skip_serializing_if = "Option::is_none")]
     splits: Option<u64>,
     lower: f64,
     upper: f64,
 }
 
-/// Everything that `info` tells.
+/// The complete report of `info`.
 #[derive(Serialize)]
 pub struct Info {
     depth: u8,
@@ -42,15 +42,15 @@ pub struct Info {
     pub nodes: u64,
     pub classical_nodes: u64,
     cells: Cells,
-    /// What is known of the volume: by the surfaces that cells keep, if they do.
+    /// Bounds of the volume: by the surfaces that cells keep, if they keep any.
     pub volume: Volume,
-    /// What the cells alone say; absent where they keep no surfaces.
+    /// Bounds of the volume by the cells alone; absent where cells keep no surfaces.
     #[serde(skip_serializing_if = "Option::is_none")]
     volume_of_cells: Option<Volume>,
     #[serde(skip_serializing_if = "Option::is_none")]
     cuts: Option<Cuts>,
     pub bytes: u64,
-    /// Absent (null) where there is no node.
+    /// Null for a tree without nodes.
     pub bytes_per_node: Option<f64>,
     levels: Vec<Level>,
     #[serde(skip_serializing_if = "Vec::is_empty")]
@@ -59,8 +59,8 @@ pub struct Info {
 }
 
 impl Info {
-    /// Of a tree whose file has so many bytes. O(depth) for a tree from a file; of one whose cells keep
-    /// surfaces O(n), and as long as its volume takes.
+    /// Describes a tree whose file has `bytes` bytes. O(depth) for a tree from a file. For a tree whose cells
+    /// keep surfaces O(n), and the time of its volume.
     pub fn new(octree: &Octree, bytes: u64) -> Info {
         let (view, frame, statistics) = (octree.view(), octree.frame(), octree.statistics());
         let nodes = statistics.nodes();
@@ -75,7 +75,7 @@ impl Info {
             clipped: view.is_clipped(),
             proof: octree.proof().into(),
             nodes,
-            // The level table of a damaged file may hold anything.
+            // The level table of a damaged file may contain anything.
             classical_nodes: nodes.saturating_mul(8).saturating_add(1),
             cells: Cells::new(&statistics),
             volume: sharp.unwrap_or(of_cells).into(),
@@ -101,15 +101,15 @@ impl Info {
         }
     }
 
-    /// Notes how many cells of each level were split while the tree was built; the canonical tree forgets
-    /// those splits whose eight children agree.
+    /// Adds the numbers of cells of each level that were split while the tree was built. The canonical tree
+    /// does not contain splits whose eight children agree.
     pub fn note_splits(&mut self, splits: &[u64]) {
         for level in &mut self.levels {
             level.splits = Some(splits.iter().take(level.level.into()).sum());
         }
     }
 
-    /// The same for people.
+    /// Returns the report for people.
     pub fn text(&self) -> String {
         let mut text = String::new();
         let mut line = |name: &str, value: String| put_line(&mut text, name, &value);
@@ -140,7 +140,7 @@ impl Info {
             line("channel", channel.text());
         }
         for (key, value) in &self.metadata {
-            // A file may hold any text; a terminal should not obey it.
+            // A file may contain any text; a terminal should not obey it.
             line(&key.escape_debug().to_string(), value.escape_debug().to_string());
         }
         let rows = (self.levels.iter())
@@ -155,22 +155,22 @@ impl Info {
         text
     }
 
-    /// What is told of the surfaces that cells keep, if they do.
+    /// Returns the report on the surfaces that cells keep, if there are any.
     pub fn cuts_text(&self) -> Option<String> {
         self.cuts.as_ref().map(Cuts::text)
     }
 
-    /// The same as a line, if there is one.
+    /// Returns the same report as a line, or nothing.
     pub fn keeps(&self) -> String {
         self.cuts_text().map_or(String::new(), |cuts| format!("keeps   {cuts}\n"))
     }
 
-    /// The same in a few words.
+    /// Returns the same report in a few words.
     pub fn kept_text(&self) -> Option<String> {
         self.cuts.as_ref().map(Cuts::short_text)
     }
 
-    /// What the volume is the volume of.
+    /// Returns a note on which solid the volume belongs to.
     pub fn volume_note(&self) -> &'static str {
         match (self.proof.is_certified(), self.clipped) {
             (false, _) => " (of the cells)",
@@ -180,7 +180,7 @@ impl Info {
         }
     }
 
-    /// The volume in words.
+    /// Returns the volume in words.
     pub fn volume_text(&self) -> String {
         self.volume.interval().to_string()
     }

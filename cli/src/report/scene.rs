@@ -1,4 +1,4 @@
-//! What is told of a scene.
+//! Reports of scenes.
 
 use crate::failure::{Failure, Of};
 use crate::source::input::Input;
@@ -7,7 +7,7 @@ use crate::words::{count, counted, number, put_line};
 use leafless::scene::{Scene, SceneMesh, SceneReport};
 use serde::Serialize;
 
-/// How the curved calls of a scene were drawn.
+/// The numbers of curved calls of a scene, by how they are drawn.
 #[derive(Serialize)]
 pub struct Curves {
     polygons: u64,
@@ -23,7 +23,7 @@ impl From<&SceneReport> for Curves {
 }
 
 impl Curves {
-    /// The same for people; `None` if there are none.
+    /// Returns the report for people; `None` without curved calls.
     pub fn text(&self) -> Option<String> {
         let slices = match self.ignored_slices {
             0 => String::new(),
@@ -35,12 +35,12 @@ impl Curves {
     }
 }
 
-/// What `info` tells of a scene.
+/// The report of `info` on a scene.
 #[derive(Serialize)]
 pub struct Info {
     format: &'static str,
     bytes: u64,
-    /// Corners of a box around the scene; absent (null) if it is empty or nobody knows how far it reaches.
+    /// Corners of a box around the scene; null if the scene is empty or its extent is unknown.
     min: Option<[f64; 3]>,
     max: Option<[f64; 3]>,
     empty: bool,
@@ -48,19 +48,19 @@ pub struct Info {
     meshes: Vec<MeshInfo>,
 }
 
-/// What `info` tells of a mesh in a scene.
+/// The report of `info` on a mesh in a scene.
 #[derive(Serialize)]
 struct MeshInfo {
     line: u64,
     column: u64,
-    /// The file as the scene names it; absent (null) for a polyhedron.
+    /// The file as the scene names it; null for a polyhedron.
     file: Option<String>,
     triangles: u64,
     boundary_edges: u64,
     boundary_loops: u64,
     misoriented_edges: u64,
     inside_out_bodies: u64,
-    /// Triangles that face the other way than most of their body.
+    /// Number of triangles that face the opposite side of most triangles of their body.
     turned: u64,
     closed: bool,
 }
@@ -83,7 +83,7 @@ impl From<&SceneMesh> for MeshInfo {
 }
 
 impl Info {
-    /// Of a scene whose text has so many bytes.
+    /// Describes a scene whose text has `bytes` bytes.
     pub fn new(input: &Input, scene: &Scene, bytes: u64) -> Result<Info, Failure> {
         let bounds = scene.bounds().of(input)?;
         Ok(Info {
@@ -97,7 +97,7 @@ impl Info {
         })
     }
 
-    /// The same for people.
+    /// Returns the report for people.
     pub fn text(&self) -> String {
         let mut text = String::new();
         let mut line = |name: &str, value: String| put_line(&mut text, name, &value);

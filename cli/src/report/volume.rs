@@ -1,21 +1,21 @@
-//! What is told of a volume.
+//! Reports of volumes.
 
 use crate::source::volume::Voxels;
 use crate::words::number;
 use leafless::exchange::LengthUnit;
 use serde::Serialize;
 
-/// What a volume's file says.
+/// The description of a volume.
 #[derive(Serialize)]
 pub struct Info {
     format: String,
     samples: &'static str,
-    /// The least and the greatest sample; absent (null) where none is finite.
+    /// The least and the greatest sample; null if no sample is finite.
     range: Option<[f64; 2]>,
-    /// Samples from this one on are inside.
+    /// Least sample that is inside.
     threshold: f64,
     extents: [u32; 3],
-    /// Of a volume whose axes are not x, y and z: before it is turned.
+    /// Edges of a voxel, before the volume is turned if its axes are not x, y and z.
     spacing: [f64; 3],
     corner: [f64; 3],
     is_turned: bool,
@@ -38,7 +38,7 @@ impl Info {
         }
     }
 
-    /// The same for people.
+    /// Returns the report for people.
     pub fn text(&self) -> String {
         let [x, y, z] = self.extents;
         let place = |p: [f64; 3]| p.map(number).join(", ");

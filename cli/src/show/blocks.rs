@@ -3,7 +3,7 @@
 use crate::show::image::Image;
 use std::fmt::Write;
 
-/// Which colours a terminal has.
+/// The colours of a terminal.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum Palette {
     /// 24 bits.
@@ -12,13 +12,13 @@ pub enum Palette {
     Indexed,
 }
 
-/// The image as lines of characters. Where a pixel is less than half opaque, the terminal's own background is
-/// left.
+/// Returns the image as lines of characters. Where a pixel is less than half opaque, the terminal's own
+/// background stays.
 pub fn text(image: &Image, palette: Palette) -> String {
     let mut text = String::new();
     let row = |y: usize| image.pixels.get(y * image.width..(y + 1) * image.width);
     for y in (0..image.height).step_by(2) {
-        // Foreground and background as the terminal has them at present.
+        // The terminal's present foreground and background.
         let mut state = [None; 2];
         for x in 0..image.width {
             let colour = |y: usize| {
@@ -42,7 +42,7 @@ pub fn text(image: &Image, palette: Palette) -> String {
     text
 }
 
-/// Chooses the colour of the foreground (0) or the background (1) for what follows.
+/// Selects the colour of the foreground (0) or the background (1) for the characters that follow.
 fn select(text: &mut String, layer: usize, colour: Option<[u8; 3]>, palette: Palette) {
     let code = [38, 48][layer];
     // Writing to a string does not fail.
@@ -56,7 +56,7 @@ fn select(text: &mut String, layer: usize, colour: Option<[u8; 3]>, palette: Pal
 /// Values of the cube's colours.
 const STEPS: [u8; 6] = [0, 95, 135, 175, 215, 255];
 
-/// The number of the nearest of the 240 colours that are the same on every terminal.
+/// Returns the number of the nearest of the 240 colours that are the same on every terminal.
 fn nearest(colour: [u8; 3]) -> u8 {
     let distance = |other: [u8; 3]| -> u32 {
         colour.iter().zip(other).map(|(&a, b)| u32::from(a.abs_diff(b)).pow(2)).sum()

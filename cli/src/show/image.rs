@@ -3,8 +3,8 @@
 use leafless::render::{Light, Picture, Tones};
 use std::borrow::Cow;
 
-/// A picture without depths: red, green, blue (sRGB) and opacity a pixel, row by row from the upper left
-/// corner. Colours are not multiplied by the opacity.
+/// A picture without depths: red, green, blue (sRGB) and opacity of each pixel, row by row from the upper
+/// left corner. Colours are not multiplied by the opacity.
 pub struct Image<'a> {
     pub width: usize,
     pub height: usize,
@@ -18,7 +18,7 @@ impl<'a> From<&'a Picture> for Image<'a> {
     }
 }
 
-/// The largest size of the same shape, up to a rounding, that fits into the area; a size that fits is
+/// Returns the largest size of the same shape, up to rounding, that fits into the area. A size that fits is
 /// returned as it is.
 pub fn fitted(size: [usize; 2], area: [usize; 2]) -> [usize; 2] {
     if size[0] <= area[0] && size[1] <= area[1] {
@@ -29,8 +29,8 @@ pub fn fitted(size: [usize; 2], area: [usize; 2]) -> [usize; 2] {
 }
 
 impl Image<'_> {
-    /// The image in a size that is nowhere larger: each pixel is the mean of what it covers, in linear light,
-    /// by area and opacity.
+    /// Returns the image in a size that is nowhere larger. Each pixel is the mean of the pixels that it
+    /// covers, in linear light, weighted by area and opacity.
     pub fn shrunk(self, [width, height]: [usize; 2]) -> Self {
         if [width, height] == [self.width, self.height] {
             return self;
@@ -48,7 +48,7 @@ impl Image<'_> {
                     }
                 }
             }
-            // What is as good as transparent has no colour.
+            // A pixel that is almost transparent has no colour.
             let pixel = |sum: &Light| Some(tones.rgba(*sum)).filter(|rgba| rgba[3] > 0).unwrap_or([0; 4]);
             pixels.extend(sums.iter().map(pixel));
         }
@@ -56,7 +56,7 @@ impl Image<'_> {
     }
 }
 
-/// What of `from` pixels the pixel number `i` of `to` covers: pixels, and the shares that they have in it.
+/// Returns the pixels, of `from` pixels, that pixel `i` of `to` pixels covers, with their shares in it.
 fn covered(i: usize, to: usize, from: usize) -> impl Iterator<Item = (usize, f32)> {
     // In units of 1/to of a pixel, whole numbers.
     let (start, end) = (i * from, (i + 1) * from);
@@ -85,7 +85,7 @@ mod tests {
 
     #[test]
     fn pixels_are_means_of_light() {
-        // Half of the light of white is the sRGB value 188; what is transparent has no part in the colour.
+        // Half of the light of white is the sRGB value 188; a transparent pixel has no part in the colour.
         let (white, black, none) = ([255; 4], [0, 0, 0, 255], [9, 8, 7, 0]);
         let of = |pixels: Vec<[u8; 4]>, width, size| {
             let height = pixels.len() / width;

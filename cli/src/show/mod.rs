@@ -18,42 +18,47 @@ use std::borrow::Cow;
 use std::io::IsTerminal;
 use terminal::{Terminal, terminal};
 
-/// How a picture is put on a terminal.
+/// A protocol that puts pictures on a terminal.
 #[derive(Debug, Clone, Copy, PartialEq, ValueEnum)]
 pub enum Protocol {
     /// The best of the others that the terminal says it understands
     Auto,
-    /// The protocol of kitty, which Ghostty, Konsole and WezTerm understand too
+    /// The protocol of kitty; also of Ghostty, Konsole and WezTerm
     Kitty,
     /// The protocol of iTerm2
     Iterm,
-    /// Sixels, in up to 256 colours: foot, mlterm, Windows Terminal, xterm and others
+    /// Sixels, up to 256 colours: foot, mlterm, Windows Terminal, xterm …
     Sixel,
     /// Half-block characters, two pixels each: every terminal with colours
     Blocks,
 }
 
-/// Where pictures are shown: a protocol, and what fits.
+/// The place where pictures are shown: a protocol, and the size that fits.
 pub struct Screen {
     protocol: Protocol,
     /// Pixels that fit, if there are limits.
     area: Option<[usize; 2]>,
-    /// Colours of sixels.
+    /// Number of colours of sixels.
     colours: usize,
 }
 
-/// Cells of a terminal of which nothing is known.
+/// Returns the columns of the terminal that standard output goes to, if they are known.
+pub fn columns() -> Option<usize> {
+    terminal(false).cells.map(|[columns, _]| columns)
+}
+
+/// Cells of a terminal of unknown size.
 const CELLS: [usize; 2] = [80, 24];
-/// Width and height of a cell in pixels, where they are not known.
+/// Width and height of a cell in pixels, if they are unknown.
 const CELL: [usize; 2] = [8, 16];
-/// Rows that stay free: for the command, what is told of the picture, and the next prompt.
+/// Rows that stay free: for the command, the report on the picture, and the next prompt.
 const FREE_ROWS: usize = 3;
-/// The largest picture that is made for a terminal without being asked for.
+/// The largest picture that is made for a terminal unless --size asks for more.
 const LARGEST: [usize; 2] = [1600, 1200];
 
 impl Screen {
-    /// The terminal of standard output. Only if a protocol is named, standard output may be something else: a
-    /// pipe, or a file that is shown later.
+    /// Returns the terminal of standard output. If a protocol is named, standard output may be something
+    /// else: a pipe, or a file that is shown later.
     pub fn of(wanted: Protocol) -> Result<Screen, Failure> {
         let is_terminal = std::io::stdout().is_terminal();
         if wanted == Protocol::Auto {
@@ -100,13 +105,13 @@ impl Screen {
         Screen { protocol, area, colours: answer.colours.unwrap_or(sixel::MOST) }
     }
 
-    /// The size of a picture that is made only to be shown here, if there is one that is better than others.
+    /// Returns the best size of a picture that is made only to be shown here, if there is one.
     pub fn size(&self) -> Option<[u32; 2]> {
         let area = self.area?;
         Some([0, 1].map(|axis| area[axis].clamp(1, LARGEST[axis]) as u32))
     }
 
-    /// How it is shown, in words.
+    /// Returns the way of showing, in words.
     pub fn way(&self) -> &'static str {
         match self.protocol {
             Protocol::Kitty => "by kitty's protocol",
@@ -116,7 +121,7 @@ impl Screen {
         }
     }
 
-    /// Shows the picture, whose file has these bytes: smaller if it does not fit.
+    /// Shows the picture, whose PNG file has these bytes, smaller if it does not fit.
     pub fn show(&self, picture: &Picture, file: &[u8]) -> Result<(), Failure> {
         let image = Image::from(picture);
         let size = [image.width, image.height];
@@ -132,13 +137,14 @@ impl Screen {
                 blocks::text(&image, palette)
             }
         };
-        // Half of a sequence would make the terminal wait for the other one: this ends every sequence, and
+        // A half sequence would make the terminal wait for the rest: this ends every sequence, and resets
         // colours.
         signals::write_whole(text.as_bytes(), b"\x1b\\\x1b[0m\n", sink::print)
     }
 }
 
-/// A PNG file by kitty's protocol, in pieces of at most 4096 characters; the terminal does not answer (q=2).
+/// Returns a PNG file in kitty's protocol, in pieces of at most 4096 characters; the terminal does not answer
+/// (q=2).
 fn kitty(file: &[u8]) -> String {
     let data = BASE64_STANDARD.encode(file);
     let mut text = String::with_capacity(data.len() + data.len() / 100 + 64);
@@ -153,13 +159,13 @@ fn kitty(file: &[u8]) -> String {
     text + "\n"
 }
 
-/// A PNG file by iTerm2's protocol.
+/// Returns a PNG file in iTerm2's protocol.
 fn iterm(file: &[u8]) -> String {
     let data = BASE64_STANDARD.encode(file);
     format!("\x1b]1337;File=inline=1;size={}:{data}\x07\n", file.len())
 }
 
-/// The image as a PNG file.
+/// Returns the image as a PNG file.
 fn png(image: &Image) -> Result<Vec<u8>, Failure> {
     let mut bytes = Vec::new();
     let mut encoder = png::Encoder::new(&mut bytes, image.width as u32, image.height as u32);

@@ -1,4 +1,4 @@
-//! Pictures as sixels: columns of six pixels in the colours of a palette, for terminals in the line of the
+//! Pictures as sixels: columns of six pixels in the colours of a palette, for terminals that descend from the
 //! VT340.
 
 use crate::show::image::Image;
@@ -6,16 +6,16 @@ use color_quant::NeuQuant;
 use std::collections::HashMap;
 use std::fmt::Write;
 
-/// Colours that a terminal of any age has, and that any image is encoded with at most.
+/// Number of colours that a terminal of any age has.
 pub const FEWEST: usize = 16;
 pub const MOST: usize = 256;
 
-/// The image in at most so many colours. Pixels that are less than half opaque are left as the terminal has
-/// them.
+/// Returns the image in at most `colours` colours. Pixels that are less than half opaque stay as the terminal
+/// has them.
 pub fn text(image: &Image, colours: usize) -> String {
     let pixels: Vec<Option<[u8; 3]>> = image.pixels.iter().map(percent).collect();
     let palette = Palette::of(&pixels, colours.clamp(FEWEST, MOST));
-    // Square pixels (7), and what has none stays as it is (1).
+    // Square pixels (7); pixels without a colour stay as they are (1).
     let mut text = format!("\x1bP7;1q\"1;1;{};{}", image.width, image.height);
     for (i, [r, g, b]) in palette.colours.iter().enumerate() {
         put(&mut text, format_args!("#{i};2;{r};{g};{b}"));
@@ -58,7 +58,7 @@ fn put(text: &mut String, what: std::fmt::Arguments) {
     let _ = text.write_fmt(what);
 }
 
-/// A colour in the unit of sixels, hundredths, unless it is rather transparent.
+/// Returns a colour in the unit of sixels, hundredths, unless it is less than half opaque.
 fn percent(&[r, g, b, a]: &[u8; 4]) -> Option<[u8; 3]> {
     (a >= 128).then(|| [r, g, b].map(hundredth))
 }
@@ -71,11 +71,11 @@ fn byte(hundredth: u8) -> u8 {
     ((u32::from(hundredth) * 255 + 50) / 100) as u8
 }
 
-/// The colours of an image, and which of them each of its pixels takes.
+/// The colours of an image, and the colour of each pixel among them.
 struct Palette {
     /// In hundredths.
     colours: Vec<[u8; 3]>,
-    /// Where in `colours` the stand-in of a pixel's colour is.
+    /// The index in `colours` that stands for a pixel's colour.
     indices: HashMap<[u8; 3], usize>,
 }
 
@@ -86,11 +86,11 @@ impl Palette {
             *counts.entry(*colour).or_default() += 1;
         }
         let mut counts: Vec<([u8; 3], usize)> = counts.into_iter().collect();
-        // The order must not depend on the map's.
+        // The order must not depend on the order of the map.
         counts.sort_unstable_by_key(|&(colour, count)| (std::cmp::Reverse(count), colour));
         let mut colours: Vec<[u8; 3]> = counts.iter().map(|&(colour, _)| colour).collect();
         if colours.len() > most {
-            // The commonest colours stay what they are, so that flat areas do; the rest is approximated.
+            // The most frequent colours stay exact, so that flat areas do; the others are approximated.
             colours.truncate(most / 4);
             let others: Vec<u8> = pixels
                 .iter()
@@ -98,7 +98,7 @@ impl Palette {
                 .filter(|colour| !colours.contains(colour))
                 .flat_map(|&[r, g, b]| [byte(r), byte(g), byte(b), 255])
                 .collect();
-            // One of so many pixels is looked at.
+            // One of this many pixels is examined.
             let part = if others.len() > 400_000 { 10 } else { 1 };
             let network = NeuQuant::new(part, most - colours.len(), &others);
             let found = network.color_map_rgb();

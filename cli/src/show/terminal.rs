@@ -1,60 +1,60 @@
-//! What the terminal is that standard output goes to: its size, and the protocols of pictures that it speaks.
+//! The terminal of standard output: its size, and the protocols for pictures that it understands.
 
 use std::env;
 
-/// A terminal, as far as it is known.
+/// The known properties of a terminal.
 #[derive(Debug, Clone, PartialEq, Default)]
 pub struct Terminal {
     /// Columns and rows.
     pub cells: Option<[usize; 2]>,
     /// Width and height in pixels.
     pub pixels: Option<[usize; 2]>,
-    /// What it said of itself, if it was asked and answered.
+    /// Its answer, if it was queried and answered.
     pub answer: Option<Answer>,
 }
 
-/// What a terminal says of itself.
+/// The answer of a terminal about itself.
 #[derive(Debug, Clone, PartialEq, Default)]
 pub struct Answer {
-    /// Whether it shows pictures by kitty's protocol.
+    /// True if it shows pictures by kitty's protocol.
     pub kitty: bool,
-    /// Whether it shows sixels.
+    /// True if it shows sixels.
     pub sixel: bool,
-    /// Colours that sixels may have.
+    /// Number of colours of sixels.
     pub colours: Option<usize>,
-    /// Width and height that sixels may have.
+    /// Greatest width and height of sixels.
     pub largest_sixels: Option<[usize; 2]>,
     /// Width and height of the terminal in pixels.
     pub pixels: Option<[usize; 2]>,
 }
 
-/// Whether pictures pass through a program that knows only some protocols, while the variables of the
-/// environment may tell of the terminal outside of it.
+/// True if pictures pass through a program that understands only some protocols, while the environment
+/// variables may describe the terminal outside it.
 pub fn is_multiplexed() -> bool {
     let term = env::var("TERM").unwrap_or_default();
     env::var_os("TMUX").is_some() || ["screen", "tmux"].iter().any(|name| term.starts_with(name))
 }
 
-/// Whether the terminal shows 24-bit colours, as the environment tells.
+/// True if the terminal shows 24-bit colours, according to the environment.
 pub fn has_true_colours() -> bool {
     let said = env::var("COLORTERM").unwrap_or_default();
-    // Windows tells nothing, and does since 2017.
+    // Windows says nothing, and has had them since 2017.
     cfg!(windows) || ["truecolor", "24bit"].iter().any(|name| said.contains(name))
 }
 
-/// Whether the environment tells of a terminal that speaks kitty's protocol.
+/// True if the environment names a terminal that understands kitty's protocol.
 pub fn is_kitty_by_name() -> bool {
     !is_multiplexed()
         && (is_one_of("TERM", &["xterm-kitty", "xterm-ghostty"])
             || is_one_of("TERM_PROGRAM", &["WezTerm", "ghostty"]))
 }
 
-/// Whether the environment tells of iTerm2, which has a protocol of its own. (`LC_TERMINAL` survives `ssh`.)
+/// True if the environment names iTerm2, which has its own protocol. (`LC_TERMINAL` survives `ssh`.)
 pub fn is_iterm_by_name() -> bool {
     !is_multiplexed() && (is_one_of("TERM_PROGRAM", &["iTerm.app"]) || is_one_of("LC_TERMINAL", &["iTerm2"]))
 }
 
-/// Whether the terminal shows text only, as the environment tells.
+/// True if the terminal shows text only, according to the environment.
 pub fn is_dumb() -> bool {
     is_one_of("TERM", &["dumb"])
 }
@@ -63,7 +63,7 @@ fn is_one_of(variable: &str, names: &[&str]) -> bool {
     env::var(variable).is_ok_and(|value| names.contains(&value.as_str()))
 }
 
-/// Columns and rows as the environment tells: shells let users export them.
+/// Returns columns and rows from the environment: users may export them.
 pub fn cells_by_environment() -> Option<[usize; 2]> {
     let number = |name| env::var(name).ok()?.parse::<u16>().ok().filter(|&number| number > 0);
     Some([number("COLUMNS")?, number("LINES")?].map(usize::from))
@@ -86,16 +86,17 @@ mod unix {
     use std::io::{Read, Write};
     use std::time::{Duration, Instant};
 
-    /// Asks for kitty's protocol, the size in pixels, the colours and the size of sixels; at last what every
-    /// terminal answers, what it is. Whatever an old terminal shows of it is wiped away.
+    /// Queries kitty's protocol, the size in pixels, the colours and the size of sixels, and at last the type
+    /// of terminal, which every terminal answers. Any characters that an old terminal shows instead are
+    /// erased.
     const QUESTION: &[u8] =
         b"\x1b7\x1b_Gi=31,s=1,v=1,a=q,t=d,f=24;AAAA\x1b\\\x1b[14t\x1b[?1;1;0S\x1b[?2;1;0S\x1b[c\x1b8\x1b[K";
 
-    /// How long an answer is waited for; a terminal far away needs longer.
+    /// The time to wait for an answer; a distant terminal needs longer.
     const PATIENCE: Duration = Duration::from_millis(200);
     const PATIENCE_FAR: Duration = Duration::from_millis(1500);
 
-    /// The terminal of standard output: with what it says of itself, if it is to be asked.
+    /// Returns the terminal of standard output, with its answer if `is_asked`.
     pub fn terminal(is_asked: bool) -> Terminal {
         let out = std::io::stdout();
         let size = tcgetwinsize(&out).ok();
@@ -109,31 +110,31 @@ mod unix {
         }
     }
 
-    /// What the terminal says; nothing if it cannot be asked, or does not answer in time.
+    /// Returns the terminal's answer; `None` if it cannot be queried, or does not answer in time.
     fn ask() -> Option<Answer> {
-        // These write what they do not know as text.
+        // These print queries that they do not understand as text.
         if is_one_of("TERM", &["linux"]) || is_one_of("TERM_PROGRAM", &["Apple_Terminal"]) {
             return None;
         }
-        // Standard input may be a file: it is the terminal of standard output that is asked.
+        // Standard input may be a file: the query goes to the terminal of standard output.
         let name = ttyname(std::io::stdout(), Vec::new()).ok()?;
         let flags = OFlags::RDWR | OFlags::NOCTTY | OFlags::CLOEXEC;
         let terminal = File::from(open(&name, flags, Mode::empty()).ok()?);
-        // In the background, whoever changes the mode is stopped. (There is no group if the terminal is not
-        // the one that controls this process: then nobody is.)
+        // A process in the background that changes the mode is stopped. (If the terminal does not control
+        // this process, there is no group, and no process is stopped.)
         if tcgetpgrp(&terminal).is_ok_and(|group| group != getpgrp()) {
             return None;
         }
         let mode = tcgetattr(&terminal).ok()?;
         let mut other = mode.clone();
-        // Answers come without a line's end, and are not to be seen.
+        // Answers come without a line end, and must not be visible.
         other.local_modes.remove(LocalModes::ICANON | LocalModes::ECHO);
-        // Reading ends after a tenth of a second without anything. (Not all systems can wait for terminals by
+        // Reading ends after a tenth of a second without input. (Not all systems can wait for terminals by
         // `poll`.)
         other.special_codes[SpecialCodeIndex::VMIN] = 0;
         other.special_codes[SpecialCodeIndex::VTIME] = 1;
         let mut out = terminal.try_clone().ok()?;
-        // The mode comes back also when a signal ends the program meanwhile. If that fails the terminal is
+        // The mode is also restored when a signal ends the program meanwhile. If that fails, the terminal is
         // gone.
         let again = terminal.try_clone().ok()?;
         let undone = move || {
@@ -165,12 +166,12 @@ mod unix {
     }
 }
 
-/// What is known without a question.
+/// Returns the properties that are known without a query.
 #[cfg(not(unix))]
 pub fn terminal(_is_asked: bool) -> Terminal {
     #[cfg(windows)]
     {
-        // Old consoles must be told to obey.
+        // Old consoles must be told to interpret control sequences.
         let _ = anstyle_query::windows::enable_ansi_colors();
         let cells = console::Term::stdout().size_checked();
         Terminal {
@@ -182,7 +183,7 @@ pub fn terminal(_is_asked: bool) -> Terminal {
     Terminal::default()
 }
 
-/// What the terminal answered, once the last of the questions is answered: what the terminal is.
+/// Parses the terminal's answers, once the last query, the type of terminal, is answered.
 #[cfg(any(unix, test))]
 fn parse(bytes: &[u8]) -> Option<Answer> {
     let mut answer = Answer::default();

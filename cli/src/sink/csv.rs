@@ -5,7 +5,8 @@ use leafless::voxel::{VoxelRecordsRef, VoxelTriangles};
 use std::fmt::Write as _;
 use std::io::{self, Write};
 
-/// Writes a line for each record; with `triangles` it ends with the numbers of those that meet the voxel.
+/// Writes one line for each record. With `triangles` it ends with the numbers of the triangles that meet the
+/// voxel.
 pub fn write(
     view: &VoxelRecordsRef<'_>,
     triangles: Option<&VoxelTriangles>,

@@ -1,4 +1,4 @@
-//! Where results go: to a file, whole or not at all, or to standard output.
+//! Outputs: a file, written completely or not at all, or standard output.
 
 pub mod csv;
 pub mod npz;
@@ -15,7 +15,7 @@ use std::fmt;
 use std::io::{BufWriter, ErrorKind, IsTerminal, Write};
 use std::path::{Path, PathBuf};
 
-/// Where a result goes: a file, or standard output where the name is `-`.
+/// The destination of a result: a file, or standard output for the name `-`.
 #[derive(Debug, Clone)]
 pub enum Output {
     /// `-`
@@ -40,7 +40,7 @@ impl fmt::Display for Output {
 }
 
 impl Output {
-    /// The path, unless it is standard output.
+    /// Returns the path, unless the output is standard output.
     pub fn path(&self) -> Option<&Path> {
         match self {
             Output::Standard => None,
@@ -48,7 +48,7 @@ impl Output {
         }
     }
 
-    /// Refuses what can be known to fail before the work is done.
+    /// Reports failures that can be foreseen before the work is done.
     pub fn check(&self) -> Result<(), Failure> {
         let Output::Path(path) = self else {
             if std::io::stdout().is_terminal() {
@@ -67,7 +67,7 @@ impl Output {
         }
     }
 
-    /// Refuses an output that is the input itself, which would be overwritten; `what` the input is.
+    /// Refuses an output that is the input itself and would be overwritten; `what` names the input.
     pub fn check_spares(&self, input: &Input, what: &str) -> Result<(), Failure> {
         if let (Some(from), Some(to)) = (input.path(), self.path())
             && from.canonicalize().is_ok_and(|from| to.canonicalize().is_ok_and(|to| from == to))
@@ -77,7 +77,7 @@ impl Output {
         Ok(())
     }
 
-    /// Refuses the name of a mesh for a solid (.lfl), which no program would look for there.
+    /// Refuses the name of a mesh for a solid (.lfl): no program would look for a solid there.
     pub fn check_name(&self) -> Result<(), Failure> {
         let extension = self.path().and_then(|path| path.extension()?.to_str());
         if extension.is_some_and(|extension| MeshFormat::from_extension(extension).is_some()) {
@@ -87,7 +87,7 @@ impl Output {
         Ok(())
     }
 
-    /// Writes the bytes, the whole of them or nothing.
+    /// Writes all bytes or nothing.
     pub fn write(&self, bytes: &[u8]) -> Result<(), Failure> {
         match self {
             Output::Standard => print(bytes),
@@ -95,7 +95,7 @@ impl Output {
         }
     }
 
-    /// The same without having all of them in memory. Returns how many there are.
+    /// Writes a result without holding all its bytes in memory, and returns their number.
     pub fn stream(&self, write: impl FnOnce(&mut dyn Write) -> std::io::Result<()>) -> Result<u64, Failure> {
         let Some(path) = self.path() else {
             let mut out = Counter { out: BufWriter::new(std::io::stdout().lock()), count: 0 };
@@ -114,12 +114,12 @@ impl Output {
         Ok(count)
     }
 
-    /// Saves the octree, the whole of it or nothing, and returns the bytes that its file has.
+    /// Saves the octree completely or not at all, and returns the length of its file.
     pub fn save(&self, octree: &Octree) -> Result<u64, Failure> {
         self.put(|path| file::save(octree, path), |out| file::write_to(octree, out))
     }
 
-    /// The same of a tri-dexel model.
+    /// Saves a tri-dexel model in the same way.
     pub fn save_dexels(&self, model: &TriDexel) -> Result<u64, Failure> {
         self.put(|path| file::dexels::save(model, path), |out| file::dexels::write_to(model, out))
     }
@@ -140,7 +140,7 @@ impl Output {
         save(path).of(self)?;
         match std::fs::metadata(path) {
             Ok(metadata) if metadata.is_file() => Ok(metadata.len()),
-            // A pipe or device does not tell.
+            // A pipe or device does not report the length.
             _ => {
                 let mut counter = Counter { out: std::io::sink(), count: 0 };
                 write(&mut counter).of(self)?;
@@ -149,7 +149,7 @@ impl Output {
         }
     }
 
-    /// Tells what was done, as JSON or for people.
+    /// Reports what was done, as JSON or for people.
     pub fn tell<T: Serialize>(
         &self,
         as_json: bool,
@@ -159,12 +159,12 @@ impl Output {
         self.report(&if as_json { json(report)? } else { text(report) })
     }
 
-    /// Prints what was done: to standard error where standard output carries the result itself.
+    /// Prints a report, to standard error if standard output carries the result itself.
     pub fn report(&self, text: &str) -> Result<(), Failure> {
         match self {
             Output::Path(_) => print(text.as_bytes()),
             Output::Standard => {
-                // That nobody can read the report makes the result no worse.
+                // An unreadable report makes the result no worse.
                 let _ = std::io::stderr().lock().write_all(text.as_bytes());
                 Ok(())
             }
@@ -172,7 +172,7 @@ impl Output {
     }
 }
 
-/// Counts what passes through.
+/// A writer that counts the bytes that pass through.
 struct Counter<W> {
     out: W,
     count: u64,
@@ -190,7 +190,7 @@ impl<W: Write> Write for Counter<W> {
     }
 }
 
-/// Writes a file whole or not at all.
+/// Writes a file completely or not at all.
 pub fn write_file(path: &Path, bytes: &[u8]) -> Result<(), Failure> {
     file::replace(path, |file| Ok(file.write_all(bytes)?)).of(path.display())
 }
@@ -201,7 +201,7 @@ pub fn print(bytes: &[u8]) -> Result<(), Failure> {
     out.write_all(bytes).and_then(|()| out.flush()).map_err(unwritten)
 }
 
-/// What is wrong with standard output.
+/// Returns the failure for an error of standard output.
 fn unwritten(error: std::io::Error) -> Failure {
     match error.kind() {
         ErrorKind::BrokenPipe => Failure::ReaderGone,
@@ -218,14 +218,14 @@ pub fn print_told<T: Serialize>(
     print((if as_json { json(answer)? } else { text(answer) }).as_bytes())
 }
 
-/// Writes `value` as JSON, one object over several lines.
+/// Returns `value` as JSON, one object over several lines.
 pub fn json(value: &impl Serialize) -> Result<String, Failure> {
     let mut text = serde_json::to_string_pretty(value).map_err(|error| Failure::of("JSON", error))?;
     text.push('\n');
     Ok(text)
 }
 
-/// Writes `value` as JSON on one line.
+/// Returns `value` as JSON on one line.
 pub fn json_line(value: &impl Serialize) -> Result<String, Failure> {
     let mut text = serde_json::to_string(value).map_err(|error| Failure::of("JSON", error))?;
     text.push('\n');

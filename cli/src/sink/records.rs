@@ -5,9 +5,9 @@ use leafless::solid::Fingerprinter;
 use leafless::voxel::{VoxelRecords, VoxelRecordsRef, VoxelTriangles};
 use leafless::{Frame, Proof, Tag};
 
-/// The file of records.
+/// Returns the file of records.
 ///
-/// The tag's number and the two bits of the proof are those of the interface in C.
+/// The tag's number and the two bits of the proof are those of the C interface.
 pub fn npz(view: &VoxelRecordsRef<'_>, triangles: Option<&VoxelTriangles>) -> std::io::Result<Vec<u8>> {
     let (n, frame) = (view.len() as u64, view.frame());
     let mut arrays = Arrays::new();
@@ -39,9 +39,9 @@ fn proof_numbers(view: &VoxelRecordsRef<'_>) -> [f64; 3] {
     [f64::from(u8::from(proof.full)), f64::from(u8::from(proof.empty)), proof.displacement()]
 }
 
-/// A fingerprint of the records, but for their values, and of what is said of them: arrays are easily
-/// changed, and what was proven of other records is not proven of these. (It guards against mistakes. Whoever
-/// wants to can make one, as anybody can write a solid that says that it is proven.)
+/// Returns a fingerprint of the records, without their values, and of their descriptions. Arrays are easily
+/// changed, and a proof for other records does not hold for these. (The fingerprint guards against mistakes.
+/// It does not guard against intent, as anybody can also write a solid that claims to be proven.)
 fn seal(view: &VoxelRecordsRef<'_>) -> Vec<u8> {
     let frame = view.frame();
     let all = Fingerprinter::new("voxel records")
@@ -55,8 +55,8 @@ fn seal(view: &VoxelRecordsRef<'_>) -> Vec<u8> {
     all.finish().to_string().into_bytes()
 }
 
-/// Reads what [`npz`] writes. Nothing is proven unless the seal says that the records are as they were
-/// written. What is missing beside them is not known.
+/// Reads the file that [`npz`] writes. Nothing is proven unless the seal shows that the records are
+/// unchanged. Missing descriptions are unknown.
 pub fn records(bytes: &[u8]) -> Result<VoxelRecords, String> {
     let mut arrays = Reader::new(bytes).map_err(|error| format!("is no NPZ: {error}"))?;
     let text = |error: std::io::Error| error.to_string();

@@ -1,4 +1,4 @@
-//! What a mesh file keeps of a mesh, and whether that is still a surface.
+//! The part of a mesh that a file keeps, and whether it is still a surface.
 
 use crate::failure::{Failure, Of, complain};
 use crate::progress::watched;
@@ -11,29 +11,29 @@ use leafless::{Control, TriangleMesh};
 use serde::Serialize;
 use std::borrow::Cow;
 
-/// What rounding to the coordinates of a format costs.
+/// The losses by rounding to the coordinates of a format.
 #[derive(Serialize, Default)]
 pub struct Losses {
-    /// The farthest that a vertex is moved along an axis.
+    /// The greatest move of a vertex along an axis.
     pub rounding: f64,
-    /// Triangles that were taken away, because rounding puts two of their corners at one place, with the
-    /// surface left closed.
+    /// Number of triangles that were removed because rounding puts two of their corners at one place, with
+    /// the surface left closed.
     #[serde(skip_serializing_if = "is_zero")]
     collapsed: u64,
-    /// Triangles that became lines, and were joined to their neighbours.
+    /// Number of triangles that became lines and were joined to their neighbours.
     #[serde(skip_serializing_if = "is_zero")]
     flipped: u64,
-    /// Vertices that were moved to places next to their nearest ones, so that triangles have an area and do
-    /// not intersect.
+    /// Number of vertices that were moved to places next to their nearest ones, so that triangles have an
+    /// area and do not intersect.
     #[serde(skip_serializing_if = "is_zero")]
     moved: u64,
-    /// Vertices that are put where others are.
+    /// Number of vertices that coincide with others.
     merged: u64,
-    /// Triangles of which two corners are put at one place.
+    /// Number of triangles with two coincident corners.
     degenerate: u64,
-    /// Other triangles without area, whose corners are three different vertices on a line.
+    /// Number of other triangles without area, whose corners are three different vertices on a line.
     flat: u64,
-    /// Whether the surface is broken by rounding, so that the file is written only with --lossy.
+    /// True if rounding breaks the surface, so that the file is written only with --lossy.
     broken: bool,
 }
 
@@ -46,12 +46,12 @@ impl Losses {
         (self.rounding, self.merged, self.degenerate) = (form.rounding, form.merged, form.degenerate);
     }
 
-    /// Whether triangles are lost; of an empty mesh these are all.
+    /// True if triangles are lost; in an empty mesh all of them are.
     pub fn has_lost(&self) -> bool {
         self.degenerate + self.collapsed > 0
     }
 
-    /// The same for people; `None` if nothing is rounded.
+    /// Returns the report for people; `None` if nothing is rounded.
     pub fn text(&self) -> Option<String> {
         if self.rounding == 0.0 {
             return None;
@@ -75,15 +75,15 @@ impl Losses {
     }
 }
 
-/// How far vertices may move where rounding breaks a surface, as a part of the longest extent.
+/// Greatest move of vertices where rounding breaks a surface, relative to the longest extent.
 const SHARE: f64 = 1e-3;
 
-/// How a mesh is written.
+/// Options of writing a mesh.
 #[derive(Clone, Copy)]
 pub struct Writing {
-    /// Whether a surface is written also if rounding breaks it.
+    /// Whether a surface is written even if rounding breaks it.
     pub is_lossy: bool,
-    /// How far vertices may move where rounding breaks it (model units).
+    /// Greatest move of vertices where rounding breaks it, in model units.
     pub tolerance: Option<f64>,
     pub threads: usize,
 }
@@ -95,21 +95,21 @@ fn longest(mesh: &TriangleMesh) -> f64 {
 
 /// A mesh on its way into a file.
 pub struct Kept<'a> {
-    /// What is to be written.
+    /// The mesh that is written.
     pub written: Cow<'a, TriangleMesh>,
-    /// What is read back.
+    /// The mesh that a reader gets.
     pub read: Cow<'a, TriangleMesh>,
-    /// How far it is from the given mesh at most.
+    /// Greatest distance of `read` from the given mesh.
     pub deviation: f64,
     pub losses: Losses,
 }
 
-/// What is to be written of a mesh, what is read back from the file, and what was lost. For an STL, what
-/// rounding breaks is mended first. Warns of lost triangles.
+/// Returns the mesh to write, the mesh that a reader gets from the file, and the losses. For an STL, places
+/// that rounding breaks are repaired first. Warns of lost triangles.
 ///
-/// Refuses a file of which a reader gets another kind of surface, unless it is wanted all the same: one that
-/// is open or has edges at which more than two triangles meet, has more or fewer components, or encloses
-/// nothing, where the mesh is not so.
+/// Refuses a file from which a reader gets another kind of surface, unless --lossy is given: one that is
+/// open, has edges with more than two triangles, has more or fewer components, or encloses nothing, while the
+/// mesh does not.
 pub fn kept<'a>(
     mesh: &'a TriangleMesh,
     format: MeshFormat,
@@ -131,7 +131,7 @@ pub fn kept<'a>(
             let form = written_form(&single.mesh, format, options).of(output)?;
             losses.take(&form);
             let read = Cow::Owned(form.mesh.into_owned());
-            // (Of an STL as text the decimal numbers are rounded, too, along each axis.)
+            // (In an STL as text the decimal numbers are rounded, too, along each axis.)
             let added = single.deviation + 1.7321 * losses.rounding;
             losses.rounding += single.rounding;
             (losses.collapsed, losses.flipped, losses.moved) =
@@ -182,7 +182,7 @@ pub fn kept<'a>(
     Ok(Kept { written, read, deviation, losses })
 }
 
-/// What is wrong with a surface after rounding that was not so before.
+/// Describes what is wrong with a surface after rounding but was not before.
 fn problem(before: &TriangleMesh, after: &TriangleMesh) -> Result<Option<String>, leafless::Error> {
     let reports: [MeshReport; 2] = [before.report()?, after.report()?];
     let [old, new] = &reports;

@@ -1,11 +1,11 @@
-//! What kind of file the bytes are.
+//! Recognition of the kind of a file from its bytes.
 
 use crate::failure::Failure;
 use crate::source::input::Input;
 use leafless::exchange::{MeshFormat, VolumeFormat};
 use leafless::{file, scene};
 
-/// The kinds of files that hold a shape.
+/// The kinds of files that contain a shape.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Content {
     /// A solid (.lfl).
@@ -19,9 +19,9 @@ pub enum Content {
 }
 
 impl Content {
-    /// What the bytes of a file are. The content decides where it tells, then the extension of the file's
-    /// name; `told` is what the user calls it. What is called a solid is taken for nothing else: a damaged
-    /// one must not pass for some mesh.
+    /// Recognises the kind of a file: by its content if that is conclusive, then by the extension of its
+    /// name. `told` is the kind that the user named. A file that is named as a solid is taken for nothing
+    /// else: a damaged solid must not pass for some mesh.
     pub fn of(input: &Input, bytes: &[u8], told: Option<Content>) -> Result<Content, Failure> {
         let extension = input.path().and_then(|path| path.extension()?.to_str()).unwrap_or_default();
         if bytes.starts_with(&file::MAGIC) || extension == "lfl" {
@@ -50,7 +50,7 @@ impl Content {
     }
 }
 
-/// Why a file is not read, if it is of a kind that people try.
+/// Explains why a file is not read, if it is of a kind that people often try.
 fn stranger(bytes: &[u8], extension: &str) -> Option<String> {
     let is_one_of = |names: &[&str]| names.iter().any(|name| extension.eq_ignore_ascii_case(name));
     if bytes.starts_with(b"ISO-10303-21;") || is_one_of(&["step", "stp", "igs", "iges"]) {
@@ -60,15 +60,15 @@ fn stranger(bytes: &[u8], extension: &str) -> Option<String> {
                 .into(),
         );
     }
-    // What is no text may be the triangles of an STL; but then its length or its name says so.
+    // Bytes that are not text may be the triangles of an STL, but then the length or the name says so.
     let is_guess = MeshFormat::detect(bytes, Some("obj")) == Some(MeshFormat::Obj)
         && MeshFormat::detect(bytes, None) == Some(MeshFormat::Stl);
     if is_one_of(&["raw"])
         || is_guess && !extension.is_empty() && MeshFormat::from_extension(extension).is_none()
     {
         return Some(format!(
-            "is no mesh, and has no header that tells what it is ({} bytes): if it is a volume, say how many samples it has along \
-             x, y and z, and their type: --extents 512,512,300 --type u16",
+            "is no mesh, and has no known header ({} bytes): if it is a raw volume, give the number of \
+             samples along x, y and z, and their type: --extents 512,512,300 --type u16",
             bytes.len()
         ));
     }

@@ -1,4 +1,4 @@
-//! What the vertices of a mesh tell of how far it reaches.
+//! Bounds of a solid from the vertices of its mesh.
 
 use crate::failure::{Failure, Of};
 use crate::source::input::Input;
@@ -9,12 +9,12 @@ use leafless::{FillRule, Interval, TriangleMesh};
 pub struct Corners {
     min: [f64; 3],
     max: [f64; 3],
-    /// How far the surface may lie beside the mesh.
+    /// Greatest distance of the surface from the mesh.
     displacement: f64,
-    /// Whether nothing lies beyond: an open mesh may enclose more.
+    /// True if the solid does not extend beyond the box: an open mesh may enclose more.
     is_closed: bool,
-    /// Whether the solid reaches them unless triangles intersect: bodies that are inside out may be nothing
-    /// by the rule.
+    /// True if the solid reaches the box unless triangles intersect. Inverted bodies may be empty by the fill
+    /// rule.
     is_reached: bool,
 }
 
@@ -22,7 +22,7 @@ impl Corners {
     pub fn new(input: &Input, mesh: &TriangleMesh, fill: FillRule) -> Result<Corners, Failure> {
         let report = mesh.report().of(input)?;
         let (mut min, mut max) = ([f64::INFINITY; 3], [f64::NEG_INFINITY; 3]);
-        // (Vertices that no triangle uses are none of the solid.)
+        // (Vertices that no triangle uses do not belong to the solid.)
         for &vertex in mesh.triangles().as_flattened() {
             let at = mesh.vertices()[vertex as usize];
             min = [0, 1, 2].map(|axis| min[axis].min(at[axis]));
@@ -33,12 +33,12 @@ impl Corners {
         Ok(Corners { min, max, displacement: mesh.displacement(), is_closed, is_reached })
     }
 
-    /// Whether the box is that of the solid, if the triangles do not intersect.
+    /// True if the box is that of the solid, provided that the triangles do not intersect.
     pub fn are_exact(&self) -> bool {
         self.is_closed && self.is_reached
     }
 
-    /// The corners of the solid's box, where triangles do not intersect.
+    /// Returns the corners of the solid's bounding box, provided that the triangles do not intersect.
     pub fn exact(&self) -> [[Interval; 3]; 2] {
         [self.min, self.max].map(|corner| {
             corner.map(|at| match self.displacement {
@@ -50,7 +50,7 @@ impl Corners {
         })
     }
 
-    /// What is known of the corners, and that nothing lies beyond these if the mesh is closed.
+    /// Returns the corners, restricted to the box of the mesh if the mesh is closed.
     pub fn within(&self, [min, max]: [[Interval; 3]; 2]) -> [[Interval; 3]; 2] {
         if !self.is_closed {
             return [min, max];

@@ -1,4 +1,4 @@
-//! Functions of position that the user writes: `20 + 3*sin(x)*y`.
+//! Functions of position in the user's notation: `20 + 3*sin(x)*y`.
 
 use exmex::{BinOp, Express, FlatEx, MakeOperators, MatchLiteral, Operator};
 use leafless::attribute::{Attribute, ValueRange};
@@ -10,22 +10,22 @@ use std::str::FromStr;
 pub struct Expressions {
     values: Vec<FlatEx<f64, Operators, Literals>>,
     ranges: Vec<FlatEx<Range, Operators, Literals>>,
-    /// Which of x, y and z each expression names, in this order.
+    /// The variables of each expression, among x, y and z, in this order.
     variables: Vec<Vec<usize>>,
 }
 
 exmex::literal_matcher_from_pattern!(Literals, r"^([0-9]+\.?[0-9]*|\.[0-9]+)([eE][+-]?[0-9]+)?");
 
-/// What the user may write, for the help.
+/// The syntax of an expression, for the help.
 pub const SYNTAX: &str = "x y z, numbers, + - * / ^, parentheses, pi, e, and the functions abs sqrt exp ln sin cos \
                           floor ceil round min(a,b) max(a,b). A minus before a number or name binds most tightly: \
                           -x^2 is (-x)^2";
 
-/// Characters of an expression. It is evaluated at every cell.
+/// Most characters of an expression, which is evaluated at every cell.
 const LONGEST: usize = 1 << 14;
 
 impl Expressions {
-    /// Understands one to four expressions.
+    /// Parses one to four expressions.
     pub fn parse(texts: &[String]) -> Result<Expressions, String> {
         if !(1..=4).contains(&texts.len()) {
             return Err("a value has one to four expressions".into());
@@ -69,11 +69,11 @@ impl Expressions {
     }
 }
 
-/// The expression with functions of two numbers between these, as in `((a)min(b))`. The parser of expressions
-/// takes them so in each other, and not as they are written.
+/// Returns the expression with functions of two arguments written between these, as in `((a)min(b))`. The
+/// parser accepts nested functions only in this form.
 fn infix(text: &str) -> Result<String, &'static str> {
     const FUNCTIONS: [&str; 2] = ["min", "max"];
-    // Of each parenthesis that is open its function, if it has two arguments, and whether the first one is
+    // For each open parenthesis: its function, if it has two arguments, and whether the first argument is
     // complete.
     let mut open: Vec<(Option<&str>, bool)> = Vec::new();
     let (mut written, mut rest) = (String::with_capacity(2 * text.len()), text);
@@ -130,7 +130,7 @@ impl Attribute for Expressions {
         Ok(())
     }
 
-    /// By interval arithmetic.
+    /// Computes the range by interval arithmetic.
     fn range(&self, bounds: &Bounds) -> Result<ValueRange, Error> {
         let mut ranges = [Interval::exactly(0.0); 4];
         for (k, expression) in self.ranges.iter().enumerate() {
@@ -147,8 +147,8 @@ impl Attribute for Expressions {
     }
 }
 
-/// All values that an expression may have: its own rounded results, too. Unknown where it need not be
-/// defined.
+/// All values that an expression may have, including its rounded results. Unknown if the expression may be
+/// undefined.
 #[derive(Debug, Clone, Copy, Default, PartialEq)]
 struct Range {
     lower: f64,
@@ -174,7 +174,7 @@ impl Range {
         self.lower <= self.upper && self.lower.is_finite() && self.upper.is_finite()
     }
 
-    /// Of results that are rounded by less than two units of the last place.
+    /// Returns the range of results that are rounded by less than two units in the last place.
     fn around(ends: [f64; 2]) -> Range {
         if ends.iter().any(|end| !end.is_finite()) {
             return UNKNOWN;
@@ -184,18 +184,18 @@ impl Range {
         Range { lower: out(a.min(b), false), upper: out(a.max(b), true) }
     }
 
-    /// The image under a function that rises or falls all over the range.
+    /// Returns the image under a function that is monotone on the range.
     fn monotone(self, function: impl Fn(f64) -> f64) -> Range {
         if self.is_known() { Range::around([function(self.lower), function(self.upper)]) } else { UNKNOWN }
     }
 
-    /// The image under a function that rises in steps, whose results are exact.
+    /// Returns the image under a monotone step function, whose results are exact.
     fn stepwise(self, function: impl Fn(f64) -> f64) -> Range {
         Range { lower: function(self.lower), upper: function(self.upper) }
     }
 }
 
-/// What the operators are for points and for ranges.
+/// A number that the operators act on: the value at a point, or a range.
 trait Number: Clone + Debug + Default + FromStr + Send + Sync + 'static {
     fn constant(value: f64) -> Self;
     fn add(a: Self, b: Self) -> Self;
@@ -307,7 +307,7 @@ impl Number for Range {
         } else if is_whole && exponent == 0.0 {
             Range::exactly(1.0)
         } else if is_whole && exponent > 0.0 {
-            // A base of both signs: odd powers rise, even ones have their least value at 0.
+            // For a base of both signs, odd powers are monotone, and even powers are least at 0.
             let odd = exponent % 2.0 != 0.0;
             if odd { all } else { Range { lower: 0.0, ..all } }
         } else {
@@ -373,18 +373,18 @@ fn hull(ends: [f64; 4]) -> Range {
     Range::around([least, greatest])
 }
 
-/// The image under a sine that is greatest at `crest` and every 2π.
+/// Returns the image under a sine wave with a maximum at `crest` and every 2π.
 fn wave(a: Range, function: impl Fn(f64) -> f64, crest: f64) -> Range {
     use std::f64::consts::{PI, TAU};
     if !a.is_known() {
         return UNKNOWN;
     }
-    // Where doubles are this far apart from π's multiples, nothing is known of the phase.
+    // Beyond this, doubles are too coarse to know the phase.
     if a.lower.abs().max(a.upper.abs()) > 1e9 || a.upper - a.lower >= TAU {
         return Range { lower: -1.0, upper: 1.0 };
     }
     let within = Range::around([function(a.lower), function(a.upper)]);
-    // Whether a turning point may lie in the range, with more room than any rounding takes.
+    // True if a turning point may lie in the range, with more tolerance than any rounding needs.
     let meets = |turn: f64| ((a.upper - turn) / TAU + 1e-6).floor() >= ((a.lower - turn) / TAU - 1e-6).ceil();
     Range {
         lower: if meets(crest + PI) { -1.0 } else { within.lower.max(-1.0) },
@@ -392,7 +392,7 @@ fn wave(a: Range, function: impl Fn(f64) -> f64, crest: f64) -> Range {
     }
 }
 
-/// The operators of both kinds.
+/// The operators, for both kinds of numbers.
 #[derive(Debug, Clone)]
 struct Operators;
 
@@ -483,7 +483,7 @@ mod tests {
         assert_eq!(colour.value(p), Some([0.5, -4.0, 0.0, 0.0]));
     }
 
-    /// Whatever an expression gives at a point of a box lies in its range over the box.
+    /// The value of an expression at a point of a box lies in its range over the box.
     #[test]
     fn ranges_hold_all_values() {
         let mut state = 9u64;

@@ -1,4 +1,4 @@
-//! A file that was looked at: what kind it is of, before anything is made of it.
+//! A file whose kind is known, before anything is made from it.
 
 use crate::failure::{Failure, Of};
 use crate::source::content::Content;
@@ -24,32 +24,32 @@ pub struct Taking {
 }
 
 impl Taking {
-    /// The same of what stays where it is.
+    /// Returns the same options without the placement.
     pub fn unmoved(&self) -> Taking {
         Taking { placing: Placing::default(), ..self.clone() }
     }
 
-    /// Those of the options that have a meaning for such a file, and where it is moved to.
+    /// Returns the options that apply to a file of this kind, with another placement.
     pub fn about(&self, content: Content, placing: &Placing) -> Taking {
         let drawing = if content == Content::Scene { self.drawing.clone() } else { Drawing::default() };
         Taking { reading: self.reading.about(content), drawing, placing: *placing }
     }
 
-    /// Refuses the options of reading where a stored solid is read: `what` it is.
+    /// Refuses the options of reading if a stored solid is read; `what` names it.
     pub fn refuse(&self, input: &Input, what: &str) -> Result<(), Failure> {
         self.reading.refuse(input, what)?;
         self.drawing.refuse(input, what)
     }
 }
 
-/// A solid that is stored (.lfl), of either kind.
+/// A stored solid (.lfl), of either kind.
 pub enum Stored {
     Octree(Octree),
     Dexels(TriDexel),
 }
 
 impl Stored {
-    /// The solid with these bytes.
+    /// Decodes the solid with these bytes.
     pub fn of_bytes(input: &Input, bytes: &[u8]) -> Result<Stored, Failure> {
         if file::probe_bytes(bytes).is_ok_and(|probe| probe.dexels.is_some()) {
             return file::dexels::from_bytes(bytes).of(input).map(Stored::Dexels);
@@ -57,8 +57,8 @@ impl Stored {
         file::from_bytes(bytes).of(input).map(Stored::Octree)
     }
 
-    /// The solid in a file, and the file's length. A regular file is mapped and, unless `verified` is asked
-    /// for, hardly read.
+    /// Reads the solid in a file, and returns it with the file's length. A regular file is mapped and, unless
+    /// `verified`, hardly read.
     pub fn read(input: &Input, verified: bool) -> Result<(Stored, u64), Failure> {
         if let Some(path) = input.path().filter(|path| path.is_file()) {
             match file::probe(path) {
@@ -72,13 +72,13 @@ impl Stored {
             let (octree, length) = input.octree(verified)?;
             return Ok((Stored::Octree(octree), length));
         }
-        // What comes through a pipe can be read once.
+        // A pipe can be read only once.
         let bytes = input.read()?;
         Ok((Stored::of_bytes(input, &bytes)?, bytes.len() as u64))
     }
 }
 
-/// A file, and its bytes, unless it is the regular file of a stored solid, which is mapped.
+/// A file with its bytes. The bytes of a regular file of a stored solid are not read: that file is mapped.
 pub struct Found<'a> {
     input: &'a Input,
     pub content: Content,
@@ -86,7 +86,7 @@ pub struct Found<'a> {
 }
 
 impl Found<'_> {
-    /// Looks at a file; `told` is what the user calls it.
+    /// Opens a file and recognises its kind; `told` is the kind that the user named.
     pub fn look(input: &Input, told: Option<Content>) -> Result<Found<'_>, Failure> {
         if input.begins_as_solid() {
             return Ok(Found { input, content: Content::Solid, bytes: None });
@@ -99,17 +99,17 @@ impl Found<'_> {
         self.bytes.as_deref().unwrap_or_default()
     }
 
-    /// How many bytes were read.
+    /// Returns the number of bytes that were read.
     pub fn length(&self) -> u64 {
         self.bytes().len() as u64
     }
 
-    /// Checksum and length of the bytes that were read.
+    /// Returns checksum and length of the bytes that were read.
     pub fn fingerprint(&self) -> String {
         format!("crc32:{:08x} bytes:{}", crc32fast::hash(self.bytes()), self.length())
     }
 
-    /// The stored solid, and the length of its file.
+    /// Returns the stored solid, and the length of its file.
     pub fn stored(&self, verified: bool) -> Result<(Stored, u64), Failure> {
         match &self.bytes {
             None => Stored::read(self.input, verified),
@@ -117,7 +117,8 @@ impl Found<'_> {
         }
     }
 
-    /// The octree, where nothing else will do. What is said about it is proven, so it is verified.
+    /// Returns the octree, where only an octree will do. Answers about it are proven, so the file is
+    /// verified.
     pub fn octree(&self) -> Result<Octree, Failure> {
         match &self.bytes {
             None => Ok(self.input.octree(true)?.0),
@@ -125,12 +126,12 @@ impl Found<'_> {
         }
     }
 
-    /// The mesh, and the rule by which points count as inside.
+    /// Returns the mesh, and its fill rule.
     pub fn mesh(self, reading: &Reading, placing: &Placing) -> Result<(MeshFile, FillRule), Failure> {
         reading.mesh(self.input, self.bytes.unwrap_or_default(), placing)
     }
 
-    /// The scene.
+    /// Returns the scene.
     pub fn scene(&self, drawing: &Drawing, placing: &Placing) -> Result<Scene, Failure> {
         let scene = scene_of(self.input, self.bytes(), drawing)?;
         match placing.map() {
@@ -139,7 +140,7 @@ impl Found<'_> {
         }
     }
 
-    /// The volume.
+    /// Returns the volume.
     pub fn volume(&self, reading: &Reading, placing: &Placing) -> Result<Voxels, Failure> {
         let volume = reading.volume(self.input, self.bytes())?;
         match placing.map() {

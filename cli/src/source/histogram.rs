@@ -1,20 +1,19 @@
-//! The samples of a volume as a whole: how far they reach, and what parts them best.
+//! Statistics of the samples of a volume: their range, and the threshold that separates them best.
 
 use leafless::solid::Samples;
 
-/// Classes of numbers of single precision. Whole numbers of 8 and 16 bits have one for each.
+/// Number of classes for numbers of single precision. Integers of 8 and 16 bits have a class for each value.
 const CLASSES: usize = 4096;
 
-/// The least and the greatest sample; `None` where none is finite.
+/// Returns the least and the greatest sample; `None` if no sample is finite.
 pub fn range(samples: &Samples<'_>) -> Option<[f64; 2]> {
     let mut range = [f64::INFINITY, f64::NEG_INFINITY];
     each(samples, |sample| range = [range[0].min(sample), range[1].max(sample)]);
     (range[0] <= range[1]).then_some(range)
 }
 
-/// The sample from which on a volume is inside, so that both sides are as much alike in themselves as they
-/// can be: by Otsu's method, the threshold with the greatest variance between both. `None` where all samples
-/// are equal.
+/// Returns the threshold with the greatest variance between both sides (Otsu's method). Samples from the
+/// threshold on are inside. `None` if all samples are equal.
 pub fn best_threshold(samples: &Samples<'_>) -> Option<f64> {
     let [least, greatest] = range(samples).filter(|[least, greatest]| least < greatest)?;
     let is_whole = matches!(samples, Samples::U8(_) | Samples::U16(_) | Samples::I16(_) | Samples::Bits(_));
@@ -26,7 +25,7 @@ pub fn best_threshold(samples: &Samples<'_>) -> Option<f64> {
     let total = counts.iter().sum::<u64>() as f64;
     let sum: f64 = counts.iter().enumerate().map(|(class, &count)| class as f64 * count as f64).sum();
     let (mut below, mut sum_below) = (0.0, 0.0);
-    // The first and the last threshold that are best: between two groups all are.
+    // The first and the last of the best thresholds: between two groups, all thresholds are equally good.
     let (mut best, mut ends) = (-1.0, [0; 2]);
     for (class, &count) in counts.iter().enumerate().take(classes - 1) {
         below += count as f64;
@@ -43,10 +42,10 @@ pub fn best_threshold(samples: &Samples<'_>) -> Option<f64> {
     Some(least + (if is_whole { middle.ceil() } else { middle }) * width)
 }
 
-/// Calls a function with all samples that are finite.
+/// Calls a function with all finite samples.
 fn each(samples: &Samples<'_>, mut call: impl FnMut(f64)) {
     match samples {
-        // (The bits behind the end of a row are none; nobody needs the exact number of zeros.)
+        // (The bits behind the end of a row are 0; the exact number of zeros does not matter.)
         Samples::Bits(words) => {
             for &word in words.values() {
                 (0..64).for_each(|bit| call((word >> bit & 1) as f64));

@@ -1,4 +1,4 @@
-//! What the program reads.
+//! Inputs: files and standard input.
 
 use crate::failure::{Failure, Of};
 use crate::memory;
@@ -8,7 +8,7 @@ use std::fmt;
 use std::io::Read;
 use std::path::{Path, PathBuf};
 
-/// A file, or standard input where the name is `-`.
+/// An input: a file, or standard input for the name `-`.
 #[derive(Debug, Clone)]
 pub enum Input {
     /// `-`
@@ -33,7 +33,7 @@ impl fmt::Display for Input {
 }
 
 impl Input {
-    /// A file, as standard input carries `questions` about it.
+    /// Returns a file, as standard input carries the `questions` about it.
     pub fn file(name: &OsStr, questions: &str) -> Result<Input, Failure> {
         match Input::from(name) {
             Input::Standard => {
@@ -44,7 +44,7 @@ impl Input {
         }
     }
 
-    /// The path, unless it is standard input.
+    /// Returns the path, unless the input is standard input.
     pub fn path(&self) -> Option<&Path> {
         match self {
             Input::Standard => None,
@@ -52,8 +52,8 @@ impl Input {
         }
     }
 
-    /// All bytes, if they are no more than memory allows. A regular file says beforehand how long it is; a
-    /// pipe or a device may go on for ever.
+    /// Reads all bytes, if memory allows. The length of a regular file is known beforehand; a pipe or a
+    /// device may be endless.
     pub fn read(&self) -> Result<Vec<u8>, Failure> {
         let refusal = |length: String, most: u64| {
             let most = memory::told(most);
@@ -85,7 +85,7 @@ impl Input {
         Ok(bytes)
     }
 
-    /// Whether this is a regular file with the signature of solids. Nothing is taken from a pipe.
+    /// True if this is a regular file with the signature of solids. Nothing is read from a pipe.
     pub fn begins_as_solid(&self) -> bool {
         let mut start = [0; file::MAGIC.len()];
         self.path().filter(|path| path.is_file()).is_some_and(|path| {
@@ -94,8 +94,8 @@ impl Input {
         })
     }
 
-    /// The octree in the file, and the file's length. A regular file is mapped and, unless `verified` is
-    /// asked for, hardly read; what comes through a pipe is read and verified in any case.
+    /// Returns the octree in the file, and the file's length. A regular file is mapped and, unless
+    /// `verified`, hardly read. An octree from a pipe is always read and verified.
     pub fn octree(&self, verified: bool) -> Result<(Octree, u64), Failure> {
         if let Input::Path(path) = self {
             let metadata = std::fs::metadata(path).of(self)?;
@@ -115,11 +115,11 @@ pub fn map_dexels(path: &Path, verified: bool) -> Result<TriDexel, leafless::Err
     unsafe { if verified { file::dexels::map_verified(path) } else { file::dexels::map(path) } }
 }
 
-/// Maps a file.
+/// Maps a file of an octree.
 #[allow(unsafe_code)]
 fn map(path: &Path, verified: bool) -> Result<Octree, leafless::Error> {
     // SAFETY: this program never changes an existing file: it replaces files by renaming new ones over them,
-    // which leaves mappings as they are. That no other program rewrites or truncates a file while this one
-    // reads it is for the user to see to; the help text says so.
+    // which leaves mappings intact. The user must see to it that no other program rewrites or truncates a
+    // file while this one reads it; the help text says so.
     unsafe { if verified { file::map_verified(path) } else { file::map(path) } }
 }

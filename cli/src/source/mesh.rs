@@ -1,4 +1,4 @@
-//! Meshes from files of any format: the options of reading them.
+//! Meshes from files of any format, and the options of reading them.
 
 use crate::failure::{Failure, Of, complain};
 use crate::options::{formats, tolerance};
@@ -14,27 +14,27 @@ use leafless::exchange::{LengthUnit, MeshFile, MeshFormat, MeshOptions, MeshWarn
 use leafless::mesh::MeshReport;
 use leafless::{Error, FillRule, Frame, TriangleMesh, exchange};
 
-/// How a mesh file is to be taken.
+/// The options of reading a mesh file.
 #[derive(Clone, Default, Args)]
 #[command(next_help_heading = "Meshes (STL, OBJ, PLY, OFF, 3MF)")]
 pub struct Reading {
-    /// Format of the mesh file. Without it the content tells, and the extension of the name
+    /// Unit of the numbers in the mesh file: um, mm, cm, m, in or ft [default: that of a 3MF; unknown for
+    /// other formats]
+    #[arg(long, value_name = "UNIT", value_parser = unit, help_heading = "Units and placement")]
+    unit: Option<LengthUnit>,
+    /// Unit to convert the mesh to: um, mm, cm, m, in or ft
+    #[arg(long = "to-unit", value_name = "UNIT", value_parser = unit, help_heading = "Units and placement")]
+    to: Option<LengthUnit>,
+    /// Format of the mesh file [default: by the content, and by the extension of the name]
     #[arg(long, value_parser = formats(["stl", "obj", "ply", "off", "3mf"]))]
     format: Option<MeshFormat>,
-    /// Unit of the numbers in the mesh file: um, mm, cm, m, in or ft. Without it that of a 3MF is known, and
-    /// those of other formats are not
-    #[arg(long, value_name = "UNIT", value_parser = unit)]
-    unit: Option<LengthUnit>,
-    /// Unit to convert the mesh to
-    #[arg(long = "to-unit", value_name = "UNIT", value_parser = unit)]
-    to: Option<LengthUnit>,
-    /// Which points count as inside a mesh. Without it: positive for 3MF, as that format demands, and nonzero
-    /// for all others
+    /// Which points are inside a mesh [default: positive for 3MF, as that format demands; nonzero for all
+    /// others]
     #[arg(long, value_enum)]
     fill: Option<FillName>,
-    /// The true boundary lies within this distance of a mesh, such as the deflection of a tessellation: what
-    /// is proven is then proven of the true solid, and what is nearer to the triangles is undecided. In units
-    /// of the mesh after --to-unit, before it is moved or scaled. The mesh must be closed
+    /// The true boundary lies within this distance of the mesh, such as the deflection of a tessellation.
+    /// What is proven is then proven for the true solid, and points nearer to the triangles are undecided. In
+    /// units of the mesh after --to-unit, before it is moved or scaled. The mesh must be closed
     #[arg(long, value_name = "D", value_parser = tolerance)]
     deviation: Option<f64>,
     #[command(flatten)]
@@ -43,12 +43,12 @@ pub struct Reading {
 
 #[derive(Debug, Clone, Copy, ValueEnum)]
 enum FillName {
-    /// Those that the surface winds around, in either sense: overlapping bodies are joined
+    /// Points with a winding number other than 0: overlapping bodies unite
     #[value(alias = "non-zero")]
     Nonzero,
-    /// Those that it winds around in the positive sense: bodies that are inside out take away from others
+    /// Points with a positive winding number: inverted bodies are subtracted
     Positive,
-    /// Those that it winds around an odd number of times: overlaps are holes. Needs a closed mesh
+    /// Points with an odd winding number: overlaps are holes; needs a closed mesh
     #[value(alias = "even-odd")]
     Evenodd,
 }
@@ -63,7 +63,7 @@ impl From<FillName> for FillRule {
     }
 }
 
-/// The name of a fill rule, as the user writes it.
+/// Returns the name of a fill rule, as the user writes it.
 pub fn fill_name(fill: FillRule) -> &'static str {
     match fill {
         FillRule::NonZero => "nonzero",
@@ -77,7 +77,7 @@ pub fn unit(text: &str) -> Result<LengthUnit, String> {
 }
 
 impl Reading {
-    /// What the user calls the file.
+    /// Returns the kind of the file that the user named.
     pub fn told(&self) -> Option<Content> {
         match self.format {
             Some(_) => Some(Content::Mesh),
@@ -85,7 +85,7 @@ impl Reading {
         }
     }
 
-    /// Those of the options that have a meaning for such a file.
+    /// Returns the options that apply to a file of this kind.
     pub fn about(&self, content: Content) -> Reading {
         match content {
             Content::Volume => Reading { sampling: self.sampling.clone(), ..Reading::default() },
@@ -94,13 +94,13 @@ impl Reading {
         }
     }
 
-    /// Refuses the options for meshes and volumes where something else is read: `what` it is.
+    /// Refuses the options for meshes and volumes if something else is read; `what` names it.
     pub fn refuse(&self, input: &Input, what: &str) -> Result<(), Failure> {
         self.sampling.refuse(input, what)?;
         self.refuse_for_meshes(input, what)
     }
 
-    /// The volume in these bytes of a file.
+    /// Reads the volume in these bytes of a file.
     pub fn volume(&self, input: &Input, bytes: &[u8]) -> Result<Voxels, Failure> {
         self.refuse_for_meshes(input, "a volume")?;
         self.sampling.read(input, bytes)
@@ -120,7 +120,7 @@ impl Reading {
         }
     }
 
-    /// The rule by which points count as inside a mesh of this format.
+    /// Returns the fill rule for a mesh of this format.
     fn fill(&self, format: MeshFormat) -> FillRule {
         match (self.fill, format) {
             (Some(fill), _) => fill.into(),
@@ -129,14 +129,14 @@ impl Reading {
         }
     }
 
-    /// The format of a file with these bytes, if it is known to be a mesh.
+    /// Returns the format of a file with these bytes, if it is known to be a mesh.
     fn format_of(&self, input: &Input, bytes: &[u8]) -> Option<MeshFormat> {
         let extension = input.path().and_then(|path| path.extension()?.to_str());
         self.format.or_else(|| MeshFormat::detect(bytes, extension))
     }
 
-    /// The mesh in these bytes of a file, hair cracks closed, in its place, and the rule by which points
-    /// count as inside. A mesh that is open is refused where the rule needs a closed one.
+    /// Reads the mesh in these bytes of a file, closes hair cracks and moves it, and returns it with its fill
+    /// rule. An open mesh is refused if the rule needs a closed one.
     pub fn mesh(
         &self,
         input: &Input,
@@ -145,18 +145,18 @@ impl Reading {
     ) -> Result<(MeshFile, FillRule), Failure> {
         self.sampling.refuse(input, "a mesh")?;
         let (format, unit, target) = (self.format_of(input, &bytes), self.unit, self.to);
-        // Together with the unit a factor is rounded once.
+        // Unit and factor together are rounded once.
         let factor = placing.factor();
         let options = MeshOptions { format, unit, target, scale: factor.unwrap_or(1.0) };
         let mut file = at_work("read", || exchange::read_mesh(&bytes, &options)).of(input)?;
         for warning in &file.warnings {
             complain(&format!("{input}: warning: {warning}"));
         }
-        // Sewing needs memory of its own.
+        // Closing cracks needs memory of its own.
         drop(bytes);
         file.mesh = at_work("read", || file.mesh.sewn()).of(input)?;
         if let Some(deviation) = self.deviation {
-            // (It is scaled as the mesh was.)
+            // (The deviation is scaled as the mesh was.)
             let scaled = factor.map_or(deviation, |factor| (deviation * factor).next_up());
             file.mesh = file.mesh.with_deviation(if deviation > 0.0 { scaled } else { 0.0 }).of(input)?;
         }
@@ -169,13 +169,14 @@ impl Reading {
     }
 }
 
-/// Whether nothing of a mesh lies beyond its vertices: what an open mesh encloses may, and so may a surface
-/// that was moved to close hair cracks, or one that is known within a deviation only.
+/// True if the solid does not extend beyond the vertices of the mesh. The solid of an open mesh may. So may a
+/// surface that was moved to close hair cracks, or one that is known within a deviation only.
 pub fn ends_at_vertices(mesh: &TriangleMesh) -> Result<bool, Error> {
     Ok(mesh.displacement() == 0.0 && openness(&mesh.report()?).is_none())
 }
 
-/// The corners of a box around a mesh, and around the true solid if it is known within a deviation only.
+/// Returns the corners of a box around a mesh, and around the true solid if that is known within a deviation
+/// only.
 pub fn reach_of(mesh: &TriangleMesh) -> ([f64; 3], [f64; 3]) {
     let (min, max) = mesh.bounds();
     match mesh.deviation() {
@@ -187,21 +188,23 @@ pub fn reach_of(mesh: &TriangleMesh) -> ([f64; 3], [f64; 3]) {
     }
 }
 
-/// The frame around a mesh. Only one that ends at its vertices can do without a margin.
+/// Returns the frame around a mesh. A frame without a margin is enough only if the solid ends at the
+/// vertices.
 pub fn frame_around(mesh: &TriangleMesh, depth: u8) -> Result<Frame, Error> {
     let (min, max) = reach_of(mesh);
     if ends_at_vertices(mesh)? { Frame::fitted(min, max, depth) } else { Frame::around(min, max, depth) }
 }
 
-/// The name of a format, as the user writes it.
+/// Returns the name of a format, as the user writes it.
 pub fn format_name(format: MeshFormat) -> &'static str {
     format.extension()
 }
 
-/// Where a mesh is open or its facing contradicts itself, in words; `None` for one that bounds a solid.
+/// Describes where a mesh is open or its orientation is inconsistent; `None` for a mesh that bounds a solid.
 pub fn openness(report: &MeshReport) -> Option<String> {
     let (open, turned) = (report.boundary_edges, report.misoriented_edges);
-    let facing = || format!("its facing changes across {}", counted(turned, "inner edge", "inner edges"));
+    let facing =
+        || format!("its orientation changes across {}", counted(turned, "inner edge", "inner edges"));
     let opening = || {
         let loops = counted(report.boundary_loops, "loop", "loops");
         format!("it is open along {} in {loops}", counted(open, "edge", "edges"))
@@ -214,7 +217,7 @@ pub fn openness(report: &MeshReport) -> Option<String> {
     }
 }
 
-/// Complains of a mesh that bounds no solid, unless the fill rule has refused it.
+/// Warns of a mesh that bounds no solid, unless the fill rule has refused it.
 pub fn warn_of_openness(input: &Input, report: &MeshReport, fill: FillRule) {
     if fill != FillRule::EvenOdd
         && let Some(how) = openness(report)
@@ -224,7 +227,7 @@ pub fn warn_of_openness(input: &Input, report: &MeshReport, fill: FillRule) {
     }
 }
 
-/// Refuses a mesh that is open where the fill rule, or what is stated of it, needs a closed one.
+/// Refuses an open mesh if the fill rule, or a stated deviation, needs a closed one.
 fn check_closed(input: &Input, mesh: &TriangleMesh, fill: FillRule) -> Result<(), Failure> {
     let is_stated = mesh.deviation() > 0.0;
     if fill != FillRule::EvenOdd && !is_stated {
@@ -240,7 +243,7 @@ fn check_closed(input: &Input, mesh: &TriangleMesh, fill: FillRule) -> Result<()
     })
 }
 
-/// What is read though it departs from its format, in words.
+/// Describes departures from a format that did not prevent reading.
 pub fn in_words(warnings: &[MeshWarning]) -> Vec<String> {
     warnings.iter().map(ToString::to_string).collect()
 }

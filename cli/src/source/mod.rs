@@ -1,9 +1,9 @@
 //! Sources: from a file of any kind to a solid on a frame.
 //!
-//! A name becomes an `input`, the `content` says what kind of file it is, and a `file` that was looked at is
-//! taken as a `mesh`, a `scene`, a `volume` or a stored solid. A `placing` says where it is moved to, and
-//! `moved` makes stored solids anew there. A `solid` is any of them; a `target` is one that questions are put
-//! to, and a `stock` what is laid out by a `plan`.
+//! A name becomes an `input`, `content` recognises the kind of the file, and a `file` of known kind is read
+//! as a `mesh`, a `scene`, a `volume` or a stored solid. A `placing` is a map to a new place; `moved` remakes
+//! stored solids there. A `solid` is any of them, a `target` is a solid that answers questions, and a `stock`
+//! holds the parts that a `plan` lays out.
 
 pub mod content;
 pub mod corners;

@@ -1,4 +1,4 @@
-//! Stored solids that are moved: they are made anew in their new place.
+//! Stored solids that are moved: they are remade in their new place.
 
 use crate::failure::{Failure, Of, complain};
 use crate::progress::watched;
@@ -17,17 +17,17 @@ use leafless::{
     TriDexel, bounding_box, build, build_extended, dexelize,
 };
 
-/// Where a moved solid is made.
+/// The frame on which a moved solid is made.
 #[derive(Clone, Copy)]
 pub enum Onto<'a> {
-    /// The image of its own frame if that is a cube, else a cube around its image, with cells that are no
-    /// larger.
+    /// The image of its own frame if that is a cube; otherwise a cube around the image, with cells that are
+    /// no larger.
     Image,
     /// This frame.
     Frame(&'a Frame),
 }
 
-/// A stored solid where the user wants it.
+/// Moves a stored solid to the user's placement.
 pub fn stored(
     input: &Input,
     stored: Stored,
@@ -42,7 +42,7 @@ pub fn stored(
     })
 }
 
-/// An octree under a map. Surfaces that its cells keep are kept, and channels come along.
+/// Moves an octree by a map. Its surfaces and channels are kept.
 pub fn octree(
     input: &Input,
     own: Octree,
@@ -75,14 +75,14 @@ pub fn octree(
     moved.of(input)
 }
 
-/// The octree with the channels of another one, which is moved onto it.
+/// Adds the channels of another octree, moved onto the octree.
 fn with_channels(moved: Octree, own: &Octree, map: &Affine, control: &Control<'_>) -> Result<Octree, Error> {
     if own.channels().is_empty() {
         return Ok(moved);
     }
     let back = map.inverse()?;
     own.channels().iter().try_fold(moved, |moved, channel| {
-        // As many levels from the octree's own as before.
+        // The channel's depth relative to the octree stays the same.
         let depth = channel.frame().depth() + moved.frame().depth();
         let depth = depth.saturating_sub(own.frame().depth()).clamp(1, MAX_DEPTH);
         let frame = moved.frame().with_depth(depth)?;
@@ -93,7 +93,8 @@ fn with_channels(moved: Octree, own: &Octree, map: &Affine, control: &Control<'_
     })
 }
 
-/// A tri-dexel model under a map: that of its surface, which is sharp if it has normals.
+/// Moves a tri-dexel model by a map: the new model is made of its surface, which is sharp if the model has
+/// normals.
 pub fn dexels(
     input: &Input,
     own: &TriDexel,
@@ -129,13 +130,13 @@ pub fn dexels(
     Ok(moved.of(input)?.with_metadata(own.metadata().clone()))
 }
 
-/// The frame that an octree is moved onto, if the user names none.
+/// Returns the frame that an octree is moved onto, if the user names none.
 pub fn frame_of(octree: &Octree, map: &Affine) -> Result<Frame, Error> {
     let own = octree.frame();
     match image(own, map) {
         Some(image) => Ok(image),
         None => {
-            let problem = "moves the solid beyond what doubles can tell";
+            let problem = "moves the solid beyond the range of double precision";
             let bounds =
                 occupied(octree)?.placed(map).ok_or(Error::Argument { name: "placement", problem })?;
             fitted(own, bounds, map)
@@ -143,21 +144,21 @@ pub fn frame_of(octree: &Octree, map: &Affine) -> Result<Frame, Error> {
     }
 }
 
-/// A box around what an octree may have inside of its universe.
+/// Returns a box around the inside of an octree within its universe.
 fn occupied(octree: &Octree) -> Result<Bounds, Error> {
     let universe = Bounds::of(octree.frame());
     if octree.view().exterior() != Tag::Empty {
         return Ok(universe);
     }
     let control = Control { max_splits: Some(1 << 16), ..Control::default() };
-    // What cells prove does not matter here.
+    // The proof of the cells does not matter here.
     let cells = octree.clone().with_proof(Proof::CERTIFIED);
     let found = bounding_box(&cells, cells.frame(), 1e-3 * cells.frame().edge(), &control)?;
     let Some([min, max]) = found.corners else { return Ok(universe) };
     Ok(Bounds { min: min.map(|low| low.lower), max: max.map(|high| high.upper) })
 }
 
-/// A frame around a box, with cells that are no larger than the images of another one's.
+/// Returns a frame around a box, with cells that are no larger than the images of another frame's cells.
 fn fitted(own: &Frame, Bounds { min, max }: Bounds, map: &Affine) -> Result<Frame, Error> {
     let column = |j: usize| map.rows().iter().map(|row| row[j] * row[j]).sum::<f64>().sqrt();
     let cell = own.cell_size() * (0..3).map(column).fold(f64::INFINITY, f64::min);

@@ -1,4 +1,4 @@
-//! Placements: where what is read is moved to.
+//! Placements: the maps that move inputs.
 
 use crate::failure::Failure;
 use crate::source::input::Input;
@@ -7,7 +7,7 @@ use clap::{Arg, ArgAction, ArgMatches, Args, Command, FromArgMatches};
 use leafless::{Affine, Error, Frame, TriangleMesh};
 use std::path::Path;
 
-/// An option that moves something.
+/// An option that moves the input.
 struct Move {
     name: &'static str,
     value: &'static str,
@@ -15,42 +15,43 @@ struct Move {
     map: fn(&str) -> Result<Affine, String>,
 }
 
-/// All of them.
+/// All options that move the input.
 const MOVES: [Move; 4] = [
     Move {
         name: "translate",
         value: "X,Y,Z",
-        help: "Move what is read by so much along x, y and z. --translate, --rotate, --scale and --place may be given several \
-               times, and act one after another in the order of the command line",
+        help: "Move the input by this much along x, y and z, in model units. The moves --translate, --rotate, --scale and \
+               --place may be given several times, and act one after another in the order of the command line",
         map: translation,
     },
     Move {
         name: "rotate",
         value: "AXIS,DEGREES",
-        help: "Turn what is read about an axis through the origin, counter-clockwise as seen from its tip: x, y or z, or the \
-               three numbers of a direction, and an angle: z,30 or 1,1,0,30. Quarter turns about x, y and z are exact",
+        help: "Rotate the input about an axis through the origin, counter-clockwise as seen from the axis's tip: x, y or z, or \
+               the three numbers of a direction, and an angle in degrees: z,30 or 1,1,0,30. Quarter turns about x, y and z are exact",
         map: rotation,
     },
     Move {
         name: "scale",
         value: "S|SX,SY,SZ",
-        help: "Scale what is read by a factor, or by one along each axis, about the origin; negative ones mirror it",
+        help: "Scale the input about the origin by one factor, or by one for each axis; negative factors \
+               mirror it",
         map: scaling,
     },
     Move {
         name: "place",
         value: "MATRIX",
-        help: "Move what is read by the rows of the matrix [M | t], 12 numbers, or 16 with a last row 0 0 0 1, in brackets or \
-               not. M may turn, stretch, shear and mirror",
+        help: "Move the input by the matrix [M | t]: its rows, 12 numbers, or 16 with a last row 0 0 0 1, with or without \
+               brackets. M may rotate, stretch, shear and mirror",
         map: matrix,
     },
 ];
 
-/// How what is read is moved: by the options of this kind, in the order in which they stand.
+/// A placement: the options that move the input, in their order on the command line.
 #[derive(Debug, Clone, Copy, Default)]
 pub struct Placing {
     map: Option<Affine>,
-    /// The first option.
+    /// Name of the first option.
     option: &'static str,
 }
 
@@ -62,7 +63,7 @@ pub struct Step {
 }
 
 impl Step {
-    /// All moves, in the order in which they stand.
+    /// Returns all moves, in their order on the command line.
     pub fn all(matches: &ArgMatches) -> Vec<Step> {
         let mut steps = Vec::new();
         for Move { name, .. } in MOVES {
@@ -76,7 +77,7 @@ impl Step {
 }
 
 impl Placing {
-    /// Moves after this one.
+    /// Appends a move to this placement.
     pub fn then(self, step: &Step) -> Result<Placing, clap::Error> {
         let (map, option) = match &self.map {
             None => (step.map, step.option),
@@ -91,12 +92,12 @@ impl Placing {
         Ok(Placing { map: Some(map), option })
     }
 
-    /// The map, if anything is to be moved.
+    /// Returns the map, if anything is to be moved.
     pub fn map(&self) -> Option<&Affine> {
         self.map.as_ref()
     }
 
-    /// The factor, if nothing but a factor above 0 is asked for.
+    /// Returns the factor, if the placement consists of a positive factor only.
     pub fn factor(&self) -> Option<f64> {
         let rows = self.map?.rows().map(|row| row);
         let factor = rows[0][0];
@@ -104,7 +105,7 @@ impl Placing {
         (factor > 0.0 && (0..12).all(|k| same(k / 4, k % 4))).then_some(factor)
     }
 
-    /// The mesh under the map.
+    /// Returns the mesh under the map.
     pub fn mesh(&self, mesh: TriangleMesh) -> Result<TriangleMesh, Error> {
         match &self.map {
             Some(map) => mesh.placed(map),
@@ -112,7 +113,7 @@ impl Placing {
         }
     }
 
-    /// Refuses to move a file; `why` that is.
+    /// Refuses to move a file; `why` is the reason.
     pub fn refuse(&self, input: &Input, why: &str) -> Result<(), Failure> {
         match self.map {
             Some(_) => Err(Failure::Usage(format!("--{} does not move {input}: {why}", self.option))),
@@ -126,7 +127,7 @@ impl Args for Placing {
         command.args(MOVES.map(|Move { name, value, help, map }| {
             let argument = Arg::new(name).long(name).value_name(value).help(help);
             argument
-                .help_heading("Moves")
+                .help_heading("Units and placement")
                 .action(ArgAction::Append)
                 .allow_hyphen_values(true)
                 .value_parser(map)
@@ -149,7 +150,7 @@ impl FromArgMatches for Placing {
     }
 }
 
-/// The map that moves by `inner`, then by `outer`.
+/// Returns the map that moves by `inner`, then by `outer`.
 pub fn after(outer: &Affine, inner: &Affine) -> Result<Affine, Error> {
     tidied(outer.rows().map(|[x, y, z, t]| {
         let mut sums = [0, 1, 2, 3].map(|j| {
@@ -161,14 +162,14 @@ pub fn after(outer: &Affine, inner: &Affine) -> Result<Affine, Error> {
     }))
 }
 
-/// The map with these rows, whose entries are computed: one that is too small for a map is what rounding
-/// leaves of zero.
+/// Returns the map with these computed rows. Entries that are too small for a map are rounding errors of
+/// zero.
 fn tidied(rows: [[f64; 4]; 3]) -> Result<Affine, Error> {
     let least = 2f64.powi(-64);
     Affine::new(rows.map(|row| row.map(|c| if c.abs() < least { 0.0 } else { c })))
 }
 
-/// The image of a cube and its cells, if it is one, too.
+/// Returns the image of a cube and its cells, if the image is a cube along the axes, too.
 pub fn image(frame: &Frame, map: &Affine) -> Option<Frame> {
     let factor = map.rows()[0][..3].iter().map(|c| c.abs()).sum::<f64>();
     let mut origin = [0.0; 3];
@@ -184,7 +185,7 @@ pub fn image(frame: &Frame, map: &Affine) -> Option<Frame> {
     Frame::new(origin, factor * frame.edge(), frame.depth()).ok()
 }
 
-/// Numbers between commas, blanks or brackets; none of them is infinite or NaN.
+/// Parses finite numbers between commas, blanks or brackets.
 fn numbers(text: &str) -> Option<Vec<f64>> {
     let words = text.split(|c: char| c.is_whitespace() || "[],;".contains(c)).filter(|word| !word.is_empty());
     words.map(|word| word.parse().ok().filter(|number: &f64| number.is_finite())).collect()
@@ -240,7 +241,7 @@ fn rotation(text: &str) -> Result<Affine, String> {
     ]))
 }
 
-/// Those of an angle; of quarter turns they are whole numbers.
+/// Returns sine and cosine of an angle; those of quarter turns are whole numbers.
 fn sine_and_cosine(degrees: f64) -> (f64, f64) {
     // Remainders are exact.
     let turned = degrees % 360.0;
@@ -265,8 +266,8 @@ pub fn matrix(text: &str) -> Result<Affine, String> {
     told(Affine::new([row(0), row(1), row(2)]))
 }
 
-/// The placements in a file: a line for each, as --place takes it. Empty lines and lines that begin with #
-/// are skipped.
+/// Reads the placements in a file: one line for each, as --place takes it. Empty lines and lines that begin
+/// with # are skipped.
 pub fn from_file(path: &Path, first: &Affine) -> Result<Vec<Affine>, Failure> {
     let input = Input::Path(path.into());
     let of_file = |problem: String| Failure::of(&input, problem);

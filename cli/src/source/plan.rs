@@ -1,4 +1,4 @@
-//! Layouts in files: what stands where, as JSON.
+//! Layout files: the items and their placements, as JSON.
 
 use crate::failure::{Failure, Of};
 use crate::report::density::Density;
@@ -12,7 +12,7 @@ use std::ffi::OsStr;
 use std::fmt::Write;
 use std::path::{Path, PathBuf};
 
-/// What a file says that it is.
+/// The value of the key `format`.
 const FORMAT: &str = "leafless layout";
 const VERSION: u64 = 1;
 
@@ -38,7 +38,7 @@ pub enum Container {
     File(String),
 }
 
-/// A file, and of how many copies.
+/// A file, and the number of its copies.
 #[derive(Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Listed {
@@ -52,12 +52,12 @@ pub struct Listed {
 #[derive(Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Standing {
-    /// Its number in the list of items.
+    /// Index in the list of items.
     pub item: usize,
     pub name: String,
     /// The rows of [M | t].
     pub matrix: [[f64; 4]; 3],
-    /// What is next to it, but for the wall.
+    /// The nearest body other than the wall.
     pub nearest: Option<Near>,
 }
 
@@ -68,7 +68,7 @@ pub struct Near {
     pub gap: Ends,
 }
 
-/// What something is beside of, by its number.
+/// The other body of a pair, by its number.
 #[derive(Serialize, Deserialize, Clone, Copy, PartialEq)]
 #[serde(rename_all = "lowercase")]
 pub enum Other {
@@ -87,7 +87,7 @@ impl From<Beside> for Other {
     }
 }
 
-/// An interval that holds the true number; null where there is no end.
+/// An interval that contains the true number; null for an infinite end.
 #[derive(Serialize, Deserialize, Clone, Copy)]
 #[serde(deny_unknown_fields)]
 pub struct Ends {
@@ -109,16 +109,16 @@ impl Ends {
     }
 }
 
-/// What is known of all that is placed.
+/// Measures of all placed copies together.
 #[derive(Serialize, Deserialize, Clone, Copy)]
 #[serde(deny_unknown_fields)]
 pub struct Measures {
     pub volume: Ends,
-    /// The part of the container's volume.
+    /// The placed part of the container's volume.
     pub filled_part: Ends,
     pub height: Ends,
     pub mass: Ends,
-    /// `g`, or empty where densities have no unit.
+    /// `g`, or empty if densities have no unit.
     pub mass_unit: MassUnit,
     pub centroid: Option<[Ends; 3]>,
     pub smallest_gap: Option<Ends>,
@@ -143,7 +143,7 @@ impl MassUnit {
 }
 
 impl Plan {
-    /// The layout, for a file in a folder; `densities` are those of the items.
+    /// Builds the layout for a file in a folder; `densities` are those of the items.
     pub fn new(
         stock: &Stock,
         densities: &[f64],
@@ -173,7 +173,7 @@ impl Plan {
         })
     }
 
-    /// The file: each copy on a line.
+    /// Returns the text of the file: one line for each copy.
     pub fn text(&self) -> Result<String, Failure> {
         fn json(value: &impl Serialize) -> Result<String, Failure> {
             serde_json::to_string(value).map_err(|error| Failure::of("JSON", error))
@@ -202,7 +202,7 @@ impl Plan {
         Ok(text)
     }
 
-    /// Reads a layout from a file that anybody may have written.
+    /// Reads a layout from a file of unknown origin.
     pub fn read(input: &Input) -> Result<Plan, Failure> {
         #[derive(Deserialize)]
         struct Head {
@@ -224,7 +224,7 @@ impl Plan {
         Ok(plan)
     }
 
-    /// What is wrong with the numbers in it.
+    /// Describes what is wrong with its numbers.
     fn check(&self) -> Result<(), String> {
         let most = u64::from(MOST_COPIES);
         if let Some(at) = self.items.iter().position(|item| !(1..=MOST_COPIES).contains(&item.count)) {
@@ -258,11 +258,11 @@ impl Plan {
         Ok(())
     }
 
-    /// The files that it names, for a layout in a folder.
+    /// Returns the files that the layout names, for a layout in a folder.
     pub fn stock(&self, folder: &Path, input: &Input) -> Result<Stock, Failure> {
         let file = |name: &String| {
             let path = folder.join(name);
-            // What is no file may have no end. (What is not there is told when it is read.)
+            // A device may be endless. (A missing file is reported when it is read.)
             if std::fs::metadata(&path).is_ok_and(|metadata| !metadata.is_file()) {
                 return Err(Failure::of(path.display(), "is no regular file"));
             }
@@ -296,17 +296,17 @@ impl Plan {
     }
 }
 
-/// The last part of a path, for people.
+/// Returns the last part of a path, for people.
 pub fn name_of(file: &str) -> String {
     Path::new(file).file_name().map_or_else(|| file.to_owned(), |name| name.to_string_lossy().into_owned())
 }
 
-/// The folder of a file that is read or written.
+/// Returns the folder of a file that is read or written.
 pub fn folder_of(path: Option<&Path>) -> &Path {
     path.and_then(Path::parent).unwrap_or(Path::new(""))
 }
 
-/// The path of a file as seen from a folder, if there is one; slashes separate its parts.
+/// Returns the path of a file relative to a folder, with slashes, if there is one.
 pub fn relative(input: &Input, folder: &Path) -> Result<String, Failure> {
     let path = input.path().unwrap_or(Path::new("-"));
     let whole = |path: &Path| -> std::io::Result<PathBuf> {
@@ -321,7 +321,7 @@ pub fn relative(input: &Input, folder: &Path) -> Result<String, Failure> {
         part.to_str().map(str::to_owned).ok_or_else(|| Failure::of(input, "has a name that is not UTF-8"))
     };
     let name = text(path.file_name().ok_or_else(|| Failure::of(input, "is no file"))?)?;
-    // On another drive there is no way from here.
+    // There is no relative path to another drive.
     if same == 0 {
         return text(own.join(&name).as_os_str());
     }

@@ -1,4 +1,4 @@
-//! Scenes, as files of the program's users.
+//! Scenes (.csg), and the option of reading them.
 
 use crate::failure::{Failure, Of, Problem, complain};
 use crate::memory;
@@ -10,12 +10,12 @@ use leafless::Frame;
 use leafless::scene::{Facets, Scene, SceneOptions};
 use std::path::Path;
 
-/// How a scene is to be taken.
+/// The option of reading a scene.
 #[derive(Clone, Default, Args)]
 #[command(next_help_heading = "Scenes (.csg)")]
 pub struct Drawing {
     /// Which circles, cylinders, balls and solids of revolution of a scene are polygons, as OpenSCAD draws
-    /// them. Without it: those with a $fn of 12 or less
+    /// them [default: those with a $fn of 12 or less]
     #[arg(long = "fn", value_enum, value_name = "CURVES")]
     facets: Option<FacetsName>,
 }
@@ -29,7 +29,7 @@ enum FacetsName {
 }
 
 impl Drawing {
-    /// Refuses the option where something else is read: `what` it is.
+    /// Refuses the option if something else is read; `what` names it.
     pub fn refuse(&self, input: &Input, what: &str) -> Result<(), Failure> {
         match self.facets {
             Some(_) => Err(Failure::Usage(format!("--fn is for scenes: {input} is {what}"))),
@@ -48,12 +48,12 @@ impl Drawing {
     }
 }
 
-/// The scene with this text. Files that it names are looked for beside it,
-/// or in the current folder if it comes from standard input. Complains of meshes in it that bound no solid.
+/// Reads the scene with this text. Its files are looked up beside the scene, or in the current folder if it
+/// comes from standard input. Warns of meshes in it that bound no solid.
 pub fn scene_of(input: &Input, text: &[u8], drawing: &Drawing) -> Result<Scene, Failure> {
     let folder = input.path().and_then(Path::parent).unwrap_or(Path::new(""));
     let scene = drawing.options().read(text, Some(folder)).map_err(|error| {
-        // The models of OpenSCAD are programs; what they come to is a scene.
+        // OpenSCAD's models are programs; their result is a scene.
         let name =
             input.path().filter(|path| path.extension().is_some_and(|end| end.eq_ignore_ascii_case("scad")));
         let hint = name.map_or_else(String::new, |path| {
@@ -82,10 +82,10 @@ pub fn scene_of(input: &Input, text: &[u8], drawing: &Drawing) -> Result<Scene, 
     Ok(scene)
 }
 
-/// Meshes in a scene that are complained of, each in a line.
+/// Most meshes in a scene to warn of, each in a line.
 const MOST_COMPLAINTS: usize = 10;
 
-/// The universe that a scene is cut into cells on: the bounds given, or the cube around the scene.
+/// Returns the universe in which a scene is cut into cells: the given bounds, or the cube around the scene.
 pub fn frame_of(input: &Input, scene: &Scene, bounds: Option<&Frame>, depth: u8) -> Result<Frame, Failure> {
     if let Some(bounds) = bounds {
         return bounds.with_depth(depth).of(input);
@@ -94,12 +94,12 @@ pub fn frame_of(input: &Input, scene: &Scene, bounds: Option<&Frame>, depth: u8)
     Frame::fitted(min, max, depth).of(input)
 }
 
-/// Corners of a box around a scene.
+/// Returns the corners of a box around a scene.
 pub fn bounds_of(input: &Input, scene: &Scene) -> Result<([f64; 3], [f64; 3]), Failure> {
     if scene.is_empty().of(input)? {
-        // Any cube will do for nothing.
+        // Any cube will do for an empty scene.
         return Ok(([0.0; 3], [1.0; 3]));
     }
-    let unknown = "reaches nobody knows how far: give --bounds X0,Y0,Z0,EDGE";
+    let unknown = "has no known extent: give --bounds X0,Y0,Z0,EDGE";
     scene.bounds().of(input)?.ok_or_else(|| Failure::of(input, unknown))
 }

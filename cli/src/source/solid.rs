@@ -1,4 +1,4 @@
-//! Sources: solids, and what one can be made of, from files of any kind.
+//! Solids, and the shapes from which they are made, from files of any kind.
 
 use crate::failure::{Failure, Of};
 use crate::source::content::Content;
@@ -18,17 +18,17 @@ use leafless::{
     TriangleMesh, build,
 };
 
-/// What a file of a solid is called.
+/// The name of a solid's file in messages.
 const SOLID: &str = "a solid";
 
-/// Of a box, the lower and the upper one.
+/// The lower and the upper corner of a box.
 pub type Corners = ([f64; 3], [f64; 3]);
 
-/// What was read.
+/// A file's shape, other than a tri-dexel model.
 pub enum Source {
     /// A solid (.lfl).
     Octree(Box<Octree>),
-    /// A mesh, which points count as inside, and the unit of its coordinates if it is known.
+    /// A mesh, its fill rule, and the unit of its coordinates if it is known.
     Mesh(TriangleMesh, FillRule, Option<LengthUnit>),
     /// A scene.
     Scene(Scene),
@@ -36,7 +36,7 @@ pub enum Source {
     Volume(Box<Voxels>),
 }
 
-/// A solid of either kind, and what one can be made of.
+/// The shape of a file of any kind.
 pub enum Shape {
     /// A tri-dexel model (.lfl).
     Dexels(Box<TriDexel>),
@@ -45,19 +45,19 @@ pub enum Shape {
 }
 
 impl Shape {
-    /// Reads a file of any kind; of one that holds no solid yet, a fingerprint, too. Files of solids are
-    /// verified.
+    /// Reads a file of any kind. A file that does not contain a stored solid also gets a fingerprint. Files
+    /// of solids are verified.
     pub fn read(input: &Input, taking: &Taking) -> Result<(Shape, Option<String>), Failure> {
         let (shape, fingerprint) = Shape::before_moving(input, taking)?;
         Ok((shape.moved(input, &taking.placing)?, fingerprint))
     }
 
-    /// The same, but that a stored solid lies where its file says.
+    /// Reads a file of any kind, and leaves a stored solid where its file says.
     pub fn before_moving(input: &Input, taking: &Taking) -> Result<(Shape, Option<String>), Failure> {
         Shape::of(input, Found::look(input, taking.reading.told())?, taking)
     }
 
-    /// The same of one of several files of all kinds: an option is for those that it has a meaning for.
+    /// Reads one of several files of all kinds: each option applies to the files for which it has a meaning.
     pub fn among_others(input: &Input, taking: &Taking, placing: &Placing) -> Result<Shape, Failure> {
         let found = Found::look(input, taking.reading.told())?;
         let taking = taking.about(found.content, placing);
@@ -77,12 +77,12 @@ impl Shape {
         Ok((shape, None))
     }
 
-    /// Whether it is a stored solid.
+    /// True for a stored solid.
     pub fn is_stored(&self) -> bool {
         matches!(self, Shape::Dexels(_) | Shape::Source(Source::Octree(_)))
     }
 
-    /// The shape, if it is a stored solid, moved.
+    /// Returns the shape; a stored solid is moved.
     fn moved(self, input: &Input, placing: &Placing) -> Result<Shape, Failure> {
         match (self, placing.map()) {
             (Shape::Dexels(model), Some(map)) => {
@@ -100,7 +100,7 @@ impl Source {
         Source::before_moving(input, taking)?.moved(input, &taking.placing)
     }
 
-    /// The same, but that a solid from a file lies where the file says.
+    /// Reads the same, and leaves a solid from a file where the file says.
     pub fn before_moving(input: &Input, taking: &Taking) -> Result<Source, Failure> {
         Source::of(input, Found::look(input, taking.reading.told())?, taking)
     }
@@ -138,7 +138,8 @@ impl Source {
         }
     }
 
-    /// What the cells of a solid from a file prove; of anything else, which is what it says it is, all.
+    /// Returns what the cells of a solid from a file prove. Other shapes are what they claim to be, so
+    /// everything is proven.
     pub fn proof(&self) -> Proof {
         match self {
             Source::Octree(octree) => octree.proof(),
@@ -146,7 +147,7 @@ impl Source {
         }
     }
 
-    /// The same; of a solid from a file the cells themselves, if that is asked for, and not what they prove.
+    /// Returns the source; with `cells`, the cells of a solid from a file count as the solid itself.
     pub fn taken(self, cells: bool) -> Source {
         match self {
             Source::Octree(octree) if cells => Source::Octree(Box::new(octree.with_proof(Proof::CERTIFIED))),
@@ -154,14 +155,14 @@ impl Source {
         }
     }
 
-    /// The octree of a solid from a file that is no more than its cells. An octree whose cells keep surfaces
-    /// is asked as scenes and meshes are: its own cells are large, and say little.
+    /// True for an octree from a file that consists of its cells only. An octree whose cells keep surfaces is
+    /// queried like scenes and meshes: its own cells are large, and say little.
     pub fn is_of_cells(&self) -> bool {
         matches!(self, Source::Octree(octree) if octree.view().cuts().is_none())
     }
 
-    /// Whether the surfaces may be known exactly under a placement, on a frame: those of a scene, and those
-    /// that the cells of an octree keep where it lies.
+    /// True if the surfaces may be known exactly under a placement, on a frame: those of a scene, and those
+    /// that the cells of an unmoved octree keep.
     pub fn has_exact_surfaces(&self, placement: &Affine, frame: &Frame) -> bool {
         match self {
             Source::Octree(octree) => {
@@ -174,7 +175,7 @@ impl Source {
         }
     }
 
-    /// The unit of its coordinates, if it is known.
+    /// Returns the unit of the coordinates, if it is known.
     pub fn unit(&self) -> Option<LengthUnit> {
         match self {
             Source::Octree(octree) => octree.metadata().get("units")?.parse().ok(),
@@ -184,7 +185,7 @@ impl Source {
         }
     }
 
-    /// The frame of a solid, or of a volume's voxels.
+    /// Returns the frame of a solid, or of a volume's voxels.
     pub fn own_frame(&self) -> Option<&Frame> {
         match self {
             Source::Octree(octree) => Some(octree.frame()),
@@ -193,8 +194,8 @@ impl Source {
         }
     }
 
-    /// The frame to ask it on: a solid's own, or one around the mesh or scene, which can be split to any
-    /// depth.
+    /// Returns the frame for queries: a solid's own, or a frame around the mesh or scene, which can be split
+    /// to any depth.
     pub fn frame(&self, input: &Input, depth: Option<u8>) -> Result<Frame, Failure> {
         match (self, depth) {
             (Source::Octree(octree), None) => Ok(*octree.frame()),
@@ -212,7 +213,7 @@ impl Source {
         }
     }
 
-    /// The same in a cube that the user may have given, for a mesh or a scene.
+    /// Returns the same frame, or one in the cube that the user gave for a mesh or a scene.
     pub fn frame_in(
         &self,
         input: &Input,
@@ -228,8 +229,8 @@ impl Source {
         }
     }
 
-    /// The same where the user need not say how deep: what has no cells of its own, or whose cells keep
-    /// surfaces, is then split to `deepest`.
+    /// Returns the same frame if the depth is optional: without a depth, a shape that has no cells, or whose
+    /// cells keep surfaces, is split to `deepest`.
     pub fn frame_to(
         &self,
         input: &Input,
@@ -244,7 +245,7 @@ impl Source {
         self.frame_in(input, bounds, depth.or((!has_size).then_some(deepest)))
     }
 
-    /// Whether nothing of it lies beyond its bounds.
+    /// True if the solid does not extend beyond its bounds.
     pub fn ends_at_bounds(&self, input: &Input) -> Result<bool, Failure> {
         match self {
             Source::Octree(_) | Source::Scene(_) | Source::Volume(_) => Ok(true),
@@ -252,7 +253,7 @@ impl Source {
         }
     }
 
-    /// Corners of what is around the solid: its universe, or the bounds of the mesh or the scene.
+    /// Returns the corners of a box around the solid: its universe, or the bounds of the mesh or the scene.
     pub fn bounds(&self, input: &Input) -> Result<Corners, Failure> {
         Ok(match self {
             Source::Octree(octree) => {
@@ -268,8 +269,8 @@ impl Source {
         })
     }
 
-    /// The solid under a placement, to be asked about cells of `frame`, moved in the best way that its kind
-    /// knows.
+    /// Returns the solid under a placement, for queries about cells of `frame`. It is moved in the best way
+    /// that its kind allows.
     pub fn placed(self, input: &Input, placement: &Affine, frame: &Frame) -> Result<AnySolid, Failure> {
         let solid = match self {
             Source::Octree(octree) if placement.is_identity() && !octree.frame().same_universe(frame) => {
@@ -284,7 +285,7 @@ impl Source {
     }
 }
 
-/// The cells of a solid on a frame. If it is an octree of the same cube, its channels come along, and
+/// Returns the cells of a solid on a frame. An octree of the same cube brings its channels along, and the
 /// surfaces that its cells keep decide.
 pub fn cells_of<S: Solid>(
     solid: &S,
@@ -299,7 +300,7 @@ pub fn cells_of<S: Solid>(
     })
 }
 
-/// Half-spaces that were evaluated for a solid.
+/// Returns the number of half-spaces that were evaluated for a solid.
 pub fn evaluations(solid: &AnySolid) -> u64 {
     solid.get::<Csg>().map_or(0, Csg::evaluations)
 }

@@ -1,4 +1,4 @@
-//! What is laid out: a container, obstacles, and items in any number.
+//! The parts of a layout: a container, obstacles, and items in any number.
 
 use crate::failure::{Failure, Of};
 use crate::options::numbers;
@@ -18,7 +18,7 @@ use std::path::Path;
 /// Most copies of all items.
 pub const MOST_COPIES: u32 = 10_000;
 
-/// What holds everything.
+/// A container.
 pub enum Holder {
     /// A box with its lower corner at the origin.
     Box([f64; 3]),
@@ -36,7 +36,7 @@ impl fmt::Display for Holder {
 }
 
 impl Holder {
-    /// What is meant by a name.
+    /// Parses a name.
     pub fn of(name: &OsStr) -> Result<Holder, Failure> {
         let Some(sides) = name.to_str().and_then(|name| name.strip_prefix("box:")) else {
             return Ok(Holder::File(named(name)?));
@@ -49,13 +49,13 @@ impl Holder {
         Holder::of_sides(sides).ok_or_else(expected)
     }
 
-    /// A box, if there is one with these sides.
+    /// Returns a box with these sides, if they are valid.
     pub fn of_sides(sides: [f64; 3]) -> Option<Holder> {
         let is_side = |side: f64| side > 0.0 && side.is_finite();
         sides.into_iter().all(is_side).then_some(Holder::Box(sides))
     }
 
-    /// The file, unless it is a box.
+    /// Returns the file, unless the container is a box.
     pub fn file(&self) -> Option<&Input> {
         match self {
             Holder::Box(_) => None,
@@ -64,7 +64,7 @@ impl Holder {
     }
 }
 
-/// A file of which so many copies are laid out.
+/// A file, and the number of its copies.
 pub struct Copies {
     pub input: Input,
     pub count: u32,
@@ -72,8 +72,7 @@ pub struct Copies {
 }
 
 impl Copies {
-    /// What is meant by a name: `part.stl*30` are thirty copies. A file that is called so is one. Their
-    /// density is 1.
+    /// Parses a name: `part.stl*30` are thirty copies, unless a file has that name. The density is 1.
     pub fn of(name: &OsStr) -> Result<Copies, Failure> {
         let density = Density::of_number(1.0);
         let counted = || {
@@ -94,7 +93,7 @@ impl Copies {
     }
 }
 
-/// A file that a layout may name.
+/// Returns a file that a layout may name.
 pub fn named(name: &OsStr) -> Result<Input, Failure> {
     match Input::from(name) {
         Input::Standard => {
@@ -104,7 +103,7 @@ pub fn named(name: &OsStr) -> Result<Input, Failure> {
     }
 }
 
-/// What kind of file it is that a solid comes from.
+/// The kind of the file that a solid comes from.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum Kind {
     Octree,
@@ -113,29 +112,29 @@ pub enum Kind {
     Volume,
 }
 
-/// All that is laid out, by name.
+/// All parts of a layout, by name.
 pub struct Stock {
     pub holder: Holder,
     pub obstacles: Vec<Input>,
     pub items: Vec<Copies>,
 }
 
-/// The same as solids.
+/// All parts of a layout, as solids.
 pub struct Solids {
     pub bay: Bay,
-    /// Of the container, unless it is a box.
+    /// Kind of the container's file, unless the container is a box.
     pub holder: Option<Kind>,
     pub obstacles: Vec<Kind>,
     pub items: Vec<Kind>,
-    /// The unit of all of which one is known.
+    /// The common unit of all files whose unit is known.
     pub unit: Option<LengthUnit>,
     /// The mass of a cubic model unit of each item, …
     pub densities: Vec<f64>,
-    /// … and its unit, which is empty if densities are numbers alone.
+    /// … and its unit, which is empty if densities are plain numbers.
     pub mass_unit: MassUnit,
 }
 
-/// How far things are to be apart.
+/// The required distances.
 #[derive(Clone, Copy)]
 pub struct Clearances {
     pub between: f64,
@@ -143,13 +142,13 @@ pub struct Clearances {
 }
 
 impl Stock {
-    /// All files, each once.
+    /// Returns all files, each once.
     pub fn files(&self) -> impl Iterator<Item = &Input> {
         let items = self.items.iter().map(|copies| &copies.input);
         self.holder.file().into_iter().chain(&self.obstacles).chain(items)
     }
 
-    /// Gives all items one density, or each its own.
+    /// Gives all items one density, or each item its own.
     pub fn weigh(&mut self, densities: &[Density]) -> Result<(), Failure> {
         match densities {
             [] => {}
@@ -166,7 +165,7 @@ impl Stock {
         Ok(())
     }
 
-    /// Reads all files. `unit` is that of the model, if the user tells it.
+    /// Reads all files. `unit` is the unit of the model, if the user states it.
     pub fn read(
         &self,
         orientations: &Orientations,
@@ -202,7 +201,7 @@ impl Stock {
             let item = Item::new(solid).and_then(|item| item.with_orientations(orientations.clone()));
             items.push((item.of(input)?.with_count(*count), kind));
         }
-        // (Only now the unit is known.)
+        // (The unit is known only now.)
         let unit = unit.map(|(unit, _)| unit);
         let mut solids = Solids {
             bay,
@@ -231,7 +230,8 @@ impl Stock {
     }
 }
 
-/// The solid in a file, and what kind of file that is. Those whose units are known must have the same.
+/// Reads the solid in a file, and returns it with the kind of the file. Files with known units must have the
+/// same unit.
 fn solid(input: &Input, unit: &mut Option<(LengthUnit, OsString)>) -> Result<(AnySolid, Kind), Failure> {
     let source = Source::read(input, &Taking::default())?;
     let kind = match &source {

@@ -1,4 +1,4 @@
-//! A solid that many questions are put to.
+//! A solid that answers many questions.
 
 use crate::failure::Failure;
 use crate::options::{bounds, threads};
@@ -9,33 +9,32 @@ use clap::Args;
 use leafless::solid::Prepared;
 use leafless::{Affine, Frame, Octree, Proof};
 
-/// How a solid that is asked is read, and looked at.
+/// The options of reading and examining a solid that is queried.
 #[derive(Args)]
 pub struct Looking {
-    /// Lower corner and edge length of the cube to look at, for a mesh or scene. Without it: the cube around
-    /// it
-    #[arg(long, value_name = "X0,Y0,Z0,EDGE", value_parser = bounds, allow_hyphen_values = true)]
-    bounds: Option<Frame>,
-    /// Take the cells of a solid from a file (.lfl) for the solid itself, whatever they prove of what they
-    /// were made from. A file that is written says what they prove, all the same
+    /// Take the cells of a solid from a file (.lfl) as the solid itself, whatever the cells prove about their
+    /// source. A file that is written still records what the cells prove
     #[arg(long)]
     cells: bool,
-    #[command(flatten)]
-    taking: Taking,
-    /// Threads to use; 0: as many as there are processors. The result is the same
+    /// Threads to use, 0 to 1024; 0: one for each processor. The result does not depend on it
     #[arg(long, default_value_t = 0, value_name = "N", value_parser = threads)]
     pub threads: usize,
+    /// Lower corner and edge length of the cube to examine, for a mesh or scene [default: the cube around it]
+    #[arg(long, value_name = "X0,Y0,Z0,EDGE", value_parser = bounds, allow_hyphen_values = true)]
+    bounds: Option<Frame>,
+    #[command(flatten)]
+    taking: Taking,
 }
 
 impl Looking {
-    /// Reads a solid. `depth` is the one that the user gave; without it a mesh, a scene, or an octree whose
+    /// Reads a solid. `depth` is the one that the user gave. Without it, a mesh, a scene, or an octree whose
     /// cells keep surfaces is split to `deepest`.
     pub fn target(&self, input: &Input, depth: Option<u8>, deepest: u8) -> Result<Target, Failure> {
         Ok(self.target_and_proof(input, depth, deepest)?.0)
     }
 
-    /// The same, and what the cells of a file prove of what they were made from, whatever they are taken for:
-    /// what is written of them proves no more.
+    /// Reads a solid, and also returns what the cells of its file prove about their source. This is
+    /// independent of --cells: a result that is written proves no more.
     pub fn target_and_proof(
         &self,
         input: &Input,
@@ -48,11 +47,11 @@ impl Looking {
     }
 }
 
-/// What is asked.
+/// A solid that is queried.
 pub enum Target {
-    /// A stored octree whose cells prove what they say, and keep no surfaces: it is asked where it lies.
+    /// A stored octree whose cells are proven and keep no surfaces: it is queried in place.
     Cells(Box<Octree>),
-    /// Anything else, on a frame.
+    /// Any other solid, on a frame.
     Solid(Box<(Prepared, Frame)>),
 }
 
@@ -81,7 +80,7 @@ impl Target {
         }
     }
 
-    /// The frame that it is asked on.
+    /// Returns the frame of the queries.
     pub fn frame(&self) -> &Frame {
         match self {
             Target::Cells(octree) => octree.frame(),

@@ -9,7 +9,7 @@ use leafless::exchange::{self, MeshOptions};
 use leafless::mesh::MeshAttribute;
 use leafless::{Metadata, Octree, TriangleMesh};
 
-/// Values at points, the type that suits them, and what is known of them.
+/// Values at points, with the suitable type and their metadata.
 pub struct Values {
     pub attribute: Box<dyn Attribute>,
     pub kind: Option<ScalarType>,
@@ -17,12 +17,12 @@ pub struct Values {
 }
 
 impl Values {
-    /// Values of which nothing is known.
+    /// Returns values without metadata.
     pub fn plain(attribute: Box<dyn Attribute>) -> Values {
         Values { attribute, kind: None, metadata: Metadata::new() }
     }
 
-    /// The numbers of the bodies of a mesh.
+    /// Returns the numbers of the bodies of a mesh.
     pub fn of_bodies(input: &Input, octree: &Octree) -> Result<Values, Failure> {
         let mesh = mesh(input, &input.read()?, octree)?;
         let labels = mesh.bodies().and_then(|labels| MeshAttribute::labels("body", labels)).of(input)?;
@@ -30,7 +30,8 @@ impl Values {
         Ok(Values { kind: Some(ScalarType::U32), ..Values::plain(Box::new(attribute)) })
     }
 
-    /// The values in a file, for a channel of this name. Of those of a mesh the user may `pick` some.
+    /// Returns the values in a file, for a channel of this name. The user may `pick` one of the attributes of
+    /// a mesh.
     pub fn of_file(
         from: &Input,
         name: &str,
@@ -85,7 +86,7 @@ impl Values {
     }
 }
 
-/// A mesh in the unit of a solid, if both are known.
+/// Reads a mesh, converted to the unit of a solid if both units are known.
 fn mesh(input: &Input, bytes: &[u8], octree: &Octree) -> Result<TriangleMesh, Failure> {
     let file = exchange::read_mesh(bytes, &MeshOptions::default()).of(input)?;
     let unit = octree.metadata().get("units").and_then(|unit| unit.parse().ok());
@@ -99,7 +100,7 @@ fn mesh(input: &Input, bytes: &[u8], octree: &Octree) -> Result<TriangleMesh, Fa
     mesh.sewn().of(input)
 }
 
-/// The channel of a solid that the user names; without a name, the only one.
+/// Returns the channel of a solid that the user names; without a name, the only one.
 pub fn find<'o>(octree: &'o Octree, input: &Input, name: Option<&str>) -> Result<&'o Channel, Failure> {
     let known: Vec<&str> = octree.channels().iter().map(Channel::name).collect();
     let list = known.join(", ");

@@ -1,4 +1,4 @@
-//! Volumes from files, NRRD, MetaImage and raw: which voxels are inside, and what is told of them.
+//! Volumes from files (NRRD, MetaImage and raw), and the options of reading them.
 
 use crate::failure::{Failure, Of, Problem, complain};
 use crate::options::{list, number, numbers};
@@ -15,32 +15,32 @@ use leafless::exchange::{
 use leafless::solid::{Band, Samples, VoxelGrid};
 use leafless::{Affine, AnySolid, Control, Error, Frame, Volume};
 
-/// Which voxels of a volume are inside, and what the bytes of one without a header mean.
+/// The options of reading a volume: its threshold, and the format of a file without a header.
 #[derive(Clone, Default, Args)]
 #[command(next_help_heading = "Volumes (NRRD, MetaImage, raw)")]
 pub struct Sampling {
-    /// Least sample of a volume (NRRD, MetaImage, raw) that is inside. Without it: the middle of the range of
-    /// the samples' type, 0 for floating point numbers; if all samples lie on one side of that, the number
-    /// that parts their histogram best (by Otsu's method), which is told
+    /// Least sample of a volume (NRRD, MetaImage, raw) that is inside [default: the middle of the range of
+    /// the samples' type, 0 for floating-point numbers; if all samples lie on one side of it, the number that
+    /// separates their histogram best (Otsu's method), and a note says so]
     #[arg(long, value_name = "T", value_parser = threshold, allow_hyphen_values = true)]
     threshold: Option<f64>,
-    /// Read the file as a raw volume, which has no header: an array of so many samples along x, y and z, x
-    /// fastest
+    /// Read the file as a raw volume, which has no header: an array with this many samples along x, y and z,
+    /// x fastest
     #[arg(long, value_name = "NX,NY,NZ", value_parser = extents)]
     extents: Option<[u32; 3]>,
-    /// Type of the samples of a raw volume. Without it: u8
+    /// Type of the samples of a raw volume [default: u8]
     #[arg(long = "type", value_parser = kinds(), requires = "extents")]
     kind: Option<SampleKind>,
-    /// Edges of the voxels of a raw volume along x, y and z, or one for all. Without it: 1
+    /// Edges of the voxels of a raw volume along x, y and z, or one number for all [default: 1]
     #[arg(long, value_name = "S|SX,SY,SZ", value_parser = spacing, requires = "extents")]
     spacing: Option<[f64; 3]>,
-    /// Lower corner of the first voxel of a raw volume. Without it: 0,0,0
+    /// Lower corner of the first voxel of a raw volume [default: 0,0,0]
     #[arg(long, value_name = "X,Y,Z", value_parser = corner, requires = "extents", allow_hyphen_values = true)]
     corner: Option<[f64; 3]>,
-    /// Bytes of a raw volume before its first sample. Without it: 0
+    /// Bytes of a raw volume before its first sample [default: 0]
     #[arg(long, value_name = "BYTES", requires = "extents")]
     skip: Option<u64>,
-    /// The first byte of each sample of a raw volume is the one of the highest weight
+    /// The first byte of each sample of a raw volume is the most significant one
     #[arg(long, requires = "extents")]
     big_endian: bool,
 }
@@ -78,18 +78,18 @@ fn kinds() -> impl TypedValueParser<Value = SampleKind> {
 /// A volume as a solid.
 pub struct Voxels {
     pub solid: AnySolid,
-    /// The frame whose finest cells are voxels, if voxels are cubes along the axes.
+    /// The frame whose finest cells are the voxels, if the voxels are cubes along the axes.
     pub frame: Option<Frame>,
     pub unit: Option<LengthUnit>,
     pub volume: Volume<'static>,
-    /// What moves the grid to its place, if its axes are not x, y and z.
+    /// The map from the grid to its place, if its axes are not x, y and z.
     pub placement: Option<Affine>,
     pub format: String,
     pub kind: SampleKind,
     pub threshold: f64,
 }
 
-/// What a file holds.
+/// The contents of a file.
 struct Found {
     samples: Samples<'static>,
     grid: VoxelGrid,
@@ -101,14 +101,14 @@ struct Found {
 }
 
 impl Sampling {
-    /// Whether the user says that files are volumes without headers.
+    /// True if the user states that files are volumes without headers.
     pub fn is_raw(&self) -> bool {
         self.extents.is_some()
     }
 
-    /// Refuses the options for volumes where something else is read: `what` it is.
+    /// Refuses the options for volumes if something else is read; `what` names it.
     pub fn refuse(&self, input: &Input, what: &str) -> Result<(), Failure> {
-        // (All others need --extents.)
+        // (All others require --extents.)
         let given = [("--threshold", self.threshold.is_some()), ("--extents", self.is_raw())];
         match given.into_iter().find(|option| option.1) {
             Some((option, _)) => Err(Failure::Usage(format!("{option} is for volumes: {input} is {what}"))),
@@ -116,12 +116,12 @@ impl Sampling {
         }
     }
 
-    /// The volume in a file with these bytes, whose samples may be in another file beside it.
+    /// Reads the volume in a file with these bytes. The samples may be in another file beside it.
     pub fn read(&self, input: &Input, bytes: &[u8]) -> Result<Voxels, Failure> {
         self.parted(input, bytes, default_threshold)
     }
 
-    /// The same where samples are values, so that nobody asks which of them are inside.
+    /// Reads a volume whose samples are values, so that the threshold does not matter.
     pub fn read_values(&self, input: &Input, bytes: &[u8]) -> Result<Voxels, Failure> {
         self.parted(input, bytes, |_, _, kind| kind.half_range())
     }
@@ -163,23 +163,24 @@ impl Sampling {
     }
 }
 
-/// The threshold if the user names none.
+/// Returns the threshold if the user names none.
 fn default_threshold(input: &Input, samples: &Samples<'_>, kind: SampleKind) -> f64 {
     let half = kind.half_range();
     let Some([least, greatest]) = histogram::range(samples) else { return half };
     if least < half && half <= greatest {
         return half;
     }
-    // (What is the same everywhere is all inside, or all outside.)
+    // (A constant volume is all inside, or all outside.)
     let Some(best) = histogram::best_threshold(samples) else { return half };
     let range = format!(
-        "its samples go from {} to {}, all on one side of {}",
+        "its samples range from {} to {}, all on one side of {}",
         told(least),
         told(greatest),
         told(half)
     );
     complain(&format!(
-        "{input}: note: {range}: they are inside from {} on, which parts them best; --threshold chooses another",
+        "{input}: note: {range}: they are inside from {} on, the threshold that separates them best; \
+         --threshold chooses another",
         told(best)
     ));
     best
@@ -188,7 +189,7 @@ fn default_threshold(input: &Input, samples: &Samples<'_>, kind: SampleKind) -> 
 fn with_header(input: &Input, bytes: &[u8]) -> Result<Found, Failure> {
     let file = match (input.path(), volume_data_file(bytes).of(input)?) {
         (Some(path), Some(_)) => open_volume(path).map_err(|error| match &error {
-            // Of the header or of the file of its samples.
+            // The header, or the file of its samples.
             Error::File { path, .. } => Failure::of(path.display(), error.text()),
             _ => Failure::of(input, error.text()),
         })?,
@@ -206,7 +207,7 @@ fn with_header(input: &Input, bytes: &[u8]) -> Result<Found, Failure> {
 }
 
 impl Voxels {
-    /// The volume under a map.
+    /// Returns the volume under a map.
     pub fn placed(self, map: &Affine) -> Result<Voxels, Error> {
         let placement = match &self.placement {
             Some(own) => after(map, own)?,
@@ -217,7 +218,7 @@ impl Voxels {
         Ok(Voxels { solid, frame, placement: Some(placement), ..self })
     }
 
-    /// The samples as values at points.
+    /// Returns the samples as values at points.
     pub fn attribute(&self, interpolation: Interpolation) -> Result<Box<dyn Attribute>, Error> {
         let samples = VolumeAttribute::new(self.volume.clone(), interpolation);
         Ok(match &self.placement {

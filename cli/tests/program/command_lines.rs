@@ -38,11 +38,9 @@ struct Choice {
 
 /// Returns all subcommands with their options, as listed by the program's help.
 fn subcommands(place: &Place) -> BTreeMap<String, Vec<Choice>> {
-    let help = place.run("--help").good();
-    let list = help.text().split("Commands:\n").nth(1).unwrap().split("\n\n").next().unwrap().to_owned();
-    let names =
-        list.lines().filter_map(|line| line.strip_prefix("  ")?.split_whitespace().next().map(str::to_owned));
-    names
+    place
+        .commands()
+        .into_iter()
         .filter(|name| name != "help" && name != "demo")
         .map(|name| (name.clone(), choices(place, &name)))
         .collect()
@@ -51,10 +49,13 @@ fn subcommands(place: &Place) -> BTreeMap<String, Vec<Choice>> {
 fn choices(place: &Place, name: &str) -> Vec<Choice> {
     let help = place.run(&format!("{name} --help")).good();
     let mut found: Vec<Choice> = vec![];
-    for line in help.text().lines() {
+    let options = help.text().split("Details:").next().unwrap();
+    for line in options.lines() {
+        // Help texts are indented further than the options.
+        let is_option = !line.starts_with("          ");
         let line = line.trim_start();
         if let Some(option) =
-            line.split(' ').find(|word| word.starts_with("--")).filter(|_| line.starts_with('-'))
+            line.split(' ').find(|word| word.starts_with("--")).filter(|_| is_option && line.starts_with('-'))
         {
             let value = line.split_once(option).is_some_and(|(_, rest)| rest.trim_start().starts_with('<'));
             found.push(Choice {

@@ -200,7 +200,7 @@ fn what_is_cut_off_is_told() {
     place.write("half.csg", "halfspace([0, 0, 1, -4]);");
     place.run("dexelize half.csg -o no.lfl --resolution 8").bad(1, &["half.csg", "--bounds"]);
     for (line, words) in [
-        ("half.csg --bounds 0,0,0,8", "may go on outside of the bounds"),
+        ("half.csg --bounds 0,0,0,8", "may extend beyond the bounds"),
         ("cube.stl --bounds 0,0,0,2", "sticks out of the bounds"),
     ] {
         let run = place.run(&format!("dexelize {line} -o out.lfl --resolution 8 --json"));
@@ -215,7 +215,7 @@ fn what_is_cut_off_is_told() {
     place.run(&format!("voxelize cube.stl -o cells.lfl --depth 5 {BOUNDS} --rule sampled")).good();
     place.run("complement cells.lfl -o rest.lfl").good();
     let run = place.run("dexelize rest.lfl -o out.lfl");
-    assert!(run.code == Some(0) && run.errors.contains("may go on outside of its bounds"), "{run:?}");
+    assert!(run.code == Some(0) && run.errors.contains("may extend beyond its bounds"), "{run:?}");
 }
 
 #[test]

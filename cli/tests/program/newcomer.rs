@@ -156,7 +156,7 @@ fn thresholds_come_from_the_histogram() {
     let raw = "ct.raw --extents 16,16,16 --type u16";
     let run = place.run(&format!("voxelize {raw} -o ct.lfl"));
     assert_eq!((run.code, run.errors.lines().count()), (Some(0), 1), "{run:?}");
-    let words = ["ct.raw: note: its samples go from 90 to 1200", "32767.5", "--threshold"];
+    let words = ["ct.raw: note: its samples range from 90 to 1200", "32767.5", "--threshold"];
     assert!(words.iter().all(|word| run.errors.contains(word)), "{run:?}");
     assert_eq!(volume(&place, "ct.lfl"), (2048.0, 2048.0));
     place.run(&format!("voxelize {raw} -o ct.lfl --threshold 1000")).good();

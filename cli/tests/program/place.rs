@@ -5,6 +5,7 @@
 
 use leafless::{TriangleMesh, exchange};
 use serde_json::Value;
+use std::collections::BTreeSet;
 use std::ffi::OsStr;
 use std::fmt;
 use std::io::Write;
@@ -44,6 +45,15 @@ impl Place {
         let mut command = Command::new(env!("CARGO_BIN_EXE_leafless"));
         command.args(arguments).current_dir(self.0.path()).stdin(Stdio::null());
         command
+    }
+
+    /// Returns the subcommands that the program's help lists.
+    pub fn commands(&self) -> BTreeSet<String> {
+        let help = self.run("--help").good();
+        // A line of the lists is a name, two blanks or more, and a text.
+        let names = help.text().lines().filter_map(|line| line.strip_prefix("  ")?.split_once("  "));
+        let names = names.filter(|(name, _)| !name.is_empty() && !name.starts_with('-'));
+        names.map(|(name, _)| name.to_owned()).collect()
     }
 
     /// Runs a command line. Blanks separate its words.

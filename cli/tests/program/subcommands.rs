@@ -365,7 +365,7 @@ fn a_scene_becomes_a_solid() {
     assert_eq!(place.files(), before);
     // The program reports a scene that sticks out.
     let out = place.run("csg sphere.csg -o out.lfl --depth 4 --bounds 0,0,0,100");
-    assert!(out.code == Some(0) && out.errors.contains("outside of the bounds"), "{out:?}");
+    assert!(out.code == Some(0) && out.errors.contains("beyond the bounds"), "{out:?}");
 }
 
 /// Cells with a well-known surface are left whole, with any number of threads, and also in scenes with other
@@ -521,7 +521,7 @@ fn open_meshes_are_taken_with_a_warning() {
     place.write("turned.stl", stl(&TriangleMesh::from_facets(&facets).unwrap()));
     for (name, words, boundary, misoriented) in [
         ("open.stl", &["warning", "open along 3 edges in 1 loop", "winding number"][..], 3, 0),
-        ("turned.stl", &["warning", "facing changes across 3 inner edges"], 0, 3),
+        ("turned.stl", &["warning", "orientation changes across 3 inner edges"], 0, 3),
     ] {
         for fill in ["", "--fill positive", "--fill non-zero"] {
             let run = place.run(&format!("voxelize {name} -o out.lfl --depth 4 {fill} --json"));
@@ -530,7 +530,7 @@ fn open_meshes_are_taken_with_a_warning() {
             assert!(run.errors.lines().all(|line| line.starts_with(&start)), "{run:?}");
             // The part enclosed in front of the hole may reach beyond the bounds.
             let clipped = run.json()["clipped"].as_bool().unwrap();
-            assert_eq!(run.errors.contains("go on outside of the bounds"), clipped, "{run:?}");
+            assert_eq!(run.errors.contains("extend beyond the bounds"), clipped, "{run:?}");
             assert_eq!(run.errors.lines().count(), 1 + usize::from(clipped), "{run:?}");
             for word in words {
                 assert!(run.errors.contains(word), "{word}: {run:?}");

@@ -115,7 +115,7 @@ fn what_lies_outside_of_the_bounds_is_not_disjoint() {
     for bounds in ["--bounds 10,10,10,4", "--bounds 0,0,0,1"] {
         let run = place.run(&format!("interfere cube.stl cube.stl {bounds}")).good();
         let verdict = line(run.text(), "verdict");
-        assert!(verdict.starts_with("undecided") && verdict.contains("outside of the bounds"), "{run:?}");
+        assert!(verdict.starts_with("undecided") && verdict.contains("beyond the bounds"), "{run:?}");
         assert_eq!(line(run.text(), "overlap"), "unknown");
         assert_eq!(line(run.text(), "clearance"), "unknown");
         let json = place.run(&format!("interfere cube.stl cube.stl {bounds} --json")).good().json();

@@ -90,7 +90,7 @@ fn booleans_take_volumes() {
     // Voxels that are no cubes are sampled on the cells of the solid. They reach out of the solid's cube.
     place
         .run("union ball.lfl flat.nrrd -o both.lfl")
-        .noted(&["flat.nrrd", "reach beyond the frame of ball.lfl"]);
+        .noted(&["flat.nrrd", "extend beyond the frame of ball.lfl"]);
 }
 
 #[test]
@@ -198,7 +198,7 @@ fn bitmaps() {
     place.run("bitmap ball.nrrd -o cells.raw").bad(1, &["ball.nrrd"]);
     place.run("complement ball.lfl -o outside.lfl").good();
     let outside = place.run("bitmap outside.lfl -o outside.raw");
-    assert!(outside.code == Some(0) && outside.errors.contains("may go on"), "{outside:?}");
+    assert!(outside.code == Some(0) && outside.errors.contains("may extend"), "{outside:?}");
     assert_eq!(
         read("outside.raw").iter().filter(|&&sample| sample == 255).count() as u64,
         4096 - self::inside()

@@ -11,11 +11,12 @@ use alloc::vec;
 use alloc::vec::Vec;
 
 impl ChannelRef<'_> {
-    /// Checks everything that a well-formed channel promises: links, ranks, nothing uniform, values that are
-    /// legal and differ from the one before, a canonical dictionary, a true level table. The channels that
-    /// the library makes pass by construction. O(n).
+    /// Checks everything that a well-formed channel guarantees: links, ranks, no uniform elements, legal
+    /// values that differ from the previous one, a canonical dictionary, a true level table. The channels
+    /// that the library makes pass by construction. O(n).
     ///
     /// # Errors
+    ///
     /// [`Error::Damaged`] with the first [`Damage`] found; [`Error::OutOfMemory`].
     pub fn check(&self) -> Result<(), Error> {
         self.check_links()?;
@@ -59,7 +60,8 @@ impl ChannelRef<'_> {
         Ok(())
     }
 
-    /// What a walk relies on to meet no element twice: links, and as many ranks as there are elements.
+    /// Checks the conditions under which a walk visits no element twice: the links, and the number of ranks,
+    /// which is that of the elements.
     pub(crate) fn check_links(&self) -> Result<(), Damage> {
         self.tree.check_links()?;
         let ranks = (self.value_rel.len(), self.value_base.len());
@@ -92,7 +94,7 @@ impl ChannelRef<'_> {
         Ok(())
     }
 
-    /// What is counted on each level: nodes, cells that have a value (`full`), cells that start one
+    /// Counts on each level the nodes, the cells that have a value (`full`), and the cells that start one
     /// (`partial`).
     pub(crate) fn count_levels(&self) -> Vec<LevelCounts> {
         let tree = &self.tree;

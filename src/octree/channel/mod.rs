@@ -1,7 +1,7 @@
-//! Channels: values inside a solid, in a tree of their own.
+//! Channels: values inside a solid, in a separate tree.
 //!
-//! [`ChannelRef`] explains how values are stored and does all reading; [`Channel`] owns or shares the arrays;
-//! the writer (crate-internal) is the one place where channels come into being.
+//! [`ChannelRef`] describes the storage of values, and does all reading; [`Channel`] owns or shares the
+//! arrays; the writer (crate-internal) is the one place where channels are made.
 
 mod check;
 mod owned;

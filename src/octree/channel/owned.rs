@@ -15,15 +15,15 @@ use yoke::erased::ErasedArcCart;
 
 /// A named array of values inside a cube: a colour, a temperature, a material at every point.
 ///
-/// A channel belongs to the solid that it is [attached](crate::Octree::with_channel) to, and travels in its
-/// file. Its tree is its own, and may be finer or coarser than the solid's. It is immutable, a clone costs
-/// two reference counts, and any number of threads may read it at once. [`ChannelRef`] tells how values are
-/// stored; all reading is done through its [`view`](Channel::view).
+/// A channel belongs to the solid that it is [attached](crate::Octree::with_channel) to, and is stored in its
+/// file. It has its own tree, which may be finer or coarser than the solid's. A channel is immutable, a clone
+/// costs two reference counts, and any number of threads may read it at once. [`ChannelRef`] describes the
+/// storage of values; all reading goes through the [`view`](Channel::view).
 #[derive(Clone)]
 pub struct Channel {
     arrays: Yoke<ChannelRef<'static>, ErasedArcCart>,
     metadata: Arc<Metadata>,
-    /// Whether the links were checked: those of a mapped file are when the channel is first read.
+    /// The result of checking the links: those of a mapped file are checked when the channel is first read.
     checked: Option<Arc<OnceBox<bool>>>,
 }
 
@@ -51,8 +51,8 @@ impl Channel {
         Channel { arrays: attached.erase_arc_cart(), metadata: Arc::new(metadata), checked: None }
     }
 
-    /// A channel whose arrays lie in `owner`, wherever that has them. Its links are checked on first use
-    /// unless they are `verified`.
+    /// Makes a channel whose arrays lie in `owner`. Its links are checked on first use, unless they are
+    /// `verified`.
     pub(crate) fn attach<C: Send + Sync + 'static, E>(
         owner: Arc<C>,
         metadata: Metadata,
@@ -66,13 +66,13 @@ impl Channel {
         })
     }
 
-    /// The name by which a solid knows the channel: the value of `name` in its metadata; empty if there is
+    /// Returns the name of the channel within a solid: the value of `name` in its metadata; empty if there is
     /// none.
     pub fn name(&self) -> &str {
         self.metadata.get("name").unwrap_or("")
     }
 
-    /// The same channel with another name; the arrays are shared.
+    /// Returns the same channel with another name; the arrays are shared.
     #[must_use]
     pub fn with_name(&self, name: &str) -> Channel {
         let mut metadata = (*self.metadata).clone();
@@ -80,41 +80,41 @@ impl Channel {
         self.with_metadata(metadata)
     }
 
-    /// Facts about the channel that its file carries along. Names in use: `name`, `unit` (of the values),
-    /// `meaning` (what they are, such as `colour` or `density`).
+    /// Returns the facts about the channel that its file stores. Names in use: `name`, `unit` (of the
+    /// values), `meaning` (such as `colour` or `density`).
     pub fn metadata(&self) -> &Metadata {
         &self.metadata
     }
 
-    /// The same channel with other metadata; the arrays are shared.
+    /// Returns the same channel with other metadata; the arrays are shared.
     #[must_use]
     pub fn with_metadata(&self, metadata: Metadata) -> Channel {
         Channel { metadata: Arc::new(metadata), ..self.clone() }
     }
 
-    /// The same channel with the metadata of another, which are shared.
+    /// Returns the same channel with the metadata of another channel, which are shared.
     #[must_use]
     pub fn with_metadata_from(&self, other: &Channel) -> Channel {
         Channel { metadata: other.metadata.clone(), ..self.clone() }
     }
 
-    /// Where the channel lies, and how finely its values may be told apart: the solid's cube, and a depth of
-    /// its own.
+    /// Returns the frame of the channel: the solid's cube, and the channel's own depth, which limits the
+    /// resolution of its values.
     pub fn frame(&self) -> &Frame {
         self.arrays.get().frame()
     }
 
-    /// What a value is.
+    /// Returns the type of the values.
     pub fn value_type(&self) -> ValueType {
         self.arrays.get().value_type()
     }
 
-    /// Values that are stored: one for each run of equal ones.
+    /// Returns the number of stored values: one for each run of equal values.
     pub fn value_count(&self) -> u64 {
         self.arrays.get().value_count()
     }
 
-    /// Bytes that the channel's arrays take: elements, bricks, ranks and values.
+    /// Returns the bytes of the channel's arrays: elements, bricks, ranks and values.
     pub fn bytes(&self) -> u64 {
         let ChannelRef { tree, value_rel, value_base, values, .. } = self.arrays.get();
         let links = size_of_val(tree.planes) + size_of_val(tree.rel) + size_of_val(tree.base);
@@ -122,10 +122,11 @@ impl Channel {
         (links + ranks + values.len()) as u64 + tree.bricks.bytes() as u64
     }
 
-    /// The view that all reading goes through. Free, except for a channel of a file that was mapped without
-    /// verification: when it is first asked for, the links of all elements are checked in one pass.
+    /// Returns the view through which all reading goes. Free, except for a channel of a file that was mapped
+    /// without verification: the first call checks the links of all elements in one pass.
     ///
     /// # Errors
+    ///
     /// [`Error::Damaged`] for a channel of a mapped file whose links are damaged.
     pub fn view(&self) -> Result<&ChannelRef<'_>, Error> {
         let view = self.arrays.get();
@@ -149,8 +150,8 @@ impl core::fmt::Debug for Channel {
     }
 }
 
-/// Equal as functions on cells: the same frame, type and values in the same cells. Metadata does not count.
-/// O(n).
+/// Channels are equal if they are the same function on cells: the same frame, type and values in the same
+/// cells. Metadata does not count. O(n).
 impl PartialEq for Channel {
     fn eq(&self, other: &Channel) -> bool {
         let (a, b) = (self.arrays.get(), other.arrays.get());

@@ -1,4 +1,4 @@
-//! What the values of a channel are made of.
+//! The types of a channel's values.
 
 use crate::error::Error;
 use alloc::vec::Vec;
@@ -18,10 +18,10 @@ pub enum ScalarType {
 }
 
 impl ScalarType {
-    /// All of them.
+    /// All number types.
     pub const ALL: [ScalarType; 4] = [ScalarType::U8, ScalarType::U16, ScalarType::U32, ScalarType::F32];
 
-    /// Bytes that a number takes.
+    /// Returns the bytes of a number.
     pub fn size(self) -> usize {
         match self {
             ScalarType::U8 => 1,
@@ -30,7 +30,7 @@ impl ScalarType {
         }
     }
 
-    /// Its name: `u8`, `u16`, `u32` or `f32`.
+    /// Returns the name of the type: `u8`, `u16`, `u32` or `f32`.
     pub fn name(self) -> &'static str {
         match self {
             ScalarType::U8 => "u8",
@@ -40,7 +40,7 @@ impl ScalarType {
         }
     }
 
-    /// The nearest number of the type, as its bits: integers round half to even, and zero is positive.
+    /// Returns the bits of the nearest number of the type: integers round half to even, and zero is positive.
     /// `None` beyond the type's range, and for NaN.
     fn encode(self, value: f64) -> Option<u32> {
         let integer = |greatest: u32| {
@@ -66,7 +66,7 @@ impl ScalarType {
     }
 }
 
-/// What a value of a channel is: one to four numbers of one type.
+/// The type of a channel's values: one to four numbers of one type.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
 pub struct ValueType {
     scalar: ScalarType,
@@ -77,9 +77,10 @@ pub struct ValueType {
 pub(crate) type Bits = [u32; 4];
 
 impl ValueType {
-    /// Values of so many numbers each.
+    /// Returns the type of values with `components` numbers each.
     ///
     /// # Errors
+    ///
     /// [`Error::Argument`] unless `components` is 1 to 4.
     pub fn new(scalar: ScalarType, components: u8) -> Result<ValueType, Error> {
         if (1..=4).contains(&components) {
@@ -88,25 +89,26 @@ impl ValueType {
         Err(Error::Argument { name: "components", problem: "must be 1 to 4" })
     }
 
-    /// The type of the numbers.
+    /// Returns the type of the numbers.
     pub fn scalar(self) -> ScalarType {
         self.scalar
     }
 
-    /// How many numbers a value has: 1 to 4.
+    /// Returns the number of components of a value: 1 to 4.
     pub fn components(self) -> usize {
         self.components.into()
     }
 
-    /// Bytes that a value takes: 1 to 16.
+    /// Returns the bytes of a value: 1 to 16.
     pub fn size(self) -> usize {
         self.scalar.size() * self.components()
     }
 
-    /// The value that a channel of this type keeps for `value`: each number rounded to the nearest one of the
-    /// type, integers half to even. The numbers beyond the components do not count, and become 0.
+    /// Returns the value that a channel of this type stores for `value`: each number rounded to the nearest
+    /// one of the type, integers half to even. The numbers beyond the components do not count, and become 0.
     ///
     /// # Errors
+    ///
     /// [`Error::Argument`] if a number is beyond the range of the type, infinite or not a number.
     pub fn nearest(self, value: [f64; 4]) -> Result<[f64; 4], Error> {
         Ok(self.decode(self.encode(value)?))
@@ -121,7 +123,7 @@ impl ValueType {
         Ok(bits)
     }
 
-    /// Appends a value as it lies in memory.
+    /// Appends a value in its form in memory.
     pub(super) fn write(self, value: Bits, out: &mut Vec<u8>) -> Result<(), Error> {
         out.try_reserve(self.size())?;
         for bits in &value[..self.components()] {
@@ -134,7 +136,7 @@ impl ValueType {
         Ok(())
     }
 
-    /// The value that lies in memory as `raw`.
+    /// Returns the value with the bytes `raw` in memory.
     #[inline]
     pub(super) fn read(self, raw: &[u8]) -> Bits {
         let mut bits = [0; 4];

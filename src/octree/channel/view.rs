@@ -1,4 +1,4 @@
-//! The borrowed view of a channel, on which all reading is written.
+//! The borrowed view of a channel, which does all reading.
 
 use super::value::{Bits, ValueType};
 use crate::lattice::{Frame, morton};
@@ -7,11 +7,11 @@ use crate::octree::view::OctreeRef;
 use crate::octree::word::Planes;
 use yoke::Yokeable;
 
-/// A borrowed channel: values inside a cube, in a tree of its own. Copying it copies no value.
+/// A borrowed channel: values inside a cube, in a separate tree. Copying it copies no values.
 ///
 /// # How values are stored
 ///
-/// The tree of a channel is stored as that of an [octree](OctreeRef), and read differently:
+/// The tree of a channel is stored like that of an [octree](OctreeRef), but has another meaning:
 ///
 /// | lower | upper | the cell |
 /// |---|---|---|
@@ -20,26 +20,26 @@ use yoke::Yokeable;
 /// | 0 | 1 | has the value of the cell before it that has one |
 /// | 1 | 0 | is refined: it has a node |
 ///
-/// *Before* is level order: level by level, in Morton order within a level. So the place of a cell's value in
-/// the array of values is the number of cells that start one, up to and including it, less one: a rank. A
-/// region of equal values costs one value, however many cells it has, and a channel with one value everywhere
-/// has no element at all.
+/// *Before* means in level order: level by level, in Morton order within a level. So the index of a cell's
+/// value in the array of values is a rank: the number of cells up to and including this cell that start a
+/// value, less one. A region of equal values costs one value, however many cells it has. A channel with one
+/// value everywhere has no element at all.
 ///
-/// Eight equal siblings are one cell, and a cell starts a value only if that differs from the value before.
-/// So the same values in the same cells have one representation.
+/// Eight equal siblings are one cell, and a cell starts a value only if its value differs from the one
+/// before. So the same values in the same cells have only one representation.
 #[derive(Debug, Clone, Copy, Yokeable)]
 pub struct ChannelRef<'a> {
     pub(crate) tree: OctreeRef<'a>,
     pub(crate) value_type: ValueType,
-    /// Values that start before each element or brick, less the base of its 1024.
+    /// Number of values that start before each element or brick, less the base of its block of 1024.
     pub(crate) value_rel: &'a [u16],
-    /// Values that start before every 1024th element or brick.
+    /// Number of values that start before every 1024th element or brick.
     pub(crate) value_base: &'a [u64],
-    /// The values, their numbers in this machine's byte order.
+    /// The values; their numbers are in this machine's byte order.
     pub(crate) values: &'a [u8],
 }
 
-/// A cell of a channel on the way down.
+/// A cell of a channel during a descent.
 #[derive(Debug, Clone, Copy)]
 pub(crate) enum Spot {
     /// The cell has one value everywhere, or none.
@@ -57,7 +57,7 @@ pub(crate) struct SplitSpot {
     octant: Option<u32>,
 }
 
-/// What the cells of an octant amount to.
+/// The content of an octant.
 pub(crate) enum Octant {
     Nothing,
     /// One value, that of its first cell.
@@ -65,7 +65,7 @@ pub(crate) enum Octant {
     Cut,
 }
 
-/// What octant `k` of an element amounts to.
+/// Returns the content of octant `k` of an element.
 #[inline]
 pub(crate) fn octant(planes: Planes, k: u32) -> Octant {
     match ((planes.lower >> (8 * k)) as u8, (planes.upper >> (8 * k)) as u8) {
@@ -76,27 +76,27 @@ pub(crate) fn octant(planes: Planes, k: u32) -> Octant {
 }
 
 impl<'a> ChannelRef<'a> {
-    /// Where the channel lies, and how finely its values may be told apart.
+    /// Returns the frame of the channel, whose depth limits the resolution of its values.
     pub fn frame(&self) -> &Frame {
         self.tree.frame()
     }
 
-    /// What a value is.
+    /// Returns the type of the values.
     pub fn value_type(&self) -> ValueType {
         self.value_type
     }
 
-    /// Values that are stored: one for each run of equal ones.
+    /// Returns the number of stored values: one for each run of equal values.
     pub fn value_count(&self) -> u64 {
         (self.values.len() / self.value_type.size()) as u64
     }
 
-    /// Elements and bricks of the tree; see [`OctreeRef::element_count`].
+    /// Returns the number of elements and bricks of the tree; see [`OctreeRef::element_count`].
     pub fn element_count(&self) -> u64 {
         self.tree.element_count() + self.tree.brick_count()
     }
 
-    /// The stored value with this index; `None` beyond the end.
+    /// Returns the stored value with this index; `None` beyond the end.
     #[inline]
     pub(crate) fn stored(&self, index: usize) -> Option<Bits> {
         let size = self.value_type.size();
@@ -105,7 +105,7 @@ impl<'a> ChannelRef<'a> {
         Some(self.value_type.read(raw))
     }
 
-    /// The value of the cell `c` of the element or brick `index`, whose cells are `planes`.
+    /// Returns the value of the cell `c` of the element or brick `index`, whose cells are `planes`.
     #[inline]
     fn value_in(&self, index: usize, planes: Planes, c: u32) -> Option<Bits> {
         let before = self.value_base.get(index >> 10)?.checked_add(u64::from(*self.value_rel.get(index)?))?;
@@ -113,7 +113,7 @@ impl<'a> ChannelRef<'a> {
         self.stored(usize::try_from(before.checked_add(rank.into())?.checked_sub(1)?).ok()?)
     }
 
-    /// The value of the finest cell at `at`, if that lies in the universe.
+    /// Returns the value of the finest cell at `at`, if that lies in the universe.
     pub(crate) fn bits_at(&self, at: [u32; 3]) -> Option<Bits> {
         match self.tree.root {
             Tag::Branch => {}
@@ -141,7 +141,7 @@ impl<'a> ChannelRef<'a> {
         None
     }
 
-    /// The universe.
+    /// Returns the universe.
     pub(crate) fn root(&self) -> Spot {
         match self.tree.root {
             Tag::Branch => {
@@ -153,7 +153,7 @@ impl<'a> ChannelRef<'a> {
         }
     }
 
-    /// The eight children of a cell.
+    /// Returns the eight children of a cell.
     pub(crate) fn children(&self, spot: &Spot) -> [Spot; 8] {
         let &Spot::Split(SplitSpot { e, index, planes, octant: half }) = spot else { return [*spot; 8] };
         core::array::from_fn(|k| match half {

@@ -1,8 +1,8 @@
-//! The one place where channels come into being.
+//! The one place where channels are made.
 //!
-//! As with octrees, elements are handed over depth first, each after its children, and every level has an
-//! output array of its own. Which cells start a value is known inside an element at once, and between
-//! elements only when the levels are joined: until then the first cell with a value of every element starts
+//! As for octrees, elements are written depth first, each after its children, and every level has its own
+//! output array. Inside an element, the cells that start a value are known at once. Between elements, they
+//! are known only when the levels are joined: until then the first cell with a value in every element starts
 //! one.
 
 use super::owned::{Channel, ChannelArrays};
@@ -18,10 +18,10 @@ use crate::octree::word::Planes;
 use crate::octree::{Metadata, Tag};
 use alloc::vec::Vec;
 
-/// What a cell is once everything below it is known.
+/// The content of a cell once everything below it is known.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(crate) enum Filled {
-    /// Any value will do, or none.
+    /// The cell may take any value, or none.
     Free,
     /// The cell has one value, or none.
     Settled(Option<Bits>),
@@ -47,7 +47,7 @@ pub(crate) struct ChannelWriter<'j> {
 #[derive(Default)]
 struct Level {
     planes: Vec<Planes>,
-    /// The values that start in each element, one after another.
+    /// The values that start in each element, in the order of the elements.
     values: Vec<u8>,
 }
 
@@ -58,7 +58,7 @@ impl<'j> ChannelWriter<'j> {
         Ok(ChannelWriter { job, depth, value_type, levels, untold: (0, 0) })
     }
 
-    /// An empty writer for a part of the same channel, to be [appended](Self::append) later.
+    /// Returns an empty writer for a part of the same channel, to be [appended](Self::append) later.
     pub(crate) fn sibling(&self) -> Result<ChannelWriter<'j>, Error> {
         ChannelWriter::new(self.job, self.depth, self.value_type)
     }
@@ -67,8 +67,8 @@ impl<'j> ChannelWriter<'j> {
         self.job
     }
 
-    /// Hands over an element or brick of level `e` whose children have been handed over; returns what its
-    /// cell is, which is BRANCH if it had to be stored. Cells that are free take what is before them.
+    /// Stores an element or brick of level `e` whose children have been stored. Returns the content of its
+    /// cell, which is BRANCH if it had to be stored. Free cells take the value before them.
     pub(crate) fn put(&mut self, e: usize, cells: &Cells) -> Result<Filled, Error> {
         let real = if e == 0 { root_cells(self.depth).count_ones() as usize } else { 64 };
         let cells = &cells[..real];
@@ -116,7 +116,7 @@ impl<'j> ChannelWriter<'j> {
         self.job.spend(elements as usize, bytes)
     }
 
-    /// Takes over what a sibling wrote, which comes after all that this one wrote so far.
+    /// Takes over the output of a sibling, which comes after all output of this writer so far.
     pub(crate) fn append(&mut self, mut other: ChannelWriter<'j>) -> Result<(), Error> {
         other.report()?;
         for (level, theirs) in self.levels.iter_mut().zip(other.levels) {
@@ -128,8 +128,8 @@ impl<'j> ChannelWriter<'j> {
         Ok(())
     }
 
-    /// Makes the channel: joins the levels, and lets only those cells start a value whose value differs from
-    /// the one before. `root` is what the last [`put`](Self::put) of level 0 returned.
+    /// Makes the channel: joins the levels. Only cells whose value differs from the one before start a value.
+    /// `root` is the content that the last [`put`](Self::put) of level 0 returned.
     pub(crate) fn finish(mut self, frame: Frame, root: Filled, metadata: Metadata) -> Result<Channel, Error> {
         self.report()?;
         let size = self.value_type.size();

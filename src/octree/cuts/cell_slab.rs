@@ -1,24 +1,23 @@
-//! Slabs that were made for one cell: two words each.
+//! Slabs made for one cell: two words each.
 
 use crate::lattice::{Cell, axes};
 use bytemuck::{Pod, Zeroable};
 use core::ops::RangeInclusive;
 
-/// A slab that was made for one cell, whose planes lie a whole number of steps from the cell's centre. It has
-/// a meaning of its own outside of the cell, too, but nothing is known there of the surface that it stands
-/// for.
+/// A slab made for one cell. Its planes lie a whole number of steps from the cell's centre. The slab is also
+/// defined outside the cell, but nothing is known there about the surface that it represents.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Pod, Zeroable)]
 #[repr(C)]
 pub(crate) struct CellSlab {
-    /// The cell, in bits 0 to 60: a one, and behind it the octants from the universe down, three bits each.
-    /// In bits 61 and 62 which of the cell's slabs it is.
+    /// The cell, in bits 0 to 60: a one, followed by the octants from the universe down, three bits each.
+    /// Bits 61 and 62 contain the index of the slab in its cell.
     pub home: u64,
     /// From the lowest bit on: two components of the normal, 16 bits each; the inner offset, 19; the width,
-    /// 4; the step, 6; the axis of the greatest component, 2; whether that is negative.
+    /// 4; the step, 6; the axis of the greatest component, 2; the sign of that component.
     pub planes: u64,
 }
 
-/// The planes of a slab in whole numbers.
+/// The planes of a slab as integers.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(crate) struct Steps {
     /// The axis along which the normal has the component 1, or −1.
@@ -26,25 +25,25 @@ pub(crate) struct Steps {
     pub is_negative: bool,
     /// The components along the next two axes, in units of 2^-15.
     pub others: [i16; 2],
-    /// How far the inner plane lies from the cell's centre, in steps: n · (p − centre) of its points, where n
-    /// is the normal.
+    /// The inner offset in steps: n · (p − centre) for the points p of the inner plane, where n is the normal
+    /// and centre that of the cell.
     pub offset: i32,
-    /// From there to the outer plane, in steps.
+    /// The distance from the inner to the outer plane, in steps.
     pub width: u8,
-    /// A step is the universe's edge divided by 2^step.
+    /// Exponent: a step is the universe's edge divided by 2^step.
     pub step: u8,
 }
 
 impl Steps {
-    /// Units of a normal in its greatest component.
+    /// The greatest component of a normal, in units of the others.
     pub(crate) const UNIT: f64 = 32_768.0;
-    /// The greatest offset, and one less than the least.
+    /// The greatest offset; the least one is −`MOST_OFFSET` − 1.
     pub(crate) const MOST_OFFSET: i32 = (1 << 18) - 1;
     pub(crate) const MOST_WIDTH: u8 = 15;
-    /// The exponents of steps. Within these, all numbers of a slab of any cell are doubles.
+    /// The range of exponents of steps, in which all numbers of a slab of any cell are doubles.
     pub(crate) const STEPS: RangeInclusive<u8> = 2..=50;
 
-    /// The normal.
+    /// Returns the normal.
     pub(crate) fn normal(&self) -> [f64; 3] {
         let mut normal = [if self.is_negative { -1.0 } else { 1.0 }; 3];
         for (k, &own) in (1..).zip(&self.others) {
@@ -54,14 +53,14 @@ impl Steps {
     }
 }
 
-/// Bits of the cell in [`CellSlab::home`].
+/// Number of bits of the cell in [`CellSlab::home`].
 const CELL: u32 = 61;
 
-/// What tells numbers of slabs of cells from other numbers of slabs.
+/// The bit that distinguishes the numbers of slabs made for cells from other numbers of slabs.
 const MADE_FOR_A_CELL: u64 = 1 << 63;
 
 impl CellSlab {
-    /// The `index`-th slab of a cell, up to the third.
+    /// Returns the slab of a cell with this `index`, 0 to 2.
     pub(crate) fn new(cell: Cell, index: u8, steps: &Steps) -> CellSlab {
         let octants = 1 << (3 * cell.level) | cell.morton();
         let [a, b] = steps.others.map(|own| u64::from(own as u16));
@@ -90,14 +89,14 @@ impl CellSlab {
             axis: part(61, 2) as usize,
             is_negative: part(63, 1) != 0,
             others: [part(0, 16) as u16 as i16, part(16, 16) as u16 as i16],
-            // (The sign is that of the highest of 19 bits.)
+            // (The highest of 19 bits is the sign.)
             offset: ((part(32, 19) as i32) << 13) >> 13,
             width: part(51, 4) as u8,
             step: part(55, 6) as u8,
         }
     }
 
-    /// The cell; `None` of a damaged slab.
+    /// Returns the cell; `None` for a damaged slab.
     pub(crate) fn home(self) -> Option<Cell> {
         let octants = self.home & ((1 << CELL) - 1);
         let level = octants.checked_ilog2().filter(|bits| bits % 3 == 0)? / 3;
@@ -105,12 +104,12 @@ impl CellSlab {
         Some(cell)
     }
 
-    /// Its number among all slabs of its origin.
+    /// Returns the number of the slab among all slabs of its origin.
     pub(crate) fn number(self) -> u64 {
         MADE_FOR_A_CELL | self.home
     }
 
-    /// The number of the `index`-th slab of a cell, up to the sixth, whether it has the form of this or not.
+    /// Returns the number of the slab of a cell with this `index`, 0 to 5, whether it has this form or not.
     pub(crate) fn number_in(cell: Cell, index: u8) -> u64 {
         let (octants, index) = (1 << (3 * cell.level) | cell.morton(), u64::from(index));
         match index {
@@ -119,7 +118,7 @@ impl CellSlab {
         }
     }
 
-    /// Whether the words are those of a slab of a cell of an octree that is so deep.
+    /// True if the words are those of a slab of a cell in an octree of this depth.
     pub(crate) fn is_valid(self, depth: u8) -> bool {
         let steps = self.steps();
         self.home >> 63 == 0
@@ -130,8 +129,8 @@ impl CellSlab {
             && Steps::STEPS.contains(&steps.step)
     }
 
-    /// Its numbers in units of the universe: the normal, and the offsets of the inner and the outer plane.
-    /// They are exact.
+    /// Returns its numbers in units of the universe: the normal, and the offsets of the inner and the outer
+    /// plane. They are exact.
     pub(crate) fn numbers(self) -> [f64; 5] {
         let steps = self.steps();
         let [x, y, z] = steps.normal();

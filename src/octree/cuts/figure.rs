@@ -1,8 +1,8 @@
-//! On which side of a surface points lie, found in place: in doubles with bounds on their errors, without
-//! memory of its own.
+//! The side of a surface on which points lie, computed in place: in doubles with bounds on their errors,
+//! without allocation.
 //!
-//! What is next to a surface stays open; [exact signs](crate::solid) are for those who put the tree on a
-//! frame.
+//! Points next to a surface stay undecided; [exact signs](crate::solid) are available for a tree that is put
+//! on a frame.
 
 use super::surfaces::{MOST_MAPS, Numbers, SurfaceKind, SurfacesRef};
 use crate::lattice::exact::sqrt;
@@ -21,10 +21,9 @@ pub(crate) struct Figure<'a> {
 /// A surface along a line from `at` to `at` + `direction`.
 #[derive(Clone, Copy)]
 pub(crate) enum FigureLine<'a> {
-    /// Of a polynomial of degree two: the coefficients of 1, t and t², in which all that is rounded is
-    /// bounded.
+    /// A polynomial of degree two: the coefficients of 1, t and t², with bounds on all rounding errors.
     Polynomial { figure: Figure<'a>, coefficients: [Ball; 3] },
-    /// Of another function: the line in the space of the figure.
+    /// Another function: the line in the space of the figure.
     Other { figure: Figure<'a>, at: [Ball; 3], direction: [Ball; 3] },
 }
 
@@ -33,7 +32,7 @@ fn dot(a: [Ball; 3], b: [Ball; 3]) -> Ball {
     a[0].times(b[0]).plus(a[1].times(b[1])).plus(a[2].times(b[2]))
 }
 
-/// The inverse of the linear part of a map: its adjugate, and one divided by its determinant.
+/// Returns the inverse of the linear part of a map: its adjugate, and one divided by its determinant.
 fn inverse(rows: &[[f64; 4]; 3]) -> ([[Ball; 3]; 3], Ball) {
     let m = rows.map(|[a, b, c, _]| [a, b, c].map(Ball::exactly));
     let minor = |i: usize, j: usize| {
@@ -47,12 +46,12 @@ fn inverse(rows: &[[f64; 4]; 3]) -> ([[Ball; 3]; 3], Ball) {
 }
 
 impl<'a> Figure<'a> {
-    /// A surface of a table; `None` if it is damaged, or placed by too many maps.
+    /// Returns a surface of a table; `None` if it is damaged, or placed by too many maps.
     pub(crate) fn new(surfaces: &SurfacesRef<'a>, id: u32) -> Option<Figure<'a>> {
         let (kind, own) = surfaces.get(id as usize)?;
         let mut numbers = [Ball::ZERO; 10];
         if let Numbers::Slab([x, y, z, inner, outer]) = own {
-            // In model space, where it takes no map.
+            // In model space, where no map is needed.
             let normal = [x, y, z].map(Ball::exactly);
             let along = dot(normal, surfaces.universe.origin.map(Ball::exactly));
             let edge = Ball::exactly(surfaces.universe.edge);
@@ -70,7 +69,7 @@ impl<'a> Figure<'a> {
         (maps <= MOST_MAPS).then_some(Figure { kind, numbers, surfaces: *surfaces, id, is_placed })
     }
 
-    /// The maps that place the figure, the outermost first, and how many they are.
+    /// Returns the maps that place the figure, the outermost first, and their number.
     fn maps(&self) -> ([&'a [[f64; 4]; 3]; MOST_MAPS], usize) {
         const NONE: [[f64; 4]; 3] = [[0.0; 4]; 3];
         let (mut maps, mut count) = ([&NONE; MOST_MAPS], 0);
@@ -82,7 +81,8 @@ impl<'a> Figure<'a> {
         (maps, count)
     }
 
-    /// The same points in the figure's space: a centre and what reaches from it.
+    /// Returns a centre and the vectors from it, in the figure's space. With `is_box`, the vectors are those
+    /// of a box.
     #[inline]
     fn pulled(&self, mut at: [Ball; 3], mut vectors: [Ball; 3], is_box: bool) -> ([Ball; 3], [Ball; 3]) {
         if !self.is_placed {
@@ -95,7 +95,7 @@ impl<'a> Figure<'a> {
             at = axes(|i| dot(adjugate[i], moved).times(scale));
             vectors = axes(|i| {
                 if is_box {
-                    // As far as the corners of the box reach.
+                    // The reach of the corners of the box.
                     let reach = |j: usize| adjugate[i][j].magnitude() * vectors[j].magnitude();
                     let all =
                         Ball::exactly(reach(0)).plus(Ball::exactly(reach(1))).plus(Ball::exactly(reach(2)));
@@ -108,8 +108,8 @@ impl<'a> Figure<'a> {
         (at, vectors)
     }
 
-    /// The side of all points of the box `centre` ± `radius` (model units); `None` if it is not known, or not
-    /// one.
+    /// Returns the common side of all points of the box `centre` ± `radius` (model units); `None` if it is
+    /// unknown, or there is none.
     #[inline]
     pub(crate) fn side(&self, centre: [Ball; 3], radius: [f64; 3]) -> Option<bool> {
         let (at, reach) = if self.is_placed {
@@ -128,7 +128,7 @@ impl<'a> Figure<'a> {
         self.of_value(value.widened(bounded(first + self.second(reach))))
     }
 
-    /// The surface along the line from `at` to `at` + `direction` (model units).
+    /// Returns the surface along the line from `at` to `at` + `direction` (model units).
     pub(crate) fn line(self, at: [Ball; 3], direction: [Ball; 3]) -> FigureLine<'a> {
         let (at, direction) = self.pulled(at, direction, false);
         let Some((value, gradient)) = self.polynomial(at) else {
@@ -146,7 +146,7 @@ impl<'a> Figure<'a> {
         FigureLine::Polynomial { figure: self, coefficients: [value, dot(gradient, direction), bend] }
     }
 
-    /// Value and gradient of a polynomial of degree two; of a slab those of its linear form.
+    /// Returns value and gradient of a polynomial of degree two; for a slab, those of its linear form.
     #[inline(always)]
     fn polynomial(&self, [x, y, z]: [Ball; 3]) -> Option<(Ball, [Ball; 3])> {
         let n = &self.numbers;
@@ -170,7 +170,7 @@ impl<'a> Figure<'a> {
         }
     }
 
-    /// At most what the terms of degree two make of a vector with such components.
+    /// Returns a bound of the terms of degree two for a vector with these components.
     #[inline(always)]
     fn second(&self, [x, y, z]: [f64; 3]) -> f64 {
         if self.kind != SurfaceKind::Quadric {
@@ -180,7 +180,7 @@ impl<'a> Figure<'a> {
         (a * x * x + b * y * y + c * z * z) + (d * x * y + e * y * z + f * z * x)
     }
 
-    /// The side by the value of a polynomial.
+    /// Returns the side by the value of a polynomial.
     #[inline(always)]
     fn of_value(&self, value: Ball) -> Option<bool> {
         if self.kind != SurfaceKind::Slab {
@@ -196,7 +196,7 @@ impl<'a> Figure<'a> {
         }
     }
 
-    /// The value of another function, each number of which stands once.
+    /// Returns the value of another function, in a form in which each number occurs once.
     fn natural(&self, at: [Ball; 3]) -> Ball {
         let n = &self.numbers;
         if self.kind == SurfaceKind::Torus {
@@ -210,17 +210,17 @@ impl<'a> Figure<'a> {
         term(0).plus(term(1)).plus(term(2)).plus(n[9])
     }
 
-    /// The exponent of a term; 1 where it is damaged.
+    /// Returns the exponent of a term; 1 where it is damaged.
     fn exponent(&self, i: usize) -> u32 {
         (self.numbers[3 * i + 2].value as u32).clamp(1, 64)
     }
 
-    /// About the gradient at a point (model units), which points to the positive side.
+    /// Returns the approximate gradient at a point (model units), which points to the positive side.
     pub(crate) fn gradient(&self, point: [f64; 3]) -> [f64; 3] {
         let (at, _) = self.pulled(point.map(Ball::exactly), [Ball::ZERO; 3], false);
         let n = &self.numbers;
         let mut gradient = match (self.polynomial(at), self.kind) {
-            // A slab is positive where its form is less.
+            // A slab is positive where its linear form is smaller.
             (Some((_, own)), SurfaceKind::Slab) => own.map(|c| -c.value),
             (Some((_, own)), _) => own.map(|c| c.value),
             (None, SurfaceKind::Torus) => {
@@ -246,14 +246,15 @@ impl<'a> Figure<'a> {
 }
 
 impl FigureLine<'_> {
-    /// The surface.
+    /// Returns the surface.
     pub(crate) fn figure(&self) -> &Figure<'_> {
         match self {
             FigureLine::Polynomial { figure, .. } | FigureLine::Other { figure, .. } => figure,
         }
     }
 
-    /// The side of all points from t = `low` to `high`; `None` if it is not known, or not one.
+    /// Returns the common side of all points from t = `low` to `high`; `None` if it is unknown, or there is
+    /// none.
     #[inline]
     pub(crate) fn side(&self, low: f64, high: f64) -> Option<bool> {
         let middle = 0.5 * low + 0.5 * high;
@@ -277,29 +278,30 @@ impl FigureLine<'_> {
     }
 }
 
-/// Where a piece of a line is best divided that does not lie on one side.
+/// The best place to divide a piece of a line that does not lie on one side.
 pub(crate) enum Division {
     At(f64),
-    /// Nothing is known of where the line crosses the surface.
+    /// Nothing is known about the place where the line crosses the surface.
     InHalves,
-    /// No part of the piece lies surely on a side.
+    /// No part of the piece surely lies on one side.
     Nowhere,
 }
 
-/// Least distance from a crossing at which a line is divided. It is above the rounding errors of times from 0
+/// Least distance from a crossing at which a line is divided. It exceeds the rounding errors of times from 0
 /// to 1, and of [`FigureLine::side`] on the pieces.
 const BESIDE: f64 = 1.0 / (1u64 << 44) as f64;
 
 impl FigureLine<'_> {
-    /// The value of a polynomial at a time.
+    /// Returns the value of a polynomial at a time.
     #[inline(always)]
     fn value([c, b, a]: &[Ball; 3], t: f64) -> Ball {
         let t = Ball::exactly(t);
         c.plus(b.plus(a.times(t)).times(t))
     }
 
-    /// The side of all points of a quadric by those of the ends. If the ends lie on one side, all points do
-    /// where the parabola bends away from zero, where it does not turn, and where it has no root.
+    /// Returns the common side of all points of a quadric from the sides of the ends. If the ends lie on one
+    /// side, all points do if the parabola curves away from zero, if its vertex lies outside, or if it has no
+    /// root.
     fn side_by_ends(&self, low: f64, high: f64) -> Option<bool> {
         let FigureLine::Polynomial { figure, coefficients } = self else { return None };
         if figure.kind != SurfaceKind::Quadric {
@@ -318,7 +320,7 @@ impl FigureLine<'_> {
         (bends_away() || does_not_turn() || has_no_root()).then_some(side)
     }
 
-    /// Where to divide the piece from t = `low` to `high`, whose side is not known: next to a crossing.
+    /// Returns where to divide the piece from t = `low` to `high`, whose side is unknown: next to a crossing.
     pub(crate) fn division(&self, low: f64, high: f64) -> Division {
         let FigureLine::Polynomial { figure, coefficients } = self else { return Division::InHalves };
         let [c, b, a] = coefficients;
@@ -330,12 +332,12 @@ impl FigureLine<'_> {
         for level in levels {
             let own = [c.minus(*level), *b, *a];
             for t in crossings(own.map(|number| number.value)).into_iter().filter(|t| t.is_finite()) {
-                // Values that are less than this may have either sign.
+                // Values below this may have either sign.
                 let value = Self::value(&own, t);
                 let unsure = value.error + value.value.abs();
                 let steep = 4.0 * unsure / (b.value + 2.0 * a.value * t).abs();
                 let flat = 2.0 * sqrt(unsure / a.value.abs());
-                // (The minimum is the other one where one is no number.)
+                // (If one of them is NaN, the minimum is the other one.)
                 let doubt = BESIDE + steep.min(flat);
                 let ends = [t - doubt, t + doubt];
                 for end in ends.into_iter().filter(|&end| end > low) {
@@ -355,8 +357,8 @@ impl FigureLine<'_> {
     }
 }
 
-/// About where c + b t + a t² is zero; where it turns if it has no root; what is not finite if there is
-/// nothing.
+/// Returns the approximate zeros of c + b t + a t²; its vertex if it has no zero; infinite or NaN if it has
+/// neither.
 fn crossings([c, b, a]: [f64; 3]) -> [f64; 2] {
     if a == 0.0 {
         return [-c / b, f64::INFINITY];
@@ -370,7 +372,7 @@ fn crossings([c, b, a]: [f64; 3]) -> [f64; 2] {
     }
 }
 
-/// A sum of products of numbers that are not negative, with what rounding may have taken from it.
+/// Returns a sum of products of non-negative numbers, increased by a bound of its rounding error.
 #[inline(always)]
 fn bounded(sum: f64) -> f64 {
     sum * (1.0 + 32.0 * f64::EPSILON) + f64::MIN_POSITIVE

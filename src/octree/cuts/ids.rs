@@ -1,26 +1,26 @@
-//! Which surfaces records have, in as few bits a number as their count allows.
+//! Numbers of surfaces in records, with as few bits for each number as their count allows.
 
 use crate::error::Error;
 use crate::memory;
 use alloc::vec::Vec;
 
-/// Numbers of surfaces, one after the other, in a stream of bits: each takes as many as the greatest may
-/// need, from the lowest bit of a byte on. The bits of the last byte that are left are zero.
+/// Numbers of surfaces, one after the other, in a stream of bits. Each takes as many bits as the greatest
+/// possible one, from the lowest bit of a byte on. The unused bits of the last byte are zero.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(crate) struct Ids<'a> {
     pub bytes: &'a [u8],
-    /// Bits of a number.
+    /// Number of bits of a number.
     pub width: u32,
 }
 
-/// The same in memory.
+/// Numbers of surfaces in memory.
 #[derive(Debug, Clone, PartialEq)]
 pub(crate) struct OwnedIds {
     bytes: Vec<u8>,
     width: u32,
 }
 
-/// Bits of a number where there are so many surfaces.
+/// Returns the number of bits of a number, if there are this many surfaces.
 pub(crate) const fn width(surfaces: u64) -> u32 {
     match surfaces {
         0..=2 => 1,
@@ -28,13 +28,13 @@ pub(crate) const fn width(surfaces: u64) -> u32 {
     }
 }
 
-/// Bytes that so many numbers take, of so many bits each.
+/// Returns the bytes of `count` numbers of `width` bits each.
 pub(crate) const fn bytes(count: u64, width: u32) -> u64 {
     (count * width as u64).div_ceil(8)
 }
 
 impl Ids<'_> {
-    /// The number at a place; some number if it lies in the last byte and beyond the end.
+    /// Returns the number with an index; an arbitrary number if it lies in the last byte and beyond the end.
     pub(crate) fn get(&self, index: usize) -> Option<u32> {
         let bit = (index as u64).checked_mul(self.width.into())?;
         let (first, shift) = (usize::try_from(bit / 8).ok()?, bit % 8);
@@ -50,7 +50,7 @@ impl Ids<'_> {
         Some((word >> shift & ((1 << self.width) - 1)) as u32)
     }
 
-    /// Whether the stream ends with so many numbers.
+    /// True if the stream ends after `count` numbers.
     pub(crate) fn ends_with(&self, count: usize) -> bool {
         let bits = (count as u64 * u64::from(self.width)) % 8;
         let is_rest_zero = bits == 0 || self.bytes.last().is_some_and(|&last| last >> bits == 0);
@@ -63,7 +63,7 @@ impl Ids<'_> {
 }
 
 impl OwnedIds {
-    /// The stream of `ids`, all of which are less than `surfaces`.
+    /// Returns the stream of `ids`, all of which are less than `surfaces`.
     pub(crate) fn packed(
         ids: impl ExactSizeIterator<Item = u32>,
         surfaces: usize,
@@ -99,7 +99,7 @@ pub(crate) struct CellIds {
 }
 
 impl CellIds {
-    /// `count` of `ids` from `first` on; nothing where they end before.
+    /// Returns `count` of `ids` from `first` on; `None` if the stream ends before.
     pub(crate) fn read(ids: Ids<'_>, first: usize, count: usize) -> Option<CellIds> {
         let mut own = CellIds { ids: [0; 3], count: count as u8 };
         for (i, id) in own.ids.get_mut(..count)?.iter_mut().enumerate() {

@@ -1,9 +1,9 @@
-//! Cuts: what a PARTIAL cell keeps of the surfaces that cross it.
+//! Cuts: the surfaces that a PARTIAL cell keeps.
 //!
 //! An octree with cuts is an *extended octree* (Carlbom, Chakravarty and Vanderschel 1985, *polytrees*;
 //! Brunet and Navazo, *Solid representation and operation using extended octrees*, ACM Transactions on
-//! Graphics 9 (2), 1990), here with curved surfaces and exact signs. The planes of the tree stay what they
-//! are without the cuts.
+//! Graphics 9 (2), 1990), here with curved surfaces and exact signs. The planes of the tree are the same as
+//! without the cuts.
 //!
 //! - `cell_slab`: slabs that were made for one cell, in whole numbers.
 //! - `figure`: on which side of a surface points lie, by arithmetic in doubles.
@@ -44,37 +44,37 @@ use alloc::vec::Vec;
 use bytemuck::{Pod, Zeroable};
 use core::ops::Range;
 
-/// Records that share a [`Block`].
+/// Number of records that share a [`Block`].
 pub(crate) const BLOCK: usize = 32;
 
-/// What lies before the records of a block.
+/// The counts before the records of a block.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Eq, Pod, Zeroable)]
 #[repr(C)]
 pub(crate) struct Block {
-    /// Ids of surfaces.
+    /// Number of ids of surfaces.
     pub ids: u32,
-    /// Records that are splits.
+    /// Number of records that are splits.
     pub splits: u32,
 }
 
 /// The cuts of an octree in memory.
 #[derive(Debug, Clone, PartialEq)]
 pub(crate) struct Cuts {
-    /// One byte for each record. The first belong to the PARTIAL cells of the planes, in their order; groups
-    /// of eight follow, one for each split, in the order of the splits.
+    /// One byte for each record. The first records belong to the PARTIAL cells of the planes, in their order.
+    /// Groups of eight follow, one for each split, in the order of the splits.
     pub heads: Vec<u8>,
     /// Surfaces of the records, one after the other.
     pub ids: OwnedIds,
     pub blocks: Vec<Block>,
-    /// For each element and brick the records before its own; one more is the number of records of the
-    /// planes.
+    /// For each element and brick, the number of records before its own. One more entry is the number of
+    /// records of the planes.
     pub first: Vec<u32>,
     pub surfaces: Surfaces,
-    /// Of the solid, if they were known. (What changes the solid makes new cuts.)
+    /// Moments of the solid, if they were known. (A change of the solid makes new cuts.)
     pub moments: Option<StoredMoments>,
 }
 
-/// The cuts of an octree, borrowed. They are equal if they say the same of all cells.
+/// The cuts of an octree, borrowed. They are equal if they describe all cells equally.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct CutsRef<'a> {
     pub heads: &'a [u8],
@@ -127,56 +127,55 @@ impl CutsRef<'_> {
     }
 }
 
-/// What the PARTIAL cells of an extended octree keep.
+/// The counts of the surfaces that PARTIAL cells of an extended octree keep.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
 pub struct CutCounts {
-    /// Cells of which it is known which function of surfaces the solid is. Cells count that are parts of
-    /// cells of the planes.
+    /// Number of cells whose solid is a known function of surfaces. Parts of cells of the planes count.
     pub cells: u64,
-    /// Cells of which nothing is known.
+    /// Number of cells about which nothing is known.
     pub given_up: u64,
-    /// PARTIAL cells that are split, and have no node, because all of their parts are PARTIAL.
+    /// Number of PARTIAL cells that are split without a node, because all of their parts are PARTIAL.
     pub splits: u64,
-    /// Surfaces.
+    /// Number of surfaces.
     pub surfaces: u64,
-    /// Bytes of all of this in memory.
+    /// Bytes of all cuts in memory.
     pub bytes: u64,
 }
 
-/// What is known of a PARTIAL cell.
+/// The content of a PARTIAL cell.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(crate) enum CellCut {
-    /// Nothing.
+    /// Nothing is known.
     None,
-    /// The solid is a function of the signs of up to three surfaces: bit m of the table is its value where
-    /// the surfaces are positive whose bits are set in m.
+    /// The solid is a function of the signs of up to three surfaces. Bit m of the table is its value where
+    /// exactly the surfaces whose bits are set in m are positive.
     Table { ids: CellIds, table: u8 },
-    /// What is known of the children: the first of eight records.
+    /// The cell is split: the first of the eight records of its children.
     Split(usize),
 }
 
 impl CutsRef<'_> {
-    /// Records of the planes' cells.
+    /// Returns the number of records of the planes' cells.
     fn of_planes(&self) -> usize {
         self.first.last().map_or(1, |&count| count as usize)
     }
 
-    /// The record of the universe, if that is one PARTIAL cell.
+    /// The record of the universe, if the universe is one PARTIAL cell.
     pub(crate) const ROOT: usize = 0;
 
-    /// The record of the PARTIAL cell `c` of an element, whose cells are `planes`; of an octant that is
-    /// PARTIAL as a whole the octant's. A wild number where the cuts are damaged.
+    /// Returns the record of the PARTIAL cell `c` of an element, whose cells are `planes`. For an octant that
+    /// is PARTIAL as a whole, it is the octant's record. An arbitrary number where the cuts are damaged.
     pub(crate) fn record(&self, element: usize, planes: Planes, c: u32) -> usize {
         let first = self.first.get(element).map_or(usize::MAX, |&first| first as usize);
         first.saturating_add(rank(planes, c) as usize)
     }
 
-    /// What a record says; nothing where the cuts are damaged.
+    /// Returns the content of a record; `None` where the cuts are damaged.
     pub(crate) fn at(&self, record: usize) -> CellCut {
         self.checked(record).unwrap_or(CellCut::None)
     }
 
-    /// Ids, and splits, of the records before one.
+    /// Returns the numbers of ids, and of splits, in the records before a record.
     fn before(&self, record: usize) -> Option<(usize, usize)> {
         let before = self.heads.get(record - record % BLOCK..record)?;
         let block = self.blocks.get(record / BLOCK)?;
@@ -185,13 +184,13 @@ impl CutsRef<'_> {
         Some((block.ids as usize + ids, block.splits as usize + splits))
     }
 
-    /// The records of the parts of those records of a run that are splits.
+    /// Returns the records of the parts of all splits in a run of records.
     fn parts(&self, run: Range<usize>) -> Range<usize> {
         let splits =
             self.heads.get(run.clone()).unwrap_or(&[]).iter().filter(|&&head| Head(head).is_split()).count();
         let before = self.before(run.start).map_or(0, |(_, splits)| splits);
         let first = self.of_planes() + 8 * before;
-        // (Children come after their parents, so that every way ends.)
+        // (Children come after their parents, so that every path ends.)
         if splits > 0 && first >= run.end { first..first + 8 * splits } else { 0..0 }
     }
 
@@ -202,7 +201,7 @@ impl CutsRef<'_> {
         Some(if head.is_split() {
             let splits = before.iter().filter(|&&head| Head(head).is_split()).count();
             let first = self.of_planes() + 8 * (block.splits as usize + splits);
-            // (Children come after their parent, so that every way ends.)
+            // (Children come after their parent, so that every path ends.)
             if first <= record || first + 8 > self.heads.len() {
                 return None;
             }
@@ -217,13 +216,13 @@ impl CutsRef<'_> {
     }
 }
 
-/// How many records an element has whose cells are `planes`.
+/// Returns the number of records of an element whose cells are `planes`.
 fn records(planes: Planes) -> u32 {
     let [.., whole] = planes.octants();
     planes.partial().count_ones() - 7 * whole.count_ones()
 }
 
-/// The records of an element's cells before cell `c`.
+/// Returns the number of records of an element's cells before cell `c`.
 fn rank(planes: Planes, c: u32) -> u32 {
     let partial = planes.partial();
     let [.., whole] = planes.octants();

@@ -3,7 +3,7 @@
 use crate::lattice::{Interval, VolumeMoments};
 use bytemuck::{Pod, Zeroable};
 
-/// The moments of the solid that an extended octree was made from, which knew them without being split: the
+/// The moments of the source of an extended octree, if the source provided them without being split: the
 /// point, and both ends of the volume, of the three first and of the six second moments.
 #[derive(Debug, Clone, Copy, PartialEq, Pod, Zeroable)]
 #[repr(C)]
@@ -16,7 +16,7 @@ pub(crate) struct StoredMoments {
 
 impl StoredMoments {
     pub(crate) fn new(moments: &VolumeMoments) -> StoredMoments {
-        // (Zero has one spelling.)
+        // (Zero has one representation.)
         let ends = |own: Interval| [own.lower + 0.0, own.upper + 0.0];
         StoredMoments {
             point: moments.point.map(|c| c + 0.0),
@@ -26,7 +26,7 @@ impl StoredMoments {
         }
     }
 
-    /// The moments; `None` if they are damaged.
+    /// Returns the moments; `None` if they are damaged.
     pub(crate) fn moments(&self) -> Option<VolumeMoments> {
         let numbers: &[f64; 23] = bytemuck::cast_ref(self);
         let is_positive_zero = |c: &f64| *c != 0.0 || c.is_sign_positive();

@@ -1,9 +1,9 @@
 //! One byte for each PARTIAL cell.
 
-/// What a record says in one byte: the truth table of three surfaces, whether there are three or not. A table
-/// that does not depend on the last of them is one of two surfaces, or of one. So the table tells how many
-/// there are; those that depend on none have a meaning of their own: nothing is known, or the cell is split.
-/// (Tables that depend on a surface, and not on one before it, are not used.)
+/// A record of one byte: the truth table of three surfaces, even if there are fewer. A table that does not
+/// depend on the last surfaces is a table of two surfaces, or of one. So the table determines the number of
+/// surfaces. The tables that depend on no surface have other meanings: nothing is known, or the cell is
+/// split. (Tables that depend on a surface, but not on one before it, are not used.)
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(crate) struct Head(pub(crate) u8);
 
@@ -13,15 +13,15 @@ impl Head {
     /// Eight records follow elsewhere.
     pub(crate) const SPLIT: Head = Head(0xFF);
 
-    /// A table of no surface that is left when sides are known: the solid is nowhere.
+    /// The table after all sides are known: the solid is empty.
     pub(crate) const NOWHERE: Head = Head(0);
-    /// The same: the solid is everywhere.
+    /// The table after all sides are known: the solid is everything.
     pub(crate) const EVERYWHERE: Head = Head(0xFF);
 
-    /// Where each surface is positive.
+    /// For each surface, the table of the points where it is positive.
     const HOLDS: [u8; 3] = [0xAA, 0xCC, 0xF0];
 
-    /// Whether a table depends on a surface.
+    /// True if a table depends on a surface.
     const fn depends_on(table: u8, i: usize) -> bool {
         (table & Head::HOLDS[i]) >> (1 << i) != table & !Head::HOLDS[i]
     }
@@ -57,8 +57,8 @@ impl Head {
         Head::COUNTS[usize::from(self.0)] != Head::INVALID
     }
 
-    /// The values of a table where the side of one of its surfaces is known; no longer a table of any surface
-    /// if all are the same.
+    /// Returns the table for a known side of one of its surfaces; if all values are the same, it is no longer
+    /// a table of any surface.
     pub(crate) fn on_side(table: u8, surface: usize, is_positive: bool) -> u8 {
         let (holds, shift) = (Head::HOLDS[surface], 1 << surface);
         if is_positive {
@@ -70,18 +70,18 @@ impl Head {
         }
     }
 
-    /// The table of the same surfaces of which one is negated.
+    /// Returns the table of the same surfaces with one of them negated.
     pub(crate) fn negated(table: u8, surface: usize) -> u8 {
         let (holds, shift) = (Head::HOLDS[surface], 1 << surface);
         (table & holds) >> shift | (table & !holds) << shift
     }
 
-    /// Whether a table depends on a surface.
+    /// True if a table depends on a surface.
     pub(crate) fn needs(table: u8, surface: usize) -> bool {
         Head::depends_on(table, surface)
     }
 
-    /// How many surfaces the record has; none of a damaged one.
+    /// Returns the number of surfaces of the record; 0 for a damaged one.
     pub(crate) fn surfaces(self) -> usize {
         usize::from(Head::COUNTS[usize::from(self.0)] & 3)
     }

@@ -1,5 +1,5 @@
-//! The table of surfaces: each is the boundary of the points where a function is positive, given in numbers
-//! that are exact.
+//! The table of surfaces: each is the boundary of the points where a function is positive, given in exact
+//! numbers.
 
 use super::cell_slab::CellSlab;
 use crate::error::{Damage, Error};
@@ -10,7 +10,7 @@ use bytemuck::{Pod, Zeroable};
 use core::cmp::Ordering;
 use hashbrown::HashMap;
 
-/// What kind of function a [`StoredSurface`](super::StoredSurface) has.
+/// The kind of function of a [`StoredSurface`](super::StoredSurface).
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
 #[repr(u32)]
 #[non_exhaustive]
@@ -24,13 +24,13 @@ pub enum SurfaceKind {
     /// A torus: R, q, s and t of q − (√((s x)² + (s y)²) − R)² − (s z + t)².
     Torus = 3,
     /// A plane with a width: its normal, and the two offsets between which the boundary lies (the first is
-    /// that of the inner side, which counts as positive). Which of all slabs it is tells
-    /// [`StoredSurface::origin`](super::StoredSurface::origin).
+    /// that of the inner side, which counts as positive).
+    /// [`StoredSurface::origin`](super::StoredSurface::origin) identifies the slab.
     Slab = 4,
 }
 
 impl SurfaceKind {
-    /// Numbers of a surface.
+    /// Returns the number of numbers of a surface.
     pub(crate) const fn numbers(self) -> u32 {
         match self {
             SurfaceKind::Plane | SurfaceKind::Torus => 4,
@@ -55,23 +55,23 @@ impl SurfaceKind {
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Pod, Zeroable)]
 #[repr(C)]
 pub(crate) struct SurfaceRecord {
-    /// A [`SurfaceKind`] in the lowest byte; of a slab above it the place of its origin, plus one, or 0 if it
-    /// has none.
+    /// A [`SurfaceKind`] in the lowest byte. For a slab, the bits above it contain the index of its origin,
+    /// plus one, or 0 if it has none.
     pub kind: u32,
-    /// Of how many doubles each number is the sum, three bits a number, from the lowest on. A slab that has
-    /// an origin may have one more number, a word of 64 bits: which of the slabs of its origin it is. Without
-    /// that it is the one of the record's own place.
+    /// The number of doubles whose sum each number is, three bits each, from the lowest on. A slab that has
+    /// an origin may have one more number, a word of 64 bits: the number of the slab within its origin.
+    /// Without that word, it is the index of the record.
     pub terms: u32,
-    /// Its first double.
+    /// Index of its first double.
     pub first: u32,
-    /// The first map that it is placed by, plus one; 0 for none.
+    /// Index of the first map that places it, plus one; 0 for none.
     pub placement: u32,
 }
 
 /// Most doubles of a number.
 pub(crate) const MOST_TERMS: usize = 7;
 
-/// Most maps that a surface is placed by. It bounds the work and the memory for a surface.
+/// Most maps that place a surface. This bounds the work and the memory for a surface.
 pub(crate) const MOST_MAPS: usize = 64;
 
 impl SurfaceRecord {
@@ -83,13 +83,13 @@ impl SurfaceRecord {
         SurfaceKind::of(self.kind & 0xFF)
     }
 
-    /// The place of the origin, plus one; 0 for none.
+    /// Returns the index of the origin, plus one; 0 for none.
     fn origin(&self) -> u32 {
         self.kind >> 8
     }
 }
 
-/// How many doubles the first numbers have.
+/// Returns the number of doubles of the first `numbers` numbers.
 fn before(terms: u32, numbers: usize) -> usize {
     (0..numbers).map(|i| (terms >> (3 * i) & 7) as usize).sum()
 }
@@ -102,7 +102,7 @@ pub(crate) enum Numbers<'a> {
 }
 
 impl Numbers<'_> {
-    /// A number; nothing for zero.
+    /// Returns the doubles of a number; none for zero.
     pub(crate) fn get(&self, i: usize) -> &[f64] {
         match self {
             Numbers::Stored { terms, doubles } => {
@@ -118,12 +118,12 @@ impl Numbers<'_> {
         }
     }
 
-    /// All doubles, number by number.
+    /// Returns all doubles, number by number.
     fn doubles(&self, kind: SurfaceKind) -> impl Iterator<Item = f64> + Clone + '_ {
         (0..kind.numbers() as usize).flat_map(|i| self.get(i).iter().copied())
     }
 
-    /// Of how many doubles each number is the sum, three bits a number.
+    /// Returns the number of doubles of each number, three bits each.
     fn terms(&self, kind: SurfaceKind) -> u32 {
         (0..kind.numbers()).fold(0, |all, i| all | (self.get(i as usize).len() as u32) << (3 * i))
     }
@@ -135,24 +135,24 @@ impl Numbers<'_> {
 pub(crate) struct Placement {
     /// Rows of `[M | t]`.
     pub rows: [[f64; 4]; 3],
-    /// The map that follows, plus one; 0 for none. It comes before this one in the table.
+    /// Index of the next map, plus one; 0 for none. It comes before this one in the table.
     pub outer: u64,
 }
 
-/// What slabs were made from: a fingerprint of 128 bits, the lower half first.
+/// The source of slabs: a fingerprint of 128 bits, the lower half first.
 pub(crate) type Origin = [u64; 2];
 
-/// Slabs of cells that have one origin.
+/// Slabs of cells with the same origin.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Pod, Zeroable)]
 #[repr(C)]
 pub(crate) struct CellSlabGroup {
-    /// Two zeros if they have none.
+    /// The origin; two zeros if there is none.
     pub origin: Origin,
-    /// How many slabs of cells there are up to the last of the group.
+    /// Number of slabs of cells up to the last one of the group.
     pub end: u64,
 }
 
-/// The universe of a tree, in whose units its slabs of cells are.
+/// The universe of a tree, whose units its slabs of cells use.
 #[derive(Debug, Clone, Copy, Default, PartialEq)]
 pub(crate) struct Universe {
     pub origin: [f64; 3],
@@ -164,14 +164,14 @@ impl Universe {
         Universe { origin: frame.origin(), edge: frame.edge() }
     }
 
-    /// The rows of the map from its units to model space.
+    /// Returns the rows of the map from its units to model space.
     pub(crate) fn rows(&self) -> [[f64; 4]; 3] {
         let ([x, y, z], edge) = (self.origin, self.edge);
         [[edge, 0.0, 0.0, x], [0.0, edge, 0.0, y], [0.0, 0.0, edge, z]]
     }
 }
 
-/// Surfaces in memory: those of records first, and then slabs of cells.
+/// Surfaces in memory: first those of records, then slabs of cells.
 #[derive(Debug, Clone, Default)]
 pub(crate) struct Surfaces {
     pub records: Vec<SurfaceRecord>,
@@ -183,7 +183,7 @@ pub(crate) struct Surfaces {
     pub universe: Universe,
 }
 
-/// Surfaces, borrowed. They are equal if all bits are.
+/// Surfaces, borrowed. They are equal if all bits are equal.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct SurfacesRef<'a> {
     pub records: &'a [SurfaceRecord],
@@ -209,7 +209,8 @@ impl Surfaces {
     }
 }
 
-/// Puts surfaces into a table one after the other; maps and origins that several share stand once.
+/// A writer that puts surfaces into a table one after the other. Maps and origins that several surfaces share
+/// are stored once.
 pub(crate) struct SurfaceWriter {
     all: Surfaces,
     places: HashMap<(u64, [[u64; 4]; 3]), u64>,
@@ -222,9 +223,11 @@ impl SurfaceWriter {
         SurfaceWriter { all, places: HashMap::new(), origins: HashMap::new() }
     }
 
-    /// A surface, whose placements are those maps in the order in which they are applied, last one first.
+    /// Appends a surface. Its placements are the given maps in the order in which they are applied, last one
+    /// first.
     ///
     /// # Errors
+    ///
     /// [`Error::Limit`] if a number is the sum of more than seven doubles, if there are more than 64 maps, or
     /// too many doubles or origins; [`Error::OutOfMemory`].
     pub(crate) fn put<'n>(
@@ -279,8 +282,8 @@ impl SurfaceWriter {
         memory::push(&mut self.all.records, record)
     }
 
-    /// A slab of a cell; those of one origin follow each other, and all surfaces of other kinds stand before
-    /// them.
+    /// Appends a slab of a cell. Slabs of one origin follow each other, and all surfaces of other kinds come
+    /// before them.
     pub(crate) fn put_cell_slab(&mut self, slab: CellSlab, origin: Origin) -> Result<(), Error> {
         memory::push(&mut self.all.slabs, slab)?;
         let end = self.all.slabs.len() as u64;
@@ -307,7 +310,7 @@ impl PartialEq for Surfaces {
 
 impl PartialEq for SurfacesRef<'_> {
     fn eq(&self, other: &Self) -> bool {
-        // (Doubles that nobody has verified may be no numbers.)
+        // (Unverified doubles may be NaN.)
         fn bits<T: Pod>(all: &[T]) -> &[u64] {
             bytemuck::cast_slice(all)
         }
@@ -334,7 +337,7 @@ impl<'a> SurfacesRef<'a> {
         self.records.len() + self.slabs.len()
     }
 
-    /// Bytes of the arrays.
+    /// Returns the bytes of the arrays.
     pub(crate) fn bytes(&self) -> usize {
         size_of_val(self.records)
             + size_of_val(self.doubles)
@@ -344,19 +347,19 @@ impl<'a> SurfacesRef<'a> {
             + size_of_val(self.groups)
     }
 
-    /// The slab of a cell that is the surface of this number.
+    /// Returns the slab of a cell that is the surface of this number.
     pub(crate) fn cell_slab(&self, id: usize) -> Option<CellSlab> {
         self.slabs.get(id.checked_sub(self.records.len())?).copied()
     }
 
-    /// The group of a slab of a cell.
+    /// Returns the group of a slab of a cell.
     pub(crate) fn group(&self, id: usize) -> Option<(usize, &'a CellSlabGroup)> {
         let place = id.checked_sub(self.records.len())? as u64;
         let group = self.groups.partition_point(|group| group.end <= place);
         Some((group, self.groups.get(group)?))
     }
 
-    /// The kind of a surface, and its numbers, in its own space; `None` where the table is damaged.
+    /// Returns the kind of a surface, and its numbers, in its own space; `None` where the table is damaged.
     pub(crate) fn get(&self, id: usize) -> Option<(SurfaceKind, Numbers<'a>)> {
         let Some(record) = self.records.get(id) else {
             return Some((SurfaceKind::Slab, Numbers::Slab(self.cell_slab(id)?.numbers())));
@@ -366,7 +369,7 @@ impl<'a> SurfacesRef<'a> {
         Some((record.kind()?, Numbers::Stored { terms: record.terms, doubles }))
     }
 
-    /// Which of all slabs a slab is, if that is known: its origin, and its number there.
+    /// Returns the identity of a slab, if it is known: its origin, and its number there.
     pub(crate) fn identity(&self, id: usize) -> Option<(Origin, u64)> {
         let Some(record) = self.records.get(id) else {
             let (_, group) = self.group(id)?;
@@ -378,9 +381,8 @@ impl<'a> SurfacesRef<'a> {
         Some((*self.origins.get(origin as usize)?, word.map_or(id as u64, |word| word.to_bits())))
     }
 
-    /// Compares a surface with another one, of the same table or not: the number of words that they take; the
-    /// kind, of how many doubles each number is the sum, the doubles, and the maps; and, of slabs, which they
-    /// are.
+    /// Compares a surface with another one, of the same table or not, by the number of words that they take,
+    /// the kind, the numbers of doubles, the doubles, the maps, and for slabs the identity.
     pub(crate) fn order(&self, id: usize, others: &SurfacesRef<'_>, other: usize) -> Ordering {
         let [own, theirs] = [(self, id), (others, other)].map(|(table, id)| {
             let (kind, numbers) =
@@ -404,7 +406,7 @@ impl<'a> SurfacesRef<'a> {
         count.cmp(&others_count).then_with(|| words.cmp(others))
     }
 
-    /// The maps that the surface of a record is placed by, in the order in which they are applied; at most
+    /// Returns the maps that place the surface of a record, in the order in which they are applied; at most
     /// one more than is legal. (Slabs of cells are in units of the universe.)
     pub(crate) fn placements(&self, id: usize) -> impl Iterator<Item = &'a [[f64; 4]; 3]> + Clone + use<'a> {
         let placements = self.placements;
@@ -412,15 +414,15 @@ impl<'a> SurfacesRef<'a> {
         core::iter::from_fn(move || {
             let index = usize::try_from(next.checked_sub(1)?).ok()?;
             let placement = placements.get(index)?;
-            // (Each leads to an earlier one, so that every chain ends.)
+            // (Each map leads to an earlier one, so that every chain ends.)
             next = placement.outer.min(index as u64);
             Some(&placement.rows)
         })
         .take(MOST_MAPS + 1)
     }
 
-    /// Checks that the groups take in all slabs of cells one after the other, and that no two have one
-    /// origin. O(n log n).
+    /// Checks that the groups contain all slabs of cells one after the other, and that no two groups have the
+    /// same origin. O(n log n).
     pub(crate) fn check_groups(&self) -> Result<(), Error> {
         let slabs = self.slabs.len() as u64;
         let wrong =
@@ -445,8 +447,8 @@ impl<'a> SurfacesRef<'a> {
         }
     }
 
-    /// Checks that all is there, in the order of first use, and that every surface is one of an octree that
-    /// is so deep; not the groups of slabs of cells. O(n).
+    /// Checks that all surfaces are complete, in the order of first use, and valid in an octree of this
+    /// depth; the groups of slabs of cells are not checked. O(n).
     pub(crate) fn check(&self, depth: u8) -> Result<(), Damage> {
         let (mut doubles, mut placements, mut origins) = (0, 0, 0);
         for (id, record) in self.records.iter().enumerate() {
@@ -454,7 +456,7 @@ impl<'a> SurfacesRef<'a> {
             let has_origin = record.origin() != 0;
             let may_be = record.kind().is_some_and(|kind| match record.terms >> (3 * kind.numbers()) {
                 0 => !has_origin || kind == SurfaceKind::Slab,
-                // A number that is the record's own place is left out.
+                // A number that equals the index of the record is not stored.
                 1 => self.identity(id).is_some_and(|(_, number)| number != id as u64),
                 _ => false,
             });
@@ -471,7 +473,7 @@ impl<'a> SurfacesRef<'a> {
             if self.placements(id).count() > MOST_MAPS {
                 return Err(wrong);
             }
-            // Of new maps each follows the one before.
+            // New maps follow each other.
             let mut last = u64::from(record.placement);
             let newest = placements.max(last);
             while last > placements {
@@ -487,7 +489,7 @@ impl<'a> SurfacesRef<'a> {
         if ends != (self.doubles.len(), self.placements.len() as u64, self.origins.len() as u64) {
             return Err(Damage::Surface { surface: self.records.len() as u64 });
         }
-        // The map from units of the universe is like any that places surfaces.
+        // The map from units of the universe must be valid for placing surfaces.
         let has_map = self.slabs.is_empty() || Affine::new(self.universe.rows()).is_ok();
         for (place, slab) in self.slabs.iter().enumerate() {
             if !has_map || !slab.is_valid(depth) {
@@ -504,16 +506,16 @@ impl<'a> SurfacesRef<'a> {
     }
 }
 
-/// The numbers of a surface, of which it is known what they are.
+/// The numbers of a surface, with their meaning.
 struct Figure<'a> {
     kind: SurfaceKind,
-    /// Each with its doubles.
+    /// Each number with its doubles.
     numbers: [&'a [f64]; 10],
 }
 
 impl<'a> Figure<'a> {
-    /// `None` if the doubles of a number are not as an exact number is written: none of them zero, each at
-    /// most 2^-53 of the one before.
+    /// Returns `None` if the doubles of a number are not in the form of an exact number: none of them zero,
+    /// each at most 2^-53 of the one before.
     fn new(kind: SurfaceKind, numbers: &'a Numbers<'a>) -> Option<Figure<'a>> {
         let mut own = [&[][..]; 10];
         for (i, to) in own.iter_mut().enumerate().take(kind.numbers() as usize) {
@@ -529,12 +531,12 @@ impl<'a> Figure<'a> {
         Some(Figure { kind, numbers: own })
     }
 
-    /// The sign of a number.
+    /// Returns the sign of a number.
     fn sign(&self, i: usize) -> i32 {
         self.numbers[i].first().map_or(0, |c| if *c > 0.0 { 1 } else { -1 })
     }
 
-    /// A number that is one double.
+    /// Returns a number that is a single double.
     fn double(&self, i: usize) -> Option<f64> {
         match *self.numbers[i] {
             [] => Some(0.0),
@@ -543,13 +545,13 @@ impl<'a> Figure<'a> {
         }
     }
 
-    /// The same that is a whole number.
+    /// Returns a number that is a single double and an integer.
     fn whole(&self, i: usize) -> Option<u32> {
         let number = self.double(i)?;
         (number == f64::from(number as u32)).then_some(number as u32)
     }
 
-    /// Whether the numbers make a surface.
+    /// True if the numbers define a surface.
     fn is_surface(&self) -> bool {
         let is_constant = |linear: core::ops::Range<usize>| linear.clone().all(|i| self.sign(i) == 0);
         match self.kind {

@@ -1,4 +1,4 @@
-//! How cuts are gathered while a tree is written, and put in order when it is done.
+//! The writer of cuts: gathers them while a tree is written, and sorts them at the end.
 
 use super::{BLOCK, Block, Cuts, CutsRef, Head, Origin, OwnedIds, Surfaces, records};
 use crate::error::{Damage, Error};
@@ -10,19 +10,19 @@ use core::cmp::Ordering;
 use core::ops::Range;
 use hashbrown::HashMap;
 
-/// What is known of a PARTIAL cell, while the tree is written.
+/// The content of a PARTIAL cell, while the tree is written.
 #[derive(Debug, Clone, PartialEq)]
 pub(crate) enum Cut {
-    /// Nothing.
+    /// Nothing is known.
     None,
-    /// Surfaces, and the function of them; the table depends on each.
+    /// Surfaces, and the function of them; the table depends on each of them.
     Table { ids: [u32; 3], table: u8 },
-    /// What is known of the children.
+    /// The cell is split: the contents of the children.
     Split(Box<[Cut; 8]>),
 }
 
 impl Cut {
-    /// Eight children that are PARTIAL, as one cell.
+    /// Returns eight PARTIAL children as one cell.
     pub(crate) fn of_children(children: [Cut; 8]) -> Cut {
         if children.iter().all(|child| *child == Cut::None) {
             Cut::None
@@ -31,7 +31,7 @@ impl Cut {
         }
     }
 
-    /// Ids from `first` on become greater by `more`.
+    /// Increases ids from `first` on by `more`.
     pub(crate) fn renumber(&mut self, first: u32, more: u32) {
         match self {
             Cut::None => {}
@@ -49,7 +49,7 @@ impl Cut {
     }
 }
 
-/// Records one after the other, and the numbers that their surfaces have so far.
+/// Records one after the other, and the preliminary numbers of their surfaces.
 #[derive(Default)]
 struct Records {
     heads: Vec<u8>,
@@ -61,7 +61,7 @@ struct Records {
 #[derive(Default)]
 struct Level {
     generations: Vec<Records>,
-    /// How many records each element has.
+    /// Number of records of each element.
     counts: Vec<u32>,
 }
 
@@ -93,13 +93,13 @@ impl Level {
     }
 }
 
-/// Cuts of a tree that is being written: level by level, as its elements.
+/// Cuts of a tree that is being written: level by level, like its elements.
 #[derive(Default)]
 pub(crate) struct CutWriter {
     levels: Vec<Level>,
 }
 
-/// What the surfaces of copied records are called: for each its number so far, and whether it is negated
+/// The names of the surfaces of copied records: for each its preliminary number, and whether it is negated
 /// there.
 pub(crate) type Names<'n> = &'n [(u32, bool)];
 
@@ -110,7 +110,7 @@ impl CutWriter {
         Ok(CutWriter { levels: own })
     }
 
-    /// Hands over the cuts of an element of level `e`, which has been stored; returns how many there are.
+    /// Stores the cuts of an element of level `e`, which has been stored, and returns their number.
     pub(crate) fn put<'c>(&mut self, e: usize, cuts: impl Iterator<Item = &'c Cut>) -> Result<usize, Error> {
         let level = &mut self.levels[e];
         let mut count = 0;
@@ -123,7 +123,7 @@ impl CutWriter {
     }
 
     /// Copies the records of the elements `run`, which follow each other on level `e`, or (`flip`) those of
-    /// the complement; returns how many bytes they take.
+    /// the complement. Returns the bytes of the records.
     pub(crate) fn copy(
         &mut self,
         e: usize,
@@ -151,7 +151,7 @@ impl CutWriter {
         Ok(bytes)
     }
 
-    /// The same of elements whose cells keep nothing, and are `planes`.
+    /// Copies elements whose cells keep nothing, and are `planes`, in the same way.
     pub(crate) fn copy_plain(
         &mut self,
         e: usize,
@@ -170,8 +170,8 @@ impl CutWriter {
         Ok(all)
     }
 
-    /// Takes over what a sibling wrote, which comes after all that this one wrote so far; ids from `first` on
-    /// become greater by `more`.
+    /// Takes over the output of a sibling, which comes after all output of this writer so far. Ids from
+    /// `first` on are increased by `more`.
     pub(crate) fn append(&mut self, other: CutWriter, first: u32, more: u32) -> Result<(), Error> {
         for (level, mut theirs) in self.levels.iter_mut().zip(other.levels) {
             level.counts.try_reserve(theirs.counts.len())?;
@@ -188,13 +188,15 @@ impl CutWriter {
         Ok(())
     }
 
-    /// Puts all in order: records, and what is counted before them. With the numbers so far of those surfaces
-    /// that are used: first those that `group` gives no origin, and then slabs of cells, origin by origin;
-    /// within these the order is that of their first use, and of those that a record is the first to use, the
-    /// `order` that is given of their numbers. The table of surfaces is left empty. Nothing comes of a tree
-    /// without PARTIAL cells. `root` is the cut of a universe that is one PARTIAL cell.
+    /// Sorts everything: the records, and the counts before them. Also returns the preliminary numbers of the
+    /// surfaces that are used: first the surfaces to which `group` gives no origin, then slabs of cells,
+    /// origin by origin. Within these, the surfaces are in the order of their first use; those that the same
+    /// record uses first are in the given `order` of their numbers. The table of surfaces is left empty.
+    /// Returns nothing for a tree without PARTIAL cells. `root` is the cut of a universe that is one PARTIAL
+    /// cell.
     ///
     /// # Errors
+    ///
     /// [`Error::Limit`] if there are 2^32 records or ids, and [`Error::OutOfMemory`].
     pub(crate) fn finish(
         mut self,
@@ -259,7 +261,7 @@ impl CutWriter {
 }
 
 impl Records {
-    /// Copies records that follow each other.
+    /// Copies consecutive records.
     fn copy(
         &mut self,
         cuts: &CutsRef<'_>,
@@ -290,7 +292,7 @@ impl Records {
     }
 }
 
-/// What a surface is called in the end, but for how many there are in the groups before its own.
+/// The final number of a surface, without the number of surfaces in the groups before its own.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
 struct Name {
     group: u32,
@@ -299,11 +301,11 @@ struct Name {
 
 /// The numbers of surfaces: group by group, in the order of their first use.
 struct Renaming<G> {
-    /// Of a slab of a cell its origin.
+    /// Returns the origin of a slab of a cell.
     group: G,
-    /// For each number so far the new name, if it is used.
+    /// For each preliminary number the new name, if the surface is used.
     names: Vec<Option<Name>>,
-    /// The numbers so far of each group. The first is that of all surfaces but slabs of cells.
+    /// The preliminary numbers of each group. The first group has all surfaces but slabs of cells.
     used: Vec<Vec<u32>>,
     groups: HashMap<Origin, u32>,
 }
@@ -344,7 +346,7 @@ impl<G: Fn(u32) -> Option<Origin>> Renaming<G> {
         Ok(name)
     }
 
-    /// The surfaces of a record, whose new numbers ascend; returns the table of them.
+    /// Renumbers the surfaces of a record in ascending order, and returns their table.
     fn record(
         &mut self,
         own: &[u32],
@@ -364,7 +366,7 @@ impl<G: Fn(u32) -> Option<Origin>> Renaming<G> {
         Ok(permuted(table, places.iter().copied()))
     }
 
-    /// How many surfaces there are before those of each group, and the numbers so far of all.
+    /// Returns the number of surfaces before those of each group, and the preliminary numbers of all.
     fn finish(self) -> Result<(Vec<u32>, Vec<u32>), Error> {
         let mut starts = memory::with_capacity(self.used.len())?;
         let mut all = Vec::new();
@@ -377,8 +379,8 @@ impl<G: Fn(u32) -> Option<Origin>> Renaming<G> {
     }
 }
 
-/// The table of the same surfaces in another order: the i-th is now the one that was at the i-th place of
-/// `order`.
+/// Returns the table of the same surfaces in another order: the i-th one is now the surface that was at the
+/// i-th place of `order`.
 fn permuted(table: u8, order: impl ExactSizeIterator<Item = usize> + Clone) -> u8 {
     let count = order.len();
     (0..8u8).fold(0, |all, m| {
@@ -394,7 +396,7 @@ mod tests {
 
     #[test]
     fn tables_in_another_order() {
-        // The first and not the second of three, of which the third does not count.
+        // The first and not the second of three surfaces; the third does not matter.
         let table = 0xAA & !0xCC;
         assert_eq!(permuted(table, [1, 0].into_iter()), 0xCC & !0xAA);
         assert_eq!(permuted(0xAA & 0xCC | 0xF0, [2, 0, 1].into_iter()), 0xCC & 0xF0 | 0xAA);
