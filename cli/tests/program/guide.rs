@@ -1,13 +1,13 @@
-//! The README and the guide in `docs`: commands are run, links lead somewhere, and the pictures are those that
-//! the program makes.
+//! The README and the guide in `docs`: commands are run, links lead somewhere, and the pictures are those
+//! that the program makes.
 //!
 //! `LEAFLESS_BLESS=1 cargo test --test program guide::` writes what the program answers into the pages, and
 //! its pictures into `docs/pictures`.
 //!
 //! A page is a folder of its own, in which its blocks act one after the other:
 //!
-//! - `console`: lines that begin with `$ ` are run by a shell, with the lines after them that begin with `> `.
-//!   The other lines are what the shell prints.
+//! - `console`: lines that begin with `$ ` are run by a shell, with the lines after them that begin with
+//!   `> `. The other lines are what the shell prints.
 //! - `openscad`: a line `// name.csg` begins a file of that name.
 //! - `<!-- $ command -->`, a comment of one line: a command that is run and not shown.
 //!
