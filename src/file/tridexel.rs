@@ -269,9 +269,9 @@ pub fn open(path: impl AsRef<Path>) -> Result<TriDexel, Error> {
 }
 
 /// Maps the model in the file at `path` into memory: nothing is copied, and only the parts that queries touch
-/// are ever read from disk. Only header, section table, bounds, windows and metadata are checked: O(sections
-/// + objects), some microseconds for a file of any size. The [module](super::dexels) describes the effects of
-/// damaged intervals.
+/// are ever read from disk. Only header, section table, bounds, windows and metadata are checked:
+/// O(sections + objects), some microseconds for a file of any size. The [module](super::dexels) describes the
+/// effects of damaged intervals.
 ///
 /// # Errors
 /// [`Error::File`] with the path and one of these causes: [`Error::Io`];

@@ -189,10 +189,10 @@ impl Octree {
     /// Returns the statistics of each level: nodes, cells of each tag, volumes. O(depth) once the counts are
     /// known. They are known for a tree from a file; for a new tree they take one pass over its arrays.
     ///
-    /// A classical octree has a node for every cell, cut or not: with n leaves and m internal nodes, it has m
-    /// + n = 8 m + 1 nodes. A leaf is only EMPTY or FULL, which its parent can store as well. So the
-    /// leaf-free octree has m nodes. The example in the publication of the method has 25 nodes with leaves
-    /// and 3 without. A bar of three cells is such a solid:
+    /// A classical octree has a node for every cell, cut or not: with n leaves and m internal nodes, it has
+    /// m + n = 8 m + 1 nodes. A leaf is only EMPTY or FULL, which its parent can store as well. So the
+    /// leaf-free octree has m nodes. The example in the publication of the method has 25 nodes with leaves and
+    /// 3 without. A bar of three cells is such a solid:
     ///
     /// ```
     /// use leafless::{Control, Csg, Frame, Rule, Tag, build};
