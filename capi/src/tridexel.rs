@@ -322,7 +322,8 @@ pub unsafe extern "C" fn leafless_tridexel_equal(
 /// - Errors: LEAFLESS_E_UTF8; LEAFLESS_E_ARGUMENT if all facts would take more than 1 MiB in a file (each
 ///   takes 8 bytes and its two texts); LEAFLESS_E_NO_MEMORY.
 /// - Ownership: the texts are copied. `*named` shares the arrays of `tridexel`, which may be freed. Bytes
-///   that `tridexel` views must outlive `*named` too. Release `*named` with leafless_tridexel_free.
+///   that `tridexel` views must outlive `*named` too, and a file that it maps must stay unchanged as long.
+///   Release `*named` with leafless_tridexel_free.
 /// - Untrusted input: any texts.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn leafless_tridexel_with_metadata(
