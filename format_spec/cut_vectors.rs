@@ -852,8 +852,8 @@ fn placed() -> Model {
     Model { frame: Frame::new([-4.0, -4.0, -1.0], 8.0, 5).expect("a frame"), ..whole(5, cuts) }
 }
 
-/// Slabs of two origins, and slabs without an origin. One slab's number is its place; another slab's number
-/// is not exact as a double.
+/// Slabs of two origins, and slabs without an origin. One slab's number is its place; the bits of another
+/// slab's number are those of a NaN.
 fn slabs() -> Model {
     let slab = Surface::slab;
     let surfaces = vec![

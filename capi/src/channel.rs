@@ -196,7 +196,8 @@ pub unsafe extern "C" fn leafless_attribute_from_channel(
 /// - Errors: LEAFLESS_E_UTF8; LEAFLESS_E_ARGUMENT if all facts would take more than 64 KiB in a file (each
 ///   takes 8 bytes and its two texts); LEAFLESS_E_NO_MEMORY.
 /// - Ownership: the texts are copied. `*named` shares the arrays of `channel`, which may be freed. Bytes that
-///   `channel` views must outlive `*named` too. Release `*named` with leafless_channel_free.
+///   `channel` views must outlive `*named` too, and a file that it maps must stay unchanged as long. Release
+///   `*named` with leafless_channel_free.
 /// - Untrusted input: any texts.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn leafless_channel_with_metadata(

@@ -69,7 +69,7 @@ pub struct leafless_mesh_arrays {
     /// The first triangle: three indices, counted from 0. NULL if there is none, or if every three
     /// consecutive vertices are a triangle.
     pub indices: *const c_void,
-    /// Number of triangles. If `indices` is NULL, this must be a third of `vertex_count`.
+    /// Number of triangles. If `indices` is NULL, this must be 0 or a third of `vertex_count`.
     pub triangle_count: u64,
     /// Bytes from one triangle to the next; 0 means that they follow each other without a gap.
     pub triangle_stride: u64,
@@ -269,7 +269,8 @@ impl leafless_mesh_arrays {
 /// - Errors: LEAFLESS_E_MESH if a coordinate is infinite, not a number, or beyond ±2^256, or if an index is
 ///   out of range, with the index of the vertex or triangle in the message, or if there are more than 2^32 -
 ///   1 vertices or triangles; LEAFLESS_E_ARGUMENT if a type, a stride or the scale is invalid, or if
-///   `indices` is NULL and `vertex_count` is not three times `triangle_count`; LEAFLESS_E_NO_MEMORY.
+///   `indices` is NULL and `triangle_count` is neither 0 nor a third of `vertex_count`;
+///   LEAFLESS_E_NO_MEMORY.
 /// - Ownership: the arrays are only read during the call, once and in their order, and may be freed after it,
 ///   because the mesh has its own copies. Release `*mesh` with leafless_mesh_free.
 /// - Untrusted input: any values in the arrays.

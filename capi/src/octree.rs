@@ -367,7 +367,8 @@ pub unsafe extern "C" fn leafless_octree_equal(
 /// - Errors: LEAFLESS_E_UTF8; LEAFLESS_E_ARGUMENT if all facts would take more than 1 MiB in a file (each
 ///   takes 8 bytes and its two texts); LEAFLESS_E_NO_MEMORY.
 /// - Ownership: the texts are copied. `*named` shares the arrays of `octree`, which may be freed. Bytes that
-///   `octree` views must outlive `*named` too. Release `*named` with leafless_octree_free.
+///   `octree` views must outlive `*named` too, and a file that it maps must stay unchanged as long. Release
+///   `*named` with leafless_octree_free.
 /// - Untrusted input: any texts.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn leafless_octree_with_metadata(

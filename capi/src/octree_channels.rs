@@ -54,7 +54,8 @@ pub struct leafless_carry_rule {
 /// - Errors: LEAFLESS_E_FRAME if the channel lies in another cube than the octree; LEAFLESS_E_ARGUMENT if
 ///   there are 256 channels already; LEAFLESS_E_NO_MEMORY.
 /// - Ownership: `*result` shares the arrays of `octree` and `channel`, which may be freed. Bytes that these
-///   view must outlive `*result` too. Release `*result` with leafless_octree_free.
+///   view must outlive `*result` too, and files that they map must stay unchanged as long. Release `*result`
+///   with leafless_octree_free.
 /// - Untrusted input: any octree, any channel.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn leafless_octree_with_channel(
@@ -100,7 +101,8 @@ pub unsafe extern "C" fn leafless_octree_without_channel(
 /// - Result: `*channel`.
 /// - Errors: LEAFLESS_E_ARGUMENT if there is no channel `index`.
 /// - Ownership: `*channel` shares the arrays of `octree`, which may be freed. Bytes that `octree` views must
-///   outlive `*channel` too. Release `*channel` with leafless_channel_free.
+///   outlive `*channel` too, and a file that it maps must stay unchanged as long. Release `*channel` with
+///   leafless_channel_free.
 /// - Untrusted input: any octree.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn leafless_octree_channel_at(

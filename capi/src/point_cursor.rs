@@ -99,7 +99,7 @@ pub struct leafless_point_table(Yoke<PointTable<'static>, Arc<leafless_octree>>)
 /// - Buffers: `table`, one pointer; `table_level`, one.
 /// - Result: `*table`; `*table_level`: the level of the table's cells, which is `level` or the next coarser
 ///   level at which the octree's array elements, of two levels each, begin. A `level` beyond 8, or beyond the
-///   octree's depth, is reduced to it.
+///   octree's depth, is reduced to that limit.
 /// - Errors: LEAFLESS_E_NO_MEMORY.
 /// - Ownership: the table shares the octree, which may be freed; release `*table` with
 ///   leafless_point_table_free.

@@ -37,7 +37,7 @@ pub enum leafless_facets {
     LEAFLESS_FACETS_AUTO = 0,
     /// None: all curves are exact.
     LEAFLESS_FACETS_EXACT = 1,
-    /// All, with as many sides as OpenSCAD draws, at most 1024.
+    /// All, with as many sides as OpenSCAD draws. A scene with more than 1024 sides to a curve is refused.
     LEAFLESS_FACETS_POLYGON = 2,
 }
 

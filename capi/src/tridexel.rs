@@ -181,7 +181,7 @@ pub(super) fn give(model: TriDexel) -> *mut leafless_tridexel {
 /// identical, bit for bit, for any number of threads.
 ///
 /// Under LEAFLESS_RULE_SAMPLED the intervals are those of the solid on each ray. The centres of cells next to
-/// an end lie on the same side of it as in the solid; otherwise an end is off by at most 2^-31 of the
+/// an end lie on the same side of it as in the solid; apart from that, an end is off by at most 2^-31 of the
 /// universe's edge, or 2^-36 with LEAFLESS_DEXEL_ENDS_DOUBLE. This holds for closed meshes, for half-spaces
 /// and expressions of them, and for octrees. Solids of other kinds, and open meshes around their holes, are
 /// sampled: an end between centres on different sides is located by cells to a depth of 20, and a wall
@@ -322,7 +322,8 @@ pub unsafe extern "C" fn leafless_tridexel_equal(
 /// - Errors: LEAFLESS_E_UTF8; LEAFLESS_E_ARGUMENT if all facts would take more than 1 MiB in a file (each
 ///   takes 8 bytes and its two texts); LEAFLESS_E_NO_MEMORY.
 /// - Ownership: the texts are copied. `*named` shares the arrays of `tridexel`, which may be freed. Bytes
-///   that `tridexel` views must outlive `*named` too. Release `*named` with leafless_tridexel_free.
+///   that `tridexel` views must outlive `*named` too, and a file that it maps must stay unchanged as long.
+///   Release `*named` with leafless_tridexel_free.
 /// - Untrusted input: any texts.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn leafless_tridexel_with_metadata(

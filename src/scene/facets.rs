@@ -13,7 +13,7 @@ pub enum Facets {
     Auto,
     /// No polygons: circles are round.
     Exact,
-    /// Polygons always, with as many sides as in OpenSCAD, at most 1024.
+    /// Polygons always, with as many sides as in OpenSCAD. More than 1024 sides are refused.
     Polygon,
 }
 

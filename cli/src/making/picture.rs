@@ -81,7 +81,7 @@ pub enum View {
     Surface,
     /// The inside, translucent
     Volume,
-    /// Both; clip planes cut only the surface, else translucent
+    /// Both: clip planes cut only the surface; without any it is translucent
     Hybrid,
     /// A plane section, with its cells and their tags
     Slice,

@@ -27,7 +27,7 @@ pub enum Protocol {
     Kitty,
     /// The protocol of iTerm2
     Iterm,
-    /// Sixels, up to 256 colours: foot, mlterm, Windows Terminal, xterm …
+    /// Sixels, up to 256 colours: foot, mlterm, Windows Terminal, xterm and others
     Sixel,
     /// Half-block characters, two pixels each: every terminal with colours
     Blocks,

@@ -45,7 +45,7 @@ pub fn best_threshold(samples: &Samples<'_>) -> Option<f64> {
 /// Calls a function with all finite samples.
 fn each(samples: &Samples<'_>, mut call: impl FnMut(f64)) {
     match samples {
-        // (The bits behind the end of a row are 0; the exact number of zeros does not matter.)
+        // (The bits behind the end of a row are no samples; the exact number of zeros does not matter.)
         Samples::Bits(words) => {
             for &word in words.values() {
                 (0..64).for_each(|bit| call((word >> bit & 1) as f64));
