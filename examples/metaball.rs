@@ -69,7 +69,8 @@ impl Solid for Metaball {
         Ok(OnFrame { shape: self.clone(), frame: *frame, ends })
     }
 
-    /// With S the sum of the radii, a point farther than √(rᵢ S) from each cᵢ has a sum below Σ rᵢ² / (rᵢ S) = 1.
+    /// Let S be the sum of the radii. A point farther than √(rᵢ S) from each cᵢ has a sum below
+    /// Σ rᵢ² / (rᵢ S) = 1.
     fn bounds(&self) -> Option<Bounds> {
         let total = self
             .balls

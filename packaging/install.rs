@@ -5,7 +5,7 @@
 //! cargo run --release -p leafless-capi -- --prefix /usr/local
 //! ```
 //!
-//! It is a program in Rust because whoever builds Leafless has Rust, on every platform. What it installs
+//! It is a program in Rust because every builder of Leafless has Rust, on every platform. What it installs
 //! finds the prefix from its own place, so that the prefix can be moved.
 
 mod notices;

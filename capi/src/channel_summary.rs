@@ -36,8 +36,8 @@ enumeration! {
     }
 }
 
-/// A summary of a channel's values in a region, number by number; entries beyond the numbers of a value are 0.
-/// All intervals contain the truth, as far as the cells of the solid and of the channel represent it.
+/// A summary of a channel's values in a region, number by number; entries beyond the numbers of a value
+/// are 0. All intervals contain the truth, as far as the cells of the solid and of the channel represent it.
 #[derive(Clone, Copy)]
 #[repr(C)]
 pub struct leafless_channel_summary {

@@ -19,7 +19,8 @@ pub struct leafless_one_way {
     pub distance_model: leafless_interval,
     /// If `has_witness`, a point next to the first boundary; else zeros.
     pub point_model: [f64; 3],
-    /// If `has_witness`, an upper bound of the point's distance from the first boundary, in model units; else 0.
+    /// If `has_witness`, an upper bound of the point's distance from the first boundary, in model units;
+    /// else 0.
     pub apart_model: f64,
     /// If `has_witness`, the point next to the second boundary that is nearest to `point_model`, as far as
     /// the boundary is known; else zeros.

@@ -39,7 +39,8 @@ enumeration! {
 }
 
 /// The appearance of a surface. NULL means the defaults. Zero is the default of every field but the first. A
-/// field that a layer does not use must be zero. Colours are red, green and blue (sRGB) and opacity, 0 to 255.
+/// field that a layer does not use must be zero. Colours are red, green and blue (sRGB) and opacity, 0
+/// to 255.
 #[derive(Clone, Copy)]
 #[repr(C)]
 pub struct leafless_look {

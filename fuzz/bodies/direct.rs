@@ -72,7 +72,7 @@ fn length(p: Point) -> f64 {
     }
 }
 
-// ---- exact numbers -------------------------------------------------------------------------------------------
+// ---- exact numbers ------------------------------------------------------------------------------
 
 /// mantissa · 2^exponent.
 #[derive(Clone, Debug)]
@@ -159,7 +159,7 @@ fn common<const N: usize>(points: [&[Exact; 3]; N]) -> [[BigInt; 3]; N] {
     points.map(|p| [0, 1, 2].map(|k| p[k].in_units(unit)))
 }
 
-// ---- the mesh ------------------------------------------------------------------------------------------------
+// ---- the mesh -----------------------------------------------------------------------------------
 
 /// A map by integers and a translation. Its inverse is exact.
 struct Motion {
@@ -401,7 +401,7 @@ fn plumpness([a, b, c]: Facet) -> f64 {
     length(cross(u, v))
 }
 
-// ---- random scenes ---------------------------------------------------------------------------------------------
+// ---- random scenes ------------------------------------------------------------------------------
 
 /// The parameters of random corners.
 struct Corners {
@@ -563,7 +563,7 @@ pub fn direct(data: &[u8]) {
     }
 }
 
-// ---- stored --------------------------------------------------------------------------------------------------
+// ---- stored -------------------------------------------------------------------------------------
 
 /// Runs the fuzz target `layers`: the same meshes, stored with the planes of their facets, alone and minus a
 /// block. No point is decided wrongly, and no point far from the surface is undecided unless its cell was
@@ -642,7 +642,7 @@ pub fn layers(data: &[u8]) {
     }
 }
 
-// ---- rays ----------------------------------------------------------------------------------------------------
+// ---- rays ---------------------------------------------------------------------------------------
 
 fn has(spans: &[Interval], t: f64) -> bool {
     spans.iter().any(|span| span.contains(t))
@@ -773,7 +773,7 @@ fn ask_ray(bytes: &mut Bytes<'_>, scene: &Scene, corners: &Corners) {
     }
 }
 
-// ---- points --------------------------------------------------------------------------------------------------
+// ---- points -------------------------------------------------------------------------------------
 
 fn ask_point(bytes: &mut Bytes<'_>, scene: &Scene, corners: &Corners) {
     let p = point(bytes, scene, corners);

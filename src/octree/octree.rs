@@ -191,8 +191,8 @@ impl Octree {
     ///
     /// A classical octree has a node for every cell, cut or not: with n leaves and m internal nodes, it has
     /// m + n = 8 m + 1 nodes. A leaf is only EMPTY or FULL, which its parent can store as well. So the
-    /// leaf-free octree has m nodes. The example in the publication of the method has 25 nodes with leaves and
-    /// 3 without. A bar of three cells is such a solid:
+    /// leaf-free octree has m nodes. The example in the publication of the method has 25 nodes with leaves
+    /// and 3 without. A bar of three cells is such a solid:
     ///
     /// ```
     /// use leafless::{Control, Csg, Frame, Rule, Tag, build};

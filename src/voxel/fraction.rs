@@ -13,9 +13,9 @@ use alloc::vec::Vec;
 
 impl VoxelRecordsRef<'_> {
     /// Computes the solid fraction of each voxel, 0 to 1, in the form of a volume's
-    /// [weights](crate::render::VolumeLayer::weights). Inside voxels have 1, outside and refined voxels have 0.
-    /// For a boundary voxel, the fraction comes from the moments of `solid` there, or from the mean of the
-    /// two bounds by its slabs; it is ½ if the solid has neither. One thread; O(records · levels).
+    /// [weights](crate::render::VolumeLayer::weights). Inside voxels have 1, outside and refined voxels
+    /// have 0. For a boundary voxel, the fraction comes from the moments of `solid` there, or from the mean
+    /// of the two bounds by its slabs; it is ½ if the solid has neither. One thread; O(records · levels).
     ///
     /// ```
     /// use leafless::{Control, Csg, Frame, Rule, build, voxel::{VoxelOptions, VoxelRecords}};

@@ -2,3 +2,4 @@
 
 mod layers;
 mod no_std;
+mod prose;

@@ -60,7 +60,8 @@ fn lines_stay_within_the_width() {
     for path in files(&[".rs", ".md"]) {
         let text = std::fs::read_to_string(&path).unwrap();
         let is_page = path.extension().is_some_and(|ending| ending == "md");
-        let (lines, width) = if is_page { (page_lines(&text), WIDTHS[1]) } else { (comments(&text), WIDTHS[0]) };
+        let (lines, width) =
+            if is_page { (page_lines(&text), WIDTHS[1]) } else { (comments(&text), WIDTHS[0]) };
         for (at, line) in lines {
             let whole = text.lines().nth(at - 1).unwrap();
             if whole.chars().count() > width && !has_no_breaks(line) {

@@ -778,7 +778,8 @@ fn merged_cells_give_their_memory_back() {
     }
     assert_eq!((lazy.tag(Cell::ROOT), lazy.splits()), (Tag::Empty, (1 << 18) / 7));
     assert_eq!(lazy.statistics().nodes(), 0);
-    // The universe's block, and the blocks on the way to unmerged cells: up to 64 of level 3 and 8 of level 2.
+    // The universe's block, and the blocks on the way to unmerged cells: up to 64 of level 3 and 8 of
+    // level 2.
     assert_eq!(lazy.bytes(), 64);
     assert!(most <= 64 * (4 + 8 + 1), "{most}");
     // In a single pass only the blocks on the way exist.

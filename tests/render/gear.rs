@@ -8,7 +8,8 @@ mod gear_pictures;
 use gear_pictures::gear_records::{inside, parts};
 use leafless::Control;
 
-/// For the published gear, 13 752 adaptive voxels looked as good as 32 059 of one size, and better than 7 571.
+/// For the published gear, 13 752 adaptive voxels looked as good as 32 059 of one size, and better than
+/// 7 571.
 #[test]
 fn adaptive_records_make_good_pictures() {
     let control = Control::default();

@@ -387,7 +387,7 @@ fn all_pictures_are_shown_and_made() {
         let text = text(&page);
         for (_, name) in links(&text).iter().filter_map(|target| target.split_once("pictures/")) {
             if !target_is_svg(name) {
-                let made = text.contains(&format!("-o {name}"));
+                let made = text.contains(&format!("-o {name}")) || text.contains(&format!(" {name} -->"));
                 let entry = shown.entry(name.to_owned()).or_default();
                 if made {
                     *entry = page.clone();

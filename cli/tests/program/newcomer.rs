@@ -308,7 +308,7 @@ fn the_rule_of_a_file_is_true() {
     assert_eq!(place.run("info cube.lfl --json").good().json()["metadata"]["rule"], "certified");
 }
 
-/// Whoever waits hears of it, and can say how long to wait.
+/// Long work reports its progress, and ends after the time that the user gives.
 #[test]
 fn nothing_is_silent_for_long() {
     let place = Place::new();
