@@ -90,8 +90,8 @@ pub struct leafless_mesh_report {
     /// Largest displacement of a sewn vertex along an axis, in model units, without a stated deviation.
     pub displacement_model: f64,
     /// Closed bodies that are proven to overlap another one: their surfaces cross, or one lies inside the
-    /// other with the same orientation and no cavity between them. The winding number then exceeds 1 in magnitude
-    /// at some points, and leafless_mesh_volume differs from the volume that a fill rule encloses.
+    /// other with the same orientation and no cavity between them. The winding number then exceeds 1 in
+    /// magnitude at some points, and leafless_mesh_volume differs from the volume that a fill rule encloses.
     pub overlapping_bodies: u64,
     /// Other closed bodies that may overlap another one: they touch in a way that is not decided, such as a
     /// peg that fits its hole exactly, or the search had to stop.
