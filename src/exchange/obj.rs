@@ -409,11 +409,11 @@ mod tests {
     #[test]
     fn texts_that_are_no_obj() {
         assert!(matches!(read_obj(b""), Err(Error::MeshFile(MeshFileError::Empty))));
-        assert_syntax("\n", 1, "none");
-        assert_syntax("# nothing\n\n", 1, "none");
-        assert_syntax("solid a\nfacet normal 0 0 1\nouter loop\nvertex 0 0 0\n", 4, "none");
-        assert_syntax("ply\nformat ascii 1.0\n", 2, "none");
-        assert_syntax([0; 100], 1, "none");
+        assert_syntax("\n", 1, "neither");
+        assert_syntax("# nothing\n\n", 1, "neither");
+        assert_syntax("solid a\nfacet normal 0 0 1\nouter loop\nvertex 0 0 0\n", 4, "neither");
+        assert_syntax("ply\nformat ascii 1.0\n", 2, "neither");
+        assert_syntax([0; 100], 1, "neither");
         // A file of vertices alone is a file without faces.
         assert_eq!(read_obj(CORNERS.as_bytes()).unwrap().triangles().len(), 0);
     }
