@@ -66,8 +66,8 @@ pub enum GapVerdict {
     Yes = 0,
     /// Proven: two points are nearer. The evidence contains them.
     No = 1,
-    /// Not decided at the frame's depth, or before the splits were spent; or a solid continues outside of the
-    /// universe, where it may come nearer.
+    /// Not decided at the frame's depth, or before the splits were spent; or a solid may continue outside of
+    /// the universe, and come nearer there.
     Undecided = 2,
 }
 

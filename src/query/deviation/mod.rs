@@ -75,9 +75,9 @@ pub struct Witness {
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
 #[repr(u8)]
 pub enum Within {
-    /// Proven: the distance of each point of either boundary from the other is at most this.
+    /// Proven: no point of either boundary is further from the other than the given distance.
     Yes = 0,
-    /// Proven: a point of one boundary is further away from the other.
+    /// Proven: a point of one boundary is further from the other than the given distance.
     No = 1,
     /// Neither is proven.
     Undecided = 2,
@@ -91,7 +91,7 @@ impl Deviation {
     }
 
     /// Returns whether the boundaries are within a distance (model units) of each other. For two solids that
-    /// are bounded by the universe, a distance of 0 tests whether they have the same boundary.
+    /// end inside of the universe, a distance of 0 tests whether they have the same boundary.
     pub fn within(&self, distance: f64) -> Within {
         let known = self.distance();
         if known.upper <= distance {

@@ -27,8 +27,8 @@ pub enum Overlap {
     Disjoint = 0,
     /// Proven: a ball lies in both solids.
     Overlapping = 1,
-    /// Not decided at the frame's depth, or before the splits were spent; or both solids continue outside of
-    /// the universe, where they may overlap.
+    /// Not decided at the frame's depth, or before the splits were spent; or both solids may continue outside
+    /// of the universe, and overlap there.
     Undecided = 2,
 }
 
