@@ -22,7 +22,7 @@ pub struct SurfaceArea {
     /// Whether the solid continues, or may continue, outside of the universe. The area is then that of the
     /// boundary inside.
     pub clipped: bool,
-    /// Why the measurement ended.
+    /// The reason why the measurement ended.
     pub stop_reason: StopReason,
     /// The finest level of the visited cells.
     pub level: u8,
