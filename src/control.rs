@@ -9,20 +9,20 @@ use core::sync::atomic::{AtomicBool, AtomicUsize, Ordering::Relaxed};
 /// processors and reports no progress.
 ///
 /// No field but `max_splits` changes a result: with any other field set, an operation returns the same
-/// result, bit for bit, or an error. (Whether damage in unverified bytes is noticed may depend on the number
-/// of threads.)
+/// result, bit for bit, or an error. (Which damage in unverified bytes is noticed may depend on the number of
+/// threads.)
 #[derive(Clone, Copy, Default)]
 pub struct Control<'a> {
     /// Number of threads. 0 means as many as the machine has processors; numbers beyond 1024 mean 1024.
     /// Without the feature `parallel`, or if the system refuses to start threads, only the calling thread
     /// works.
     pub threads: usize,
-    /// Refuses results of more than this many octree nodes with [`Error::Limit`]. (Refinement on demand stops
-    /// there.)
+    /// Maximum number of octree nodes of a result; a larger result is [`Error::Limit`]. (Refinement on demand
+    /// stops there.)
     pub max_nodes: Option<u64>,
-    /// Refuses results whose working form is larger than this many bytes. If the size is known beforehand,
-    /// the error is [`Error::TooLarge`] and no work is done; if the size is found during the work, the error
-    /// is [`Error::Limit`]. (Refinement on demand stops there.) While a result is assembled, it briefly takes
+    /// Maximum size of the working form of a result, in bytes. If a larger size is known beforehand, the
+    /// error is [`Error::TooLarge`] and no work is done; if it is found during the work, the error is
+    /// [`Error::Limit`]. (Refinement on demand stops there.) While a result is assembled, it briefly takes
     /// twice its memory. Interference, clearance, deviations, bounding boxes and areas of sections remember
     /// parts of the solids. They stop before these parts exceed the limit, and return their bounds so far, as
     /// they do when `max_splits` is spent.

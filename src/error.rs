@@ -73,8 +73,8 @@ pub enum Error {
         /// The first invalid ray; 0 if the arrays as a whole are invalid.
         ray: u64,
     },
-    /// A result has more nodes or bytes than the caller allowed, or a pipe has more bytes than may be read at
-    /// once.
+    /// A result has more nodes or bytes than the caller allowed, or a pipe that is read as a whole has more
+    /// bytes than the library allows.
     #[error("the limit of {limit} {what} was reached")]
     Limit {
         /// `"nodes"` or `"bytes"`.
@@ -88,8 +88,8 @@ pub enum Error {
     TooLarge {
         /// The object that would take the memory, such as `"the triangles of the surface"`.
         what: &'static str,
-        /// The least number of bytes that the result takes, including its scratch memory; `u64::MAX` stands
-        /// for all larger numbers.
+        /// A lower bound of the bytes that the result takes, including its scratch memory; `u64::MAX` if the
+        /// bound is larger than that.
         needed: u64,
         /// The limit that the caller set, in bytes.
         limit: u64,
@@ -99,10 +99,11 @@ pub enum Error {
     /// Every allocation whose size depends on an input or a result is fallible, and a failure is this error.
     /// The remaining allocations are small, at most 2 KiB each: counted references, the numbers per level
     /// behind statistics, exact signs, and the handling of paths by the standard library and `tempfile`; and
-    /// the costs of threads. Two tasks are done by other crates. Triangulating a polygon that is no fan takes
-    /// about 320 bytes a corner; the library reserves and releases that amount first, so that a shortage is
-    /// an error. Compressing takes half a megabyte, and the library reserves and releases that amount
-    /// likewise. If one of the remaining allocations fails, the process ends, as is usual for Rust programs.
+    /// the costs of threads. Other crates do three tasks. Triangulating a polygon that is no fan takes about
+    /// 320 bytes a corner; the library reserves and releases that amount first, so that a shortage is an
+    /// error. The same holds for the half megabyte of compressing a NRRD. The compressors of 3MF and PNG
+    /// files are not covered: they allocate some hundred kilobytes, and that of PNG also a copy of the
+    /// picture. If one of the remaining allocations fails, the process ends, as is usual for Rust programs.
     /// (It also ends if an allocator refuses to shrink an allocation, which no known allocator does.)
     #[error("out of memory")]
     OutOfMemory,

@@ -20,9 +20,9 @@
 //! gives a mesh without attributes.
 //!
 //! - `colour` has four numbers from 0 to 255: red, green and blue, usually in sRGB, and alpha, which is 255
-//!   if the file has none. In a PLY, vertices have colours, and the corners of triangles take them over. In a
-//!   3MF, corners or triangles have colours, either from a colour group or the display colours of base
-//!   materials.
+//!   if the file has none. In a PLY, vertices or faces have colours, and the corners of triangles take over
+//!   those of the vertices. In a 3MF, corners or triangles have colours, either from a colour group or the
+//!   display colours of base materials.
 //! - `face_colour` has the colours of a PLY's faces if its vertices have colours as well.
 //! - `material` is the number of a triangle's material, with the materials' names. In a 3MF it is the base
 //!   material, in an OBJ the name after `usemtl`, numbered in order of appearance.

@@ -56,7 +56,7 @@ impl CubeMoments {
 pub struct CellMoments {
     /// Approximate moments.
     pub moments: CubeMoments,
-    /// The greatest error of any moment. Not negative; 8 or more means that nothing is known.
+    /// A bound of the error of each moment. Not negative; 8 or more means that nothing is known.
     pub error: f64,
 }
 

@@ -10,11 +10,11 @@ use crate::memory;
 /// The kinds of parts of a polyhedron.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
 pub enum PolyhedronPart {
-    /// Its faces.
+    /// The faces of its solids.
     Face,
     /// The shells of its solids: the outer one and the voids of each.
     Shell,
-    /// Its solids.
+    /// The solids.
     Solid,
 }
 

@@ -21,9 +21,9 @@ pub struct MeshHistory {
     pub deviation: f64,
     /// Number of faces of more than three corners from which the triangles were made.
     pub polygons: u64,
-    /// Number of such faces that are not flat.
+    /// Number of faces of more than three corners that are not flat.
     pub bent_polygons: u64,
-    /// Maximum distance of corners from the planes of such faces, in model units.
+    /// Maximum distance of a corner from the plane of its face, in model units.
     pub polygon_deviation: f64,
 }
 

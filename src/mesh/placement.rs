@@ -9,9 +9,9 @@ use crate::lattice::{Affine, SMALLEST};
 impl TriangleMesh {
     /// Returns the mesh mapped by an affine map. Vertices are rounded to doubles; the maximum rounding error
     /// is added to the [`displacement`](Self::displacement), so that proofs about the solid hold for the
-    /// exact image. A stated [`deviation`](Self::deviation) grows by the maximum factor by which the map
-    /// stretches lengths. A reflection also reverses the triangles, so that outside stays outside. The report
-    /// starts anew.
+    /// exact image. A stated [`deviation`](Self::deviation) is multiplied by the maximum factor by which the
+    /// map stretches lengths. A reflection also reverses the triangles, so that outside stays outside. The
+    /// report starts anew.
     ///
     /// O(v + t). Fails as [`new`](Self::new) does.
     pub fn placed(&self, placement: &Affine) -> Result<TriangleMesh, Error> {

@@ -90,8 +90,8 @@ pub struct Polyhedron {
 }
 
 impl Polyhedron {
-    /// Checks the arrays and triangulates the faces. Corners may lie off the plane of their face by 10^-9 of
-    /// the longest extent of all vertices that loops use.
+    /// Checks the arrays and triangulates the faces. Corners may lie off the plane of their face by at most
+    /// 10^-9 of the longest extent of all vertices that loops use.
     ///
     /// O(n log n) expected, with about 100 bytes a corner of scratch memory and 320 of the largest face.
     ///
@@ -103,9 +103,9 @@ impl Polyhedron {
         Self::checked(arrays, None)
     }
 
-    /// Does the same as [`new`](Self::new) with a given tolerance in model units: the maximum distance of a
-    /// corner from the plane of its face, measured as half the distance between the two planes parallel to
-    /// the face that enclose its corners.
+    /// Checks the arrays as [`new`](Self::new) does, but with the given tolerance (model units), and
+    /// triangulates the faces. The tolerance limits the deviation of each face from a plane: half the
+    /// distance between the two planes parallel to the face that enclose its corners.
     ///
     /// # Errors
     /// As `new`; [`Error::Argument`] if `tolerance` is negative or not a number.

@@ -36,8 +36,8 @@ pub struct MeshReport {
     pub euler_characteristic: i64,
     /// Number of edges used by an odd number of triangles. A mesh is closed if there is none.
     pub boundary_edges: u64,
-    /// Number of loops of these edges, without vertices that occur twice: holes of the surface and rims of
-    /// sheets.
+    /// Number of loops of the boundary edges, without vertices that occur twice: holes of the surface and
+    /// rims of sheets.
     pub boundary_loops: u64,
     /// Number of edges used by an even number of triangles, but not by equally many in each direction. A
     /// closed mesh is consistently oriented if there is none.
@@ -58,12 +58,13 @@ pub struct MeshReport {
     /// Number of bodies with an edge whose triangles do not cancel each other: open or not consistently
     /// oriented.
     pub open_bodies: u64,
-    /// Number of other bodies that enclose a negative volume: cavities, and inverted bodies.
+    /// Number of closed, consistently oriented bodies that enclose a negative volume: cavities, and inverted
+    /// bodies.
     pub inside_out_bodies: u64,
     /// Number of vertices that [`sewn`](TriangleMesh::sewn) moved onto another one.
     pub sewn: u64,
-    /// Maximum distance that a vertex was moved along an axis, in model units. (A stated deviation is not
-    /// included: [`TriangleMesh::displacement`] includes both.)
+    /// Maximum distance along an axis by which sewing moved a vertex or a placement rounded it, in model
+    /// units. (A stated deviation is not included: [`TriangleMesh::displacement`] includes both.)
     pub displacement: f64,
     /// Number of closed bodies that are proven to overlap another one: their surfaces cross, or one lies
     /// within the other with the same sense and no cavity between them. There the surface winds around points
@@ -71,15 +72,15 @@ pub struct MeshReport {
     /// a fill rule encloses. Without such bodies, undecided bodies, inverted bodies and bodies that cross
     /// themselves, the two are equal.
     pub overlapping_bodies: u64,
-    /// Number of other closed bodies that may overlap another one: they touch in a way that is not decided,
-    /// such as a peg that fits its hole exactly, or the limit of work was reached.
+    /// Number of closed bodies that may overlap another one, without a proof: they touch in a way that is not
+    /// decided, such as a peg that fits its hole exactly, or the limit of work was reached.
     pub undecided_bodies: u64,
     /// Number of faces of more than three corners from which the triangles were made: faces of OBJ, PLY and
     /// OFF files and of a [`Polyhedron`](crate::mesh::Polyhedron). 0 for other meshes.
     pub polygons: u64,
-    /// Number of such faces that are not flat: corners lie off the face's plane by more than 2^-40 of its
-    /// extent. Such a face has no definite shape. The mesh is one of its triangulations, and every proof
-    /// about the mesh is about that triangulation.
+    /// Number of faces of more than three corners that are not flat: corners lie off the face's plane by more
+    /// than 2^-40 of its extent. Such a face has no definite shape. The mesh is one of its triangulations,
+    /// and every proof about the mesh is about that triangulation.
     pub bent_polygons: u64,
     /// Half the distance, in model units and up to rounding, between the two planes parallel to a face that
     /// enclose all its corners, for the face where it is greatest. Each triangulation of the face lies

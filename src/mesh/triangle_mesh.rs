@@ -458,7 +458,8 @@ impl TriangleMesh {
     }
 
     /// Returns the stated deviation, the maximum distance of the true boundary from the mesh, in model units:
-    /// the value of [`with_deviation`](Self::with_deviation), enlarged by later placements.
+    /// the value of [`with_deviation`](Self::with_deviation), multiplied by the maximum stretch of each later
+    /// placement.
     pub fn deviation(&self) -> f64 {
         self.deviation
     }

@@ -16,7 +16,7 @@ use yoke::Yokeable;
 pub struct TaggedCell {
     /// The octant of the universe.
     pub cell: Cell,
-    /// Its tag.
+    /// The tag of the cell.
     pub tag: Tag,
 }
 

@@ -104,7 +104,7 @@ pub struct Octree {
     arrays: Yoke<OctreeRef<'static>, ErasedArcCart>,
     counts: Arc<OnceBox<Vec<LevelCounts>>>,
     metadata: Arc<Metadata>,
-    /// In ascending order of their names, which are distinct.
+    /// The channels, in ascending order of their names, which are distinct.
     channels: Arc<Vec<Channel>>,
 }
 

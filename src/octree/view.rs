@@ -73,8 +73,8 @@ pub(crate) struct LevelCounts {
 /// A view may lie over unchecked bytes. Reading is then still memory-safe, terminates, and does bounded work.
 /// A damaged link or index reads as PARTIAL, or makes a bulk operation return
 /// [`Error::Damaged`](crate::Error::Damaged). A flipped tag cannot be distinguished from a true one in this
-/// way: only the checksums and [`check`](OctreeRef::check) find it. A [`Cursor`](crate::octree::Cursor) that
-/// walks over a whole unchecked tree visits no element twice, either.
+/// way: only the checksums and [`check`](OctreeRef::check) find it. A walk with a
+/// [`Cursor`](crate::octree::Cursor) over a whole unchecked tree visits no element twice.
 #[derive(Debug, Clone, Copy, Yokeable)]
 pub struct OctreeRef<'a> {
     pub(crate) frame: Frame,

@@ -7,14 +7,14 @@ use crate::octree::{Block, Planes, Proof};
 /// A rule for resolving the PARTIAL cells of the finest level when a tree is built.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Default)]
 pub enum Rule {
-    /// Not at all: the tree holds the certified bounds.
+    /// PARTIAL cells stay: the tree holds the certified bounds.
     #[default]
     Certified,
-    /// By the cell's centre. The tree is binary and lies between `Inner` and `Outer`.
+    /// The cell's centre decides. The tree is binary and lies between `Inner` and `Outer`.
     Sampled,
-    /// As EMPTY: the tree is binary and contained in the solid.
+    /// PARTIAL cells become EMPTY: the tree is binary and contained in the solid.
     Inner,
-    /// As FULL: the tree is binary and contains the solid.
+    /// PARTIAL cells become FULL: the tree is binary and contains the solid.
     Outer,
 }
 

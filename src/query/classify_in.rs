@@ -17,8 +17,8 @@ use crate::walk::split_one;
 /// are compared.
 ///
 /// The search ends as soon as the answer is known, or once `control.max_splits` cells of both are split.
-/// Cells outside of the region are never split. The time is therefore about the time to build the cells that
-/// lie near both the region's boundary and the solid's. It uses one thread.
+/// Cells outside of the region are never split. The time is therefore about that of building the intersection
+/// of both, near the region's boundary and near the solid's. It uses one thread.
 ///
 /// # Errors
 /// The own errors of the solid and of the region; [`Error::OutOfMemory`] and [`Error::Cancelled`].

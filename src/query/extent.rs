@@ -22,13 +22,13 @@ pub struct Extent {
     /// Whether the solid is proven not to be empty. If the solid is proven neither empty nor occupied, it may
     /// be empty, and the corners bound the region that it may occupy.
     pub occupied: bool,
-    /// Which verdicts of the solid are proven. Unproven verdicts count as undecided.
+    /// The proof of the solid: which verdicts are proven. Unproven verdicts count as undecided.
     pub proof: Proof,
     /// Whether the solid continues, or may continue, outside of the universe.
     pub clipped: bool,
-    /// Why the search ended. [`Tolerance`](StopReason::Tolerance) means that no interval is wider than the
-    /// requested tolerance or 2^-44 of the universe's edge, except for the rounding of the corners to
-    /// doubles.
+    /// The reason why the search ended. [`Tolerance`](StopReason::Tolerance) means that no interval is wider
+    /// than the greater of the requested tolerance and 2^-44 of the universe's edge, except for the rounding
+    /// of the corners to doubles.
     pub stop_reason: StopReason,
     /// Number of cell splits.
     pub splits: u64,
@@ -43,7 +43,8 @@ pub const BOUNDING_BOX_SPLITS: u64 = 1 << 20;
 ///
 /// The search splits only cells that may reach beyond the proven part of the solid, the farthest-reaching
 /// cells first. It ends, and the result's `stop_reason` says why:
-/// - `Tolerance`: no interval is wider than `tolerance` (model units), or than 2^-44 of the universe's edge.
+/// - `Tolerance`: no interval is wider than the greater of `tolerance` (model units) and 2^-44 of the
+///   universe's edge.
 /// - `Exhausted`: the outermost undecided cells cannot be split, and either the interval is no wider than one
 ///   of the frame's finest cells, or nothing else is left to split.
 /// - `Budget`: `control.max_splits` cells were split, or [`BOUNDING_BOX_SPLITS`] if that is `None`. Each side

@@ -56,12 +56,12 @@ impl SectionPlane {
 pub struct SectionArea {
     /// The area in square model units. The interval contains the true area.
     pub area: Interval,
-    /// Which verdicts of the solid are proven. Unproven verdicts count as undecided.
+    /// The proof of the solid: which verdicts are proven. Unproven verdicts count as undecided.
     pub proof: Proof,
     /// Whether the solid continues, or may continue, outside of the universe. The area is then that of the
     /// section inside.
     pub clipped: bool,
-    /// Why the search ended.
+    /// The reason why the search ended.
     pub stop_reason: StopReason,
     /// Number of cell splits.
     pub splits: u64,

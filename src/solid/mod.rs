@@ -307,9 +307,9 @@ pub trait Classifier: Clone + Send + Sync {
         Tag::Partial
     }
 
-    /// What the verdicts prove. [`Proof::CERTIFIED`] means that FULL and EMPTY are proven for the whole cell.
-    /// The verdicts of a stored octree prove as much as its cells do. The verdicts of a solid that is known
-    /// only at points prove nothing.
+    /// The proof of the verdicts. [`Proof::CERTIFIED`] means that FULL and EMPTY are proven for the whole
+    /// cell. The verdicts of a stored octree prove as much as its cells do. The verdicts of a solid that is
+    /// known only at points prove nothing.
     fn proof(&self) -> Proof;
 
     /// Answers a question about the whole shape, if the shape knows more than its cells show. Any other shape

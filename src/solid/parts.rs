@@ -1,4 +1,4 @@
-//! Where workers keep their data about cells.
+//! The data that workers keep about cells.
 
 use crate::error::Error;
 

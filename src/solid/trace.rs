@@ -15,7 +15,7 @@ use alloc::vec::Vec;
 pub struct RayTrace {
     /// Whether the ray is inside until its first crossing.
     pub begins_inside: bool,
-    /// In ascending order. Their intervals share no more than end points.
+    /// The crossings in ascending order. Their intervals share no more than end points.
     pub crossings: Vec<RayCrossing>,
     /// The end of the time range in which the trace is known. Nothing is known of later times.
     pub until: f64,

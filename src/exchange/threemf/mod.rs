@@ -19,10 +19,11 @@
 //!
 //! **Properties.** Base materials and colour groups become attributes of the mesh: `colour` and `material`. A
 //! triangle has the properties to which it refers, or else the properties of its object, wherever the object
-//! is placed. A reference means a group of the same part. Base materials are not mixed: the material of
-//! the first corner counts. Groups of other kinds (textures, composites, multiproperties) are not read. If a
-//! property does not exist, or is no colour, the triangle has none, and a warning counts these triangles. If
-//! several objects are built, `object` is the number of each triangle's object.
+//! is placed. A reference means a group of the same part. Base materials are not mixed: the material of the
+//! first corner counts. Groups of other kinds (textures, composites, multiproperties) are not read. If a
+//! property does not exist, or is no colour, the triangle has none. Warnings count the triangles without an
+//! existing property, and the unreadable colours. If several objects are built, `object` is the number of
+//! each triangle's object.
 //!
 //! **The draft 0.93** has a namespace of its own. Its relationship and content types, its objects, components
 //! and items are those of 1.0; its colours, materials and textures are ignored like other unknown elements. A

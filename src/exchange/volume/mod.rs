@@ -88,7 +88,7 @@ pub struct VolumeFile {
     /// The positions of the samples, before `placement` is applied.
     pub grid: VoxelGrid,
     /// The map that moves the grid to the position that the file states, if the file's axes are not x, y and
-    /// z. The first sample of the grid then lies at 0. Its directions are rounded.
+    /// z. The first sample of the grid then lies at 0. The map's directions are rounded.
     pub placement: Option<Affine>,
     /// The unit of the grid's lengths, if the file states it.
     pub unit: Option<LengthUnit>,

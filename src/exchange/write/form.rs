@@ -29,10 +29,10 @@ pub struct WrittenForm<'a> {
 /// vertices move, coinciding vertices are one vertex for a reader, and triangles with two coinciding corners
 /// are dropped. A closed mesh stays closed, but it may be flat, pinched, or have no triangle at all: a cube
 /// of edge 3 around x = 10⁹ becomes a square. Its [`report`](TriangleMesh::report) shows this, and
-/// [`TriangleMesh::in_single_precision`] repairs most of it beforehand. An STL has no unused vertices, and
-/// has the others in the order in which triangles first use them. [`write_mesh`](super::write_mesh) documents
-/// which [attributes](TriangleMesh::attributes) are kept; the mesh returned here has either none or all of
-/// them.
+/// [`TriangleMesh::in_single_precision`] repairs beforehand what can be repaired. An STL has no unused
+/// vertices, and has the others in the order in which triangles first use them.
+/// [`write_mesh`](super::write_mesh) documents which [attributes](TriangleMesh::attributes) are kept; the
+/// mesh returned here has either none or all of them.
 ///
 /// O(n) time; O(1) memory if nothing is lost, else the memory of a second mesh, and for an STL as text also
 /// that of the file.

@@ -86,8 +86,8 @@ pub struct WriteOptions {
 /// [`Error::Argument`] for an STL of coordinates beyond the range of `f32`, for an OBJ without vertices, and
 /// for a deviation that [`TriangleMesh::with_deviation`] refuses;
 /// [`MeshFileError::Unsupported`](crate::error::MeshFileError::Unsupported) for a 3MF without the feature;
-/// [`Error::OutOfMemory`]. (Compressing a 3MF takes some 300 KiB; a failure to allocate these is not reported
-/// as an error.)
+/// [`Error::OutOfMemory`]. (Compressing a 3MF takes some 300 KiB; if they cannot be allocated, the process
+/// ends.)
 ///
 /// ```
 /// use leafless::exchange::{MeshFormat, WriteOptions, read_mesh, write_mesh};

@@ -9,8 +9,8 @@ use png::{BitDepth, ColorType, Encoder, SrgbRenderingIntent};
 /// not opaque. Equal pictures give equal bytes.
 ///
 /// # Errors
-/// [`Error::OutOfMemory`]. (A failure to allocate the encoder's own memory, some hundred kilobytes and a copy
-/// of the picture, is not reported as an error.)
+/// [`Error::OutOfMemory`]. (If the encoder's own memory cannot be allocated, some hundred kilobytes and a
+/// copy of the picture, the process ends.)
 ///
 /// ```
 /// use leafless::{Control, exchange, render::{Camera, Lens, Shot, render}};

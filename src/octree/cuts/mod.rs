@@ -130,7 +130,8 @@ impl CutsRef<'_> {
 /// The counts of the surfaces that PARTIAL cells of an extended octree keep.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
 pub struct CutCounts {
-    /// Number of cells whose solid is a known function of surfaces. Parts of cells of the planes count.
+    /// Number of cells in which the solid is a known function of surfaces. A part of a cell of the planes
+    /// counts as a cell.
     pub cells: u64,
     /// Number of cells about which nothing is known.
     pub given_up: u64,

@@ -117,8 +117,8 @@ impl<S: Solid> LazyOctree<S> {
     /// the octree's. O(n). The limits of `control` apply to the octree's nodes and to the bytes that they
     /// take in memory. Splits are counted from zero.
     ///
-    /// The fingerprint proves that the solid is the same. All other contents of the octree are trusted,
-    /// unless the solid's splits contradict them when they are replayed.
+    /// The fingerprint identifies the solid. All other contents of the octree are trusted, unless the solid's
+    /// splits contradict them when they are replayed.
     ///
     /// # Errors
     /// [`Error::SourceMismatch`] if the octree does not hold the solid's fingerprint, or the solid has

@@ -47,11 +47,12 @@ pub struct Clearance {
     /// For solids that overlap: the radius (model units) of a ball that is proven to lie in both. The largest
     /// such ball is at least as large. 0 if no ball was found, as for solids that only touch.
     pub depth: f64,
-    /// Why the search ended.
+    /// The reason why the search ended.
     pub stop_reason: StopReason,
     /// Number of cell splits in the first solid and in the second. 0 where triangles determine the distance.
     pub splits: [u64; 2],
-    /// Which verdicts of the first and of the second solid are proven. Unproven verdicts count as undecided.
+    /// The proofs of the first and of the second solid: which verdicts are proven. Unproven verdicts count as
+    /// undecided.
     pub proofs: [Proof; 2],
     /// Whether one of the solids continues, or may continue, outside of the universe, where it may come
     /// nearer to the other.
@@ -66,8 +67,8 @@ pub enum GapVerdict {
     Yes = 0,
     /// Proven: two points are nearer. The evidence contains them.
     No = 1,
-    /// Not decided at the frame's depth, or before the splits were spent; or a solid continues outside of the
-    /// universe, where it may come nearer.
+    /// Not decided at the frame's depth, or before the splits were spent; or a solid may continue outside of
+    /// the universe, and come nearer there.
     Undecided = 2,
 }
 

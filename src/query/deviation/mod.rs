@@ -36,14 +36,15 @@ pub struct Deviation {
     pub a_to_b: OneWay,
     /// The greatest distance of a point of the second boundary from the first boundary.
     pub b_to_a: OneWay,
-    /// Why the search ended: the weaker of both directions' reasons.
+    /// The reason why the search ended: the weaker of both directions' reasons.
     pub stop_reason: StopReason,
     /// Number of cell splits in the first solid and in the second; 0 for a solid whose boundary is known to
     /// consist of triangles.
     pub splits: [u64; 2],
     /// Number of cuts of the first boundary's pieces, and of the second boundary's pieces.
     pub cuts: [u64; 2],
-    /// Which verdicts of the first and of the second solid are proven. Unproven verdicts count as undecided.
+    /// The proofs of the first and of the second solid: which verdicts are proven. Unproven verdicts count as
+    /// undecided.
     pub proofs: [Proof; 2],
     /// Whether the first solid and the second may continue outside of the universe. The search considers only
     /// the boundary points inside of the universe, but their distances from all of the other boundary.
@@ -56,7 +57,7 @@ pub struct OneWay {
     /// The greatest distance of a point of the one boundary from the nearest point of the other, in model
     /// units. 0 if the first solid has no boundary; infinite if the second has none and the first has.
     pub distance: Interval,
-    /// Where the lower bound is attained, if it is greater than 0.
+    /// The place where the lower bound is attained, if the bound is greater than 0.
     pub at: Option<Witness>,
 }
 
@@ -75,9 +76,9 @@ pub struct Witness {
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
 #[repr(u8)]
 pub enum Within {
-    /// Proven: the distance of each point of either boundary from the other is at most this.
+    /// Proven: no point of either boundary is further from the other than the given distance.
     Yes = 0,
-    /// Proven: a point of one boundary is further away from the other.
+    /// Proven: a point of one boundary is further from the other than the given distance.
     No = 1,
     /// Neither is proven.
     Undecided = 2,
@@ -91,7 +92,7 @@ impl Deviation {
     }
 
     /// Returns whether the boundaries are within a distance (model units) of each other. For two solids that
-    /// are bounded by the universe, a distance of 0 tests whether they have the same boundary.
+    /// end inside of the universe, a distance of 0 tests whether they have the same boundary.
     pub fn within(&self, distance: f64) -> Within {
         let known = self.distance();
         if known.upper <= distance {

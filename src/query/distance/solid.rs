@@ -25,7 +25,7 @@ pub struct PointDistance {
     /// The distance, in model units. `upper` is ∞ as long as no point of the target is proven. `lower` is ∞
     /// too if the target is proven to be empty.
     pub distance: Interval,
-    /// Why the search ended.
+    /// The reason why the search ended.
     pub stop_reason: StopReason,
     /// Number of cell splits.
     pub splits: u64,

@@ -27,8 +27,8 @@ pub enum Overlap {
     Disjoint = 0,
     /// Proven: a ball lies in both solids.
     Overlapping = 1,
-    /// Not decided at the frame's depth, or before the splits were spent; or both solids continue outside of
-    /// the universe, where they may overlap.
+    /// Not decided at the frame's depth, or before the splits were spent; or both solids may continue outside
+    /// of the universe, and overlap there.
     Undecided = 2,
 }
 
@@ -77,7 +77,8 @@ pub struct Interference {
     pub splits: [u64; 2],
     /// The finest level of the visited cells.
     pub level: u8,
-    /// Which verdicts of the first and of the second solid are proven. Unproven verdicts count as undecided.
+    /// The proofs of the first and of the second solid: which verdicts are proven. Unproven verdicts count as
+    /// undecided.
     pub proofs: [Proof; 2],
     /// Whether both solids may continue outside of the universe. They are then not proven to be disjoint. (If
     /// one solid lies inside, the whole intersection does.)

@@ -22,7 +22,7 @@ pub struct SurfaceArea {
     /// Whether the solid continues, or may continue, outside of the universe. The area is then that of the
     /// boundary inside.
     pub clipped: bool,
-    /// Why the measurement ended.
+    /// The reason why the measurement ended.
     pub stop_reason: StopReason,
     /// The finest level of the visited cells.
     pub level: u8,
@@ -45,13 +45,13 @@ const FRAMES: u8 = 8;
 /// With N splits the width decreases with 1/N on curved surfaces and where plane ones meet. A closed mesh
 /// whose triangles do not intersect is not split.
 ///
-/// A boundary piece between two cells belongs to neither of them. If the boundary of a bounded solid has
-/// pieces in planes of the lattice, its area is measured on another lattice, whose planes are elsewhere.
-/// Three solids stay on their own lattice: an extended octree ([`build_extended`](crate::build_extended)), an
-/// octree without PARTIAL cells, and a clipped expression. Their cells count the pieces in faces between
-/// cells where the solid differs on the two sides. An extended octree therefore has the area of its source,
-/// as exact after as many splits. A cell that keeps slabs has no upper bound, and neither has a cell that is
-/// given up.
+/// A boundary piece between two cells belongs to neither of them. If a solid ends inside of the universe and
+/// its boundary has pieces in planes of the lattice, its area is measured on another lattice, whose planes
+/// are elsewhere. Three solids stay on their own lattice: an extended octree
+/// ([`build_extended`](crate::build_extended)), an octree without PARTIAL cells, and a clipped expression.
+/// Their cells count the pieces in faces between cells where the solid differs on the two sides. An extended
+/// octree therefore has the area of its source, as exact after as many splits. A cell that keeps slabs has no
+/// upper bound, and neither has a cell that is given up.
 ///
 /// The area is unknown for an octree with PARTIAL cells that keep no surfaces, for a host program's
 /// functions, and for a clipped mesh with faces in planes of the lattice.

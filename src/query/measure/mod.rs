@@ -50,8 +50,8 @@ pub struct MassProperties {
     pub inertia_about_origin: [[Interval; 3]; 3],
     /// The tensor of inertia about the solid's own centroid, wherever in its interval the centroid lies.
     pub inertia_about_centroid: [[Interval; 3]; 3],
-    /// Which verdicts of the solid are proven. Unproven verdicts count as undecided. If nothing is proven, as
-    /// for a sampled octree, the volume is only known to fit into the universe.
+    /// The proof of the solid: which verdicts are proven. Unproven verdicts count as undecided. If nothing is
+    /// proven, as for a sampled octree, the volume is only known to fit into the universe.
     pub proof: Proof,
     /// Whether the solid continues, or may continue, outside of the universe. The measures are then those of
     /// the part inside.
@@ -59,7 +59,7 @@ pub struct MassProperties {
     /// Whether the solid was not split because it provides its own moments, up to rounding. A closed mesh
     /// whose triangles do not intersect does so.
     pub exact: bool,
-    /// Why the measurement ended.
+    /// The reason why the measurement ended.
     pub stop_reason: StopReason,
     /// The finest level of the visited cells.
     pub level: u8,

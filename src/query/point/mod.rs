@@ -26,7 +26,8 @@ pub enum Membership {
     Outside = 0,
     /// Proven inside.
     Inside = 1,
-    /// In a PARTIAL cell, outside of the universe, or not a number.
+    /// Not proven: the point lies in a PARTIAL cell whose surfaces do not decide it, or outside of the
+    /// universe, or is not a number.
     Undecided = 2,
 }
 

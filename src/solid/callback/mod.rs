@@ -35,7 +35,7 @@ type Distance<'a> = Box<dyn Fn(&[[f64; 3]], &mut [f64]) -> Result<(), Error> + S
 /// Returns more data about a box, given by its corners and its middle.
 type Local<'a, T> = Box<dyn Fn([f64; 3], [f64; 3], [f64; 3]) -> Result<Option<T>, Error> + Send + Sync + 'a>;
 
-/// A shape that a host program classifies: a B-rep kernel, a distance field, or a simulation.
+/// A shape that a host program classifies, for example by a B-rep kernel, a distance field, or a simulation.
 ///
 /// ```
 /// use leafless::{Callback, Control, Frame, Rule, Verdict, build};

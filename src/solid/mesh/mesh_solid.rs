@@ -36,7 +36,8 @@ use once_cell::race::OnceBox;
 ///
 /// Any mesh is accepted. For a closed mesh, the inside is exact. For an open mesh, [`FillRule`] is the
 /// convention that says which points are inside. A cell is FULL or EMPTY only if this is proven for all of
-/// its points. Around holes, cells that no triangle cuts stay PARTIAL; [`TriangleMesh::report`] lists holes.
+/// its points. Around holes, cells that no triangle cuts stay PARTIAL; [`TriangleMesh::report`] counts the
+/// holes.
 ///
 /// # Single queries
 /// Rays ([`cast_rays`](crate::cast_rays), [`ray_spans`](crate::query::ray_spans)), points

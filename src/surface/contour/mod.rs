@@ -57,7 +57,7 @@ pub struct ContourReport {
     pub cells: u64,
     /// The number of cells that were split.
     pub splits: u64,
-    /// Points whose side the solid did not report; they counted as outside.
+    /// The number of points whose side the solid did not report; they counted as outside.
     pub undecided: u64,
     /// A proven bound of the distance of the mesh from the solid's boundary, and of the boundary from the
     /// mesh (model units). If mesh and boundary have more than 32 768 triangles together, the bound is only
