@@ -380,7 +380,7 @@ fn documented_commands() {
         String::from_utf8(told.stdout).unwrap()
     };
     let readme = text("include/README.md");
-    let (in_clone, installed) = readme.split_once("## Installed").unwrap();
+    let (in_clone, installed) = readme.split_once("## Installation").unwrap();
     let mut compiled = 0;
     for (section, folder) in [(in_clone, &clone), (installed, &elsewhere)] {
         let mut environment = String::new();
