@@ -5,7 +5,7 @@ use super::mesh::{leafless_fill, leafless_mesh};
 use super::number::Number;
 use super::octree::leafless_octree;
 use super::status::leafless_status;
-use leafless::solid::{Erasable, Prepared};
+use leafless::solid::Prepared;
 use leafless::{AnySolid, Csg, MeshSolid, Solid};
 
 /// A shape that can split a cell of space into eight classified cells.
@@ -23,7 +23,7 @@ pub struct leafless_solid {
 }
 
 /// Returns a handle of a solid.
-pub(super) fn give<S: Erasable>(solid: S) -> *mut leafless_solid {
+pub(super) fn give<S: Solid + 'static>(solid: S) -> *mut leafless_solid {
     give_any(AnySolid::new(solid))
 }
 

@@ -15,9 +15,9 @@ pub fn anywhere(solid: &AnySolid) -> AnySolid {
 }
 
 impl Solid for Anywhere {
-    type Classifier = AnyClassifier;
+    type Classifier = AnyClassifier<'static>;
 
-    fn on(&self, frame: &Frame, control: &Control<'_>) -> Result<AnyClassifier, Error> {
+    fn on(&self, frame: &Frame, control: &Control<'_>) -> Result<AnyClassifier<'static>, Error> {
         match self.0.home() {
             Some(own) if !own.same_universe(frame) => {
                 AnySolid::new(Transform::new(self.0.clone(), &own, &Affine::IDENTITY)).on(frame, control)

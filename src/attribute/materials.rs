@@ -8,7 +8,7 @@ use crate::memory;
 use crate::octree::ChannelRef;
 use crate::octree::channel::Bits;
 use crate::query::{MassProperties, Tolerance, measure};
-use crate::solid::Solid;
+use crate::solid::DynSolid;
 use alloc::vec::Vec;
 
 /// The greatest number of different values of a channel whose regions are measured.
@@ -51,8 +51,8 @@ pub struct MaterialProperties {
 /// }
 /// # Ok::<(), leafless::Error>(())
 /// ```
-pub fn materials<S: Solid>(
-    solid: &S,
+pub fn materials(
+    solid: &dyn DynSolid,
     channel: &ChannelRef<'_>,
     frame: &Frame,
     tolerance: impl Into<Tolerance>,

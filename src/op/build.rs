@@ -11,7 +11,7 @@ use crate::octree::view::{OctreeRef, element_levels, starts_half_way};
 use crate::octree::writer::Writer;
 use crate::octree::{Block, Octree, Planes, Tag};
 use crate::parallel::{self, each_with};
-use crate::solid::{Ask, Batch, Classifier, Parts, Solid, Subtree, Verdict, Worker};
+use crate::solid::{Ask, Batch, Classifier, DynSolid, Parts, Subtree, Verdict, Worker};
 use crate::walk;
 use crate::walk::Gathered;
 use alloc::vec::Vec;
@@ -35,7 +35,12 @@ use alloc::vec::Vec;
 /// assert!(volume.width() < 0.17);
 /// # Ok::<(), leafless::Error>(())
 /// ```
-pub fn build<S: Solid>(solid: &S, frame: &Frame, rule: Rule, control: &Control<'_>) -> Result<Octree, Error> {
+pub fn build(
+    solid: &dyn DynSolid,
+    frame: &Frame,
+    rule: Rule,
+    control: &Control<'_>,
+) -> Result<Octree, Error> {
     build_on(&solid.on(frame, control)?, rule, control)
 }
 
@@ -65,8 +70,8 @@ pub fn build<S: Solid>(solid: &S, frame: &Frame, rule: Rule, control: &Control<'
 /// assert_eq!(file::to_bytes(&join(&views, &control)?)?, file::to_bytes(&whole)?);
 /// # Ok::<(), leafless::Error>(())
 /// ```
-pub fn build_shard<S: Solid>(
-    solid: &S,
+pub fn build_shard(
+    solid: &dyn DynSolid,
     frame: &Frame,
     rule: Rule,
     shard: Shard,

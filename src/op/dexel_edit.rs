@@ -5,7 +5,7 @@ use super::rule::Rule;
 use crate::control::Control;
 use crate::dexel::{DexelChange, DexelEditor, TriDexel, TriDexelRef};
 use crate::error::Error;
-use crate::solid::Solid;
+use crate::solid::DynSolid;
 
 /// The share of the work that dexelising takes.
 const SHARE: f64 = 0.9;
@@ -17,7 +17,7 @@ impl DexelEditor {
     ///
     /// # Errors
     /// The errors of [`dexelize`], before anything changes, and of [`unite`](Self::unite).
-    pub fn unite_solid<S: Solid>(&mut self, solid: &S, control: &Control<'_>) -> Result<DexelChange, Error> {
+    pub fn unite_solid(&mut self, solid: &dyn DynSolid, control: &Control<'_>) -> Result<DexelChange, Error> {
         self.with_dexels_of(solid, control, Self::unite)
     }
 
@@ -40,9 +40,9 @@ impl DexelEditor {
     ///
     /// # Errors
     /// The errors of [`dexelize`], before anything changes, and of [`unite`](Self::unite).
-    pub fn subtract_solid<S: Solid>(
+    pub fn subtract_solid(
         &mut self,
-        solid: &S,
+        solid: &dyn DynSolid,
         control: &Control<'_>,
     ) -> Result<DexelChange, Error> {
         self.with_dexels_of(solid, control, Self::subtract)
@@ -53,9 +53,9 @@ impl DexelEditor {
     ///
     /// # Errors
     /// The errors of [`dexelize`], before anything changes, and of [`unite`](Self::unite).
-    pub fn intersect_solid<S: Solid>(
+    pub fn intersect_solid(
         &mut self,
-        solid: &S,
+        solid: &dyn DynSolid,
         control: &Control<'_>,
     ) -> Result<DexelChange, Error> {
         self.with_dexels_of(solid, control, Self::intersect)
@@ -66,14 +66,14 @@ impl DexelEditor {
     ///
     /// # Errors
     /// The errors of [`dexelize`], before anything changes, and of [`xor`](Self::xor).
-    pub fn xor_solid<S: Solid>(&mut self, solid: &S, control: &Control<'_>) -> Result<DexelChange, Error> {
+    pub fn xor_solid(&mut self, solid: &dyn DynSolid, control: &Control<'_>) -> Result<DexelChange, Error> {
         self.with_dexels_of(solid, control, Self::xor)
     }
 
     /// Changes the editor by the tri-dexel model of a solid, made with matching directions and format.
-    fn with_dexels_of<S: Solid>(
+    fn with_dexels_of(
         &mut self,
-        solid: &S,
+        solid: &dyn DynSolid,
         control: &Control<'_>,
         change: fn(&mut Self, &TriDexelRef<'_>, &Control<'_>) -> Result<DexelChange, Error>,
     ) -> Result<DexelChange, Error> {

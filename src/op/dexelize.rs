@@ -16,7 +16,7 @@ use crate::lattice::axes;
 use crate::lattice::{Bounds, Cell, Frame, MAX_DEPTH};
 use crate::memory;
 use crate::parallel::each_with;
-use crate::solid::{Ask, Classifier, PartOf, Parts, Solid, Verdict, Worker, WorkerOf};
+use crate::solid::{AnyClassifier, AnyWorker, Ask, Classifier, DynSolid, ErasedPart, Parts, Verdict, Worker};
 use crate::walk::Edge;
 use crate::walk::Trail;
 use crate::walk::hull;
@@ -91,8 +91,8 @@ impl Default for DexelOptions {
 /// assert!((volume - 4.0 / 3.0 * 3.14159265 * 0.75f64.powi(3)).abs() < 1e-3);
 /// # Ok::<(), leafless::Error>(())
 /// ```
-pub fn dexelize<S: Solid>(
-    solid: &S,
+pub fn dexelize(
+    solid: &dyn DynSolid,
     frame: &Frame,
     options: &DexelOptions,
     control: &Control<'_>,
@@ -106,8 +106,8 @@ pub fn dexelize<S: Solid>(
     }
     let extent = extent(solid.bounds(), frame);
     match options.format.ends {
-        DexelEnds::Fixed => model::<_, FixedSpan>(solid, frame, extent, options, control),
-        DexelEnds::Double => model::<_, DoubleSpan>(solid, frame, extent, options, control),
+        DexelEnds::Fixed => model::<FixedSpan>(solid, frame, extent, options, control),
+        DexelEnds::Double => model::<DoubleSpan>(solid, frame, extent, options, control),
     }
 }
 
@@ -133,8 +133,8 @@ fn rays(extent: &[Range<u32>; 3], options: &DexelOptions) -> u64 {
     (0..3).filter(|&axis| options.directions[axis]).map(count).sum()
 }
 
-fn model<T: Solid, S: Form>(
-    solid: &T,
+fn model<S: Form>(
+    solid: &dyn DynSolid,
     frame: &Frame,
     extent: [Range<u32>; 3],
     options: &DexelOptions,
@@ -181,11 +181,11 @@ fn model<T: Solid, S: Form>(
 }
 
 /// The rays of one direction, in tiles of several rows.
-struct Tiles<'a, S: Solid> {
-    solid: &'a S,
-    classifier: &'a S::Classifier,
+struct Tiles<'a, 's> {
+    solid: &'a (dyn DynSolid + 's),
+    classifier: &'a AnyClassifier<'s>,
     /// The solid on the finest lattice, created when it is first needed.
-    finest: &'a OnceBox<S::Classifier>,
+    finest: &'a OnceBox<AnyClassifier<'s>>,
     frame: Frame,
     axis: usize,
     window: Window,
@@ -196,17 +196,17 @@ struct Tiles<'a, S: Solid> {
 }
 
 /// The state of one thread.
-struct Hand<S: Solid> {
-    worker: WorkerOf<S>,
+struct Hand<'s> {
+    worker: AnyWorker<'s>,
     beam: Beam,
     scratch: Scratch,
     /// The sampled finest cells: the number of the ray and the place of the cell on it.
     sampled: Vec<(u32, u32)>,
     /// On the finest lattice; created when it is first needed.
-    trail: Option<Trail<WorkerOf<S>>>,
+    trail: Option<Trail<AnyWorker<'s>>>,
 }
 
-impl<T: Solid> Tiles<'_, T> {
+impl<'s> Tiles<'_, 's> {
     fn pieces<S: Form>(&self, parallel: bool) -> Result<Vec<Piece<S>>, Error> {
         let rows = self.window.range(1);
         // Tiles begin at the same rows as blocks of cells.
@@ -246,7 +246,7 @@ impl<T: Solid> Tiles<'_, T> {
         Ok(pieces)
     }
 
-    fn hand(&self) -> Result<Hand<T>, Error> {
+    fn hand(&self) -> Result<Hand<'s>, Error> {
         let format = &self.options.format;
         let marked = format.surfaces || format.normals != Default::default();
         Ok(Hand {
@@ -258,7 +258,7 @@ impl<T: Solid> Tiles<'_, T> {
         })
     }
 
-    fn tile<S: Form>(&self, hand: &mut Hand<T>, window: Window, piece: &mut Piece<S>) -> Result<(), Error> {
+    fn tile<S: Form>(&self, hand: &mut Hand<'s>, window: Window, piece: &mut Piece<S>) -> Result<(), Error> {
         self.job.check()?;
         hand.beam.restart(window);
         hand.sampled.clear();
@@ -284,7 +284,7 @@ impl<T: Solid> Tiles<'_, T> {
     }
 
     /// Adds the intervals in a cell. The recursion is as deep as the frame, at most 20 levels.
-    fn cell(&self, hand: &mut Hand<T>, cell: Cell, verdict: Verdict<PartOf<T>>) -> Result<(), Error> {
+    fn cell(&self, hand: &mut Hand<'s>, cell: Cell, verdict: Verdict<ErasedPart>) -> Result<(), Error> {
         if matches!(verdict, Verdict::Empty) {
             return Ok(());
         }
@@ -325,9 +325,9 @@ impl<T: Solid> Tiles<'_, T> {
     /// Adds the intervals of an undecided finest cell.
     fn finest(
         &self,
-        hand: &mut Hand<T>,
+        hand: &mut Hand<'s>,
         cell: Cell,
-        part: &PartOf<T>,
+        part: &ErasedPart,
         rays: Window,
         span: Range<u32>,
     ) -> Result<(), Error> {
@@ -346,7 +346,7 @@ impl<T: Solid> Tiles<'_, T> {
 
     /// Moves the ends at sampled cells from the planes between cells, and from the universe's faces, to the
     /// surface.
-    fn refine(&self, hand: &mut Hand<T>) -> Result<(), Error> {
+    fn refine(&self, hand: &mut Hand<'s>) -> Result<(), Error> {
         let depth = self.frame.depth();
         if depth >= MAX_DEPTH {
             return Ok(());
@@ -392,7 +392,7 @@ impl<T: Solid> Tiles<'_, T> {
         Ok(())
     }
 
-    fn trail(&self) -> Result<Trail<WorkerOf<T>>, Error> {
+    fn trail(&self) -> Result<Trail<AnyWorker<'s>>, Error> {
         // (This code runs on one of several threads.)
         let control = Control { threads: 1, progress: None, ..*self.job.control() };
         let find = || self.solid.on(&self.frame.with_depth(MAX_DEPTH)?, &control).map(Box::new);

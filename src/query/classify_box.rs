@@ -8,7 +8,7 @@ use crate::octree::cuts::{CellCut, CellIds, CutsRef, Figure, Head};
 use crate::octree::links::Windows;
 use crate::octree::view::OctreeRef;
 use crate::octree::{Octree, Planes, Tag};
-use crate::solid::{AskDirect, AskWhole, BoxContent, Classifier, Direct, OCTANTS, Solid, Verdict, Worker};
+use crate::solid::{AskDirect, AskWhole, BoxContent, Classifier, Direct, DynSolid, OCTANTS, Verdict, Worker};
 use crate::walk::Proven;
 use crate::walk::{Step, descend};
 
@@ -47,8 +47,8 @@ pub enum Region {
 /// assert_eq!(ask([0.5; 3], [1.0; 3])?, Region::Crossing);
 /// # Ok::<(), leafless::Error>(())
 /// ```
-pub fn classify_box<S: Solid>(
-    solid: &S,
+pub fn classify_box(
+    solid: &dyn DynSolid,
     frame: &Frame,
     min: [f64; 3],
     max: [f64; 3],

@@ -5,7 +5,7 @@ use crate::control::{Control, Job};
 use crate::error::Error;
 use crate::lattice::{Cell, Frame};
 use crate::octree::Tag;
-use crate::solid::{Classifier, Solid, Verdict, Worker};
+use crate::solid::{Classifier, DynSolid, Verdict, Worker};
 use crate::walk::Proven;
 use crate::walk::split_one;
 
@@ -33,9 +33,9 @@ use crate::walk::split_one;
 /// assert_eq!(ask([0.0, 1.4, 1.4])?, Region::Outside);
 /// # Ok::<(), leafless::Error>(())
 /// ```
-pub fn classify_in<S: Solid, R: Solid>(
-    solid: &S,
-    region: &R,
+pub fn classify_in(
+    solid: &dyn DynSolid,
+    region: &dyn DynSolid,
     frame: &Frame,
     control: &Control<'_>,
 ) -> Result<Region, Error> {

@@ -5,7 +5,7 @@ use crate::control::{Control, Job};
 use crate::error::Error;
 use crate::lattice::{Cell, Frame};
 use crate::memory;
-use crate::solid::{AskWhole, Batch, Classifier, Direct, Solid};
+use crate::solid::{AskWhole, Batch, Classifier, Direct, DynSolid};
 use crate::walk::Trail;
 use alloc::vec::Vec;
 
@@ -32,8 +32,8 @@ use alloc::vec::Vec;
 /// assert_eq!(answers, [Membership::Inside, Membership::Outside]);
 /// # Ok::<(), leafless::Error>(())
 /// ```
-pub fn contains<S: Solid>(
-    solid: &S,
+pub fn contains(
+    solid: &dyn DynSolid,
     frame: &Frame,
     points: &[[f64; 3]],
     answers: &mut [Membership],

@@ -6,7 +6,7 @@ use crate::cut::reach;
 use crate::error::Error;
 use crate::lattice::{Cell, Frame, Interval, MAX_DEPTH, valid};
 use crate::octree::Proof;
-use crate::solid::{Ask, Classifier, Parts, Solid, Verdict, Worker};
+use crate::solid::{Ask, Classifier, DynSolid, Parts, Verdict, Worker};
 use crate::walk::Part;
 use crate::walk::Proven;
 use crate::walk::Queue;
@@ -77,8 +77,8 @@ pub const BOUNDING_BOX_SPLITS: u64 = 1 << 20;
 /// assert!((min[0].lower + 0.65).abs() < 2e-9 && max[0].contains(0.85) && max[0].width() <= 2e-9);
 /// # Ok::<(), leafless::Error>(())
 /// ```
-pub fn bounding_box<S: Solid>(
-    solid: &S,
+pub fn bounding_box(
+    solid: &dyn DynSolid,
     frame: &Frame,
     tolerance: f64,
     control: &Control<'_>,

@@ -7,7 +7,7 @@ use crate::error::Error;
 use crate::lattice::exact::Dyadic;
 use crate::lattice::{Cell, Frame, Interval, MAX_DEPTH, valid};
 use crate::octree::Proof;
-use crate::solid::{Ask, Classifier, Solid, Verdict, Worker};
+use crate::solid::{Ask, Classifier, DynSolid, Verdict, Worker};
 use crate::walk::Part;
 use crate::walk::Proven;
 use crate::walk::Queue;
@@ -114,8 +114,8 @@ pub const SECTION_SPLITS: u64 = 1 << 20;
 /// assert!(found.area.contains(std::f64::consts::PI * 0.5) && found.area.width() <= 2e-6);
 /// # Ok::<(), leafless::Error>(())
 /// ```
-pub fn section_area<S: Solid>(
-    solid: &S,
+pub fn section_area(
+    solid: &dyn DynSolid,
     frame: &Frame,
     plane: &SectionPlane,
     tolerance: impl Into<Tolerance>,

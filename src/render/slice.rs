@@ -13,7 +13,7 @@ use crate::lattice::valid::numbers;
 use crate::lattice::{Cell, Frame};
 use crate::memory;
 use crate::octree::{Cursor, OctreeRef, Tag};
-use crate::solid::{Classifier, Solid, Worker};
+use crate::solid::{Classifier, DynSolid, Worker};
 use crate::walk::Trail;
 use alloc::boxed::Box;
 use alloc::vec::Vec;
@@ -128,7 +128,7 @@ impl<'a> SliceLayer<'a> {
 
     /// Creates a section of a solid on a frame, whose cells are split down to the frame's depth. Otherwise as
     /// [`new`](Self::new).
-    pub fn of_solid<S: Solid>(solid: &'a S, frame: &Frame, plane: SlicePlane) -> SliceLayer<'a> {
+    pub fn of_solid(solid: &'a dyn DynSolid, frame: &Frame, plane: SlicePlane) -> SliceLayer<'a> {
         SliceLayer::of_source(Box::new(SolidOnFrame { solid, frame: *frame }), plane)
     }
 
@@ -213,12 +213,12 @@ impl Finder for InTree<'_> {
 }
 
 /// A solid and the frame on which it is cut.
-struct SolidOnFrame<'a, S> {
-    solid: &'a S,
+struct SolidOnFrame<'a> {
+    solid: &'a dyn DynSolid,
     frame: Frame,
 }
 
-impl<S: Solid> Source for SolidOnFrame<'_, S> {
+impl Source for SolidOnFrame<'_> {
     fn frame(&self) -> &Frame {
         &self.frame
     }

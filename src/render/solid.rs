@@ -18,8 +18,8 @@ use crate::octree::{Octree, Tag};
 use crate::op::{Rule, build_on};
 use crate::query::TouchedCell;
 use crate::solid::{
-    Ask, AskWhole, Classifier, Direct, Enclosure, OCTANTS, Parts, RayTrace, Segment, SlabJoin, Solid,
-    Verdict, Worker,
+    AnyClassifier, AnyWorker, Ask, AskWhole, Classifier, Direct, DynSolid, Enclosure, ErasedPart, OCTANTS,
+    RayTrace, Segment, SlabJoin, Verdict,
 };
 use alloc::boxed::Box;
 use glam::DVec3;
@@ -38,8 +38,8 @@ use glam::DVec3;
 /// they look like the solid.
 ///
 /// O(cells of the surface) once; then O(samples · cells along a line of sight).
-pub struct SolidLayer<'a, S> {
-    solid: &'a S,
+pub struct SolidLayer<'a> {
+    solid: &'a dyn DynSolid,
     frame: Frame,
     skin: Skin<'a>,
     deepest: u8,
@@ -53,10 +53,10 @@ pub const DEEPEST: u8 = 11;
 /// The angle in radians by which a boundary may turn in a cell whose slab gives the normal.
 const CONE: f64 = 0.08 * core::f64::consts::PI / 180.0;
 
-impl<'a, S: Solid> SolidLayer<'a, S> {
+impl<'a> SolidLayer<'a> {
     /// Creates a layer of the part of a solid in the universe of a frame, independently of the frame's depth.
     /// (A solid has no cells that [`faces`](Finish::faces) could show.)
-    pub fn new(solid: &'a S, frame: &Frame, finish: Finish) -> SolidLayer<'a, S> {
+    pub fn new(solid: &'a dyn DynSolid, frame: &Frame, finish: Finish) -> SolidLayer<'a> {
         let facets = solid.sole_mesh().map(|mesh| Facets::new(mesh, &finish));
         SolidLayer { solid, frame: *frame, skin: Skin { finish, values: None }, deepest: DEEPEST, facets }
     }
@@ -64,13 +64,13 @@ impl<'a, S: Solid> SolidLayer<'a, S> {
     /// Shows the colours of an attribute's values: `colour` returns the colour of a value, and of a missing
     /// value. The value is taken half a pixel below the surface.
     #[must_use]
-    pub fn values(self, attribute: &'a dyn Attribute, colour: Colouring<'a>) -> SolidLayer<'a, S> {
+    pub fn values(self, attribute: &'a dyn Attribute, colour: Colouring<'a>) -> SolidLayer<'a> {
         SolidLayer { skin: Skin { values: Some((attribute, colour)), ..self.skin }, ..self }
     }
 
     /// Limits the depth of cells, 1 to 11, so that cells may be larger.
     #[must_use]
-    pub fn at_most(self, depth: u8) -> SolidLayer<'a, S> {
+    pub fn at_most(self, depth: u8) -> SolidLayer<'a> {
         SolidLayer { deepest: depth.clamp(1, DEEPEST), ..self }
     }
 }
@@ -84,20 +84,17 @@ fn pixelled(frame: &Frame, deepest: u8, stage: &Stage<'_>) -> Result<Frame, Erro
 }
 
 /// Returns the painter of a solid within the universe of a frame, split to at most `deepest` levels.
-pub fn painter<'a, S: Solid>(
-    solid: &S,
+pub fn painter<'a>(
+    solid: &'a dyn DynSolid,
     frame: &Frame,
     deepest: u8,
     skin: &'a Skin<'a>,
     stage: &Stage<'a>,
-) -> Result<Box<dyn Painter + 'a>, Error>
-where
-    S::Classifier: 'a,
-{
+) -> Result<Box<dyn Painter + 'a>, Error> {
     Ok(memory::boxed(SolidPainter::new(solid, frame, deepest, skin, stage)?)?)
 }
 
-impl<S: Solid> Draw for SolidLayer<'_, S> {
+impl Draw for SolidLayer<'_> {
     fn prepare<'a>(&'a self, stage: &Stage<'a>) -> Result<Box<dyn Painter + 'a>, Error> {
         self.skin.check()?;
         if let Some(facets) = &self.facets
@@ -111,22 +108,19 @@ impl<S: Solid> Draw for SolidLayer<'_, S> {
     }
 }
 
-/// The part type of a classifier.
-type PartOf<C> = <<C as Classifier>::Worker as Parts>::Part;
-
-struct SolidPainter<'a, C> {
+struct SolidPainter<'a> {
     skin: &'a Skin<'a>,
     stage: Stage<'a>,
     octree: Octree,
     /// The solid on the finest lattice.
-    classifier: C,
+    classifier: AnyClassifier<'a>,
     /// A ray to test whether the solid answers rays.
     probe: Ray,
 }
 
-impl<'a, C: Classifier> SolidPainter<'a, C> {
-    fn new<S: Solid<Classifier = C>>(
-        solid: &S,
+impl<'a> SolidPainter<'a> {
+    fn new(
+        solid: &'a dyn DynSolid,
         frame: &Frame,
         deepest: u8,
         skin: &'a Skin<'a>,
@@ -143,7 +137,7 @@ impl<'a, C: Classifier> SolidPainter<'a, C> {
     }
 }
 
-impl<C: Classifier> Painter for SolidPainter<'_, C> {
+impl Painter for SolidPainter<'_> {
     fn paint(&self, tile: &mut Tile<'_>) -> Result<(), Error> {
         let mut hand = Hand {
             kept: Kept::new(self.classifier.worker()?)?,
@@ -160,8 +154,8 @@ impl<C: Classifier> Painter for SolidPainter<'_, C> {
 }
 
 /// The state of a tile.
-struct Hand<'t, W: Worker> {
-    kept: Kept<W>,
+struct Hand<'t> {
+    kept: Kept<AnyWorker<'t>>,
     normals: Normals<'t>,
     enclosures: Places<Known>,
     trace: RayTrace,
@@ -185,12 +179,12 @@ enum Met {
     Unknown,
 }
 
-impl<C: Classifier> SolidPainter<'_, C> {
+impl SolidPainter<'_> {
     /// Returns the place where a line of sight meets the surface, from the first touched cell on, and the
     /// outward normal there; `None` for the normal if the line begins inside.
     fn sees(
         &self,
-        hand: &mut Hand<'_, C::Worker>,
+        hand: &mut Hand<'_>,
         sight: &SightLine,
         mut hit: TouchedCell,
     ) -> Result<Option<(f64, Option<DVec3>)>, Error> {
@@ -244,7 +238,7 @@ impl<C: Classifier> SolidPainter<'_, C> {
     /// cell between two times and enters through a face.
     fn within(
         &self,
-        hand: &mut Hand<'_, C::Worker>,
+        hand: &mut Hand<'_>,
         cell: Cell,
         sight: &SightLine,
         ([enters, leaves], face): ([f64; 2], DVec3),
@@ -281,8 +275,8 @@ impl<C: Classifier> SolidPainter<'_, C> {
     /// Returns the place where a line of sight enters the solid in a cell, if the solid answers rays.
     fn told(
         &self,
-        hand: &mut Hand<'_, C::Worker>,
-        (cell, part): (Cell, &PartOf<C>),
+        hand: &mut Hand<'_>,
+        (cell, part): (Cell, &ErasedPart),
         sight: &SightLine,
         ([enters, leaves], face): ([f64; 2], DVec3),
     ) -> Result<Option<Met>, Error> {
@@ -311,7 +305,7 @@ impl<C: Classifier> SolidPainter<'_, C> {
     /// times.
     fn met(
         &self,
-        hand: &mut Hand<'_, C::Worker>,
+        hand: &mut Hand<'_>,
         cell: Cell,
         sight: &SightLine,
         [enters, leaves]: [f64; 2],
@@ -353,7 +347,7 @@ impl<C: Classifier> SolidPainter<'_, C> {
     }
 
     /// Returns the knowledge about the boundary in a cell.
-    fn known<'h>(&self, hand: &'h mut Hand<'_, C::Worker>, cell: Cell) -> Result<&'h Known, Error> {
+    fn known<'h>(&self, hand: &'h mut Hand<'_>, cell: Cell) -> Result<&'h Known, Error> {
         if let Some(found) = hand.enclosures.find(cell) {
             return Ok(hand.enclosures.item(found));
         }
@@ -376,7 +370,7 @@ impl<C: Classifier> SolidPainter<'_, C> {
     /// the boundary turns less; `None` if nothing is known there.
     fn closer(
         &self,
-        hand: &mut Hand<'_, C::Worker>,
+        hand: &mut Hand<'_>,
         cell: Cell,
         cone: f64,
         sight: &SightLine,
@@ -534,7 +528,7 @@ mod tests {
     use super::*;
     use crate::control::Job;
     use crate::op::build;
-    use crate::solid::Csg;
+    use crate::solid::{Csg, Solid};
     use std::vec::Vec;
 
     /// Angles in degrees between the visible normals of a ball and its own, and the greatest distance of the
@@ -552,7 +546,7 @@ mod tests {
             skin: &Skin { finish: Finish::default(), values: None },
             stage,
             octree: build(&ball, &frame, Rule::Certified, &control).unwrap(),
-            classifier: ball.on(&frame.with_depth(MAX_DEPTH).unwrap(), &control).unwrap(),
+            classifier: ball.on(&frame.with_depth(MAX_DEPTH).unwrap(), &control).unwrap().erased(),
             probe: probe(&frame).unwrap(),
         };
         let octree = painter.octree.view();

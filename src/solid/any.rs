@@ -1,6 +1,6 @@
 //! Operations for solids of all kinds: wrapping and moving. This file therefore depends on all kinds.
 
-use super::{Adaptive, AnySolid, Csg, Erasable, MeshSolid, SplitCounter, Transform};
+use super::{Adaptive, AnySolid, Csg, MeshSolid, Solid, SplitCounter, Transform};
 use crate::error::Error;
 use crate::lattice::Affine;
 use crate::mesh::TriangleMesh;
@@ -8,7 +8,7 @@ use core::any::Any;
 
 impl AnySolid {
     /// Wraps a solid.
-    pub fn new<S: Erasable>(solid: S) -> AnySolid {
+    pub fn new<S: Solid + 'static>(solid: S) -> AnySolid {
         let nesting = nesting_in(&solid);
         AnySolid::around(solid, nesting)
     }

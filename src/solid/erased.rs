@@ -1,7 +1,10 @@
 //! Solids of any kind behind one type.
 //!
-//! [`Solid`] has associated types so that loops over it compile to tight code. Programs that hold shapes of
-//! different kinds in one place (the C interface first of all) use [`AnySolid`], which is a `Solid` itself.
+//! [`Solid`] has associated types so that a loop over a known kind compiles to tight code. Most queries spend
+//! their time in the answers of the solid, and not in the calls. They take `&dyn DynSolid`, so that each query
+//! is compiled once, with the library. Programs that hold shapes of different kinds in one place (the C
+//! interface first of all) own them as [`AnySolid`].
+//!
 //! Each of the three traits has an object-safe counterpart here. The methods of these counterparts have no
 //! defaults, so that none can be forgotten.
 
@@ -19,42 +22,38 @@ use alloc::boxed::Box;
 use alloc::sync::Arc;
 use alloc::vec::Vec;
 use core::any::Any;
+use core::ptr;
+
+/// A solid of any kind, borrowed: the object-safe counterpart of [`Solid`]. Every solid has it, so that a
+/// reference to any solid can be passed where `&dyn DynSolid` is wanted. Each split costs one indirect call.
+pub trait DynSolid: erased::ErasedSolid {}
+
+impl<S: Solid> DynSolid for S {}
 
 /// A shared solid of any kind. Each split costs one indirect call.
 #[derive(Clone)]
 pub struct AnySolid {
-    solid: Arc<dyn ErasedSolid>,
+    solid: Arc<dyn OwnedSolid>,
     nesting: u32,
 }
 
-/// Any solid on a frame.
+/// Any solid on a frame. The solid may borrow data for `'c`.
 #[derive(Clone)]
-pub struct AnyClassifier(Arc<dyn ErasedClassifier>);
+pub struct AnyClassifier<'c>(Arc<dyn ErasedClassifier + 'c>);
 
 /// A worker on any solid.
-pub struct AnyWorker(Box<dyn ErasedWorker>);
+pub struct AnyWorker<'c>(Box<dyn ErasedWorker + 'c>);
 
 /// A part of an [`AnySolid`]: its index among the parts that the worker keeps.
 #[derive(Debug, Clone, Copy)]
 pub struct ErasedPart(usize);
-
-/// A solid whose worker can be kept behind one type.
-pub trait Erasable:
-    Solid<Classifier: Classifier<Worker: Worker<Part: 'static> + 'static> + 'static> + 'static
-{
-}
-
-impl<S: Solid<Classifier: Classifier<Worker: Worker<Part: 'static> + 'static> + 'static> + 'static> Erasable
-    for S
-{
-}
 
 impl AnySolid {
     /// The greatest number of solids within each other; see [`nesting`](Self::nesting).
     pub const MOST_NESTED: u32 = 64;
 
     /// Wraps a solid that contains `nesting` solids within each other.
-    pub(super) fn around<S: Erasable>(solid: S, nesting: u32) -> AnySolid {
+    pub(super) fn around<S: Solid + 'static>(solid: S, nesting: u32) -> AnySolid {
         AnySolid { solid: Arc::new(solid), nesting: nesting.saturating_add(1) }
     }
 
@@ -79,7 +78,7 @@ impl AnySolid {
         if self.nesting > AnySolid::MOST_NESTED {
             return Ok(None);
         }
-        self.solid.placed(placement)
+        OwnedSolid::placed(&*self.solid, placement)
     }
 
     /// An address that identifies a solid and its clones as long as they exist.
@@ -90,25 +89,42 @@ impl AnySolid {
 
 // ---- the object-safe counterparts ---------------------------------------------------------------------
 
-trait ErasedSolid: Send + Sync {
-    fn as_any(&self) -> &dyn Any;
-    fn on(&self, frame: &Frame, control: &Control<'_>) -> Result<AnyClassifier, Error>;
-    fn bounds(&self) -> Option<Bounds>;
-    fn home(&self) -> Option<Frame>;
-    fn fingerprint(&self) -> Option<Fingerprint>;
-    fn placed(&self, placement: &Affine) -> Result<Option<AnySolid>, Error>;
-    fn motion(&self) -> Motion;
-    fn kept_bytes(&self) -> u64;
-    fn sole_mesh(&self) -> Option<&TriangleMesh>;
+mod erased {
+    use super::*;
+
+    /// The methods of [`DynSolid`]. They are not public, because their names are those of [`Solid`].
+    pub trait ErasedSolid: Send + Sync {
+        fn on<'c>(&self, frame: &Frame, control: &Control<'_>) -> Result<AnyClassifier<'c>, Error>
+        where
+            Self: 'c;
+        fn placed<'c>(&self, placement: &Affine) -> Result<Option<Box<dyn DynSolid + 'c>>, Error>
+        where
+            Self: 'c;
+        fn bounds(&self) -> Option<Bounds>;
+        fn home(&self) -> Option<Frame>;
+        fn fingerprint(&self) -> Option<Fingerprint>;
+        fn motion(&self) -> Motion;
+        fn kept_bytes(&self) -> u64;
+        fn sole_mesh(&self) -> Option<&TriangleMesh>;
+    }
 }
 
-impl<S: Erasable> ErasedSolid for S {
-    fn as_any(&self) -> &dyn Any {
-        self
+impl<S: Solid> erased::ErasedSolid for S {
+    fn on<'c>(&self, frame: &Frame, control: &Control<'_>) -> Result<AnyClassifier<'c>, Error>
+    where
+        S: 'c,
+    {
+        Ok(Solid::on(self, frame, control)?.erased())
     }
 
-    fn on(&self, frame: &Frame, control: &Control<'_>) -> Result<AnyClassifier, Error> {
-        Ok(AnyClassifier(Arc::new(Solid::on(self, frame, control)?)))
+    fn placed<'c>(&self, placement: &Affine) -> Result<Option<Box<dyn DynSolid + 'c>>, Error>
+    where
+        S: 'c,
+    {
+        Ok(match Solid::placed(self, placement)? {
+            Some(placed) => Some(Box::new(placed)),
+            None => None,
+        })
     }
 
     fn bounds(&self) -> Option<Bounds> {
@@ -121,10 +137,6 @@ impl<S: Erasable> ErasedSolid for S {
 
     fn fingerprint(&self) -> Option<Fingerprint> {
         Solid::fingerprint(self)
-    }
-
-    fn placed(&self, placement: &Affine) -> Result<Option<AnySolid>, Error> {
-        Ok(Solid::placed(self, placement)?.map(AnySolid::new))
     }
 
     fn motion(&self) -> Motion {
@@ -140,10 +152,31 @@ impl<S: Erasable> ErasedSolid for S {
     }
 }
 
-impl Solid for AnySolid {
-    type Classifier = AnyClassifier;
+/// (The methods that are called here are those of the counterpart: they come first for an object.)
+impl<'s> Solid for dyn DynSolid + 's {
+    forward_solid!(AnyClassifier<'s>, self => self);
+}
 
-    fn on(&self, frame: &Frame, control: &Control<'_>) -> Result<AnyClassifier, Error> {
+/// A solid that [`AnySolid`] owns.
+trait OwnedSolid: DynSolid {
+    fn as_any(&self) -> &dyn Any;
+    fn placed(&self, placement: &Affine) -> Result<Option<AnySolid>, Error>;
+}
+
+impl<S: Solid + 'static> OwnedSolid for S {
+    fn as_any(&self) -> &dyn Any {
+        self
+    }
+
+    fn placed(&self, placement: &Affine) -> Result<Option<AnySolid>, Error> {
+        Ok(Solid::placed(self, placement)?.map(AnySolid::new))
+    }
+}
+
+impl Solid for AnySolid {
+    type Classifier = AnyClassifier<'static>;
+
+    fn on(&self, frame: &Frame, control: &Control<'_>) -> Result<AnyClassifier<'static>, Error> {
         if self.nesting > AnySolid::MOST_NESTED {
             return Err(Error::Limit {
                 what: "solids within each other",
@@ -165,7 +198,7 @@ impl Solid for AnySolid {
 struct Shallow<'s>(&'s AnySolid);
 
 impl<'s> Shallow<'s> {
-    fn known(&self) -> Option<&'s dyn ErasedSolid> {
+    fn known(&self) -> Option<&'s dyn OwnedSolid> {
         (self.0.nesting <= AnySolid::MOST_NESTED).then_some(&*self.0.solid)
     }
 
@@ -194,18 +227,30 @@ impl<'s> Shallow<'s> {
     }
 }
 
+impl<'c> AnyClassifier<'c> {
+    pub(super) fn new<C: Classifier + 'c>(classifier: C) -> AnyClassifier<'c> {
+        AnyClassifier(Arc::new(classifier))
+    }
+}
+
 trait ErasedClassifier: Send + Sync {
     fn frame(&self) -> &Frame;
-    fn worker(&self) -> Result<AnyWorker, Error>;
+    fn worker<'c>(self: Arc<Self>) -> Result<AnyWorker<'c>, Error>
+    where
+        Self: 'c;
     fn exterior(&self) -> Tag;
     fn proof(&self) -> Proof;
     fn answer_whole(&self, question: WholeQuestion<'_>, control: &Control<'_>) -> Result<(), Error>;
     fn kept_bytes(&self) -> u64;
 }
 
-impl<C: Classifier<Worker: Worker<Part: 'static> + 'static>> ErasedClassifier for C {
-    fn worker(&self) -> Result<AnyWorker, Error> {
-        let typed = Typed { worker: Classifier::worker(self)?, parts: Vec::new(), passing: Vec::new() };
+impl<C: Classifier> ErasedClassifier for C {
+    fn worker<'c>(self: Arc<Self>) -> Result<AnyWorker<'c>, Error>
+    where
+        C: 'c,
+    {
+        let worker = Classifier::worker(&*self)?;
+        let typed = Typed { worker, parts: Vec::new(), passing: Vec::new(), classifier: self };
         // Some workers are large from the start.
         Ok(AnyWorker(memory::boxed(typed)?))
     }
@@ -231,11 +276,19 @@ impl<C: Classifier<Worker: Worker<Part: 'static> + 'static>> ErasedClassifier fo
     }
 }
 
-impl Classifier for AnyClassifier {
-    type Worker = AnyWorker;
+impl<'c> Classifier for AnyClassifier<'c> {
+    type Worker = AnyWorker<'c>;
 
-    fn worker(&self) -> Result<AnyWorker, Error> {
-        self.0.worker()
+    fn worker(&self) -> Result<AnyWorker<'c>, Error> {
+        self.0.clone().worker()
+    }
+
+    // Without a second wrapper.
+    fn erased<'e>(self) -> AnyClassifier<'e>
+    where
+        Self: 'e,
+    {
+        self
     }
 
     forward_classifier!(self => self.0);
@@ -243,20 +296,24 @@ impl Classifier for AnyClassifier {
 
 /// A worker, and the parts that it has handed out. With each part goes the height of the worker's memory
 /// after the part was made.
-struct Typed<W: Worker> {
-    worker: W,
-    parts: Vec<(W::Part, usize)>,
+struct Typed<C: Classifier> {
+    worker: C::Worker,
+    parts: Vec<(Part<C>, usize)>,
     /// The parts of one element on their way in or out.
-    passing: Vec<(u8, W::Part)>,
+    passing: Vec<(u8, Part<C>)>,
+    /// The classifier that made the worker.
+    classifier: Arc<C>,
 }
 
-impl<W: Worker> Typed<W> {
-    fn hand_out(&mut self, part: W::Part) -> Result<ErasedPart, Error> {
+type Part<C> = <<C as Classifier>::Worker as Parts>::Part;
+
+impl<C: Classifier> Typed<C> {
+    fn hand_out(&mut self, part: Part<C>) -> Result<ErasedPart, Error> {
         memory::push(&mut self.parts, (part, self.worker.mark()))?;
         Ok(ErasedPart(self.parts.len() - 1))
     }
 
-    fn hand_out_eight(&mut self, verdicts: [Verdict<W::Part>; 8]) -> Result<[Verdict<ErasedPart>; 8], Error> {
+    fn hand_out_eight(&mut self, verdicts: [Verdict<Part<C>>; 8]) -> Result<[Verdict<ErasedPart>; 8], Error> {
         let mut erased = [const { Verdict::Undecided }; 8];
         for (erased, verdict) in erased.iter_mut().zip(verdicts) {
             *erased = verdict.try_map(|part| self.hand_out(part))?;
@@ -265,24 +322,25 @@ impl<W: Worker> Typed<W> {
     }
 
     /// The cells with the worker's own parts.
-    fn own(&self, cells: &[(Cell, ErasedPart)]) -> Result<Vec<(Cell, W::Part)>, Error> {
+    fn own(&self, cells: &[(Cell, ErasedPart)]) -> Result<Vec<(Cell, Part<C>)>, Error> {
         let own = memory::collected(cells.iter().map(|(cell, part)| (*cell, self.part(part))))?;
         Ok(own)
     }
 
-    fn part(&self, part: &ErasedPart) -> W::Part {
+    fn part(&self, part: &ErasedPart) -> Part<C> {
         self.parts[part.0].0.clone()
     }
 }
 
 trait ErasedWorker: Send + Sync {
-    fn as_any(&self) -> &dyn Any;
+    /// The addresses of the classifier that made the worker, and of the `Typed`.
+    fn identity(&self) -> [*const (); 2];
     fn frame(&self) -> &Frame;
     fn root(&mut self) -> Result<Verdict<ErasedPart>, Error>;
     fn mark(&self) -> usize;
     fn scratch_bytes(&self) -> usize;
     fn release(&mut self, mark: usize);
-    fn hand_over(&mut self, from: &AnyWorker, part: &ErasedPart) -> Result<ErasedPart, Error>;
+    fn hand_over(&mut self, from: &AnyWorker<'_>, part: &ErasedPart) -> Result<ErasedPart, Error>;
     fn recall(&mut self, cell: Cell) -> Option<ErasedPart>;
     fn split(&mut self, cell: Cell, part: &ErasedPart) -> Result<[Verdict<ErasedPart>; 8], Error>;
     fn split64(
@@ -312,9 +370,9 @@ trait ErasedWorker: Send + Sync {
 }
 
 // (An array of one, because its box can be made from a vector, whose allocation can fail without a panic.)
-impl<W: Worker<Part: 'static> + 'static> ErasedWorker for [Typed<W>; 1] {
-    fn as_any(&self) -> &dyn Any {
-        &self[0]
+impl<C: Classifier> ErasedWorker for [Typed<C>; 1] {
+    fn identity(&self) -> [*const (); 2] {
+        [Arc::as_ptr(&self[0].classifier).cast(), ptr::from_ref(&self[0]).cast()]
     }
 
     fn frame(&self) -> &Frame {
@@ -338,10 +396,14 @@ impl<W: Worker<Part: 'static> + 'static> ErasedWorker for [Typed<W>; 1] {
         self[0].worker.release(self[0].parts.last().map_or(0, |&(_, height)| height));
     }
 
-    fn hand_over(&mut self, from: &AnyWorker, part: &ErasedPart) -> Result<ErasedPart, Error> {
-        let Some(from) = from.0.as_any().downcast_ref::<Typed<W>>() else {
-            panic!("a part can only be handed over between workers of one classifier");
-        };
+    fn hand_over(&mut self, from: &AnyWorker<'_>, part: &ErasedPart) -> Result<ErasedPart, Error> {
+        let ([own, _], [theirs, typed]) = (self.identity(), from.0.identity());
+        assert!(own == theirs, "a part can only be handed over between workers of one classifier");
+        // SAFETY: both workers keep an `Arc` of the classifier alive, so that equal addresses mean one
+        // allocation. It was made for one type `C`. A worker that holds an `Arc<C>` is a `Typed<C>`, which
+        // the borrow of `from` keeps in place.
+        #[allow(unsafe_code)]
+        let from = unsafe { &*typed.cast::<Typed<C>>() };
         let part = self[0].worker.hand_over(&from.worker, &from.parts[part.0].0)?;
         self[0].hand_out(part)
     }
@@ -368,7 +430,7 @@ impl<W: Worker<Part: 'static> + 'static> ErasedWorker for [Typed<W>; 1] {
         let planes = self[0].worker.split64(cell, &part, &mut self[0].passing)?;
         parts.try_reserve(self[0].passing.len())?;
         self[0].parts.try_reserve(self[0].passing.len())?;
-        let Typed { worker, parts: kept, passing } = &mut self[0];
+        let Typed { worker, parts: kept, passing, .. } = &mut self[0];
         let height = worker.mark();
         for (c, part) in passing.drain(..) {
             kept.push((part, height));
@@ -406,7 +468,7 @@ impl<W: Worker<Part: 'static> + 'static> ErasedWorker for [Typed<W>; 1] {
     }
 
     fn sample64(&mut self, cell: Cell, parts: &[(u8, ErasedPart)]) -> Result<Option<u64>, Error> {
-        let Typed { worker, parts: kept, passing } = &mut self[0];
+        let Typed { worker, parts: kept, passing, .. } = &mut self[0];
         passing.clear();
         passing.try_reserve(parts.len())?;
         passing.extend(parts.iter().map(|(c, part)| (*c, kept[part.0].0.clone())));
@@ -433,19 +495,19 @@ impl<W: Worker<Part: 'static> + 'static> ErasedWorker for [Typed<W>; 1] {
     }
 }
 
-impl Parts for AnyWorker {
-    fn hand_over(&mut self, from: &AnyWorker, part: &ErasedPart) -> Result<ErasedPart, Error> {
+impl Parts for AnyWorker<'_> {
+    fn hand_over(&mut self, from: &Self, part: &ErasedPart) -> Result<ErasedPart, Error> {
         self.0.hand_over(from, part)
     }
 
     forward_parts!(ErasedPart, self => self.0);
 }
 
-impl Batch for AnyWorker {
+impl Batch for AnyWorker<'_> {
     forward_batch!(ErasedPart, self => self.0);
 }
 
-impl Worker for AnyWorker {
+impl Worker for AnyWorker<'_> {
     fn split(&mut self, cell: Cell, part: &ErasedPart) -> Result<[Verdict<ErasedPart>; 8], Error> {
         self.0.split(cell, part)
     }

@@ -75,7 +75,8 @@ pub use callback::{Callback, GradientRange, TangentBalls};
 pub use csg::{Csg, Touch};
 #[cfg(feature = "scene")]
 pub(crate) use csg::{Fan, Figure, cos_degrees, sin_degrees, wedge};
-pub use erased::{AnyClassifier, AnySolid, AnyWorker, Erasable};
+pub(crate) use erased::ErasedPart;
+pub use erased::{AnyClassifier, AnySolid, AnyWorker, DynSolid};
 pub use fingerprint::{Fingerprint, Fingerprinter};
 pub(crate) use half_space::{Form, Round};
 pub use half_space::{HalfSpace, OpenSurfaces, PlacedHalfSpace, SurfaceShape};
@@ -324,6 +325,14 @@ pub trait Classifier: Clone + Send + Sync {
     fn kept_bytes(&self) -> u64 {
         0
     }
+
+    /// The classifier as one of any kind. Only [`AnyClassifier`] has a method of its own.
+    fn erased<'c>(self) -> AnyClassifier<'c>
+    where
+        Self: 'c,
+    {
+        AnyClassifier::new(self)
+    }
 }
 
 /// A classifier with scratch memory, which answers the questions.
@@ -427,7 +436,7 @@ pub trait Worker: Batch {
 pub(crate) type WorkerOf<S> = <<S as Solid>::Classifier as Classifier>::Worker;
 
 /// A borrowed solid.
-impl<S: Solid> Solid for &S {
+impl<S: Solid + ?Sized> Solid for &S {
     forward::forward_solid!(S::Classifier, self => (**self));
 }
 

@@ -16,7 +16,7 @@ use alloc::sync::Arc;
 #[derive(Clone)]
 pub struct Prepared {
     solid: AnySolid,
-    last: Arc<Lock<Option<(Frame, AnyClassifier)>>>,
+    last: Arc<Lock<Option<(Frame, AnyClassifier<'static>)>>>,
 }
 
 impl Prepared {
@@ -31,7 +31,7 @@ impl Prepared {
     }
 
     /// The kept classifier, if it is for this frame.
-    fn kept(&self, frame: &Frame) -> Option<AnyClassifier> {
+    fn kept(&self, frame: &Frame) -> Option<AnyClassifier<'static>> {
         self.last.with(|last| {
             last.as_ref().filter(|(kept, _)| kept == frame).map(|(_, classifier)| classifier.clone())
         })
@@ -39,9 +39,9 @@ impl Prepared {
 }
 
 impl Solid for Prepared {
-    type Classifier = AnyClassifier;
+    type Classifier = AnyClassifier<'static>;
 
-    fn on(&self, frame: &Frame, control: &Control<'_>) -> Result<AnyClassifier, Error> {
+    fn on(&self, frame: &Frame, control: &Control<'_>) -> Result<AnyClassifier<'static>, Error> {
         if let Some(classifier) = self.kept(frame) {
             return Ok(classifier);
         }

@@ -18,7 +18,7 @@ use crate::lattice::{Frame, axes};
 use crate::memory;
 use crate::mesh::TriangleMesh;
 use crate::op::{DexelOptions, dexelize, octree_from_dexels};
-use crate::solid::Solid;
+use crate::solid::DynSolid;
 use crate::walk::Edge;
 use alloc::vec::Vec;
 use core::sync::atomic::{AtomicBool, AtomicUsize, Ordering::Relaxed};
@@ -69,8 +69,8 @@ pub struct DexelSurfaceReport {
 ///
 /// # Errors
 /// As [`dexelize`] and [`marching_cubes_dexels`].
-pub fn dual_contouring_solid<S: Solid>(
-    solid: &S,
+pub fn dual_contouring_solid(
+    solid: &dyn DynSolid,
     frame: &Frame,
     control: &Control<'_>,
 ) -> Result<(TriangleMesh, DexelSurfaceReport), Error> {

@@ -18,7 +18,7 @@ use crate::lattice::{Frame, MAX_DEPTH, morton};
 use crate::mesh::TriangleMesh;
 use crate::octree::Octree;
 use crate::op::{Rule, build};
-use crate::solid::{Classifier, Solid};
+use crate::solid::{Classifier, DynSolid};
 use crate::walk::{Edge, Trail};
 use alloc::vec::Vec;
 use core::ops::Range;
@@ -75,8 +75,8 @@ pub enum VertexPlacement {
 /// }
 /// # Ok::<(), leafless::Error>(())
 /// ```
-pub fn marching_cubes_solid<S: Solid>(
-    solid: &S,
+pub fn marching_cubes_solid(
+    solid: &dyn DynSolid,
     frame: &Frame,
     placement: VertexPlacement,
     control: &Control<'_>,
@@ -114,8 +114,8 @@ pub fn marching_cubes_solid<S: Solid>(
 ///
 /// # Errors
 /// As [`marching_cubes_solid`].
-pub fn simple_marching_cubes_solid<S: Solid>(
-    solid: &S,
+pub fn simple_marching_cubes_solid(
+    solid: &dyn DynSolid,
     frame: &Frame,
     snap: Snap,
     control: &Control<'_>,
@@ -129,8 +129,8 @@ pub fn simple_marching_cubes_solid<S: Solid>(
 ///
 /// # Errors
 /// As [`marching_cubes_solid`].
-pub fn coplanar_shrink_solid<S: Solid>(
-    solid: &S,
+pub fn coplanar_shrink_solid(
+    solid: &dyn DynSolid,
     frame: &Frame,
     snap: Snap,
     control: &Control<'_>,
@@ -144,8 +144,8 @@ pub fn coplanar_shrink_solid<S: Solid>(
 ///
 /// # Errors
 /// As [`marching_cubes_solid`].
-pub fn published_shrink_solid<S: Solid>(
-    solid: &S,
+pub fn published_shrink_solid(
+    solid: &dyn DynSolid,
     frame: &Frame,
     snap: Snap,
     control: &Control<'_>,
@@ -153,8 +153,8 @@ pub fn published_shrink_solid<S: Solid>(
     shrunk(solid, frame, Form::Published, snap, control)
 }
 
-fn shrunk<S: Solid>(
-    solid: &S,
+fn shrunk(
+    solid: &dyn DynSolid,
     frame: &Frame,
     form: Form,
     snap: Snap,
@@ -176,7 +176,7 @@ struct Corners {
 }
 
 impl Corners {
-    fn new<S: Solid>(solid: &S, frame: &Frame, control: &Control<'_>) -> Result<Corners, Error> {
+    fn new(solid: &dyn DynSolid, frame: &Frame, control: &Control<'_>) -> Result<Corners, Error> {
         if frame.depth() >= MAX_DEPTH {
             return Err(Error::Argument { name: "frame", problem: "must have a depth of at most 19" });
         }

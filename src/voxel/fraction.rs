@@ -7,7 +7,7 @@ use crate::cut;
 use crate::error::Error;
 use crate::lattice::Cell;
 use crate::memory;
-use crate::solid::{Classifier, Solid, Verdict, Worker};
+use crate::solid::{Classifier, DynSolid, Verdict, Worker};
 use crate::walk::Trail;
 use alloc::vec::Vec;
 
@@ -31,7 +31,7 @@ impl VoxelRecordsRef<'_> {
     ///
     /// # Errors
     /// Those of the solid, [`Error::OutOfMemory`], [`Error::Cancelled`].
-    pub fn solid_parts<S: Solid>(&self, solid: &S, control: &Control<'_>) -> Result<Vec<f64>, Error> {
+    pub fn solid_parts(&self, solid: &dyn DynSolid, control: &Control<'_>) -> Result<Vec<f64>, Error> {
         let mut trail = Trail::new(solid.on(self.frame(), control)?.worker()?)?;
         let mut parts = memory::with_capacity(self.len())?;
         for index in 0..self.len() {

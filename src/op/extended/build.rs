@@ -17,8 +17,8 @@ use crate::solid::half_space::Placed;
 use crate::solid::half_space::record::Pool;
 use crate::solid::half_space::table::Table;
 use crate::solid::{
-    Ask, AskLayers, AskWhole, Batch, Classifier, Enclosure, Fingerprinter, HalfSpace, LayersQuestion,
-    OCTANTS, OpenSurfaces, Parts, PlacedHalfSpace, Slab, SlabJoin, Solid, Verdict, Worker,
+    Ask, AskLayers, AskWhole, Batch, Classifier, DynSolid, Enclosure, Fingerprinter, HalfSpace,
+    LayersQuestion, OCTANTS, OpenSurfaces, Parts, PlacedHalfSpace, Slab, SlabJoin, Verdict, Worker,
 };
 use crate::walk::{LEVELS, Part, each, split_each};
 use alloc::boxed::Box;
@@ -110,8 +110,8 @@ impl SurfaceOptions {
 /// assert!(volume.contains(48.0 - std::f64::consts::PI / 4.0) && volume.width() < 1e-4);
 /// # Ok::<(), leafless::Error>(())
 /// ```
-pub fn build_extended<S: Solid>(
-    solid: &S,
+pub fn build_extended(
+    solid: &dyn DynSolid,
     frame: &Frame,
     options: &SurfaceOptions,
     control: &Control<'_>,
@@ -125,8 +125,8 @@ pub fn build_extended<S: Solid>(
 ///
 /// # Errors
 /// As [`build_extended`]; [`Error::Argument`] if the frame does not contain the shard's cells.
-pub fn build_extended_shard<S: Solid>(
-    solid: &S,
+pub fn build_extended_shard(
+    solid: &dyn DynSolid,
     frame: &Frame,
     options: &SurfaceOptions,
     shard: Shard,
@@ -136,8 +136,8 @@ pub fn build_extended_shard<S: Solid>(
     build_cells(solid, frame, options, Some(shard), control)
 }
 
-fn build_cells<S: Solid>(
-    solid: &S,
+fn build_cells(
+    solid: &dyn DynSolid,
     frame: &Frame,
     options: &SurfaceOptions,
     shard: Option<Shard>,
@@ -249,7 +249,7 @@ pub fn plain(tree: &Octree, depth: u8, rule: Rule, control: &Control<'_>) -> Res
 }
 
 /// The identity of the slabs of a build; `None` if the solid has no fingerprint.
-fn origin<S: Solid>(solid: &S, frame: &Frame, options: &SurfaceOptions) -> Option<Origin> {
+fn origin(solid: &dyn DynSolid, frame: &Frame, options: &SurfaceOptions) -> Option<Origin> {
     let all = Fingerprinter::new("slabs")
         .part(solid.fingerprint()?)
         .numbers(&frame.origin())

@@ -16,7 +16,9 @@ use crate::lattice::{Affine, Bounds, Cell, Frame, Interval, axes, valid};
 use crate::memory;
 use crate::octree::Proof;
 use crate::parallel::each;
-use crate::solid::{AskWhole, Classifier, Motion, Solid, Transform, TransformClassifier};
+use crate::solid::{
+    AnyClassifier, AskWhole, Classifier, DynSolid, Motion, Solid, Transform, TransformClassifier,
+};
 use crate::walk::Proven;
 use alloc::vec::Vec;
 use facets::{Boundary, ByFacets, Pair};
@@ -134,9 +136,9 @@ pub const CLEARANCE_SPLITS: u64 = 1 << 20;
 /// assert!((p[0] - (50.0 + 30.0 / 3f64.sqrt())).abs() < 1e-3 && (q[2] - (86.0 - 30.0 / 3f64.sqrt())).abs() < 1e-3);
 /// # Ok::<(), leafless::Error>(())
 /// ```
-pub fn clearance<A: Solid, B: Solid>(
-    a: &A,
-    b: &B,
+pub fn clearance(
+    a: &dyn DynSolid,
+    b: &dyn DynSolid,
     frame: &Frame,
     tolerance: f64,
     control: &Control<'_>,
@@ -170,9 +172,9 @@ pub fn clearance<A: Solid, B: Solid>(
 /// assert!(found[0].distance.contains(1.0) && found[1].distance.contains(2.0));
 /// # Ok::<(), leafless::Error>(())
 /// ```
-pub fn clearance_at<A: Solid, B: Solid>(
-    a: &A,
-    b: &B,
+pub fn clearance_at(
+    a: &dyn DynSolid,
+    b: &dyn DynSolid,
     own: &Frame,
     placements: &[Affine],
     frame: &Frame,
@@ -205,9 +207,9 @@ pub fn clearance_at<A: Solid, B: Solid>(
 /// assert!(found.verdict == GapVerdict::No && found.evidence.points.is_some());
 /// # Ok::<(), leafless::Error>(())
 /// ```
-pub fn gap_at_least<A: Solid, B: Solid>(
-    a: &A,
-    b: &B,
+pub fn gap_at_least(
+    a: &dyn DynSolid,
+    b: &dyn DynSolid,
     frame: &Frame,
     least: f64,
     control: &Control<'_>,
@@ -227,9 +229,9 @@ pub fn gap_at_least<A: Solid, B: Solid>(
 ///
 /// # Errors
 /// As [`gap_at_least`].
-pub fn gap_at_least_at<A: Solid, B: Solid>(
-    a: &A,
-    b: &B,
+pub fn gap_at_least_at(
+    a: &dyn DynSolid,
+    b: &dyn DynSolid,
     own: &Frame,
     placements: &[Affine],
     frame: &Frame,
@@ -255,8 +257,8 @@ impl Gap {
 /// Number of placements handed to the threads at once.
 const PIECE: usize = 4096;
 
-fn at_each<A: Solid, B: Solid>(
-    (a, b): (&A, &B),
+fn at_each(
+    (a, b): (&dyn DynSolid, &dyn DynSolid),
     own: &Frame,
     placements: &[Affine],
     frame: &Frame,
@@ -286,10 +288,10 @@ fn at_each<A: Solid, B: Solid>(
 }
 
 /// A solid on its own frame, for comparison with others in many placements.
-struct Moved<'m, B: Solid> {
-    solid: &'m B,
+struct Moved<'m> {
+    solid: &'m dyn DynSolid,
     own: &'m Frame,
-    classifier: &'m Proven<B::Classifier>,
+    classifier: &'m Proven<AnyClassifier<'m>>,
     bounds: Option<Bounds>,
     keeps_surfaces: bool,
     /// Whether the part outside of the universe does not count.
@@ -298,11 +300,11 @@ struct Moved<'m, B: Solid> {
     asks_depth: bool,
 }
 
-impl<'m, B: Solid> Moved<'m, B> {
+impl<'m> Moved<'m> {
     fn new(
-        solid: &'m B,
+        solid: &'m dyn DynSolid,
         own: &'m Frame,
-        classifier: &'m Proven<B::Classifier>,
+        classifier: &'m Proven<AnyClassifier<'m>>,
         control: &Control<'_>,
     ) -> Result<Self, Error> {
         let keeps_surfaces =

@@ -14,8 +14,8 @@ pub(crate) struct Ready {
     solid: AnySolid,
     bounds: Bounds,
     own: Frame,
-    moved: Proven<AnyClassifier>,
-    fixed: Proven<AnyClassifier>,
+    moved: Proven<AnyClassifier<'static>>,
+    fixed: Proven<AnyClassifier<'static>>,
     boundary: Option<Boundary>,
 }
 

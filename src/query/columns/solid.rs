@@ -7,7 +7,7 @@ use crate::error::Error;
 use crate::lattice::{Cell, Frame};
 use crate::memory;
 use crate::parallel::each;
-use crate::solid::{Classifier, OCTANTS, Parts, Solid, Verdict, Worker};
+use crate::solid::{Classifier, DynSolid, OCTANTS, Parts, Verdict, Worker};
 use crate::walk::Proven;
 use crate::walk::split_one;
 use alloc::vec::Vec;
@@ -30,8 +30,8 @@ use alloc::vec::Vec;
 /// assert!(upper.start == 16 && upper.length == 32 && full.start >= 16 && full.length >= 30);
 /// # Ok::<(), leafless::Error>(())
 /// ```
-pub fn columns<S: Solid>(
-    solid: &S,
+pub fn columns(
+    solid: &dyn DynSolid,
     frame: &Frame,
     columns: &Columns,
     control: &Control<'_>,
@@ -61,8 +61,8 @@ pub fn columns<S: Solid>(
 /// assert_eq!(heights.height(0), None);
 /// # Ok::<(), leafless::Error>(())
 /// ```
-pub fn heights<S: Solid>(
-    solid: &S,
+pub fn heights(
+    solid: &dyn DynSolid,
     frame: &Frame,
     columns: &Columns,
     side: Side,
@@ -106,8 +106,8 @@ fn blocks(columns: &Columns) -> Result<(u32, Vec<Columns>), Error> {
 
 /// Walks through each block with its own visitor. The visitor is made from the block's columns and their
 /// count. A column takes `bytes` bytes. Octants are met in the order k ^ `mirror`.
-fn in_blocks<S: Solid, V: Visitor + Send>(
-    solid: &S,
+fn in_blocks<V: Visitor + Send>(
+    solid: &dyn DynSolid,
     frame: &Frame,
     columns: &Columns,
     mirror: u8,

@@ -10,7 +10,7 @@ use crate::control::{Control, Job};
 use crate::error::Error;
 use crate::lattice::{Frame, Interval};
 use crate::octree::{Octree, OctreeRef};
-use crate::solid::{Classifier, Solid};
+use crate::solid::{Classifier, DynSolid};
 use crate::walk::Proven;
 use once::Once;
 use sums::Sums;
@@ -54,9 +54,9 @@ pub struct CellsIn {
 /// assert_eq!((found.full_least, found.full_most), (6, 6));
 /// # Ok::<(), leafless::Error>(())
 /// ```
-pub fn cells_in<S: Solid, R: Solid>(
-    solid: &S,
-    region: &R,
+pub fn cells_in(
+    solid: &dyn DynSolid,
+    region: &dyn DynSolid,
     frame: &Frame,
     control: &Control<'_>,
 ) -> Result<CellsIn, Error> {
@@ -74,18 +74,18 @@ pub fn cells_in<S: Solid, R: Solid>(
 ///
 /// # Errors
 /// As [`cells_in`].
-pub fn volume_in<S: Solid, R: Solid>(
-    solid: &S,
-    region: &R,
+pub fn volume_in(
+    solid: &dyn DynSolid,
+    region: &dyn DynSolid,
     frame: &Frame,
     control: &Control<'_>,
 ) -> Result<Interval, Error> {
     Ok(content(solid, region, frame, Sums::of_volume(), control)?.volume(frame))
 }
 
-fn content<S: Solid, R: Solid>(
-    solid: &S,
-    region: &R,
+fn content(
+    solid: &dyn DynSolid,
+    region: &dyn DynSolid,
     frame: &Frame,
     sums: Sums,
     control: &Control<'_>,
@@ -96,9 +96,9 @@ fn content<S: Solid, R: Solid>(
     in_region(solid, region, frame, sums, &job)
 }
 
-fn in_region<S: Counted, R: Solid>(
+fn in_region<S: Counted>(
     solid: S,
-    region: &R,
+    region: &dyn DynSolid,
     frame: &Frame,
     sums: Sums,
     job: &Job<'_>,
@@ -132,7 +132,7 @@ impl OctreeRef<'_> {
     /// assert!(found.full_least as f64 <= half && half <= found.full_most as f64);
     /// # Ok::<(), leafless::Error>(())
     /// ```
-    pub fn cells_in<R: Solid>(&self, region: &R, control: &Control<'_>) -> Result<CellsIn, Error> {
+    pub fn cells_in(&self, region: &dyn DynSolid, control: &Control<'_>) -> Result<CellsIn, Error> {
         Ok(self.content_in(region, Sums::of_cells(), control)?.cells())
     }
 
@@ -155,11 +155,11 @@ impl OctreeRef<'_> {
     /// assert!(found.contains(std::f64::consts::PI / 12.0) && found.width() < 1e-4);
     /// # Ok::<(), leafless::Error>(())
     /// ```
-    pub fn volume_in<R: Solid>(&self, region: &R, control: &Control<'_>) -> Result<Interval, Error> {
+    pub fn volume_in(&self, region: &dyn DynSolid, control: &Control<'_>) -> Result<Interval, Error> {
         Ok(self.content_in(region, Sums::of_volume(), control)?.volume(&self.frame))
     }
 
-    fn content_in<R: Solid>(&self, region: &R, sums: Sums, control: &Control<'_>) -> Result<Sums, Error> {
+    fn content_in(&self, region: &dyn DynSolid, sums: Sums, control: &Control<'_>) -> Result<Sums, Error> {
         let job = Job::new(control);
         job.check()?;
         in_region(Once::new(self), region, &self.frame, sums, &job)
@@ -171,7 +171,7 @@ impl Octree {
     ///
     /// # Errors
     /// As [`OctreeRef::cells_in`].
-    pub fn cells_in<R: Solid>(&self, region: &R, control: &Control<'_>) -> Result<CellsIn, Error> {
+    pub fn cells_in(&self, region: &dyn DynSolid, control: &Control<'_>) -> Result<CellsIn, Error> {
         self.view().cells_in(region, control)
     }
 
@@ -179,7 +179,7 @@ impl Octree {
     ///
     /// # Errors
     /// As [`OctreeRef::cells_in`].
-    pub fn volume_in<R: Solid>(&self, region: &R, control: &Control<'_>) -> Result<Interval, Error> {
+    pub fn volume_in(&self, region: &dyn DynSolid, control: &Control<'_>) -> Result<Interval, Error> {
         self.view().volume_in(region, control)
     }
 }

@@ -18,7 +18,7 @@ use crate::memory;
 #[cfg(feature = "std")]
 use crate::mesh::TriangleMesh;
 use crate::octree::{Proof, Tag};
-use crate::solid::{AskWhole, Classifier, Solid};
+use crate::solid::{AskWhole, Classifier, DynSolid};
 use crate::walk::Proven;
 #[cfg(feature = "std")]
 use alloc::vec::Vec;
@@ -163,9 +163,9 @@ const CUTS: u64 = 64;
 /// assert_eq!((found.within(0.3), found.within(0.2)), (Within::Yes, Within::No));
 /// # Ok::<(), leafless::Error>(())
 /// ```
-pub fn deviation<A: Solid, B: Solid>(
-    a: &A,
-    b: &B,
+pub fn deviation(
+    a: &dyn DynSolid,
+    b: &dyn DynSolid,
     frame: &Frame,
     tolerance: f64,
     control: &Control<'_>,

@@ -11,7 +11,7 @@ use crate::memory;
 use crate::octree::Tag;
 use crate::query::StopReason;
 use crate::solid::{
-    Ask, AskDirect, AskWhole, Classifier, Direct, NearestSurface, Parts, Solid, Verdict, Worker,
+    Ask, AskDirect, AskWhole, Classifier, Direct, DynSolid, NearestSurface, Parts, Verdict, Worker,
 };
 use crate::walk::Proven;
 use crate::walk::Queue;
@@ -117,8 +117,8 @@ pub const DISTANCE_SPLITS: u64 = 1 << 16;
 /// assert!(found[1].distance.contains(-0.5) && found[1].distance.width() <= 1e-9);
 /// # Ok::<(), leafless::Error>(())
 /// ```
-pub fn distances<S: Solid>(
-    solid: &S,
+pub fn distances(
+    solid: &dyn DynSolid,
     frame: &Frame,
     points: &[[f64; 3]],
     to: DistanceTo,

@@ -13,7 +13,7 @@ use crate::octree::{Proof, Tag};
 use crate::parallel;
 use crate::parallel::each_with;
 use crate::solid::joint::Joint;
-use crate::solid::{AskWhole, Classifier, Motion, Solid, Transform, TransformClassifier};
+use crate::solid::{AskWhole, Classifier, DynSolid, Motion, Solid, Transform, TransformClassifier};
 use crate::walk::Proven;
 use alloc::vec::Vec;
 use oriented::{Oriented, Waiting};
@@ -116,9 +116,9 @@ pub struct Interference {
 /// assert!(found.volume.lower > 0.0 && found.splits.iter().sum::<u64>() <= 80);
 /// # Ok::<(), leafless::Error>(())
 /// ```
-pub fn interference<A: Solid, B: Solid>(
-    a: &A,
-    b: &B,
+pub fn interference(
+    a: &dyn DynSolid,
+    b: &dyn DynSolid,
     frame: &Frame,
     tolerance: f64,
     control: &Control<'_>,
@@ -206,9 +206,9 @@ fn of_classifiers<A: Classifier, B: Classifier>(
 ///
 /// # Errors
 /// As [`interference`].
-pub fn interference_at<A: Solid, B: Solid>(
-    a: &A,
-    b: &B,
+pub fn interference_at(
+    a: &dyn DynSolid,
+    b: &dyn DynSolid,
     own: &Frame,
     placements: &[Affine],
     frame: &Frame,

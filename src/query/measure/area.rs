@@ -9,7 +9,7 @@ use crate::error::Error;
 use crate::lattice::axes;
 use crate::lattice::{Cell, Frame, Interval, MAX_DEPTH, valid};
 use crate::octree::{Proof, Tag};
-use crate::solid::{Ask, AskWhole, Classifier, Solid, Worker};
+use crate::solid::{AnyClassifier, Ask, AskWhole, Classifier, DynSolid, Worker};
 use crate::walk::Proven;
 use core::ops::AddAssign;
 
@@ -67,8 +67,8 @@ const FRAMES: u8 = 8;
 /// assert!(ball.area.width() <= 1e-3 * ball.area.upper);
 /// # Ok::<(), leafless::Error>(())
 /// ```
-pub fn surface_area<S: Solid>(
-    solid: &S,
+pub fn surface_area(
+    solid: &dyn DynSolid,
     frame: &Frame,
     tolerance: impl Into<Tolerance>,
     control: &Control<'_>,
@@ -129,11 +129,11 @@ impl Search<'_, '_> {
 
 /// Returns the solid on a larger frame whose lattice planes hold no piece of the boundary, if such a frame is
 /// found.
-fn off_lattice<S: Solid>(
-    solid: &S,
+fn off_lattice<'s>(
+    solid: &(dyn DynSolid + 's),
     frame: &Frame,
     control: &Control<'_>,
-) -> Result<Option<Proven<S::Classifier>>, Error> {
+) -> Result<Option<Proven<AnyClassifier<'s>>>, Error> {
     let depth = (frame.depth() + 1).min(MAX_DEPTH);
     for k in 0..FRAMES {
         // Multiples of the golden ratio: dimensions of parts are unlikely to coincide with them.

@@ -9,7 +9,7 @@ use crate::control::Control;
 use crate::error::Error;
 use crate::lattice::{Cell, Frame, MAX_DEPTH, valid};
 use crate::octree::{Proof, Tag};
-use crate::solid::{Classifier, Solid};
+use crate::solid::{Classifier, DynSolid};
 use crate::walk::Proven;
 
 /// Bounds of the volume and the moments of a solid in some cells of its frame.
@@ -53,8 +53,8 @@ pub struct MassSum {
 /// assert_eq!(sum.unwrap().properties()?.volume, whole.volume);
 /// # Ok::<(), leafless::Error>(())
 /// ```
-pub fn measure_in<S: Solid>(
-    solid: &S,
+pub fn measure_in(
+    solid: &dyn DynSolid,
     frame: &Frame,
     cell: Cell,
     tolerance: impl Into<Tolerance>,

@@ -16,7 +16,7 @@ use crate::control::Control;
 use crate::error::Error;
 use crate::lattice::{Frame, Interval, MAX_DEPTH, VolumeMoments, valid};
 use crate::octree::{Proof, Tag};
-use crate::solid::{AskWhole, Classifier, Solid};
+use crate::solid::{AskWhole, Classifier, DynSolid};
 use crate::walk::Proven;
 use bounds::Known;
 use volume::Volume;
@@ -169,8 +169,8 @@ pub const MEASURE_SPLITS: u64 = 1 << 26;
 /// assert!(ball.centroid.unwrap()[0].contains(0.1));
 /// # Ok::<(), leafless::Error>(())
 /// ```
-pub fn measure<S: Solid>(
-    solid: &S,
+pub fn measure(
+    solid: &dyn DynSolid,
     frame: &Frame,
     tolerance: impl Into<Tolerance>,
     control: &Control<'_>,

@@ -10,7 +10,7 @@ use crate::lattice::{Cell, Frame};
 use crate::memory;
 use crate::octree::Tag;
 use crate::solid::{
-    Ask, AskDirect, AskWhole, Classifier, Direct, Enclosure, RayTrace, Solid, Verdict, Worker,
+    Ask, AskDirect, AskWhole, Classifier, Direct, DynSolid, Enclosure, RayTrace, Verdict, Worker,
 };
 use crate::walk::Proven;
 use crate::walk::split_one;
@@ -54,8 +54,8 @@ pub enum Sight {
 /// assert!(hits[1].is_none());
 /// # Ok::<(), leafless::Error>(())
 /// ```
-pub fn cast_rays<S: Solid>(
-    solid: &S,
+pub fn cast_rays(
+    solid: &dyn DynSolid,
     frame: &Frame,
     rays: &[Ray],
     on: Obstacle,
@@ -92,8 +92,8 @@ pub fn cast_rays<S: Solid>(
 ///
 /// # Errors
 /// As [`cast_rays`].
-pub fn ray_spans<S: Solid>(
-    solid: &S,
+pub fn ray_spans(
+    solid: &dyn DynSolid,
     frame: &Frame,
     ray: &Ray,
     control: &Control<'_>,
@@ -117,8 +117,8 @@ pub fn ray_spans<S: Solid>(
 ///
 /// # Errors
 /// [`Error::Argument`] as for [`Ray::between`]; the other errors as for [`cast_rays`].
-pub fn line_of_sight<S: Solid>(
-    solid: &S,
+pub fn line_of_sight(
+    solid: &dyn DynSolid,
     frame: &Frame,
     from: [f64; 3],
     to: [f64; 3],

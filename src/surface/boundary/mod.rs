@@ -39,7 +39,9 @@ use crate::lattice::{Affine, Cell, Frame, axes, valid};
 use crate::memory;
 use crate::mesh::TriangleMesh;
 use crate::octree::Tag;
-use crate::solid::{AskWhole, BoundaryFacets, Classifier, PlacedHalfSpace, Solid, Transform, Worker};
+use crate::solid::{
+    AskWhole, BoundaryFacets, Classifier, DynSolid, PlacedHalfSpace, Solid, Transform, Worker,
+};
 use crate::surface::simplify::{Reduction, Regions, simplify};
 use crate::walk::Trail;
 use alloc::vec::Vec;
@@ -215,8 +217,8 @@ const LARGER: f64 = 1.031_77;
 /// program's function; a [`contour`](crate::surface::contour()) takes any solid), or if `tolerance` is not
 /// between 2^-256 and 2^256; the errors of the solid; [`Error::Limit`], [`Error::OutOfMemory`], and
 /// [`Error::Cancelled`].
-pub fn boundary<S: Solid>(
-    solid: &S,
+pub fn boundary(
+    solid: &dyn DynSolid,
     frame: &Frame,
     tolerance: f64,
     control: &Control<'_>,

@@ -29,7 +29,7 @@ use crate::mesh::TriangleMesh;
 use crate::octree::Tag;
 use crate::parallel::each_with;
 use crate::query::{Reference, Remade};
-use crate::solid::{Classifier, Solid, Transform, Worker};
+use crate::solid::{Classifier, DynSolid, Solid, Transform, Worker};
 use crate::surface::simplify::{Reduction, Regions};
 use crate::walk::Proven;
 use alloc::sync::Arc;
@@ -176,8 +176,8 @@ const LARGER: f64 = 1.031_77;
 /// [`Error::Argument`] if the solid is not known to end inside the universe, or `tolerance` is not between
 /// 2^-256 and 2^256; the errors of the solid; [`Error::Limit`], [`Error::OutOfMemory`], and
 /// [`Error::Cancelled`].
-pub fn contour<S: Solid>(
-    solid: &S,
+pub fn contour(
+    solid: &dyn DynSolid,
     frame: &Frame,
     tolerance: f64,
     control: &Control<'_>,

@@ -9,8 +9,9 @@ use crate::error::Error;
 use crate::lattice::{Cell, Ray};
 use crate::memory;
 use crate::octree::Planes;
-use crate::solid::erased::ErasedPart;
-use crate::solid::{AnyWorker, AskWhole, Direct, Parts, Question, RayQuestion, RayTrace, Verdict, Worker};
+use crate::solid::{
+    AnyWorker, AskWhole, Direct, ErasedPart, Parts, Question, RayQuestion, RayTrace, Verdict, Worker,
+};
 use alloc::vec::Vec;
 
 /// The only open operand of a cell: a part of another solid, or of its complement.
@@ -88,7 +89,7 @@ impl Scratch {
         &mut self,
         program: &Program,
         part: CsgPart,
-        ask: impl FnOnce(&mut AnyWorker, &ErasedPart) -> Result<T, Error>,
+        ask: impl FnOnce(&mut AnyWorker<'static>, &ErasedPart) -> Result<T, Error>,
     ) -> Result<Option<(T, bool)>, Error> {
         let Some(Lone { solid, part, complement }) = self.lone(program, part)? else { return Ok(None) };
         let other = Scratch::other(&mut self.workers, program, solid)?;
@@ -104,7 +105,8 @@ impl Scratch {
         part: CsgPart,
         question: &mut Question<'_>,
     ) -> Result<bool, Error> {
-        let ask = |worker: &mut AnyWorker, part: &ErasedPart| worker.answer(cell, part, question.again());
+        let ask =
+            |worker: &mut AnyWorker<'static>, part: &ErasedPart| worker.answer(cell, part, question.again());
         let answered = self.ask_lone(program, part, ask)?;
         if let Some(((), true)) = answered {
             question.again().complement()?;
@@ -117,7 +119,7 @@ impl Scratch {
         &self,
         program: &Program,
         part: CsgPart,
-    ) -> Option<(&AnyWorker, ErasedPart, bool)> {
+    ) -> Option<(&AnyWorker<'static>, ErasedPart, bool)> {
         if part.len != 1 {
             return None;
         }

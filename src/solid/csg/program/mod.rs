@@ -49,7 +49,7 @@ pub(crate) struct Program {
     /// For each of the other solids, where its surfaces begin behind the half-spaces: in the list without
     /// layers, and in the list with them. (Set on first use.)
     surfaces: [OnceBox<Vec<Start>>; 2],
-    pub(crate) solids: Vec<AnyClassifier>,
+    pub(crate) solids: Vec<AnyClassifier<'static>>,
     /// The operands of large operations, grouped by place.
     pub(crate) groups: Groups,
     pub(crate) words: Vec<Word>,
@@ -174,7 +174,7 @@ impl Program {
     }
 
     /// Returns the only solid, if the program is nothing but one solid.
-    pub(crate) fn sole(&self) -> Option<&AnyClassifier> {
+    pub(crate) fn sole(&self) -> Option<&AnyClassifier<'static>> {
         let [word] = &*self.words else { return None };
         match word.op() {
             Op::Solid { index, complement: false } => self.solids.get(index as usize),

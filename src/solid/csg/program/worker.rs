@@ -71,7 +71,7 @@ pub(crate) struct Scratch {
 
 /// A worker on another solid, and its part of the universe.
 pub(crate) struct Other {
-    pub(crate) worker: AnyWorker,
+    pub(crate) worker: AnyWorker<'static>,
     pub(crate) root: Verdict<ErasedPart>,
 }
 
