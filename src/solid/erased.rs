@@ -250,7 +250,8 @@ impl<C: Classifier> ErasedClassifier for C {
         C: 'c,
     {
         let worker = Classifier::worker(&*self)?;
-        let typed = Typed { worker, parts: Vec::new(), passing: Vec::new(), classifier: self };
+        let (parts, runs, passing) = (Vec::new(), Vec::new(), Vec::new());
+        let typed = Typed { worker, parts, runs, passing, classifier: self };
         // Some workers are large from the start.
         Ok(AnyWorker(memory::boxed(typed)?))
     }
@@ -294,12 +295,15 @@ impl<'c> Classifier for AnyClassifier<'c> {
     forward_classifier!(self => self.0);
 }
 
-/// A worker, and the parts that it has handed out. With each part goes the height of the worker's memory
-/// after the part was made.
+/// A worker, and the parts that it has handed out.
 struct Typed<C: Classifier> {
     worker: C::Worker,
-    parts: Vec<(Part<C>, usize)>,
-    /// The parts of one element on their way in or out.
+    /// The parts, with their places among the cells of a `split64`. (A worker adds parts in this form.)
+    parts: Vec<(u8, Part<C>)>,
+    /// The parts that one answer made: the index of the first, and the height of the worker's memory
+    /// afterwards.
+    runs: Vec<(usize, usize)>,
+    /// The parts of one element on their way in.
     passing: Vec<(u8, Part<C>)>,
     /// The classifier that made the worker.
     classifier: Arc<C>,
@@ -308,16 +312,31 @@ struct Typed<C: Classifier> {
 type Part<C> = <<C as Classifier>::Worker as Parts>::Part;
 
 impl<C: Classifier> Typed<C> {
+    /// Notes that the parts from `first` on were made by one answer.
+    fn note_run(&mut self, first: usize) -> Result<(), Error> {
+        if first == self.parts.len() {
+            return Ok(());
+        }
+        memory::push(&mut self.runs, (first, self.worker.mark()))
+    }
+
     fn hand_out(&mut self, part: Part<C>) -> Result<ErasedPart, Error> {
-        memory::push(&mut self.parts, (part, self.worker.mark()))?;
-        Ok(ErasedPart(self.parts.len() - 1))
+        let first = self.parts.len();
+        memory::push(&mut self.parts, (0, part))?;
+        self.note_run(first)?;
+        Ok(ErasedPart(first))
     }
 
     fn hand_out_eight(&mut self, verdicts: [Verdict<Part<C>>; 8]) -> Result<[Verdict<ErasedPart>; 8], Error> {
-        let mut erased = [const { Verdict::Undecided }; 8];
-        for (erased, verdict) in erased.iter_mut().zip(verdicts) {
-            *erased = verdict.try_map(|part| self.hand_out(part))?;
-        }
+        let first = self.parts.len();
+        self.parts.try_reserve(8)?;
+        let erased = verdicts.map(|verdict| {
+            verdict.map(|part| {
+                self.parts.push((0, part));
+                ErasedPart(self.parts.len() - 1)
+            })
+        });
+        self.note_run(first)?;
         Ok(erased)
     }
 
@@ -328,7 +347,7 @@ impl<C: Classifier> Typed<C> {
     }
 
     fn part(&self, part: &ErasedPart) -> Part<C> {
-        self.parts[part.0].0.clone()
+        self.parts[part.0].1.clone()
     }
 }
 
@@ -388,12 +407,14 @@ impl<C: Classifier> ErasedWorker for [Typed<C>; 1] {
     }
 
     fn scratch_bytes(&self) -> usize {
-        size_of_val(&*self[0].parts) + self[0].worker.scratch_bytes()
+        size_of_val(&*self[0].parts) + size_of_val(&*self[0].runs) + self[0].worker.scratch_bytes()
     }
 
     fn release(&mut self, mark: usize) {
-        self[0].parts.truncate(mark);
-        self[0].worker.release(self[0].parts.last().map_or(0, |&(_, height)| height));
+        let Typed { worker, parts, runs, .. } = &mut self[0];
+        parts.truncate(mark);
+        while runs.pop_if(|&mut (first, _)| first >= mark).is_some() {}
+        worker.release(runs.last().map_or(0, |&(_, height)| height));
     }
 
     fn hand_over(&mut self, from: &AnyWorker<'_>, part: &ErasedPart) -> Result<ErasedPart, Error> {
@@ -404,7 +425,7 @@ impl<C: Classifier> ErasedWorker for [Typed<C>; 1] {
         // the borrow of `from` keeps in place.
         #[allow(unsafe_code)]
         let from = unsafe { &*typed.cast::<Typed<C>>() };
-        let part = self[0].worker.hand_over(&from.worker, &from.parts[part.0].0)?;
+        let part = self[0].worker.hand_over(&from.worker, &from.parts[part.0].1)?;
         self[0].hand_out(part)
     }
 
@@ -425,17 +446,12 @@ impl<C: Classifier> ErasedWorker for [Typed<C>; 1] {
         part: &ErasedPart,
         parts: &mut Vec<(u8, ErasedPart)>,
     ) -> Result<Planes, Error> {
-        let part = self[0].part(part);
-        self[0].passing.clear();
-        let planes = self[0].worker.split64(cell, &part, &mut self[0].passing)?;
-        parts.try_reserve(self[0].passing.len())?;
-        self[0].parts.try_reserve(self[0].passing.len())?;
-        let Typed { worker, parts: kept, passing, .. } = &mut self[0];
-        let height = worker.mark();
-        for (c, part) in passing.drain(..) {
-            kept.push((part, height));
-            parts.push((c, ErasedPart(kept.len() - 1)));
-        }
+        let (part, first) = (self[0].part(part), self[0].parts.len());
+        let Typed { worker, parts: kept, .. } = &mut self[0];
+        let planes = worker.split64(cell, &part, kept)?;
+        parts.try_reserve(kept.len() - first)?;
+        parts.extend((first..).zip(&kept[first..]).map(|(index, &(c, _))| (c, ErasedPart(index))));
+        self[0].note_run(first)?;
         Ok(planes)
     }
 
@@ -464,14 +480,14 @@ impl<C: Classifier> ErasedWorker for [Typed<C>; 1] {
     }
 
     fn subtree(&self, part: &ErasedPart) -> Option<Subtree<'_>> {
-        self[0].worker.subtree(&self[0].parts[part.0].0)
+        self[0].worker.subtree(&self[0].parts[part.0].1)
     }
 
     fn sample64(&mut self, cell: Cell, parts: &[(u8, ErasedPart)]) -> Result<Option<u64>, Error> {
         let Typed { worker, parts: kept, passing, .. } = &mut self[0];
         passing.clear();
         passing.try_reserve(parts.len())?;
-        passing.extend(parts.iter().map(|(c, part)| (*c, kept[part.0].0.clone())));
+        passing.extend(parts.iter().map(|(c, part)| (*c, kept[part.0].1.clone())));
         worker.sample64(cell, passing)
     }
 
