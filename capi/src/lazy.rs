@@ -11,7 +11,6 @@ use super::status::leafless_status;
 use leafless::Cell;
 use leafless::LazyOctree;
 use leafless::op::{Refinement, Zone};
-use leafless::solid::Prepared;
 use std::sync::{RwLock, RwLockReadGuard, RwLockWriteGuard, TryLockError, TryLockResult};
 
 /// An octree of a solid that is split on demand: a cell is split when a call requests it, and split cells are
@@ -21,9 +20,9 @@ use std::sync::{RwLock, RwLockReadGuard, RwLockWriteGuard, TryLockError, TryLock
 /// LEAFLESS_E_BUSY, both from another thread and from the host's functions inside the call. While a call
 /// reads it, splitting and refining return LEAFLESS_E_BUSY. Its other functions may be called at once from
 /// any number of threads.
-pub struct leafless_lazy(RwLock<LazyOctree<Prepared>>);
+pub struct leafless_lazy(RwLock<LazyOctree<'static>>);
 
-type Held = LazyOctree<Prepared>;
+type Held = LazyOctree<'static>;
 
 /// Returns the octree for reading, unless another call changes it.
 ///
@@ -87,7 +86,7 @@ fn level(level: u32) -> u8 {
     u8::try_from(level).unwrap_or(u8::MAX)
 }
 
-fn new(lazy: LazyOctree<Prepared>) -> *mut leafless_lazy {
+fn new(lazy: LazyOctree<'static>) -> *mut leafless_lazy {
     Box::into_raw(Box::new(leafless_lazy(RwLock::new(lazy))))
 }
 

@@ -12,7 +12,6 @@ use crate::work::Limits;
 use leafless::lattice::MAX_DEPTH;
 use leafless::op::{Refinement, Zone};
 use leafless::query::Membership;
-use leafless::solid::Prepared;
 use leafless::{LazyOctree as Inner, Solid as _};
 use pyo3::exceptions::{PyRuntimeError, PyTypeError};
 use pyo3::gc::{PyTraverseError, PyVisit};
@@ -35,7 +34,7 @@ use std::sync::{Mutex, MutexGuard, TryLockError};
 /// <Octree: depth 20, 345 nodes, volume 3.063 to 5.329>
 #[pyclass(frozen, weakref, module = "leafless")]
 pub struct LazyOctree {
-    lazy: Mutex<Inner<Prepared>>,
+    lazy: Mutex<Inner<'static>>,
     /// The Python object of the solid, kept alive.
     solid: Py<PyAny>,
 }
@@ -43,7 +42,7 @@ pub struct LazyOctree {
 impl LazyOctree {
     /// Locks the octree, or fails if another call is working on it. A shape's own method must not wait for
     /// the call that called it.
-    fn lock(&self) -> PyResult<MutexGuard<'_, Inner<Prepared>>> {
+    fn lock(&self) -> PyResult<MutexGuard<'_, Inner<'static>>> {
         match self.lazy.try_lock() {
             Ok(lazy) => Ok(lazy),
             Err(TryLockError::Poisoned(lazy)) => Ok(lazy.into_inner()),

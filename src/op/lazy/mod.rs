@@ -10,9 +10,12 @@ use crate::lattice::{Cell, Cube, Frame, MAX_DEPTH};
 use crate::memory;
 use crate::octree::{Octree, Statistics, Tag};
 use crate::parallel;
-use crate::solid::{Batch, Classifier, PartOf, Parts, Solid, Verdict, WorkerOf};
+use crate::solid::{
+    AnyClassifier, AnyWorker, Batch, Classifier, DynSolid, ErasedPart, Parts, Solid, Verdict,
+};
 use crate::walk;
 use crate::walk::{Reach, Trail, Zone};
+use alloc::boxed::Box;
 use alloc::string::ToString;
 use alloc::vec::Vec;
 use nodes::{Children, Nodes, Place};
@@ -51,11 +54,11 @@ const SOURCE: &str = "source";
 /// assert!(volume.contains(4.0 / 3.0 * std::f64::consts::PI * 24.0f64.powi(3)));
 /// # Ok::<(), leafless::Error>(())
 /// ```
-pub struct LazyOctree<S: Solid> {
-    solid: S,
-    classifier: S::Classifier,
+pub struct LazyOctree<'s> {
+    solid: Box<dyn DynSolid + 's>,
+    classifier: AnyClassifier<'s>,
     nodes: Nodes,
-    trail: Trail<WorkerOf<S>>,
+    trail: Trail<AnyWorker<'s>>,
     /// Number of split cells on each level.
     splits: [u64; MAX_DEPTH as usize],
 }
@@ -100,17 +103,17 @@ impl Run<'_> {
     }
 }
 
-impl<S: Solid> LazyOctree<S> {
+impl<'s> LazyOctree<'s> {
     /// Creates an octree of which only the universe is known. No cell will be finer than the frame's depth. A
     /// deep frame costs nothing until its cells are requested.
     ///
     /// # Errors
     /// The errors of putting the solid on this frame, and [`Error::OutOfMemory`].
-    pub fn new(solid: S, frame: &Frame) -> Result<LazyOctree<S>, Error> {
-        let classifier = solid.on(frame, &Control::default())?;
+    pub fn new(solid: impl Solid + 's, frame: &Frame) -> Result<LazyOctree<'s>, Error> {
+        let classifier = solid.on(frame, &Control::default())?.erased();
         let trail = Trail::new(classifier.worker()?)?;
         let nodes = Nodes::new(*frame, trail.root(), classifier.exterior(), classifier.proof())?;
-        Ok(LazyOctree { solid, classifier, nodes, trail, splits: [0; MAX_DEPTH as usize] })
+        Ok(LazyOctree { solid: Box::new(solid), classifier, nodes, trail, splits: [0; MAX_DEPTH as usize] })
     }
 
     /// Resumes an octree that [`freeze`](Self::freeze) made from the same solid. `frame` may be deeper than
@@ -128,10 +131,10 @@ impl<S: Solid> LazyOctree<S> {
     /// cancellation or an exceeded limit of `control`.
     pub fn resume(
         octree: &Octree,
-        solid: S,
+        solid: impl Solid + 's,
         frame: &Frame,
         control: &Control<'_>,
-    ) -> Result<LazyOctree<S>, Error> {
+    ) -> Result<LazyOctree<'s>, Error> {
         let Some(fingerprint) = solid.fingerprint() else {
             return Err(Error::Argument {
                 name: "solid",
@@ -166,8 +169,8 @@ impl<S: Solid> LazyOctree<S> {
     }
 
     /// The solid of the octree.
-    pub fn solid(&self) -> &S {
-        &self.solid
+    pub fn solid(&self) -> &(dyn DynSolid + 's) {
+        &*self.solid
     }
 
     /// The frame: the place of the octree, and the depth that limits its cells.
@@ -312,7 +315,7 @@ impl<S: Solid> LazyOctree<S> {
             }
         }
         let control = run.job.control();
-        let ask = |worker: &mut WorkerOf<S>, cells: &[(Cell, PartOf<S>)], verdicts: &mut Vec<_>| {
+        let ask = |worker: &mut AnyWorker<'s>, cells: &[(Cell, ErasedPart)], verdicts: &mut Vec<_>| {
             worker.split_many(cells, control, verdicts)
         };
         // Answers that arrived before an error are kept.

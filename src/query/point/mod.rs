@@ -15,7 +15,6 @@ use crate::octree::links::{Links, levels_below};
 use crate::octree::view::OctreeRef;
 use crate::octree::{Octree, Tag};
 use crate::op::LazyOctree;
-use crate::solid::Solid;
 use descent::{Descend, Packed};
 
 /// The answer to a point query.
@@ -150,7 +149,7 @@ impl Hot for Lockstep<'_, '_> {
     }
 }
 
-impl<S: Solid> LazyOctree<S> {
+impl LazyOctree<'_> {
     /// Returns whether the solid contains `point` (model units), as far as cells have been split. A point on
     /// the boundary may get either answer. Complexity: O(depth).
     pub fn contains(&self, point: [f64; 3]) -> Membership {

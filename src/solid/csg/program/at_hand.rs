@@ -1,7 +1,7 @@
 //! Answers of other solids to queries that were asked together.
 
+use crate::solid::ErasedPart;
 use crate::solid::Verdict;
-use crate::solid::erased::ErasedPart;
 use alloc::vec::{IntoIter, Vec};
 
 /// The answers of the other solids at hand: one queue for each solid, and no queues outside a batch.

@@ -12,7 +12,7 @@ use crate::control::Control;
 use crate::error::Error;
 use crate::lattice::Cell;
 use crate::memory;
-use crate::solid::erased::ErasedPart;
+use crate::solid::ErasedPart;
 use crate::solid::half_space::bounds::Octants;
 use crate::solid::{Batch, Parts, Verdict};
 use alloc::vec::{IntoIter, Vec};

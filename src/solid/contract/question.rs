@@ -1,9 +1,10 @@
 //! Questions to a solid beyond the verdicts on its cells.
 
-use super::{
-    BoundaryFacets, BoundaryPieces, BoxContent, Classifier, Crossing, Enclosure, NearestSurface,
-    OpenSurfaces, PlacedHalfSpace, RayQuestion, RayTrace, Segment, Slab, Worker,
+use super::super::{
+    BoundaryFacets, BoundaryPieces, BoxContent, Crossing, Enclosure, NearestSurface, OpenSurfaces,
+    PlacedHalfSpace, RayQuestion, RayTrace, Segment, Slab,
 };
+use super::{Classifier, Worker};
 use crate::control::Control;
 use crate::cut;
 use crate::dexel::Beam;

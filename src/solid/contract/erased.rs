@@ -8,10 +8,11 @@
 //! Each of the three traits has an object-safe counterpart here. The methods of these counterparts have no
 //! defaults, so that none can be forgotten.
 
-use super::forward::{forward_answers, forward_batch, forward_classifier, forward_parts, forward_solid};
-use super::{
-    Batch, Classifier, Fingerprint, Motion, Parts, Question, Solid, Subtree, Verdict, WholeQuestion, Worker,
+use super::super::forward::{
+    forward_answers, forward_batch, forward_classifier, forward_parts, forward_solid,
 };
+use super::super::{Fingerprint, Motion, Subtree};
+use super::{Batch, Classifier, Parts, Question, Solid, Verdict, WholeQuestion, Worker};
 use crate::control::Control;
 use crate::error::Error;
 use crate::lattice::{Affine, Bounds, Cell, Frame};
@@ -53,7 +54,7 @@ impl AnySolid {
     pub const MOST_NESTED: u32 = 64;
 
     /// Wraps a solid that contains `nesting` solids within each other.
-    pub(super) fn around<S: Solid + 'static>(solid: S, nesting: u32) -> AnySolid {
+    pub(in crate::solid) fn around<S: Solid + 'static>(solid: S, nesting: u32) -> AnySolid {
         AnySolid { solid: Arc::new(solid), nesting: nesting.saturating_add(1) }
     }
 
@@ -74,7 +75,7 @@ impl AnySolid {
 
 impl AnySolid {
     /// The solid as moved by its own kind, if the kind can move it.
-    pub(super) fn placed_by_kind(&self, placement: &Affine) -> Result<Option<AnySolid>, Error> {
+    pub(in crate::solid) fn placed_by_kind(&self, placement: &Affine) -> Result<Option<AnySolid>, Error> {
         if self.nesting > AnySolid::MOST_NESTED {
             return Ok(None);
         }
@@ -82,7 +83,7 @@ impl AnySolid {
     }
 
     /// An address that identifies a solid and its clones as long as they exist.
-    pub(super) fn address(&self) -> usize {
+    pub(in crate::solid) fn address(&self) -> usize {
         Arc::as_ptr(&self.solid).cast::<()>() as usize
     }
 }
