@@ -10,7 +10,7 @@
 pub mod gear_records;
 
 use gear_records::{Lists, Part, inside, parts};
-use leafless::render::{Camera, ColourMap, Picture, Shot, Transfer, VolumeLayer, render};
+use leafless::render::{Camera, ColourMap, Picture, Shot, Transfer, VolumeLayer, render, write_png};
 use leafless::voxel::VoxelRecords;
 use leafless::{Control, Error};
 
@@ -68,10 +68,7 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
         let off = [0, 1].map(|i| difference(&found[i], &found[2]));
         println!("{:<44} {coarse:>8} {adaptive:>8} {fine:>8} {:>7.2} {:>7.2}", part.name, off[0], off[1]);
         for (picture, which) in found.iter().zip(["coarse", "adaptive", "fine"]) {
-            std::fs::write(
-                folder.join(format!("{name}-{which}.png")),
-                leafless::exchange::write_png(picture)?,
-            )?;
+            std::fs::write(folder.join(format!("{name}-{which}.png")), write_png(picture)?)?;
         }
     }
     Ok(())

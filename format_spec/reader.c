@@ -1,6 +1,6 @@
 /*
- * A reader of files of the Leafless format, version 0.4, in C99 and nothing but its library. What only tri-dexel models
- * have is read by reader_dexels.c, cuts by reader_cuts.c. This file includes both.
+ * A reader of files of the Leafless format, version 0.4, in C99 and nothing but its library. reader.h declares its
+ * interface. What only tri-dexel models have is read by reader_dexels.c, cuts by reader_cuts.c. This file includes both.
  *
  * It is meant to be read beside specification.md, whose sections the comments name (§): each rule of §10 stands here
  * under its name, in the order in which the specification lists it. It favours being evident over being fast; yet every
@@ -20,159 +20,24 @@
  * The option says how much is checked (§10): §10.1; also §10.2 without metadata and channels; also these; without any
  * option all. The exit code is 0, or 1 if a file is refused (`refused: RULE`), or 2 for wrong usage and failing input.
  *
- * As a library: compile with LEAFLESS_READER_NO_MAIN, or include this file after defining it. The bytes of a file must
- * stay as they are while its reader is used. Only lfl_verify allocates memory, and releases it itself: at most 1.3 MB at a
- * time, or a byte for each cut and 16 bytes for each group of cell slabs.
+ * As a library: compile this file with LEAFLESS_READER_NO_MAIN, and include reader.h. The bytes of a file must stay as
+ * they are while its reader is used. Only lfl_verify allocates memory, and releases it itself: at most 1.3 MB at a time, or
+ * a byte for each cut and 16 bytes for each group of cell slabs.
  *
  * No byte order, alignment or layout of structures is assumed. But for the sides of surfaces (reader_cuts.c), no
  * floating-point arithmetic is done: doubles are taken apart and put together as 64 bits. The platform's `double` must be
  * IEEE 754 binary64, in the byte order of its 64-bit integers.
  */
 
+#include "reader.h"
+
 #include <float.h>
-#include <stddef.h>
-#include <stdint.h>
 #include <stdlib.h>
 #include <string.h>
 
 #if FLT_RADIX != 2 || DBL_MANT_DIG != 53 || DBL_MAX_EXP != 1024
 #error "double is not IEEE 754 binary64"
 #endif
-
-/* ---- Interface ------------------------------------------------------------------------------------------------- */
-
-enum { LFL_MAX_DEPTH = 20, LFL_KINDS = 48 };
-
-/* §2.2. The last is no tag: it says that the bytes on the way to a cell are damaged (§6). */
-enum lfl_tag { LFL_EMPTY = 0, LFL_BRANCH = 1, LFL_PARTIAL = 2, LFL_FULL = 3, LFL_DAMAGED = 4 };
-
-/* §7.1 */
-enum lfl_answer { LFL_OUTSIDE, LFL_INSIDE, LFL_UNDECIDED };
-
-/* §4: an entry of the section table. */
-struct lfl_section {
-    uint32_t kind, owner, flags, crc, same;
-    unsigned element_type, components, encoding, reserved;
-    uint64_t offset, length, count;
-};
-
-/* §5.3: an entry of the level table. */
-struct lfl_level {
-    uint64_t nodes, full, partial;
-};
-
-/* §5.2: a fact. Neither text has a terminator; both may contain any byte until the metadata have been checked. */
-struct lfl_fact {
-    const unsigned char *key, *value;
-    size_t key_length, value_length;
-};
-
-/* §5.7: the rays of a direction, as indices on the other two axes, the lower axis first. */
-struct lfl_window {
-    uint32_t first[2], size[2];
-};
-
-/* §5.7: an interval of a ray, its ends in cells. What is not stored is unknown: no surface, no normal, material 0. */
-struct lfl_interval {
-    double end[2];
-    uint32_t normal[2], surface[2], material;
-};
-
-struct lfl_reader {
-    const unsigned char *bytes;
-    size_t length;
-
-    /* §3 */
-    unsigned major, minor;
-    uint64_t file_length;
-    uint64_t origin[3], edge, displacement; /* the bits of the f64 */
-    uint32_t required_flags;
-    unsigned depth, root, exterior, brick_planes, encoding, shift, proof, form;
-    uint64_t elements, bricks, entries;
-    uint32_t section_count;
-
-    /* §4: the number of objects. */
-    uint64_t object_count;
-
-    /* §5: the sections of the solid of known kinds, by kind; of those that are absent the count is 0. */
-    struct lfl_section section[LFL_KINDS];
-
-    /* §2.3: L. §5.3: start[0] to start[L]. */
-    unsigned levels;
-    uint64_t start[LFL_MAX_DEPTH / 2 + 1];
-
-    /* §5.7: of a tri-dexel model. */
-    struct lfl_window window[3];
-};
-
-/* §5.6. The tree of a channel is read as that of the solid: `tree` has the depth, tags, counts and sections of the
-   channel, and is otherwise the reader of the file. */
-struct lfl_channel {
-    struct lfl_reader tree;
-    uint32_t owner;
-    unsigned value_type, components;
-    uint64_t values;
-};
-
-/* These return 1, or 0 after setting *error to the name of the rule that refuses the file. After a refusal by
-   lfl_probe or lfl_open the reader must not be used. */
-int lfl_probe(const void *bytes, size_t length, struct lfl_reader *reader, const char **error); /* §10.1 */
-int lfl_open(const void *bytes, size_t length, struct lfl_reader *reader, const char **error);  /* and §10.2 */
-int lfl_check_metadata(const struct lfl_reader *reader, const char **error); /* the rest of §10.2, with channels */
-int lfl_verify(const struct lfl_reader *reader, const char **error);         /* §10.3, or lfl_out_of_memory */
-
-extern const char lfl_out_of_memory[];
-
-/* Whether the file holds a tri-dexel model (§2.8), else an octree. After lfl_probe, too. */
-int lfl_is_dexels(const struct lfl_reader *reader);
-
-/* All of the following need a reader from lfl_open; none of them needs more. Those of levels, tags, points, channels and
-   volumes are for octrees. */
-
-/* Entry `index`, less than reader->section_count, of the section table (§4). After lfl_probe, too. */
-struct lfl_section lfl_section(const struct lfl_reader *reader, uint32_t index);
-
-/* Entry `level`, at most reader->depth, of the level table (§5.3). */
-struct lfl_level lfl_level(const struct lfl_reader *reader, unsigned level);
-
-/* The solid's fact at *position, which begins as 0 and is moved on (§5.2): 1; at the end 0; -1 if the lengths are
-   damaged. */
-int lfl_metadata(const struct lfl_reader *reader, uint64_t *position, struct lfl_fact *fact);
-
-/* The tag of a finest cell (§6); each coordinate must be less than 2^depth. Never BRANCH. */
-enum lfl_tag lfl_cell_tag(const struct lfl_reader *reader, uint32_t x, uint32_t y, uint32_t z);
-
-/* The finest cell in which a coordinate lies on an axis, 0 to 2 (§7.1): 1, or 0 if it lies in none. Exact. */
-int lfl_cell(const struct lfl_reader *reader, unsigned axis, double coordinate, uint32_t *cell);
-
-/* Does the solid contain the point (§7.1)? Exact for each f64. Cuts are not looked at. */
-enum lfl_answer lfl_contains(const struct lfl_reader *reader, double x, double y, double z);
-
-/* The same with what the cuts say (§7.5), by interval arithmetic: undecided next to a surface, too. */
-enum lfl_answer lfl_contains_with_cuts(const struct lfl_reader *reader, double x, double y, double z);
-
-/* The first channel whose object is not before *owner, which begins as 1 and is moved on behind it: 1; at the end 0. Needs
-   a file that has passed lfl_check_metadata. */
-int lfl_channel(const struct lfl_reader *reader, uint32_t *owner, struct lfl_channel *channel);
-
-/* The channel's value at a point (§7.3), `components` numbers: 1; 0 where it has none, or the file is damaged. */
-int lfl_value(const struct lfl_channel *channel, double x, double y, double z, double value[4]);
-
-/* The intervals of a ray of a tri-dexel model, as numbers of the direction's intervals from *first to *end - 1: 1, or 0 if the
-   model has no such direction. Of a damaged ray none. */
-int lfl_ray(const struct lfl_reader *reader, unsigned axis, const uint32_t ray[2], uint64_t *first, uint64_t *end);
-
-/* Interval i of a direction, which there is. */
-void lfl_interval(const struct lfl_reader *reader, unsigned axis, uint64_t i, struct lfl_interval *interval);
-
-/* Whether the centre of a finest cell lies inside, as a direction says it (§7.4): 1 or 0, or -1 without that direction. */
-int lfl_holds(const struct lfl_reader *reader, unsigned axis, const uint32_t cell[3]);
-
-/* V and W of §7.2 in finest cells. On a file that was not verified they saturate. */
-void lfl_volume_cells(const struct lfl_reader *reader, uint64_t *lower, uint64_t *upper);
-
-/* The same in cubic model units, the first rounded down, the second up. */
-void lfl_volume(const struct lfl_reader *reader, double *lower, double *upper);
 
 /* ---- §1 Words and conventions ----------------------------------------------------------------------------------- */
 
@@ -297,6 +162,13 @@ static double from_bits(uint64_t bits)
     return value;
 }
 
+/* Illegal are NaN, the infinities, and magnitudes outside of 2^-256 to 2^256. So is zero, which callers except. */
+static int is_illegal(uint64_t bits)
+{
+    uint64_t magnitude = bits & UINT64_MAX >> 1; /* ordered as the magnitudes are, the infinity and NaN above all */
+    return magnitude < (uint64_t)(1023 - 256) << 52 || magnitude > (uint64_t)(1023 + 256) << 52;
+}
+
 /* Natural numbers of up to 2112 bits. As multiples of 2^-1074, all f64 and a few times the greatest are such numbers,
    since 2^1024 / 2^-1074 = 2^2098. */
 enum { LIMBS = 66, UNIT_EXPONENT = -1074 };
@@ -404,59 +276,12 @@ static const unsigned type_size[TYPES] = {8, 1, 2, 4, 8, 4, 8};
 /* §3: bit 0 of the required flags, which versions before 0.3 do not know. */
 int lfl_is_dexels(const struct lfl_reader *r) { return r->minor >= 3 && (r->required_flags & 1) != 0; }
 
-static int is_cut_kind(uint32_t kind); /* reader_cuts.c */
-
-/* Kinds of sections of object 0: those of §5, from version 0.4 on with those of §5.8, or of a tri-dexel model those of §5.7. */
-static int is_known_kind(const struct lfl_reader *r, uint32_t kind)
-{
-    if (kind == KIND_OBJECTS || kind == KIND_METADATA)
-        return 1;
-    if (lfl_is_dexels(r))
-        return kind >= 32 && kind < 48;
-    if (is_cut_kind(kind))
-        return r->minor >= 4;
-    return kind > KIND_METADATA && kind <= KIND_DICTIONARY_SEGMENTS;
-}
-
-static int is_known(const struct lfl_reader *r, const struct lfl_section *s)
-{
-    return s->owner == 0 && is_known_kind(r, s->kind);
-}
-
 /* A row of §5's table. */
 struct demand {
     unsigned element_type, components;
     int any_count;  /* objects, metadata and cuts: other rules bound their counts */
     uint64_t count; /* 0 where the section must be absent */
 };
-
-static struct demand demanded_of_dexels(const struct lfl_reader *r, uint32_t kind); /* reader_dexels.c */
-static struct demand demanded_of_cuts(uint32_t kind);                               /* reader_cuts.c */
-
-static struct demand demanded(const struct lfl_reader *r, uint32_t kind)
-{
-    int dictionary = r->encoding == DICTIONARY;
-    struct demand d = {TYPE_U64, 1, 0, 0};
-    if (kind >= 32)
-        return demanded_of_dexels(r, kind);
-    if (is_cut_kind(kind))
-        return demanded_of_cuts(kind);
-    switch (kind) {
-    case KIND_OBJECTS: d.element_type = TYPE_RECORD, d.components = 16, d.any_count = 1; break;
-    case KIND_METADATA: d.element_type = TYPE_U8, d.any_count = 1; break;
-    case KIND_LEVEL_TABLE: d.components = 3, d.count = r->depth + 1; break;
-    case KIND_PLANES: d.components = 2, d.count = r->elements; break;
-    case KIND_REL: d.element_type = TYPE_U16, d.count = r->elements; break;
-    case KIND_BASE: d.count = quotient_up(r->elements, 1024); break;
-    case KIND_BRICKS: d.components = r->brick_planes, d.count = dictionary ? 0 : r->bricks; break;
-    case KIND_BRICK_INDICES: d.element_type = TYPE_U16, d.count = dictionary ? r->bricks : 0; break;
-    case KIND_DICTIONARY_ENTRIES: d.components = r->brick_planes, d.count = r->entries; break;
-    default: /* dictionary segments */
-        d.count = dictionary ? quotient_up(r->bricks, UINT64_C(1) << r->shift) : 0;
-        break;
-    }
-    return d;
-}
 
 /* An element of a section of the solid. The index must be less than the section's count. */
 static const unsigned char *item(const struct lfl_reader *r, unsigned kind, uint64_t index)
@@ -521,6 +346,56 @@ struct lfl_level lfl_level(const struct lfl_reader *r, unsigned level)
 
 /* §5.3: the octree level whose nodes are the elements of element level e. */
 static unsigned level_of(const struct lfl_reader *r, unsigned e) { return e == 0 ? 0 : 2 * e - parity(r); }
+
+/* ---- §5.7 Tri-dexel models, §5.8 cuts --------------------------------------------------------------------------- */
+
+/* They use what stands above, and nothing that stands below. */
+#include "reader_dexels.c"
+#include "reader_cuts.c"
+
+/* ---- §5 The sections that a file must have, and its metadata ----------------------------------------------------- */
+
+/* Kinds of sections of object 0: those of §5, from version 0.4 on with those of §5.8, or of a tri-dexel model those of §5.7. */
+static int is_known_kind(const struct lfl_reader *r, uint32_t kind)
+{
+    if (kind == KIND_OBJECTS || kind == KIND_METADATA)
+        return 1;
+    if (lfl_is_dexels(r))
+        return kind >= 32 && kind < 48;
+    if (is_cut_kind(kind))
+        return r->minor >= 4;
+    return kind > KIND_METADATA && kind <= KIND_DICTIONARY_SEGMENTS;
+}
+
+static int is_known(const struct lfl_reader *r, const struct lfl_section *s)
+{
+    return s->owner == 0 && is_known_kind(r, s->kind);
+}
+
+static struct demand demanded(const struct lfl_reader *r, uint32_t kind)
+{
+    int dictionary = r->encoding == DICTIONARY;
+    struct demand d = {TYPE_U64, 1, 0, 0};
+    if (kind >= 32)
+        return demanded_of_dexels(r, kind);
+    if (is_cut_kind(kind))
+        return demanded_of_cuts(kind);
+    switch (kind) {
+    case KIND_OBJECTS: d.element_type = TYPE_RECORD, d.components = 16, d.any_count = 1; break;
+    case KIND_METADATA: d.element_type = TYPE_U8, d.any_count = 1; break;
+    case KIND_LEVEL_TABLE: d.components = 3, d.count = r->depth + 1; break;
+    case KIND_PLANES: d.components = 2, d.count = r->elements; break;
+    case KIND_REL: d.element_type = TYPE_U16, d.count = r->elements; break;
+    case KIND_BASE: d.count = quotient_up(r->elements, 1024); break;
+    case KIND_BRICKS: d.components = r->brick_planes, d.count = dictionary ? 0 : r->bricks; break;
+    case KIND_BRICK_INDICES: d.element_type = TYPE_U16, d.count = dictionary ? r->bricks : 0; break;
+    case KIND_DICTIONARY_ENTRIES: d.components = r->brick_planes, d.count = r->entries; break;
+    default: /* dictionary segments */
+        d.count = dictionary ? quotient_up(r->bricks, UINT64_C(1) << r->shift) : 0;
+        break;
+    }
+    return d;
+}
 
 /* §5.2 */
 int lfl_metadata(const struct lfl_reader *r, uint64_t *position, struct lfl_fact *fact)
@@ -598,13 +473,6 @@ static int is_text_mode(const unsigned char *p, size_t length)
     return i > 4 && length - i >= 2 && p[i] == 0x1A && (p[i + 1] == 0x0D || p[i + 1] == 0x0A);
 }
 
-/* Illegal are NaN, the infinities, and magnitudes outside of 2^-256 to 2^256. So is zero, which callers except. */
-static int is_illegal(uint64_t bits)
-{
-    uint64_t magnitude = bits & UINT64_MAX >> 1; /* ordered as the magnitudes are, the infinity and NaN above all */
-    return magnitude < (uint64_t)(1023 - 256) << 52 || magnitude > (uint64_t)(1023 + 256) << 52;
-}
-
 /* §10: whether a later version wrote the file, which may have given a meaning to what is reserved today. */
 static int is_newer(const struct lfl_reader *r) { return r->minor > 4; }
 
@@ -637,8 +505,6 @@ static const char *check_octree_header(const struct lfl_reader *r)
     REFUSE_IF(r->brick_planes != 1 && r->brick_planes != 2, "header-brick-planes");
     return check_counts(r);
 }
-
-static const char *check_dexel_header(const struct lfl_reader *r); /* reader_dexels.c */
 
 static const char *check_header(struct lfl_reader *r)
 {
@@ -765,8 +631,6 @@ static const char *check_section(struct lfl_reader *r, uint32_t index, uint64_t 
     r->section[s.kind] = s;
     return NULL;
 }
-
-static const char *check_cut_sections(const struct lfl_reader *r); /* reader_cuts.c */
 
 static const char *check_table(struct lfl_reader *r)
 {
@@ -1004,9 +868,6 @@ static const char *check_metadata_and_channels(const struct lfl_reader *r)
     const char *error = check_metadata(r);
     return error != NULL || lfl_is_dexels(r) ? error : check_channels(r);
 }
-
-#include "reader_dexels.c"
-#include "reader_cuts.c"
 
 static const char *check_all_before_use(const void *bytes, size_t length, struct lfl_reader *r, int probing)
 {

@@ -1,9 +1,12 @@
 /*
- * The part of reader.c that only octrees with cuts need; reader.c includes this file. See there.
+ * The part of reader.c that only octrees with cuts need. reader.c includes this file behind what all files have in common,
+ * which this part uses.
  *
  * Sides of surfaces are found by interval arithmetic in doubles. Every result is widened by one double on both sides, which
  * covers the rounding of the operation in any rounding mode, and a second rounding where the machine computes with more bits.
  */
+
+#include "reader.h"
 
 /* ---- §5.8 Cuts -------------------------------------------------------------------------------------------------- */
 

@@ -1,7 +1,9 @@
 /*
- * The part of reader.c that reads tri-dexel models (§2.8, §5.7). It is included there, behind what all files have in
- * common, and uses it.
+ * The part of reader.c that reads tri-dexel models (§2.8, §5.7). reader.c includes this file behind what all files have
+ * in common, which this part uses.
  */
+
+#include "reader.h"
 
 /* §5.7: kinds of sections. Each direction has five, from KIND_STARTS + 5 · axis on. */
 enum { KIND_WINDOWS = 32, KIND_STARTS = 33, KIND_END = 48 };

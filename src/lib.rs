@@ -75,9 +75,9 @@
 //! | `attribute` | values at points inside or outside of solids |
 //! | `voxel` | voxels as records, sorted by code |
 //! | `surface` | triangle meshes of solids |
-//! | `render` | pictures of solids, meshes and volumes |
 //! | `file` | the Leafless file format |
 //! | `exchange` | file formats of other programs |
+//! | `render` | pictures of solids, meshes and volumes, and their PNG files |
 //! | `scene` | the language of OpenSCAD's CSG dumps |
 //!
 //! All of them may use `error`, `memory` (fallible allocation), `parallel` (work shared between threads),

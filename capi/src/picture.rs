@@ -8,10 +8,10 @@ use super::number::{Number, enumeration};
 use super::source::{leafless_sink, sink};
 use super::status::leafless_status;
 use core::ffi::c_char;
-use leafless::exchange::write_png;
 use leafless::memory;
 use leafless::render::{
     Clip, ClippedLayer, Layer, LegendBox, LegendSide, Picture, Shot, draw_colour_bar, draw_names, render,
+    write_png,
 };
 
 /// The parameters of a picture. The size and the camera must be set; zero is the default of all other fields

@@ -3,6 +3,7 @@
 use crate::arguments::named;
 use crate::arrays::{self, doubles, triple};
 use crate::error::{OrRaise, called, refused};
+use crate::solid::is_solid;
 use leafless::Affine as Inner;
 use pyo3::exceptions::PyValueError;
 use pyo3::prelude::*;
@@ -132,7 +133,7 @@ impl Affine {
     }
 
     fn __matmul__<'py>(&self, other: &Bound<'py, PyAny>) -> PyResult<Bound<'py, PyAny>> {
-        if crate::solid::is_solid(other) {
+        if is_solid(other) {
             return other.call_method1("placed", (*self,));
         }
         composed(other, |other| after(&self.0, other))

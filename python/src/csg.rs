@@ -1,14 +1,17 @@
 //! Expressions of half-spaces and of any other solids.
 
+use crate::affine::{Affine, affine};
+use crate::anywhere::anywhere;
 use crate::arguments::named;
 use crate::arrays::{self, triple};
 use crate::error::{OrRaise, called, refused};
 use crate::from_package;
-use crate::operators::expression;
-use crate::solid::{Given, Solid};
+use crate::solid::{Given, Solid, given, is_solid};
 use crate::work::Limits;
 use leafless::error::Error;
-use leafless::{AnySolid, Csg as Expression};
+use leafless::lattice::MAX_DEPTH;
+use leafless::scene::SceneOptions;
+use leafless::{AnySolid, Csg as Expression, Frame};
 use pyo3::IntoPyObjectExt;
 use pyo3::gc::{PyTraverseError, PyVisit};
 use pyo3::prelude::*;
@@ -296,9 +299,9 @@ impl Csg {
     /// Returns a `solid` moved by a `placement`, an `Affine` or a matrix, as `placement @ solid`.
     #[staticmethod]
     fn placed_of<'py>(solid: &Bound<'py, PyAny>, placement: &Bound<'py, PyAny>) -> PyResult<Bound<'py, Csg>> {
-        let map = crate::affine::affine(placement, "placement")?;
+        let map = affine(placement, "placement")?;
         let moved = expression(solid, "solid")?.placed(&map);
-        made!(solid.py(), moved, "placed_of", solid, crate::affine::Affine(map))
+        made!(solid.py(), moved, "placed_of", solid, Affine(map))
     }
 
     /// Reads the solid of a scene. `text` is in the language that OpenSCAD writes as `.csg`. Files that it
@@ -314,7 +317,7 @@ impl Csg {
         #[pyo3(from_py_with = named::folder)] folder: Option<PathBuf>,
         limits: Option<&Bound<'py, PyDict>>,
     ) -> PyResult<Bound<'py, PyAny>> {
-        crate::files::scene(py, text, folder.as_deref(), Path::new("scene"), &Limits::of(limits)?)
+        scene(py, text, folder.as_deref(), Path::new("scene"), &Limits::of(limits)?)
     }
 
     fn __repr__(slf: &Bound<'_, Self>) -> PyResult<String> {
@@ -324,7 +327,7 @@ impl Csg {
             let text: String = arguments.bind(slf.py()).get_item(0)?.extract()?;
             return Ok(format!("<Csg: from_scene ({} lines)>", text.lines().count()));
         }
-        if arguments.bind(slf.py()).iter().any(|argument| crate::solid::is_solid(&argument)) {
+        if arguments.bind(slf.py()).iter().any(|argument| is_solid(&argument)) {
             return Ok(format!("<Csg: {name} ({count})>"));
         }
         let told: Vec<_> = arguments.bind(slf.py()).iter().map(|argument| argument.to_string()).collect();
@@ -396,4 +399,39 @@ fn height(low: f64) -> impl Fn(Error) -> Error {
 /// Reads solids as expressions.
 fn all(solids: &Bound<'_, PyTuple>, name: &str) -> PyResult<Vec<Expression>> {
     solids.iter().map(|solid| expression(&solid, name)).collect()
+}
+
+/// Returns a solid as an expression.
+pub fn expression(object: &Bound<'_, PyAny>, name: &str) -> PyResult<Expression> {
+    match object.cast::<Csg>() {
+        Ok(csg) => Ok(csg.get().expression.clone()),
+        Err(_) => Ok(Expression::solid(anywhere(given(object, name)?.any()))),
+    }
+}
+
+/// Reads the solid of a scene.
+pub fn scene<'py>(
+    py: Python<'py>,
+    text: &str,
+    folder: Option<&Path>,
+    name: &Path,
+    limits: &Limits,
+) -> PyResult<Bound<'py, PyAny>> {
+    // The recipe must find the files from any working directory.
+    let here = |folder: &Path| {
+        std::path::absolute(if folder.as_os_str().is_empty() { Path::new(".") } else { folder })
+    };
+    let folder = folder.map(here).transpose().map_err(Error::Io).or_raise(py)?;
+    let folder = folder.as_deref();
+    let whole = limits.run(py, |control| {
+        let mut options = SceneOptions::default();
+        options.max_bytes = control.max_bytes;
+        let scene = options.read(text, folder).map_err(|error| error.of_file(name))?;
+        let (min, max) = scene.bounds()?.unwrap_or(([0.0; 3], [1.0; 3]));
+        // Octrees in the scene lie on a frame; other solids can be queried on any.
+        let frame = Frame::fitted(min, max, MAX_DEPTH).or_else(|_| Frame::new([0.0; 3], 1.0, MAX_DEPTH))?;
+        scene.solid(&frame)
+    })?;
+    let recipe = (text, folder.map(Path::to_path_buf)).into_pyobject(py)?;
+    Ok(Csg::made(py, whole, "from_scene", recipe)?.into_any())
 }

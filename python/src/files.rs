@@ -1,7 +1,7 @@
 //! Reading and writing of files: Leafless's own and those of other programs.
 
 use crate::arguments::{Argument, named};
-use crate::csg::Csg;
+use crate::csg::scene;
 use crate::dexels::TriDexel;
 use crate::error::{OrRaise, called, refused};
 use crate::mesh::Mesh;
@@ -11,14 +11,13 @@ use crate::picture::Picture;
 use crate::volume::{Threshold, Volume, band, threshold};
 use crate::words;
 use crate::work::{Limits, afford};
+use leafless::Error;
 use leafless::error::FormatError;
 use leafless::exchange::{
     self, LengthUnit, MeshFile, MeshFormat, MeshOptions, NrrdEncoding, VolumeFile, VolumeFormat, WriteOptions,
 };
 use leafless::file::{self, dexels};
-use leafless::lattice::MAX_DEPTH;
-use leafless::scene::{SceneOptions, is_scene};
-use leafless::{Error, Frame};
+use leafless::scene::is_scene;
 use pyo3::IntoPyObjectExt;
 use pyo3::exceptions::{PyTypeError, PyUserWarning};
 use pyo3::prelude::*;
@@ -274,33 +273,6 @@ fn volume<'py>(
         // A volume with other axes than x, y and z becomes an expression.
         Some(placement) => volume.call_method1("placed", (crate::affine::Affine(placement),)),
     }
-}
-
-/// Reads the solid of a scene.
-pub fn scene<'py>(
-    py: Python<'py>,
-    text: &str,
-    folder: Option<&Path>,
-    name: &Path,
-    limits: &Limits,
-) -> PyResult<Bound<'py, PyAny>> {
-    // The recipe must find the files from any working directory.
-    let here = |folder: &Path| {
-        std::path::absolute(if folder.as_os_str().is_empty() { Path::new(".") } else { folder })
-    };
-    let folder = folder.map(here).transpose().map_err(Error::Io).or_raise(py)?;
-    let folder = folder.as_deref();
-    let whole = limits.run(py, |control| {
-        let mut options = SceneOptions::default();
-        options.max_bytes = control.max_bytes;
-        let scene = options.read(text, folder).map_err(|error| error.of_file(name))?;
-        let (min, max) = scene.bounds()?.unwrap_or(([0.0; 3], [1.0; 3]));
-        // Octrees in the scene lie on a frame; other solids can be queried on any.
-        let frame = Frame::fitted(min, max, MAX_DEPTH).or_else(|_| Frame::new([0.0; 3], 1.0, MAX_DEPTH))?;
-        scene.solid(&frame)
-    })?;
-    let recipe = (text, folder.map(Path::to_path_buf)).into_pyobject(py)?;
-    Ok(Csg::made(py, whole, "from_scene", recipe)?.into_any())
 }
 
 /// Writes an object to the file at a path, whose name gives the format. The file is replaced atomically: at

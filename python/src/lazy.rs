@@ -1,5 +1,6 @@
 //! Octrees that are split on demand.
 
+use crate::answers::memberships;
 use crate::arguments::{Level, named, other_type};
 use crate::arrays::triple;
 use crate::ask::{FrameLike, Wish};
@@ -131,7 +132,7 @@ impl LazyOctree {
         let known = &*lazy;
         let answers: Vec<Membership> =
             py.detach(|| list.iter().map(|&point| known.contains(point)).collect());
-        crate::solid::memberships(py, &answers, rows.is_one)
+        memberships(py, &answers, rows.is_one)
     }
 
     /// The frame of the octree.

@@ -3,16 +3,22 @@
 //! `package/leafless`.
 //!
 //! From the bottom up: `error`, `work` (long operations that can be watched and interrupted), `words` (the
-//! names of enumeration values), `arguments`, `arrays`, `interval`, `frame` and `affine` (conversion of
-//! arguments), `solid` (the class of all solids), `ask` (the default frame of a query), `csg`, `mesh`,
-//! `octree` and the other kinds of solids, `measures`, `pairs`, `surface` and `picture` (queries), `files`
-//! (reading and writing), `note` (the threshold of a volume in its file).
+//! names of enumeration values), `arguments`, `arrays`, `interval` and `frame` (conversion of arguments),
+//! `answers` (conversion of answers), `callback` (calls of methods in Python), `solid` (the class of all
+//! solids), `shape` (solids written in Python), `affine`, `octree` (the class), `ask` (the default frame of
+//! a query), `csg`, `mesh`, `volume` and the other kinds of solids, `measures`, `pairs`, `surface` and
+//! `picture` (queries), `building`, `operators`, `octree_methods` and `solid_methods` (the methods of the
+//! two classes), `note` (the threshold of a volume in its file), `files` (reading and writing). No two files
+//! use each other.
 
 mod affine;
+mod answers;
 mod anywhere;
 mod arguments;
 mod arrays;
 mod ask;
+mod building;
+mod callback;
 mod channel;
 mod csg;
 mod dexels;
@@ -25,13 +31,16 @@ mod measures;
 mod mesh;
 mod note;
 mod octree;
+mod octree_methods;
 mod operators;
 mod pairs;
 mod picture;
 mod shape;
 mod shards;
 mod solid;
+mod solid_methods;
 mod surface;
+mod surface_report;
 mod volume;
 mod voxels;
 mod words;
@@ -44,6 +53,8 @@ use pyo3::prelude::*;
 mod _leafless {
     #[pymodule_export]
     use super::affine::Affine;
+    #[pymodule_export]
+    use super::building::{build, frame_of};
     #[pymodule_export]
     use super::channel::Channel;
     #[pymodule_export]
@@ -63,7 +74,7 @@ mod _leafless {
     #[pymodule_export]
     use super::mesh::Mesh;
     #[pymodule_export]
-    use super::octree::{Octree, Proof, build, frame_of};
+    use super::octree::{Octree, Proof};
     #[pymodule_export]
     use super::pairs::{clearance, deviation, frame_of_pair, gap_at_least, interference};
     #[pymodule_export]
@@ -75,7 +86,9 @@ mod _leafless {
     #[pymodule_export]
     use super::solid::Solid;
     #[pymodule_export]
-    use super::surface::{SurfaceReport, simplify, surface};
+    use super::surface::{simplify, surface};
+    #[pymodule_export]
+    use super::surface_report::SurfaceReport;
     #[pymodule_export]
     use super::volume::Volume;
     #[pymodule_export]

@@ -5,7 +5,7 @@ use crate::arrays::{self, Rows, layout, shape_text, shown};
 use crate::error::{OrRaise, refused};
 use crate::from_package;
 use crate::solid::{Given, Solid};
-use crate::surface::SurfaceReport;
+use crate::surface_report::SurfaceReport;
 use crate::words;
 use crate::work::Limits;
 use leafless::mesh::{AttributeDomain, MeshAttribute, MeshHistory, MeshReport};

@@ -1,12 +1,11 @@
 //! Set operations and placements of all kinds of solids.
 
 use crate::affine::affine;
-use crate::anywhere::anywhere;
-use crate::csg::Csg;
+use crate::csg::{Csg, expression};
 use crate::error::OrRaise;
 use crate::mesh::Mesh;
 use crate::octree::Octree;
-use crate::solid::{Solid, given, is_solid};
+use crate::solid::{Solid, is_solid};
 use crate::work::Limits;
 use leafless::{Csg as Expression, complement as complement_of, difference, intersection, union, xor};
 use pyo3::prelude::*;
@@ -18,14 +17,6 @@ pub enum Operator {
     Intersection,
     Difference,
     Xor,
-}
-
-/// Returns a solid as an expression.
-pub fn expression(object: &Bound<'_, PyAny>, name: &str) -> PyResult<Expression> {
-    match object.cast::<Csg>() {
-        Ok(csg) => Ok(csg.get().expression.clone()),
-        Err(_) => Ok(Expression::solid(anywhere(given(object, name)?.any()))),
-    }
 }
 
 /// Combines two solids. Two octrees give an octree; any other pair gives an expression.

@@ -9,11 +9,10 @@ use crate::mesh::Mesh;
 use crate::octree::Octree;
 use crate::solid::{Given, given};
 use crate::work::Limits;
-use leafless::exchange::write_png;
 use leafless::lattice::MAX_DEPTH;
 use leafless::render::{
     self as pictures, Camera, Clip, FIELD_OF_VIEW, Finish, Layer, MeshEdges, MeshLayer, OctreeLayer, Outline,
-    Shot, SliceLayer, SlicePlane, SolidLayer,
+    Shot, SliceLayer, SlicePlane, SolidLayer, write_png,
 };
 use leafless::{Bounds, Frame, TriangleMesh};
 use numpy::{PyArrayMethods, PyUntypedArrayMethods};

@@ -116,8 +116,6 @@ pub use volume::{
 pub use warning::MeshWarning;
 #[cfg(feature = "threemf")]
 pub use write::write_placed_meshes;
-#[cfg(feature = "png")]
-pub use write::write_png;
 pub use write::{WriteOptions, WrittenForm, write_mesh, write_stl, written_form};
 #[cfg(feature = "std")]
 pub use write::{write_grouped_polygons, write_polygons};

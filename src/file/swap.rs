@@ -49,20 +49,15 @@ mod tests {
     use super::super::wire::Wire;
     use super::super::{channel, section};
     use super::*;
-    use crate::control::Control;
-    use crate::lattice::Frame;
-    use crate::op::Rule;
-    use crate::solid::Csg;
 
     /// Simulates on a little-endian machine how a big-endian machine reads a file.
     #[test]
     fn every_number_of_a_file_is_swapped_once() {
-        let frame = Frame::new([0.0; 3], 1.0, 7).unwrap();
-        let ball = Csg::ball([0.5; 3], 0.45).unwrap();
-        let ball = crate::op::build(&ball, &frame, Rule::Certified, &Control::threads(1)).unwrap();
+        let octree = include_bytes!("../../format_spec/vectors/valid/dictionary-certified.lfl");
+        let octree = super::super::from_bytes(octree).unwrap();
         let mut metadata = Metadata::new();
         metadata.insert("units", "mm");
-        let bytes = super::super::to_bytes(&ball.with_metadata(metadata)).unwrap();
+        let bytes = super::super::to_bytes(&octree.with_metadata(metadata)).unwrap();
         let layout = Layout::read(&bytes, Model::Octree).unwrap();
         assert_eq!(layout.head.header.brick_encoding, ENCODING_DICTIONARY);
         let mut swapped = bytes.clone();
@@ -94,12 +89,13 @@ mod tests {
         // The structures themselves.
         let header = layout.head.header;
         assert_eq!(header.swap_bytes().file_length.to_be_bytes(), header.file_length.to_le_bytes());
-        assert_eq!((header.swap_bytes().depth, header.swap_bytes().magic), (7, MAGIC));
+        assert_eq!((header.swap_bytes().depth, header.swap_bytes().magic), (6, MAGIC));
         assert_eq!(header.swap_bytes().swap_bytes(), header);
         let object = Object::main(&header);
         assert_eq!(object.swap_bytes().bricks.to_be_bytes(), header.bricks.to_le_bytes());
-        assert_eq!((object.swap_bytes().depth, object.swap_bytes().swap_bytes()), (7, object));
+        assert_eq!((object.swap_bytes().depth, object.swap_bytes().swap_bytes()), (6, object));
     }
+
     /// Sections of channels, some of which are shared with the solid or another channel.
     #[test]
     fn what_channels_share_is_swapped_once() {

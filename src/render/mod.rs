@@ -2,7 +2,8 @@
 //!
 //! A picture consists of [layers](Layer), each of which draws into small tiles. Surfaces hide each other by
 //! their depth, and volumes are visible before, between and behind them. Tiles are independent of each other,
-//! so a picture is the same for any number of threads.
+//! so a picture is the same for any number of threads. With the feature `png`, `write_png` returns the PNG
+//! file of a picture.
 
 mod bins;
 mod camera;
@@ -25,6 +26,8 @@ mod outline;
 mod picture;
 mod place_cache;
 mod plane;
+#[cfg(feature = "png")]
+mod png;
 mod sight;
 mod slice;
 mod solid;
@@ -47,6 +50,8 @@ pub use mesh::{MeshEdges, MeshLayer};
 pub use octree::OctreeLayer;
 pub use outline::Outline;
 pub use picture::Picture;
+#[cfg(feature = "png")]
+pub use png::write_png;
 pub use sight::Finish;
 pub use slice::{SliceLayer, SlicePlane, TAG_COLOURS};
 pub use solid::SolidLayer;

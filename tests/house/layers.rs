@@ -1,8 +1,8 @@
-//! The order of the layers. A module uses only modules below it, and no two files of a folder use each other,
-//! even through other files.
+//! The order of the sources. In the kernel, a module uses only modules below it. In all crates, no two files
+//! of a folder use each other, even through other files, and every file is a module.
 //!
-//! The sources are read as text. Comments and literals are taken out, every path that begins with `crate`,
-//! `super` or `self` is resolved to a module of the crate, and its layer is compared with that of the file.
+//! The sources are read as text. Comments and literals are taken out, and every path that begins with
+//! `crate`, `super`, `self` or an imported name is resolved to a module of the crate.
 
 use std::collections::{BTreeMap, BTreeSet};
 use std::path::Path;
@@ -23,9 +23,9 @@ const LAYERS: [&[&str]; 18] = [
     &["attribute"],
     &["voxel"],
     &["surface"],
-    &["render"],
     &["file"],
     &["exchange"],
+    &["render"],
     &["scene"],
 ];
 
@@ -48,8 +48,8 @@ const SHARED: [&str; 14] = [
     "verdict",
 ];
 
-/// Folders in which some files still use each other. Remove a folder when it becomes clean.
-const WITH_CIRCLES: [&str; 0] = [];
+/// The folders of the kernel, the program, the Python package and the C interface.
+const ROOTS: [&str; 4] = ["src", "cli/src", "python/src", "capi/src"];
 
 fn layer(module: &str) -> Option<usize> {
     LAYERS.iter().position(|layer| layer.contains(&module))
@@ -274,7 +274,7 @@ fn use_tree(
     }
 }
 
-/// The crate's sources by module path.
+/// The sources of a crate by module path.
 type Sources = BTreeMap<Vec<String>, String>;
 
 /// Returns the absolute path that a mention refers to, if the path lies in this crate.
@@ -320,12 +320,24 @@ fn origins(sources: &Sources, folder: &[String]) -> BTreeMap<String, String> {
 /// Returns the uses between the files and subfolders of each folder. A definition in a `mod.rs` belongs to
 /// none of them, and tests may use everything.
 fn uses(sources: &Sources) -> BTreeMap<Vec<String>, BTreeMap<String, BTreeSet<String>>> {
-    let folders: BTreeSet<&[String]> = sources.keys().map(|module| &module[..module.len() - 1]).collect();
+    let folders: BTreeSet<&[String]> =
+        sources.keys().filter_map(|module| Some(module.split_last()?.1)).collect();
     let origins: BTreeMap<_, _> = folders.iter().map(|&folder| (folder, origins(sources, folder))).collect();
     let mut uses: BTreeMap<Vec<String>, BTreeMap<String, BTreeSet<String>>> = BTreeMap::new();
     for (module, source) in sources.iter().filter(|(module, _)| !is_test(module)) {
-        for mention in mentions(source).iter().filter(|mention| !is_test(&mention.inside)) {
-            let Some(target) = resolve(module, mention) else { continue };
+        let mentions = mentions(source);
+        let mentions: Vec<_> = mentions.iter().filter(|mention| !is_test(&mention.inside)).collect();
+        let imports: BTreeMap<&str, Vec<String>> = mentions
+            .iter()
+            .filter_map(|mention| Some((mention.import.as_deref()?, resolve(module, mention)?)))
+            .collect();
+        for mention in mentions {
+            // After `use crate::solid`, `solid::mesh::grid()` is a use of `mesh`.
+            let imported = || match mention.path.split_first() {
+                Some((first, rest)) => Some([imports.get(&**first)?, rest].concat()),
+                None => None,
+            };
+            let Some(target) = resolve(module, mention).or_else(imported) else { continue };
             let shared = module.iter().zip(&target).take_while(|(mine, theirs)| mine == theirs).count();
             let (folder, Some(mine)) = (&module[..shared], module.get(shared)) else { continue };
             let Some(theirs) = target.get(shared) else { continue };
@@ -413,8 +425,8 @@ fn path(segments: &[&str]) -> Vec<String> {
     segments.iter().map(|segment| segment.to_string()).collect()
 }
 
-/// Returns the library's sources. The program and the crate's root are not part of the order.
-fn library() -> Sources {
+/// Returns the sources below a folder of the project. `lib.rs` or `main.rs` is the module of the empty path.
+fn read(root: &str) -> Sources {
     fn read(folder: &Path, module: &[String], sources: &mut Sources) {
         for entry in std::fs::read_dir(folder).unwrap() {
             let file = entry.unwrap().path();
@@ -424,7 +436,8 @@ fn library() -> Sources {
                 inner.push(stem);
                 read(&file, &inner, sources);
             } else if file.extension().is_some_and(|extension| extension == "rs") {
-                if stem != "mod" {
+                let is_root = module.is_empty() && (stem == "lib" || stem == "main");
+                if stem != "mod" && !is_root {
                     inner.push(stem);
                 }
                 sources.insert(inner, std::fs::read_to_string(&file).unwrap());
@@ -432,14 +445,30 @@ fn library() -> Sources {
         }
     }
     let mut sources = Sources::new();
-    read(&Path::new(env!("CARGO_MANIFEST_DIR")).join("src"), &[], &mut sources);
-    sources.retain(|module, _| module[..] != ["lib"]);
+    read(&Path::new(env!("CARGO_MANIFEST_DIR")).join(root), &[], &mut sources);
+    assert!(sources.contains_key(&path(&[])), "{root} has no root");
     sources
+}
+
+/// Returns the files that no module declares, and that are therefore never compiled.
+fn strays(sources: &Sources) -> Vec<String> {
+    let declares = |module: &[String], name: &str| {
+        let Some(source) = sources.get(module) else { return false };
+        let tokens = tokens(source);
+        tokens.windows(3).any(|three| {
+            let words = [Token::Word("mod".into()), Token::Word(name.into()), Token::Mark(';')];
+            three == words
+        })
+    };
+    let modules =
+        sources.keys().filter_map(|module| module.split_last().map(|(name, parent)| (parent, name)));
+    let strays = modules.filter(|(parent, name)| !declares(parent, name));
+    strays.map(|(parent, name)| [parent, std::slice::from_ref(name)].concat().join("/")).collect()
 }
 
 #[test]
 fn the_order_is_kept() {
-    let sources = library();
+    let sources = read("src");
     for module in [&["octree", "view"][..], &["solid", "callback"], &["op"], &["control"]] {
         assert!(sources.contains_key(&path(module)), "{module:?} was not read");
     }
@@ -453,11 +482,14 @@ fn the_order_is_kept() {
 
 #[test]
 fn no_files_use_each_other() {
-    let sources = library();
-    let found = circles(&sources);
-    let unexpected: Vec<_> =
-        found.iter().filter(|(folder, _)| !WITH_CIRCLES.contains(&&folder[..])).collect();
-    assert!(unexpected.is_empty(), "{unexpected:#?}");
+    let found: Vec<_> = ROOTS.iter().map(|root| (root, circles(&read(root)))).collect();
+    assert!(found.iter().all(|(_, circles)| circles.is_empty()), "{found:#?}");
+}
+
+#[test]
+fn every_file_is_a_module() {
+    let found: Vec<_> = ROOTS.iter().map(|root| (root, strays(&read(root)))).collect();
+    assert!(found.iter().all(|(_, strays)| strays.is_empty()), "no module declares {found:#?}");
 }
 
 #[cfg(test)]
@@ -571,6 +603,20 @@ mod checker {
             (&["solid", "mesh", "scan"], "use crate::solid::Ball;"),
         ]);
         assert_eq!(found[0].1, ["ball uses slab", "mesh uses ball", "slab uses mesh"]);
+        // A circle of files beside the root, one of which is named by a re-export of the root.
+        let found = circles_with(&[
+            (&[], "mod ball; mod slab; use ball::Ball;"),
+            (&["ball"], "use crate::slab::Slab;"),
+            (&["slab"], "use crate::Ball;"),
+        ]);
+        assert_eq!(found[0].1, ["ball uses slab", "slab uses ball"]);
+        // A use through the name of the folder.
+        let found = circles_with(&[
+            (&["solid"], "mod ball; mod slab;"),
+            (&["solid", "ball"], "use crate::solid; fn f() { solid::slab::g() }"),
+            (&["solid", "slab"], "use super::ball::Ball;"),
+        ]);
+        assert_eq!(found[0].1, ["ball uses slab", "slab uses ball"]);
         // Parents and children, tests, and uses in one direction.
         let found = circles_with(&[
             top,
@@ -578,6 +624,20 @@ mod checker {
             (&["solid", "slab"], "use super::{Ball, Solid};"),
         ]);
         assert!(found.is_empty(), "{found:?}");
+    }
+
+    #[test]
+    fn catches_files_that_are_no_modules() {
+        let crates =
+            [(&["ball"][..], ""), (&["solid"], "pub mod slab; // mod mesh;"), (&["solid", "slab"], "")];
+        let mut sources: Sources =
+            crates.into_iter().map(|(module, source)| (path(module), source.into())).collect();
+        sources.insert(path(&[]), "mod ball; #[cfg(test)] mod solid;".into());
+        assert_eq!(strays(&sources), Vec::<String>::new());
+        sources.insert(path(&["solid", "mesh"]), String::new());
+        sources.insert(path(&["ball", "deep"]), String::new());
+        sources.insert(path(&["forgotten", "deep"]), String::new());
+        assert_eq!(strays(&sources), ["ball/deep", "forgotten/deep", "solid/mesh"]);
     }
 
     #[test]

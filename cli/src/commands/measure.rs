@@ -4,10 +4,10 @@ use crate::failure::{Failure, Of};
 use crate::options::{bounds, seconds, threads, tolerance};
 use crate::progress::{watched, within_time};
 use crate::report::bounds::{Proven, Volume, stop_word};
-use crate::report::density::{Density, density, times};
 use crate::report::scene::Curves;
 use crate::sink;
 use crate::source::corners::Corners;
+use crate::source::density::{Density, density, times};
 use crate::source::file::Taking;
 use crate::source::input::Input;
 use crate::source::moved::frame_of;
@@ -221,7 +221,7 @@ pub fn run(arguments: &Arguments) -> Result<(), Failure> {
     if let Some((mass, _)) = density {
         found.weigh(mass);
     }
-    let unit = density.map_or("", |density| density.1);
+    let unit = density.map_or("", |(_, unit)| unit.name());
     let text = if arguments.json {
         let report = report(&input, &frame, &found, unit);
         sink::json(&Report { curves, ..report })?

@@ -14,8 +14,8 @@ use crate::source::values::find;
 use crate::words::{count, seconds};
 use clap::Args;
 use leafless::lattice::MAX_DEPTH;
-use leafless::render::{Camera, Clip, FIELD_OF_VIEW, LegendBox, Lens, Shot};
-use leafless::{Bounds, Control, exchange};
+use leafless::render::{Camera, Clip, FIELD_OF_VIEW, LegendBox, Lens, Shot, write_png};
+use leafless::{Bounds, Control};
 use serde::Serialize;
 use std::ffi::OsString;
 use std::time::Instant;
@@ -172,7 +172,7 @@ pub fn run(arguments: &Arguments) -> Result<(), Failure> {
         Ok((shot, picture))
     })
     .of(&input)?;
-    let bytes = exchange::write_png(&picture).of(&input)?;
+    let bytes = write_png(&picture).of(&input)?;
     if let Some(output) = &output {
         output.write(&bytes)?;
     }

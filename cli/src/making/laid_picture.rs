@@ -1,9 +1,8 @@
 //! Pictures of layouts: the copies of each item in one colour, obstacles in grey, and the edges of a box
 //! around the container.
 
-use leafless::exchange::write_png;
 use leafless::layout::{Layout, Placed};
-use leafless::render::{Camera, LinesLayer, MeshEdges, MeshLayer, Shot, render};
+use leafless::render::{Camera, LinesLayer, MeshEdges, MeshLayer, Shot, render, write_png};
 use leafless::{Affine, Bounds, Control, Error, TriangleMesh};
 
 /// Width and height in pixels.

@@ -3,7 +3,6 @@
 pub mod bounds;
 pub mod channel;
 pub mod cuts;
-pub mod density;
 pub mod dexels;
 pub mod fitness;
 pub mod layout;

@@ -1,11 +1,10 @@
-//! Stored solids that are moved: they are remade in their new place.
+//! Stored solids that are moved: they are queried in their new place, or remade there.
 
 use crate::failure::{Failure, Of, complain};
 use crate::progress::watched;
 use crate::source::file::Stored;
 use crate::source::input::Input;
 use crate::source::placing::{Placing, image};
-use crate::source::solid::Source;
 use leafless::attribute::{FillOptions, MovedAttribute, fill_channel};
 use leafless::dexel::{DexelFormat, DexelNormals};
 use leafless::lattice::MAX_DEPTH;
@@ -13,8 +12,8 @@ use leafless::op::DexelOptions;
 use leafless::solid::Transform;
 use leafless::surface::{dual_contouring_dexels, marching_cubes_dexels};
 use leafless::{
-    Affine, Bounds, Control, Error, FillRule, Frame, MeshSolid, Octree, Proof, Rule, SurfaceOptions, Tag,
-    TriDexel, bounding_box, build, build_extended, dexelize,
+    Affine, AnySolid, Bounds, Control, Error, FillRule, Frame, MeshSolid, Octree, Proof, Rule,
+    SurfaceOptions, Tag, TriDexel, bounding_box, build, build_extended, dexelize,
 };
 
 /// The frame on which a moved solid is made.
@@ -25,6 +24,19 @@ pub enum Onto<'a> {
     Image,
     /// This frame.
     Frame(&'a Frame),
+}
+
+/// Returns an octree under a placement as a solid, for queries about cells of `frame`.
+pub fn solid_of(
+    input: &Input,
+    octree: Octree,
+    placement: &Affine,
+    frame: &Frame,
+) -> Result<AnySolid, Failure> {
+    if placement.is_identity() && !octree.frame().same_universe(frame) {
+        return Ok(AnySolid::new(Transform::of(octree, placement)));
+    }
+    AnySolid::new(octree).placed(placement).of(input)
 }
 
 /// Moves a stored solid to the user's placement.
@@ -60,7 +72,7 @@ pub fn octree(
         Proof { full: false, empty: false, .. } if own.view().is_binary() => Rule::Sampled,
         _ => Rule::Certified,
     };
-    let solid = Source::Octree(Box::new(own.clone())).placed(input, map, &frame)?;
+    let solid = solid_of(input, own.clone(), map, &frame)?;
     let moved = watched("move", threads, |control| {
         let moved = match (keeps_surfaces, rule) {
             (true, _) => build_extended(&solid, &frame, &SurfaceOptions::default(), control)?,

@@ -1,7 +1,7 @@
 //! Layout files: the items and their placements, as JSON.
 
 use crate::failure::{Failure, Of};
-use crate::report::density::Density;
+use crate::source::density::{Density, MassUnit};
 use crate::source::input::Input;
 use crate::source::stock::{Clearances, Copies, Holder, MOST_COPIES, Stock, named};
 use crate::words::count;
@@ -122,24 +122,6 @@ pub struct Measures {
     pub mass_unit: MassUnit,
     pub centroid: Option<[Ends; 3]>,
     pub smallest_gap: Option<Ends>,
-}
-
-/// The unit of a mass.
-#[derive(Serialize, Deserialize, Clone, Copy, PartialEq)]
-pub enum MassUnit {
-    #[serde(rename = "")]
-    Unknown,
-    #[serde(rename = "g")]
-    Gram,
-}
-
-impl MassUnit {
-    pub fn name(self) -> &'static str {
-        match self {
-            MassUnit::Unknown => "",
-            MassUnit::Gram => "g",
-        }
-    }
 }
 
 impl Plan {

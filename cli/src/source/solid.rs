@@ -12,7 +12,6 @@ use crate::source::volume::Voxels;
 use leafless::exchange::{LengthUnit, MeshFile};
 use leafless::lattice::MAX_DEPTH;
 use leafless::scene::Scene;
-use leafless::solid::Transform;
 use leafless::{
     Affine, AnySolid, Control, Csg, Error, FillRule, Frame, MeshSolid, Octree, Proof, Rule, Solid, TriDexel,
     TriangleMesh, build,
@@ -273,10 +272,7 @@ impl Source {
     /// that its kind allows.
     pub fn placed(self, input: &Input, placement: &Affine, frame: &Frame) -> Result<AnySolid, Failure> {
         let solid = match self {
-            Source::Octree(octree) if placement.is_identity() && !octree.frame().same_universe(frame) => {
-                return Ok(AnySolid::new(Transform::of(*octree, placement)));
-            }
-            Source::Octree(octree) => AnySolid::new(*octree),
+            Source::Octree(octree) => return moved::solid_of(input, *octree, placement, frame),
             Source::Mesh(mesh, fill, _) => AnySolid::new(MeshSolid::new(mesh, fill).of(input)?),
             Source::Scene(scene) => AnySolid::new(scene.solid(frame).of(input)?),
             Source::Volume(volume) => volume.solid,

@@ -2,10 +2,9 @@
 
 use crate::failure::{Failure, Of};
 use crate::options::numbers;
-use crate::report::density::Density;
+use crate::source::density::{Density, MassUnit};
 use crate::source::file::Taking;
 use crate::source::input::Input;
-use crate::source::plan::MassUnit;
 use crate::source::solid::Source;
 use crate::words::counted;
 use leafless::exchange::LengthUnit;
@@ -216,8 +215,7 @@ impl Stock {
             items.into_iter().zip(&self.items).enumerate()
         {
             let refused = |problem| Failure::Usage(format!("--density: {problem}"));
-            let (density, name) = density.of_cube(unit).map_err(refused)?;
-            let mass_unit = if name.is_empty() { MassUnit::Unknown } else { MassUnit::Gram };
+            let (density, mass_unit) = density.of_cube(unit).map_err(refused)?;
             if number > 0 && mass_unit != solids.mass_unit {
                 return Err(refused("expected a unit for all numbers, or for none".into()));
             }

@@ -8,8 +8,8 @@ mod gear_pictures;
 
 use leafless::octree::CellFilter;
 use leafless::op::Zone;
-use leafless::render::{Camera, Finish, Layer, LinesLayer, Picture, Shot, SolidLayer, render};
-use leafless::{Affine, Control, Csg, Frame, LazyOctree, Rule, Tag, build, exchange, intersection};
+use leafless::render::{Camera, Finish, Layer, LinesLayer, Picture, Shot, SolidLayer, render, write_png};
+use leafless::{Affine, Control, Csg, Frame, LazyOctree, Rule, Tag, build, intersection};
 use std::io::Cursor;
 use std::path::PathBuf;
 
@@ -50,7 +50,7 @@ pub fn check(name: &str, bytes: &[u8]) {
 }
 
 fn check_picture(name: &str, picture: &Picture) {
-    check(name, &exchange::write_png(picture).unwrap());
+    check(name, &write_png(picture).unwrap());
 }
 
 #[test]

@@ -10,8 +10,6 @@ mod lines;
 mod obj;
 mod off;
 mod ply;
-#[cfg(feature = "png")]
-mod png;
 #[cfg(feature = "std")]
 mod polygons;
 mod stl;
@@ -19,8 +17,6 @@ mod stl;
 mod threemf;
 
 pub use form::{WrittenForm, written_form};
-#[cfg(feature = "png")]
-pub use png::write_png;
 #[cfg(feature = "std")]
 pub use polygons::{write_grouped_polygons, write_polygons};
 pub use stl::write_stl;

@@ -2,6 +2,7 @@
 
 use leafless::Interval;
 use leafless::exchange::LengthUnit;
+use serde::{Deserialize, Serialize};
 
 /// A density as the user writes it.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -34,14 +35,32 @@ impl Density {
     }
 
     /// Returns the mass of a cubic model unit, and the unit of that mass.
-    pub fn of_cube(&self, unit: Option<LengthUnit>) -> Result<(f64, &'static str), String> {
-        let Some((grams, edge)) = self.unit else { return Ok((self.number, "")) };
+    pub fn of_cube(&self, unit: Option<LengthUnit>) -> Result<(f64, MassUnit), String> {
+        let Some((grams, edge)) = self.unit else { return Ok((self.number, MassUnit::Unknown)) };
         let unit = unit.ok_or(
             "the unit of the model is unknown: give it, as in --unit mm, or give the mass of a cubic \
              unit as a plain number",
         )?;
         let part = f64::from(unit.micrometres()) / edge;
-        Ok((self.number * grams * part * part * part, "g"))
+        Ok((self.number * grams * part * part * part, MassUnit::Gram))
+    }
+}
+
+/// The unit of a mass.
+#[derive(Debug, Serialize, Deserialize, Clone, Copy, PartialEq)]
+pub enum MassUnit {
+    #[serde(rename = "")]
+    Unknown,
+    #[serde(rename = "g")]
+    Gram,
+}
+
+impl MassUnit {
+    pub fn name(self) -> &'static str {
+        match self {
+            MassUnit::Unknown => "",
+            MassUnit::Gram => "g",
+        }
     }
 }
 
@@ -59,11 +78,11 @@ mod tests {
     #[test]
     fn densities_know_their_units() {
         let mass = |text: &str, unit| density(text).unwrap().of_cube(unit);
-        let near = |found: Result<(f64, &str), String>, wanted: f64| {
+        let near = |found: Result<(f64, MassUnit), String>, wanted: f64| {
             let (mass, unit) = found.unwrap();
-            assert!((mass / wanted - 1.0).abs() < 1e-14 && unit == "g", "{mass} {wanted}");
+            assert!((mass / wanted - 1.0).abs() < 1e-14 && unit == MassUnit::Gram, "{mass} {wanted}");
         };
-        assert_eq!(mass("7.85", None), Ok((7.85, "")));
+        assert_eq!(mass("7.85", None), Ok((7.85, MassUnit::Unknown)));
         near(mass("7.85g/cm3", Some(LengthUnit::Millimetre)), 0.00785);
         near(mass("7850 kg/m3", Some(LengthUnit::Centimetre)), 7.85);
         near(mass("1lb/in3", Some(LengthUnit::Inch)), 453.59237);

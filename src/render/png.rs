@@ -1,7 +1,7 @@
 //! Writer of PNG.
 
+use super::picture::Picture;
 use crate::error::Error;
-use crate::render::Picture;
 use alloc::vec::Vec;
 use png::{BitDepth, ColorType, Encoder, SrgbRenderingIntent};
 
@@ -13,10 +13,10 @@ use png::{BitDepth, ColorType, Encoder, SrgbRenderingIntent};
 /// copy of the picture, the process ends.)
 ///
 /// ```
-/// use leafless::{Control, exchange, render::{Camera, Lens, Shot, render}};
+/// use leafless::{Control, render::{Camera, Lens, Shot, render, write_png}};
 /// let camera = Camera::new([0.0, -5.0, 0.0], [0.0; 3], [0.0, 0.0, 1.0], Lens::Perspective(30.0))?;
 /// let picture = render(&Shot::new(camera, [64, 48]), &[], &Control::default())?;
-/// assert!(exchange::write_png(&picture)?.starts_with(b"\x89PNG"));
+/// assert!(write_png(&picture)?.starts_with(b"\x89PNG"));
 /// # Ok::<(), leafless::Error>(())
 /// ```
 pub fn write_png(picture: &Picture) -> Result<Vec<u8>, Error> {
