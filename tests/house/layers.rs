@@ -31,21 +31,17 @@ const LAYERS: [&[&str]; 18] = [
 
 /// Modules of `solid` that its producers share. Every other module is a producer, and no other producer may
 /// use it.
-const SHARED: [&str; 14] = [
+const SHARED: [&str; 10] = [
     "any",
-    "batch",
-    "erased",
+    "contract",
     "fingerprint",
     "forward",
     "half_space",
     "motion",
-    "parts",
     "prepared",
-    "question",
     "subtree",
     "surface_cell",
     "trace",
-    "verdict",
 ];
 
 /// The folders of the kernel, the program, the Python package and the C interface.
