@@ -1,20 +1,9 @@
 //! Generates `include/leafless.hpp` from `include/leafless.h`. Every function of the C interface becomes a
 //! member of a class or a function, by the rules at the top of the generated file.
 
+use crate::header::{Function, Header, Parameter};
+use crate::refused::may_be_null;
 use std::fmt::Write;
-
-/// A parameter of a function in C.
-#[derive(Clone, Debug)]
-struct Parameter {
-    /// The type without `const` and `*`.
-    base: String,
-    is_const: bool,
-    pointers: usize,
-    name: String,
-    array: Option<usize>,
-    /// For an array of any length, how many numbers each element has.
-    dimension: usize,
-}
 
 /// Arrays whose elements have several numbers: the function (empty for all), the parameter, and the number.
 const DIMENSIONS: &[(&str, &str, usize)] = &[
@@ -39,23 +28,18 @@ const VALUES: &[(&str, &str)] = &[
     ("leafless_channel_values", "const std::size_t components = detail::components_of(get());"),
 ];
 
-impl Parameter {
-    fn parse(function: &str, text: &str) -> Parameter {
-        let (text, array) = match text.split_once('[') {
-            Some((text, size)) => (text, Some(size.trim_end_matches(']').parse().expect("a size"))),
-            None => (text, None),
-        };
-        let is_const = text.starts_with("const ");
-        let at = text.rfind([' ', '*']).expect("a type and a name") + 1;
-        let (kind, name) = text.split_at(at);
-        let base = kind.trim_start_matches("const ").split([' ', '*']).next().expect("a type");
-        let pointers = kind.matches('*').count();
-        let known =
-            DIMENSIONS.iter().find(|(of, known, _)| (of.is_empty() || *of == function) && *known == name);
-        let dimension = known.map_or(1, |&(.., dimension)| dimension);
-        Parameter { base: base.to_string(), is_const, pointers, name: name.to_string(), array, dimension }
-    }
+/// Pointers that may be NULL in C and that the interface for C++ requires.
+const REQUIRED: &[(&str, &str)] = &[
+    ("leafless_mesh_read", "options"),
+    ("leafless_mesh_write", "options"),
+    ("leafless_mesh_write_polygons", "options"),
+    ("leafless_volume_read", "data"),
+    ("leafless_scene_read", "options"),
+    ("leafless_channel_summarise", "min_model"),
+    ("leafless_channel_summarise", "max_model"),
+];
 
+impl Parameter {
     /// True for `const T *name`.
     fn is_input(&self) -> bool {
         self.is_const && self.pointers == 1 && self.array.is_none()
@@ -106,43 +90,6 @@ fn array_of(base: &str, count: usize) -> String {
     }
 }
 
-/// A function of the C interface.
-struct Function {
-    name: String,
-    result: String,
-    parameters: Vec<Parameter>,
-}
-
-/// Returns the header's functions, without comments.
-fn functions(header: &str) -> Vec<Function> {
-    let mut functions = Vec::new();
-    let mut lines = header.lines().filter(|line| !line.trim_start().starts_with("//"));
-    while let Some(line) = lines.next() {
-        let starts = |words: &[&str]| words.iter().any(|word| line.starts_with(word));
-        let is_function = line.contains("leafless_") && line.contains('(') && !line.starts_with(' ');
-        if !is_function
-            || starts(&["typedef", "LEAFLESS_", "#", "/", "static inline", "}"])
-            || line.starts_with(" *")
-        {
-            continue;
-        }
-        let mut text = line.to_string();
-        while !text.ends_with(';') {
-            text = format!("{} {}", text.trim_end(), lines.next().expect("the end of a declaration").trim());
-        }
-        let (before, parameters) = text.split_once('(').expect("parameters");
-        let at = before.rfind([' ', '*']).expect("a result") + 1;
-        let (result, name) = before.split_at(at);
-        let parameters = parameters.trim_end_matches(");");
-        let parameters = match parameters {
-            "void" => Vec::new(),
-            list => list.split(", ").map(|text| Parameter::parse(name, text)).collect(),
-        };
-        functions.push(Function { name: name.to_string(), result: result.trim().to_string(), parameters });
-    }
-    functions
-}
-
 /// A function in C++ under construction.
 #[derive(Default)]
 struct Translation {
@@ -162,14 +109,10 @@ struct Translation {
     has_self: bool,
 }
 
-/// Returns whether a pointer may be NULL, given a function and a parameter.
-pub type Nullable<'n> = dyn Fn(&str, &str) -> bool + 'n;
-
 struct Translator<'a> {
     handles: Vec<String>,
     /// The structs that begin with their size.
     sized: Vec<&'a str>,
-    nullable: &'a Nullable<'a>,
 }
 
 impl Translator<'_> {
@@ -200,7 +143,8 @@ impl Translator<'_> {
             let (name, base) = (p.name.as_str(), p.base.as_str());
             // (The two corners of a rectangle of rays are both NULL or both not.)
             let is_corner = p.is_const && p.array == Some(2);
-            let may_be_null = is_corner || (self.nullable)(&function.name, name);
+            let is_required = REQUIRED.contains(&(function.name.as_str(), name));
+            let may_be_null = is_corner || !is_required && may_be_null(function, i).is_some();
             if i == 0 && p.pointers == 1 && class.is_some_and(|class| base == format!("leafless_{class}")) {
                 made.has_self = true;
                 made.is_const = p.is_const;
@@ -435,13 +379,19 @@ fn sized(header: &str) -> Vec<&str> {
 }
 
 /// Returns the declarations of classes, and their bodies.
-pub fn made_of(header: &str, nullable: &Nullable<'_>) -> String {
-    let functions = functions(header);
+pub fn made_of(header: &str) -> String {
+    let mut functions = Header::read(header).functions;
+    for function in &mut functions {
+        for p in &mut function.parameters {
+            let mut known = DIMENSIONS.iter().filter(|(of, ..)| of.is_empty() || *of == function.name);
+            p.dimension = known.find(|(_, name, _)| *name == p.name).map_or(1, |&(.., dimension)| dimension);
+        }
+    }
     let names = |suffix: &str| -> Vec<String> {
         let fitting = functions.iter().filter_map(|f| f.name.strip_prefix("leafless_")?.strip_suffix(suffix));
         fitting.map(str::to_string).collect()
     };
-    let translator = Translator { handles: names("_free"), sized: sized(header), nullable };
+    let translator = Translator { handles: names("_free"), sized: sized(header) };
     let (mut classes, mut bodies, mut free) = (String::new(), String::new(), String::new());
     for class in &translator.handles {
         writeln!(classes, "class {class};").expect("memory");

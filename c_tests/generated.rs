@@ -90,17 +90,10 @@ fn generate() -> String {
     )
 }
 
-/// Returns the header for C++, made from the one for C. The tests of NULL pointers provide which pointers may
-/// be NULL.
+/// Returns the header for C++, made from the one for C.
 fn generated_for_cpp() -> String {
     let read = |name: &str| std::fs::read_to_string(root().join(name)).unwrap();
-    let tests = ["null", "null_tridexel", "null_picture", "null_layout"]
-        .map(|name| read(&format!("c_tests/{name}.c")))
-        .concat();
-    let tests = tests.split_whitespace().collect::<Vec<_>>().join(" ");
-    let may_be_null =
-        |function: &str, parameter: &str| tests.contains(&format!("MAY_BE_NULL({function}, {parameter},"));
-    let classes = cpp::made_of(generated(), &may_be_null);
+    let classes = cpp::made_of(generated());
     format!("{}{classes}{}", read("include/preface.hpp"), read("include/epilogue.hpp"))
 }
 

@@ -1,16 +1,51 @@
 //! The contents of the header, read as text.
 
+/// A parameter of a function, or a field of a struct.
+#[derive(Clone, Debug)]
+pub struct Parameter {
+    /// The type without `const` and `*`.
+    pub base: String,
+    pub is_const: bool,
+    pub pointers: usize,
+    pub name: String,
+    pub array: Option<usize>,
+    /// For an array of any length, how many numbers each element has.
+    pub dimension: usize,
+}
+
+impl Parameter {
+    fn parse(text: &str) -> Parameter {
+        let (text, array) = match text.split_once('[') {
+            Some((text, size)) => (text, Some(size.trim_end_matches(']').parse().expect("a size"))),
+            None => (text, None),
+        };
+        let is_const = text.starts_with("const ");
+        let (kind, name) = text.split_at(text.rfind([' ', '*']).expect("a type and a name") + 1);
+        let base = kind.trim_start_matches("const ").split([' ', '*']).next().expect("a type");
+        let pointers = kind.matches('*').count();
+        Parameter { base: base.to_string(), is_const, pointers, name: name.to_string(), array, dimension: 1 }
+    }
+}
+
 pub struct Function {
     pub name: String,
-    /// Parameters that are pointers or functions.
-    pub pointers: Vec<String>,
+    pub result: String,
+    pub parameters: Vec<Parameter>,
+}
+
+/// An enumeration of a fixed size.
+pub struct Enumeration {
+    pub name: String,
+    pub integer: String,
+    pub numbers: Vec<u32>,
 }
 
 #[derive(Default)]
 pub struct Header {
     pub functions: Vec<Function>,
     /// Structs with public fields.
-    pub structs: Vec<(String, Vec<String>)>,
+    pub structs: Vec<(String, Vec<Parameter>)>,
+    pub enumerations: Vec<Enumeration>,
     /// Enumerators, and macros that are numbers.
     pub values: Vec<String>,
     /// All other names: opaque structs, enumerations, function types, other macros, and functions defined in
@@ -85,16 +120,22 @@ impl Header {
             if rest[end..].starts_with('{') && !declaration.ends_with("\"C\"") {
                 let (body, after) = rest[end + 1..].split_once('}').expect("a closed body");
                 if let Some((_, enumeration)) = declaration.rsplit_once("LEAFLESS_ENUM(") {
-                    header.others.push(enumeration.split(',').next().unwrap().to_string());
+                    let (name, integer) = enumeration.split_once(", ").expect("a name and an integer");
+                    header.others.push(name.to_string());
+                    let numbers = body.split(',').filter_map(|value| value.split_once('='));
+                    header.enumerations.push(Enumeration {
+                        name: name.to_string(),
+                        integer: integer.trim_end_matches(')').to_string(),
+                        numbers: numbers.filter_map(|(_, number)| number.trim().parse().ok()).collect(),
+                    });
                     let names = body.split(',').filter_map(|value| value.split('=').next());
                     header
                         .values
                         .extend(names.map(|name| name.trim().to_string()).filter(|name| !name.is_empty()));
                 } else {
-                    let fields =
-                        body.split(';').map(declared).filter(|name| !name.is_empty()).map(str::to_string);
+                    let fields = body.split(';').map(str::trim).filter(|field| !field.is_empty());
                     let name = declared(after.split(';').next().unwrap_or_default());
-                    header.structs.push((name.to_string(), fields.collect()));
+                    header.structs.push((name.to_string(), fields.map(Parameter::parse).collect()));
                 }
                 rest = after.split_once(';').expect("a semicolon after a body").1;
                 continue;
@@ -107,12 +148,17 @@ impl Header {
                 };
                 header.others.push(name.to_string());
             } else if let Some((before, parameters)) = declaration.split_once('(') {
-                let pointers =
-                    parameters.trim_end_matches(')').split(',').map(str::trim).filter(|parameter| {
-                        parameter.contains('*') || parameter.contains('[') || parameter.contains("_fn ")
-                    });
-                let pointers = pointers.map(declared).map(str::to_string).collect();
-                header.functions.push(Function { name: declared(before).to_string(), pointers });
+                let (result, name) = before.split_at(before.rfind([' ', '*']).expect("a result") + 1);
+                let list = parameters.trim_end_matches(')').split(',');
+                let list = list.map(|text| text.split_whitespace().collect::<Vec<_>>().join(" "));
+                header.functions.push(Function {
+                    name: name.to_string(),
+                    result: result.trim().to_string(),
+                    parameters: list
+                        .filter(|text| text != "void")
+                        .map(|text| Parameter::parse(&text))
+                        .collect(),
+                });
             }
         }
         header

@@ -168,7 +168,7 @@ impl Kit {
         for (name, fields) in &header.structs {
             let _ = writeln!(layout, "STRUCT({name})");
             for field in fields {
-                let _ = writeln!(layout, "FIELD({name}, {field})");
+                let _ = writeln!(layout, "FIELD({name}, {})", field.name);
             }
         }
         for value in &header.values {

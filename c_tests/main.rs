@@ -18,6 +18,7 @@ mod generated;
 mod header;
 mod kit;
 mod packages;
+mod refused;
 mod warnings;
 
 use check::Check;
@@ -166,29 +167,14 @@ fn panic() {
 }
 
 #[test]
-fn null() {
-    // Each pointer that goes in or out is tried. The programs name all of them.
-    let programs = ["null", "null_source", "null_tridexel", "null_picture", "null_layout"];
-    let source: String = programs.iter().map(|name| text(format!("c_tests/{name}.c"))).collect();
-    let flat = source.split_whitespace().collect::<Vec<_>>().join(" ");
-    for function in &header().functions {
-        for parameter in &function.pointers {
-            let name = &function.name;
-            let tried = ["NULL_POINTER", "MAY_BE_NULL"]
-                .iter()
-                .any(|check| flat.contains(&format!("{check}({name}, {parameter},")));
-            let freed = name.ends_with("_free") && flat.contains(&format!("{name}(NULL)"));
-            // Functions that return texts, whose buffers may be absent.
-            let own = matches!(name.as_str(), "leafless_last_error" | "leafless_test_layout");
-            assert!(
-                tried || freed || own,
-                "c_tests/null.c and those beside it do not try {name} without {parameter}"
-            );
-        }
-    }
-    for name in programs {
-        run(name, C99, Link::Static, &[]);
-    }
+fn refused() {
+    refused::write();
+    run("refused", C99, Link::Static, &[]);
+}
+
+#[test]
+fn sources_and_sinks() {
+    run("sources", C99, Link::Static, &[]);
 }
 
 #[test]

@@ -94,6 +94,9 @@ impl leafless_voxel_options {
         if self.lists > 3 {
             return refused("voxel_options.lists", "must be 0 or leafless_voxel_lists");
         }
+        if self.reserved != 0 {
+            return refused("voxel_options.reserved", "must be 0");
+        }
         let criterion = self.criterion.known("voxel_options.criterion")?;
         let mut options =
             VoxelOptions::new().boundary(boundary).outside(self.lists & 1 != 0).refined(self.lists & 2 != 0);
