@@ -12,8 +12,9 @@
 //! 2. Add a new struct or enumeration to `layout`. An enumeration that is an argument also needs
 //!    `enumeration!`, and its name in `include/cbindgen.toml`.
 //! 3. Add a new file to `SECTIONS` of `c_tests/generated.rs`, and to the table below.
-//! 4. Run `cargo test --test c_api refused`. It calls the function with every pointer NULL and misaligned, and
-//!    with every number out of range, and says what to add to `c_tests/refused.txt` and `c_tests/refused.c`.
+//! 4. Run `cargo test --test c_api refused`. It calls the function with every pointer NULL and misaligned,
+//!    and with every number out of range, and says what to add to `c_tests/refused.txt` and
+//!    `c_tests/refused.c`.
 //!    In a program in `c_tests`, compare the function's results with a known truth.
 //! 5. Run `LEAFLESS_BLESS=1 cargo test --test c_api generated`, which writes the headers for C and C++ anew.
 //!

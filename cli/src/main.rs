@@ -1,5 +1,5 @@
-//! The program `leafless`. The library `leafless_cli` is all of it: a library compiles beside the kernel, and a
-//! program would wait for the kernel's machine code.
+//! The program `leafless`. The library `leafless_cli` is all of it, because a library compiles beside the
+//! kernel, and a program waits for the kernel's machine code.
 
 use std::process::ExitCode;
 

@@ -40,7 +40,6 @@
 mod contract;
 // Helpers of the contract: fingerprints, copies of stored cells, and forwarding.
 mod fingerprint;
-pub(crate) mod forward;
 mod motion;
 mod subtree;
 mod surface_cell;
@@ -71,7 +70,7 @@ pub use contract::{
     FreeParts, LayersQuestion, OneByOne, Parts, Question, Solid, Verdict, WholeQuestion, Worker,
     sample_one_by_one, split_one_by_one,
 };
-pub(crate) use contract::{AskDirect, AskLayers, ErasedPart, OCTANTS, split_twice};
+pub(crate) use contract::{AskDirect, AskLayers, ErasedPart, OCTANTS, forward, split_twice};
 pub use csg::{Csg, Touch};
 #[cfg(feature = "scene")]
 pub(crate) use csg::{Fan, Figure, cos_degrees, sin_degrees, wedge};

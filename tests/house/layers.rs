@@ -421,7 +421,8 @@ fn path(segments: &[&str]) -> Vec<String> {
     segments.iter().map(|segment| segment.to_string()).collect()
 }
 
-/// Returns the sources below a folder of the project. `lib.rs` or `main.rs` is the module of the empty path.
+/// Returns the sources below a folder of the project. `lib.rs` is the module of the empty path. (A `main.rs`
+/// beside it only calls the library.)
 fn read(root: &str) -> Sources {
     fn read(folder: &Path, module: &[String], sources: &mut Sources) {
         for entry in std::fs::read_dir(folder).unwrap() {
@@ -432,7 +433,10 @@ fn read(root: &str) -> Sources {
                 inner.push(stem);
                 read(&file, &inner, sources);
             } else if file.extension().is_some_and(|extension| extension == "rs") {
-                let is_root = module.is_empty() && (stem == "lib" || stem == "main");
+                if module.is_empty() && stem == "main" {
+                    continue;
+                }
+                let is_root = module.is_empty() && stem == "lib";
                 if stem != "mod" && !is_root {
                     inner.push(stem);
                 }

@@ -1,4 +1,5 @@
-//! Rules of the sources: layers of modules, features of dependencies, and builds on machines that have little.
+//! Rules of the sources: layers of modules, features of dependencies, and builds on machines that have
+//! little.
 
 mod features;
 mod layers;

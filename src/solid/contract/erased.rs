@@ -1,17 +1,15 @@
 //! Solids of any kind behind one type.
 //!
 //! [`Solid`] has associated types so that a loop over a known kind compiles to tight code. Most queries spend
-//! their time in the answers of the solid, and not in the calls. They take `&dyn DynSolid`, so that each query
-//! is compiled once, with the library. Programs that hold shapes of different kinds in one place (the C
+//! their time in the answers of the solid, and not in the calls. They take `&dyn DynSolid`, so that each
+//! query is compiled once, with the library. Programs that hold shapes of different kinds in one place (the C
 //! interface first of all) own them as [`AnySolid`].
 //!
 //! Each of the three traits has an object-safe counterpart here. The methods of these counterparts have no
 //! defaults, so that none can be forgotten.
 
-use super::super::forward::{
-    forward_answers, forward_batch, forward_classifier, forward_parts, forward_solid,
-};
 use super::super::{Fingerprint, Motion, Subtree};
+use super::forward::{forward_answers, forward_batch, forward_classifier, forward_parts, forward_solid};
 use super::{Batch, Classifier, Parts, Question, Solid, Verdict, WholeQuestion, Worker};
 use crate::control::Control;
 use crate::error::Error;

@@ -5,6 +5,7 @@
 
 mod batch;
 mod erased;
+pub(crate) mod forward;
 mod parts;
 mod question;
 mod verdict;
@@ -17,7 +18,6 @@ pub use question::{Ask, AskWhole, Chords, Direct, LayersQuestion, Question, Whol
 pub(crate) use question::{AskDirect, AskLayers};
 pub use verdict::Verdict;
 
-use super::forward;
 use super::{Fingerprint, Motion, Subtree};
 use crate::control::Control;
 use crate::error::Error;
@@ -146,8 +146,8 @@ use alloc::vec::Vec;
 /// # Repeated queries
 /// Every query first puts the solid on its frame. That takes O(1) for octrees made by this library and for a
 /// host's functions. It takes O(n) in the half-spaces of an expression, in the triangles of a mesh, and in
-/// the links of a mapped octree. For many single queries in a row, wrap the solid in [`Prepared`](super::Prepared), which
-/// keeps the prepared classifier.
+/// the links of a mapped octree. For many single queries in a row, wrap the solid in
+/// [`Prepared`](super::Prepared), which keeps the prepared classifier.
 pub trait Solid: Send + Sync {
     /// The type of the shape on a frame.
     type Classifier: Classifier;
@@ -176,8 +176,8 @@ pub trait Solid: Send + Sync {
         None
     }
 
-    /// The shape under an affine map, if its kind can be moved more directly than by [`Transform`](super::Transform). `None`,
-    /// the default, means that it cannot. [`AnySolid::placed`] moves all kinds.
+    /// The shape under an affine map, if its kind can be moved more directly than by
+    /// [`Transform`](super::Transform). `None`, the default, means that it cannot. [`AnySolid::placed`] moves all kinds.
     ///
     /// # Errors
     /// If memory runs out, or an error of the kind of solid.
