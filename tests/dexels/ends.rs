@@ -1,13 +1,13 @@
 //! Checks of interval ends beside cell centres against exact rationals, on every way into and out of
 //! tri-dexel models.
 
-use crate::common::exact::Exact;
 use leafless::dexel::{Dexel, DexelEditor, DexelEnd, DexelEnds, DexelFormat, DexelNormals, TriDexelRef};
 use leafless::op::DexelOptions;
 use leafless::{
     AnySolid, Control, Csg, Error, FillRule, Frame, MeshSolid, Rule, TriDexel, TriangleMesh, build, dexelize,
     file,
 };
+use leafless_testkit::exact::Exact;
 
 struct Random(u64);
 

@@ -1,7 +1,6 @@
 //! Attacks that are fuzz targets, too: arbitrary bytes as scenes of unit cells and as attributes, against
 //! dense arrays.
 
-use crate::common::repeated;
 use crate::{attributes, contacts, direct, layouts, measures, records, surfaces};
 use leafless::attribute::{
     Attribute, Criterion, Detail, FillOptions, MovedAttribute, ScalarType, ValueRange, ValueType,
@@ -10,6 +9,7 @@ use leafless::attribute::{
 use leafless::query::StopReason;
 use leafless::voxel::VoxelRecords;
 use leafless::{Affine, Bounds, Cell, Control, Csg, Error, Frame, Interval, clearance};
+use leafless_testkit::repeated;
 use std::path::Path;
 
 /// Pseudo-random numbers (splitmix64). A seed gives the same numbers everywhere.

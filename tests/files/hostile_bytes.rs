@@ -9,10 +9,10 @@ use crate::bodies::layout::{
     SURFACES, Section, put,
 };
 use crate::bodies::{Aligned, Random, joined, read_in_all_ways, seeds, walk};
-use crate::common::{on_all_processors, repeated};
 use leafless::error::{Damage, FormatError};
 use leafless::octree::Cursor;
 use leafless::{Error, Solid, SurfaceOptions, build_extended, file, measure, union};
+use leafless_testkit::{on_all_processors, repeated};
 use std::path::Path;
 
 // ---- inputs ---------------------------------------------------------------------------------------------

@@ -4,8 +4,6 @@
 mod attributes;
 #[path = "../../fuzz/bodies/mod.rs"]
 mod bodies;
-#[path = "../common/mod.rs"]
-mod common;
 #[path = "../../fuzz/bodies/contacts.rs"]
 mod contacts;
 #[path = "../../fuzz/bodies/direct.rs"]

@@ -1,8 +1,6 @@
 //! Volume files: what is read from them, every way in which they are refused, and the corpus of the fuzz
 //! target `volumes`.
 
-use crate::common::Random;
-use crate::common::volumes::{KINDS, Sampled, extents, grid};
 use crate::fuzzed_volumes;
 use leafless::error::VolumeFileError;
 use leafless::exchange::{
@@ -11,6 +9,8 @@ use leafless::exchange::{
 };
 use leafless::solid::{Band, Samples, VoxelGrid};
 use leafless::{Control, Error, Frame, Rule, Solid, build, measure};
+use leafless_testkit::Random;
+use leafless_testkit::volumes::{KINDS, Sampled, extents, grid};
 
 /// Returns the samples as numbers.
 fn numbers(samples: &Samples<'_>, grid: &VoxelGrid) -> Vec<f64> {
@@ -624,7 +624,7 @@ fn damaged_files() {
         for length in 0..seed.len() {
             fuzzed_volumes::volumes(&seed[..length]);
             let mut changed = seed.clone();
-            changed[length] = [0, b' ', b'9', b'\n', 0xFF, random.next() as u8][random.below(6) as usize];
+            changed[length] = [0, b' ', b'9', b'\n', 0xFF, random.bits() as u8][random.below(6) as usize];
             fuzzed_volumes::volumes(&changed);
         }
     }

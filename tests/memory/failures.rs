@@ -8,9 +8,8 @@
 #![cfg(all(feature = "mmap", unix))]
 
 use crate::allocator::{most_held, refusing};
+use crate::bodies;
 use crate::bodies::{Aligned, Random};
-use crate::common::{on_all_processors, repeated};
-use crate::{bodies, zip};
 use leafless::attribute::{FunctionAttribute, dexel_materials, sample_triangles};
 use leafless::dexel::{DexelEditor, DexelEnds, DexelFormat, DexelNormals};
 use leafless::layout::{Bay, Item, Layout, Objective, Orientations, SearchOptions};
@@ -38,6 +37,8 @@ use leafless::{
     bounding_box, build, build_extended, cast_rays, clearance, compact, complement, contains, deviation,
     dexelize, difference, exchange, file, intersection, marching_cubes, measure, scene, union, xor,
 };
+use leafless_testkit::zip;
+use leafless_testkit::{on_all_processors, repeated};
 use std::io::{self, Write};
 use std::path::Path;
 use std::process::Command;

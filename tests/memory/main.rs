@@ -2,10 +2,6 @@
 
 #[path = "../../fuzz/bodies/mod.rs"]
 mod bodies;
-#[path = "../common/mod.rs"]
-mod common;
-#[path = "../common/zip.rs"]
-mod zip;
 
 mod allocator;
 mod failures;

@@ -1,6 +1,5 @@
 //! Reports about meshes, and the places of their defects, against the definitions.
 
-use crate::common;
 use leafless::TriangleMesh;
 use leafless::mesh::{DefectKind, MeshDefect, MeshReport};
 use std::collections::{BTreeMap, BTreeSet};
@@ -518,7 +517,7 @@ fn random_soups_agree_with_the_definitions() {
 
 #[test]
 fn a_real_file_of_several_bodies() {
-    let Some(path) = common::model("multibody.stl") else { return };
+    let Some(path) = leafless_testkit::model("multibody.stl") else { return };
     let mesh = leafless::exchange::read_stl(&std::fs::read(path).unwrap()).unwrap();
     assert_eq!(counts(&mesh), [0, 0, 12, 0, 0, 0, 0, 2, 2, 0]);
     let defects = mesh.defects(10).unwrap();
@@ -528,7 +527,7 @@ fn a_real_file_of_several_bodies() {
 
 #[test]
 fn a_real_file_with_holes() {
-    let Some(path) = common::model("stanford-bunny.obj") else { return };
+    let Some(path) = leafless_testkit::model("stanford-bunny.obj") else { return };
     let mesh = leafless::exchange::read_obj(&std::fs::read(path).unwrap()).unwrap();
     let report = mesh.report().unwrap();
     assert_eq!((report.triangles, report.boundary_edges, report.boundary_loops), (69451, 223, 5));
@@ -556,7 +555,7 @@ fn real_files() {
         ("cycloidal.ply", [0, 0, 0, 242, 0, 0, 0, 112, 0, 0]),
     ];
     for (name, expected) in known {
-        let Some(path) = common::model(name) else { return };
+        let Some(path) = leafless_testkit::model(name) else { return };
         let bytes = std::fs::read(path).unwrap();
         let mesh = match name.split_once('.').unwrap().1 {
             "obj" => leafless::exchange::read_obj(&bytes),

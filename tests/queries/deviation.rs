@@ -1,6 +1,5 @@
 //! The deviation of two boundaries: formulas, an independent sampler, and solids of all kinds.
 
-use crate::common::repeated;
 use leafless::op::DexelOptions;
 use leafless::query::{Deviation, DistanceTo, StopReason, Within, distances, ray_spans};
 use leafless::surface::DexelSolid;
@@ -8,6 +7,7 @@ use leafless::{
     Affine, AnySolid, Control, Csg, Error, FillRule, Frame, Interval, MeshSolid, Ray, Rule, Solid,
     SurfaceOptions, TriangleMesh, build, build_extended, deviation, dexelize,
 };
+use leafless_testkit::repeated;
 use std::f64::consts::{PI, TAU};
 use std::sync::atomic::AtomicBool;
 

@@ -1,12 +1,12 @@
 //! Bounding boxes by slabs, against formulas of the shapes' support functions and against the boxes of
 //! octrees, which have no slabs.
 
-use crate::common::alone;
 use glam::{DMat3, DVec3, EulerRot};
 use leafless::query::{BOUNDING_BOX_SPLITS, Extent, StopReason};
 use leafless::{
     Affine, Bounds, Callback, Control, Csg, Frame, Interval, Rule, Solid, Tag, Verdict, bounding_box, build,
 };
+use leafless_testkit::alone;
 
 /// A solid and its support function: its reach along a direction.
 struct Known {

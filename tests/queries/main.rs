@@ -2,13 +2,6 @@
 
 #[path = "../../fuzz/bodies/aligned.rs"]
 mod aligned;
-#[path = "../common/mod.rs"]
-mod common;
-#[allow(dead_code)]
-#[path = "../solids/csg/model.rs"]
-mod model;
-#[path = "../solids/csg/random.rs"]
-mod random;
 
 mod area;
 mod clearance;

@@ -1,10 +1,10 @@
 //! Volume, centroid and inertia of every primitive under random affine placements. The intervals contain the
 //! formulas' values at every depth, after every number of splits, and for every tolerance.
 
-use crate::common::repeated;
 use glam::{DMat3, DVec3};
 use leafless::query::StopReason;
 use leafless::{Affine, Bounds, Control, Csg, Error, Frame, Interval, MassProperties, Solid, measure};
+use leafless_testkit::repeated;
 use std::f64::consts::PI;
 
 /// A solid with its volume, its centroid, and ∫ (p − c)(p − c)ᵀ about the centroid.

@@ -2,8 +2,6 @@
 
 #[path = "../../fuzz/bodies/csg.rs"]
 mod any_bytes;
-#[path = "../common/mod.rs"]
-mod common;
 
 mod csg;
 mod enclosure;
@@ -13,6 +11,3 @@ mod metaball;
 mod moments;
 mod transform;
 mod volume;
-
-// The path at which the body of the fuzz target expects the model.
-use csg::{model, random};

@@ -2,8 +2,6 @@
 
 #[path = "../../fuzz/bodies/aligned.rs"]
 mod aligned;
-#[path = "../common/mod.rs"]
-mod common;
 
 mod boundary;
 mod contour;

@@ -1,8 +1,8 @@
 //! The program `leafless`, from outside: every subcommand, its output, and the files it leaves.
 
 use crate::place::{Place, Run, block, meshes, solids, stl};
-use crate::{models, zip};
 use leafless::{Membership, TriangleMesh, file};
+use leafless_testkit::zip;
 use serde_json::Value;
 use std::ffi::OsStr;
 use std::io::{Read, Write};
@@ -1557,7 +1557,7 @@ fn demo_does_not_follow_what_others_put_in_its_place() {
 #[test]
 fn the_volume_of_a_machined_part() {
     const TRUE_VOLUME: f64 = 11.627733;
-    let Some(path) = models::model("featuretype.STL") else { return };
+    let Some(path) = leafless_testkit::model("featuretype.STL") else { return };
     // The program runs in another folder.
     let path = std::path::absolute(path).unwrap();
     let place = Place::new();

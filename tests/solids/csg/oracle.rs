@@ -1,11 +1,10 @@
 //! Constructive solid geometry against exact arithmetic without cells.
 
 use super::points::{Found, Judge, centre};
-use crate::common::{Random, alone, lattice_frame};
-use crate::model::Model;
-use crate::random::Maker;
-use crate::{any_bytes, common};
+use crate::any_bytes;
 use leafless::{Frame, Rule, Solid, Tag, build};
+use leafless_testkit::csg::{Maker, Model};
+use leafless_testkit::{Random, alone, lattice_frame};
 
 /// Frames whose planes are integers, exact doubles, or no doubles at all; far from the origin; and tiny.
 pub(super) fn frames(depth: u8) -> [Frame; 5] {
@@ -100,7 +99,7 @@ fn sampled(models: u64, make: impl Fn(&mut Maker<'_>) -> Model) {
         let model = make(&mut maker);
         let Ok(csg) = model.csg(&frame) else { continue };
         let tree = build(&csg, &frame, Rule::Sampled, &alone()).unwrap();
-        for at in common::positions(frame.depth()) {
+        for at in leafless_testkit::positions(frame.depth()) {
             let probe = centre(&frame, at);
             boundary += (model.sign(&probe.at) == 0) as u64;
             let Some(inside) = model.sampled(&probe) else { continue };

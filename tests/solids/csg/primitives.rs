@@ -3,13 +3,13 @@
 //! By default there are about 10⁵ points for each. A million points each take some minutes:
 //! `cargo test --release --test solids csg::primitives -- --ignored`
 
-use crate::common::exact::Exact;
-use crate::common::repeated;
 use leafless::solid::{Fingerprint, HalfSpace, Touch};
 use leafless::{
     Affine, Bounds, Classifier, Control, Csg, Error, Frame, Interval, Membership, Octree, Rule, Solid,
     Verdict, Worker, build,
 };
+use leafless_testkit::exact::Exact;
+use leafless_testkit::repeated;
 use std::f64::consts::PI;
 use std::sync::atomic::{AtomicUsize, Ordering::Relaxed};
 use std::sync::{Arc, Mutex};
