@@ -11,11 +11,8 @@
 
 use criterion::{BatchSize, Criterion, Throughput, criterion_group, criterion_main};
 use leafless::{TriangleMesh, exchange};
+use leafless_testkit::fuzz::meshes;
 use std::hint::black_box;
-
-#[path = "../fuzz/bodies/meshes.rs"]
-#[allow(dead_code)]
-mod meshes;
 
 /// A torus of 2 n² triangles; coordinates have six places if they are `short`.
 fn torus(n: u32, short: bool) -> TriangleMesh {

@@ -1,7 +1,6 @@
 //! Any bytes as expressions of half-spaces, against exact arithmetic.
 #![no_main]
 
-#[path = "../bodies/csg.rs"]
-mod csg;
+use leafless_testkit::fuzz;
 
-libfuzzer_sys::fuzz_target!(|data: &[u8]| csg::csg(data));
+libfuzzer_sys::fuzz_target!(|data: &[u8]| fuzz::csg(data));

@@ -1,8 +1,5 @@
 //! Tri-dexel models.
 
-#[path = "../../fuzz/bodies/dexel_algebra.rs"]
-mod dexel_algebra;
-
 mod ends;
 mod faces;
 mod made_of;

@@ -1,6 +1,5 @@
 //! Tri-dexel models: dexelisation against samples and analytic crossings, set algebra against point sets.
 
-use crate::dexel_algebra;
 use leafless::dexel::{DexelEditor, DexelEnds, DexelFormat, DexelNormals};
 use leafless::op::DexelOptions;
 use leafless::solid::HalfSpace;
@@ -8,6 +7,7 @@ use leafless::{
     Affine, AnySolid, Control, Csg, Error, FillRule, Frame, MeshSolid, Octree, Rule, Solid, TriDexel,
     TriangleMesh, build, dexelize,
 };
+use leafless_testkit::fuzz::dexel_algebra;
 
 fn options() -> DexelOptions {
     DexelOptions::default()

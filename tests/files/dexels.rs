@@ -3,14 +3,14 @@
 #![cfg(feature = "std")]
 
 // Its `main` is the program that writes the vectors.
-#[allow(dead_code)]
-use crate::bodies::Aligned;
 use crate::make_vectors::dexel_vectors::{self, Dexels, ValidDexels};
 use crate::make_vectors::{Way, number, put, seal};
 use leafless::dexel::{DexelEditor, DexelEnds, DexelFormat, DexelNormals, TriDexelRef};
 use leafless::error::FormatError;
 use leafless::op::DexelOptions;
 use leafless::{Control, Csg, Error, Frame, Metadata, TriDexel, dexelize, file, file::dexels};
+#[allow(dead_code)]
+use leafless_testkit::Aligned;
 use std::path::{Path, PathBuf};
 
 const CONTROL: Control<'static> =

@@ -2,12 +2,12 @@
 //! its colours badly.
 
 use leafless_testkit::zip;
+use leafless_testkit::zip::{CONTENT_TYPES, Entry, RELATIONSHIPS, package};
 
 use leafless::TriangleMesh;
 use leafless::attribute::{Attribute, SurfaceAttribute};
 use leafless::exchange::{MeshFile, MeshOptions, MeshWarning, read_mesh, read_ply};
 use leafless::mesh::{AttributeDomain, MeshAttribute};
-use leafless_testkit::zip::{CONTENT_TYPES, Entry, RELATIONSHIPS, package};
 use proptest::prelude::*;
 
 fn read(bytes: &[u8]) -> MeshFile {

@@ -3,7 +3,6 @@
 
 #![cfg(feature = "std")]
 
-use crate::bodies::Aligned;
 use leafless::error::FormatError;
 use leafless::lattice::Cube;
 use leafless::octree::Cursor;
@@ -12,6 +11,7 @@ use leafless::{
     Control, Csg, Error, Frame, Metadata, Octree, OctreeRef, Rule, Tag, Verdict, build, compact, complement,
     difference, file, intersection, union, xor,
 };
+use leafless_testkit::Aligned;
 use leafless_testkit::cubes::Cubes;
 use std::path::Path;
 

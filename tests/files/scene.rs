@@ -2,10 +2,10 @@
 
 #![cfg(feature = "scene")]
 
-use crate::scenes;
 use leafless::exchange::write_stl;
 use leafless::scene::read_scene;
 use leafless::{Affine, Control, Error, Frame, Interval, Membership, Octree, Rule, TriangleMesh, build};
+use leafless_testkit::fuzz::scenes;
 use std::f64::consts::PI;
 use std::fmt::Write;
 use std::path::Path;

@@ -1,8 +1,7 @@
 //! The cells of a box as bits, against dense arrays and for damaged trees.
 
-use crate::aligned::Aligned;
 use leafless::{Cell, Control, Csg, Error, Frame, Octree, Rule, Tag, build, compact, file};
-use leafless_testkit::{Dense, Random, alone, cases, shapes};
+use leafless_testkit::{Aligned, Dense, Random, alone, cases, shapes};
 use proptest::prelude::*;
 use std::sync::atomic::AtomicBool;
 

@@ -1,8 +1,5 @@
 //! Stored octrees: their construction, laws, Booleans, channels, voxel records and proofs.
 
-#[path = "../../fuzz/bodies/aligned.rs"]
-mod aligned;
-
 mod adaptive;
 mod bitmap;
 mod boolean;

@@ -1,9 +1,8 @@
 //! Neighbours of cells, and iterators over cells and boundary faces, against dense arrays.
 
-use crate::aligned::Aligned;
 use leafless::octree::{BoundaryFace, CellFilter, Cursor, Direction, TaggedCell};
 use leafless::{Cell, Error, Octree, OctreeRef, Tag, compact, file};
-use leafless_testkit::{Dense, positions};
+use leafless_testkit::{Aligned, Dense, positions};
 use proptest::prelude::*;
 use std::collections::{HashMap, HashSet};
 

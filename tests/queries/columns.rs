@@ -1,12 +1,11 @@
 //! Columns of cells and height maps, against dense arrays.
 
-use crate::aligned::Aligned;
 use leafless::query::{ColumnRuns, Columns, Heights, Run, Side, columns, heights};
 use leafless::{
     Control, Csg, Error, FillRule, Frame, Interval, MeshSolid, Octree, OctreeRef, Proof, Rule, Tag, build,
     exchange, file,
 };
-use leafless_testkit::{Dense, DenseSolid, Shape, alone, cases, lattice_frame, shapes};
+use leafless_testkit::{Aligned, Dense, DenseSolid, Shape, alone, cases, lattice_frame, shapes};
 use proptest::prelude::*;
 use std::sync::atomic::AtomicBool;
 

@@ -1,8 +1,5 @@
 //! Queries and measures, of octrees and of any solid.
 
-#[path = "../../fuzz/bodies/aligned.rs"]
-mod aligned;
-
 mod area;
 mod clearance;
 mod clearance_meshes;

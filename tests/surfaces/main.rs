@@ -1,8 +1,5 @@
 //! Triangle meshes of octrees, solids and volumes.
 
-#[path = "../../fuzz/bodies/aligned.rs"]
-mod aligned;
-
 mod boundary;
 mod contour;
 mod faces;

@@ -1,13 +1,12 @@
 //! Surfaces of octrees: closed, with two triangles on every edge, and with the topology of the samples.
 
-use crate::aligned::Aligned;
 use leafless::surface::{Resolve, Snap, marching_cubes_reusing, simple_marching_cubes};
 use leafless::{
     Control, Csg, Error, FillRule, Frame, MeshSolid, Octree, Rule, Solid, Tag, TriangleMesh, build, exchange,
     file, marching_cubes,
 };
 use leafless_testkit::surfaces::{components, euler_of_manifold};
-use leafless_testkit::{Dense, Random, alone, cases, lattice_frame, model, repeated, shapes};
+use leafless_testkit::{Aligned, Dense, Random, alone, cases, lattice_frame, model, repeated, shapes};
 use proptest::prelude::*;
 
 /// Samples with a margin of two outside samples.

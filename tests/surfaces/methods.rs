@@ -1,6 +1,5 @@
 //! All surface methods on one list of solids: closed, outward, of the right volume, and consistent.
 
-use crate::aligned::Aligned;
 use leafless::solid::{Band, Samples, VoxelGrid};
 use leafless::surface::{
     Resolve, Snap, coplanar_shrink, published_shrink, simple_marching_cubes, surface_nets,
@@ -10,7 +9,7 @@ use leafless::{
     exchange, file, marching_cubes,
 };
 use leafless_testkit::surfaces::{assert_balanced, euler_of_manifold, outlines};
-use leafless_testkit::{Random, alone, lattice_frame, model};
+use leafless_testkit::{Aligned, Random, alone, lattice_frame, model};
 
 /// Sets of four normals that add up to zero: the faces of a tetrahedron. All 13 directions occur.
 const TETRAHEDRA: [[[f64; 3]; 4]; 10] = [

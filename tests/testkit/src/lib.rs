@@ -1,10 +1,12 @@
 //! What more than one test program uses: slow and simple oracles, random trees and expressions, exact numbers,
-//! and access to the model files.
+//! the bodies of the fuzz targets, and access to the model files.
 
+mod aligned;
 pub mod csg;
 pub mod cubes;
 pub mod dense;
 pub mod exact;
+pub mod fuzz;
 mod models;
 mod random;
 pub mod slabs;
@@ -14,6 +16,7 @@ pub mod volumes;
 mod way;
 pub mod zip;
 
+pub use aligned::Aligned;
 pub use dense::{
     Classical, Dense, DenseSolid, Shape, TAGS, assert_is, kleene, noise, pairs, pairs_of, positions, shapes,
     shapes_of,

@@ -18,6 +18,16 @@ impl Random {
         self.bits() % end
     }
 
+    /// Returns an index below `end`; 0 if `end` is 0.
+    pub fn index(&mut self, end: usize) -> usize {
+        if end == 0 { 0 } else { self.below(end as u64) as usize }
+    }
+
+    /// True once in `n` times.
+    pub fn one_in(&mut self, n: usize) -> bool {
+        self.index(n) == 0
+    }
+
     /// Returns a number in [0, 1).
     pub fn unit(&mut self) -> f64 {
         (self.bits() >> 11) as f64 / (1u64 << 53) as f64

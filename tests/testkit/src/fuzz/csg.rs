@@ -1,10 +1,10 @@
 //! Any bytes as an expression of half-spaces on a small lattice. By exact arithmetic, no vertex of the
 //! lattice and no centre contradicts the verdicts.
 
+use crate::csg::{Model, Other, Point, Probe};
+use crate::exact::Exact;
 use leafless::op::{DexelOptions, octree_from_dexels};
 use leafless::{Affine, Control, Error, Frame, Octree, Rule, Tag, build, complement, dexelize};
-use leafless_testkit::csg::{Model, Other, Point, Probe};
-use leafless_testkit::exact::Exact;
 
 /// The most primitives of an expression, written out. (Exact arithmetic is slow, and few primitives find as
 /// many errors as many do.)
