@@ -1,5 +1,6 @@
 //! Queries of channels: summaries, regions and materials; and volumes as attributes.
 
+use crate::values::{Values, kinds, values_of};
 use leafless::attribute::{
     Attribute, ConstantAttribute, FillOptions, FunctionAttribute, Interpolation, ScalarType, ValueRange,
     ValueRegion, ValueType, VolumeAttribute, fill_channel, materials,
@@ -9,7 +10,6 @@ use leafless::{
     Bounds, Control, Csg, Error, Frame, Interval, Octree, Rule, Tag, Volume, build, intersection, measure,
     union,
 };
-use leafless_testkit::values::{Values, kinds, values_of};
 use leafless_testkit::{Dense, alone, cases, lattice_frame, shapes_of};
 use proptest::prelude::*;
 use std::f64::consts::PI;

@@ -1,5 +1,6 @@
 //! Channels against dense arrays of values.
 
+use crate::values::{Value, Values, kinds, values, values_of};
 use leafless::attribute::{
     Attribute, CarryRule, Channel, ChannelOperand, ConstantAttribute, Criterion, Detail, FillOptions,
     FunctionAttribute, MovedAttribute, ScalarType, ValueRange, ValueType, carry_channel, carry_channels,
@@ -10,7 +11,6 @@ use leafless::{
     Affine, Bounds, Control, Csg, Error, Frame, Interval, Metadata, Octree, Rule, Tag, build, difference,
     intersection, union, xor,
 };
-use leafless_testkit::values::{Value, Values, kinds, values, values_of};
 use leafless_testkit::{Dense, alone, cases, lattice_frame, noise, positions};
 use proptest::prelude::*;
 

@@ -12,4 +12,5 @@ mod neighbours;
 mod proof;
 mod proof_table;
 mod shards;
+mod values;
 mod voxels;

@@ -11,7 +11,6 @@ mod models;
 mod random;
 pub mod slabs;
 pub mod surfaces;
-pub mod values;
 pub mod volumes;
 mod way;
 pub mod zip;
