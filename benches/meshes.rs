@@ -5,9 +5,9 @@
 //! ```
 //!
 //! A torus of half a million triangles and a quarter of a million vertices, in files of every format that
-//! `fuzz/` can write. Coordinates have six places, as most programs write them. `weld` is the last step of
-//! every reader alone. `benches/README.md` has figures measured with this file, and explains what limits
-//! them.
+//! the fuzz targets can write. Coordinates have six places, as most programs write them. `weld` is the last
+//! step of every reader alone. `benches/README.md` has figures measured with this file, and explains what
+//! limits them.
 
 use criterion::{BatchSize, Criterion, Throughput, criterion_group, criterion_main};
 use leafless::{TriangleMesh, exchange};

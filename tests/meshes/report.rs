@@ -2,16 +2,8 @@
 
 use leafless::TriangleMesh;
 use leafless::mesh::{DefectKind, MeshDefect, MeshReport};
+use leafless_testkit::Random;
 use std::collections::{BTreeMap, BTreeSet};
-
-struct Random(u64);
-
-impl Random {
-    fn below(&mut self, bound: u32) -> u32 {
-        self.0 = self.0.wrapping_mul(6364136223846793005).wrapping_add(1442695040888963407);
-        ((self.0 >> 33) % u64::from(bound)) as u32
-    }
-}
 
 /// A unit cube from `low`, as twelve triangles.
 fn cube(low: [f64; 3]) -> Vec<[[f64; 3]; 3]> {
@@ -226,7 +218,7 @@ fn random_blocks_that_overlap() {
         let size = 3 + random.below(5);
         let mut blocks = vec![];
         while blocks.len() < count {
-            let ends = [0; 3].map(|_: i32| [random.below(size), random.below(size)]);
+            let ends = [0; 3].map(|_| [0; 2].map(|_| random.below(size) as u32));
             if ends.iter().all(|[a, b]| a != b) {
                 let sense = if random.below(3) == 0 { -1 } else { 1 };
                 blocks.push((ends.map(|[a, b]| a.min(b)), ends.map(|[a, b]| a.max(b)), sense));
@@ -469,7 +461,7 @@ fn random_soups_agree_with_the_definitions() {
     let (mut seen, mut holes) = (BTreeSet::new(), 0);
     for round in 0..600 {
         let size = 2 + round % 3;
-        let corner = |random: &mut Random| [0; 3].map(|_: i32| f64::from(random.below(size)));
+        let corner = |random: &mut Random| [0; 3].map(|_: i32| random.below(size) as f64);
         let mut facets: Vec<[[f64; 3]; 3]> = (0..1 + random.below(30))
             .map(|_| [corner(&mut random), corner(&mut random), corner(&mut random)])
             .collect();
@@ -477,11 +469,11 @@ fn random_soups_agree_with_the_definitions() {
             // Closed bodies with little damage.
             facets.truncate(random.below(3) as usize);
             for _ in 0..1 + random.below(4) {
-                let at = [0; 3].map(|_: i32| f64::from(random.below(4)));
+                let at = [0; 3].map(|_: i32| random.below(4) as f64);
                 facets.extend(if random.below(2) == 0 { cube(at) } else { turned(&cube(at)) });
             }
             if random.below(2) == 0 {
-                facets.remove(random.below(facets.len() as u32) as usize);
+                facets.remove(random.index(facets.len()));
             }
         }
         let mesh = TriangleMesh::from_facets(&facets).unwrap();

@@ -5,7 +5,7 @@ use leafless::{
     Control, Csg, Error, FillRule, Frame, Interval, MeshSolid, Octree, OctreeRef, Proof, Rule, Tag, build,
     exchange, file,
 };
-use leafless_testkit::{Aligned, Dense, DenseSolid, Shape, alone, cases, lattice_frame, shapes};
+use leafless_testkit::{Aligned, Dense, DenseSolid, Random, Shape, alone, cases, lattice_frame, shapes};
 use proptest::prelude::*;
 use std::sync::atomic::AtomicBool;
 
@@ -96,13 +96,9 @@ fn rectangles(dense: &Dense, axis: usize, seed: u64) -> Vec<Columns> {
     let frame = lattice_frame(dense.depth);
     let n = frame.cells() as u64 + 1;
     let mut rectangles = vec![Columns::all(&frame, axis).unwrap()];
-    let mut random = seed;
-    let mut below = |n: u64| {
-        random = random.wrapping_mul(6364136223846793005).wrapping_add(1442695040888963407);
-        ((random >> 33) % n) as u32
-    };
+    let mut random = Random(seed);
     for _ in 0..3 {
-        let ends = [0; 2].map(|_| [below(n), below(n)]);
+        let ends = [0; 2].map(|_| [0; 2].map(|_| random.below(n) as u32));
         let [first, end] = [ends.map(|[a, b]| a.min(b)), ends.map(|[a, b]| a.max(b))];
         rectangles.push(Columns::within(axis, first, end).unwrap());
     }
@@ -299,7 +295,7 @@ fn damaged_trees_are_left() {
     let frame = Frame::new([-1.0; 3], 2.0, 7).unwrap();
     let ball = Csg::ball([0.1, -0.05, 0.03], 0.77).unwrap();
     let good = file::to_bytes(&build(&ball, &frame, Rule::Certified, &alone()).unwrap()).unwrap();
-    let mut random = leafless_testkit::Random(9);
+    let mut random = Random(9);
     let mut viewed = 0;
     for _ in 0..60 {
         let mut bytes = good.clone();

@@ -1,5 +1,5 @@
-//! What more than one test program uses: slow and simple oracles, random trees and expressions, exact numbers,
-//! the bodies of the fuzz targets, and access to the model files.
+//! What more than one test program uses: slow and simple oracles, random trees and expressions, exact
+//! numbers, the bodies of the fuzz targets, and access to the model files.
 
 mod aligned;
 pub mod csg;
