@@ -9,7 +9,6 @@ use leafless::dexel::{DexelEditor, DexelEnds, DexelFormat, DexelNormals, TriDexe
 use leafless::error::FormatError;
 use leafless::op::DexelOptions;
 use leafless::{Control, Csg, Error, Frame, Metadata, TriDexel, dexelize, file, file::dexels};
-#[allow(dead_code)]
 use leafless_testkit::{Aligned, Random};
 use std::path::{Path, PathBuf};
 

@@ -6,7 +6,6 @@
 #![cfg(all(unix, feature = "std"))]
 
 // Its `main` is the program that writes the vectors.
-#[allow(dead_code)]
 use crate::make_vectors;
 use leafless::{Control, Membership, Octree, Proof, Tag, contains, file, file::dexels};
 use leafless_testkit::{Random, fuzz};

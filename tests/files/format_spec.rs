@@ -3,7 +3,6 @@
 #![cfg(feature = "std")]
 
 // Its `main` is the program that writes the vectors.
-#[allow(dead_code)]
 use crate::make_vectors;
 use crate::make_vectors::{Way, hex, name, number};
 use leafless::error::FormatError;

@@ -1,7 +1,6 @@
 //! The area of a solid's boundary, against formulas and against the areas of smaller cells.
 
 use leafless::query::{StopReason, SurfaceArea, surface_area};
-#[allow(dead_code)]
 use leafless::solid::{Ask, AskWhole, HalfSpace};
 use leafless::{
     Affine, AnySolid, Cell, Classifier, Control, Csg, Error, FillRule, Frame, Interval, MeshSolid, Rule,

@@ -10,7 +10,6 @@ use leafless_testkit::csg::{Maker, Model, Other, Point};
 use leafless_testkit::exact::Exact;
 use leafless_testkit::slabs::{bits, known, told};
 use leafless_testkit::{Random, Way, alone, lattice_frame};
-#[allow(dead_code)]
 
 /// Frames whose planes are integers, exact doubles, or no doubles at all; far from the origin; and tiny.
 fn frames(depth: u8) -> [Frame; 5] {

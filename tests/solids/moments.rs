@@ -1,7 +1,6 @@
 //! The moments that solids provide for a cell, against those of far smaller cells.
 
 use leafless::lattice::{CellMoments, CubeMoments, MAX_DEPTH};
-#[allow(dead_code)]
 use leafless::solid::Ask;
 use leafless::{Cell, Classifier, Csg, Frame, Solid, SurfaceOptions, Verdict, Worker, build_extended};
 use leafless_testkit::csg::{Maker, Model};
