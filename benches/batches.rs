@@ -13,18 +13,11 @@ use leafless::solid::Prepared;
 use leafless::{
     AnySolid, Control, Error, FillRule, Frame, Membership, MeshSolid, Ray, Solid, cast_rays, contains,
 };
+use leafless_testkit::Random;
 use std::hint::black_box;
 use std::time::Instant;
 
 const SIZES: [usize; 3] = [1, 1_000, 1_000_000];
-
-/// splitmix64, as a number in [0, 1).
-fn share(state: &mut u64) -> f64 {
-    *state = state.wrapping_add(0x9E37_79B9_7F4A_7C15);
-    let z = (*state ^ *state >> 30).wrapping_mul(0xBF58_476D_1CE4_E5B9);
-    let z = (z ^ z >> 27).wrapping_mul(0x94D0_49BB_1331_11EB);
-    ((z ^ z >> 31) >> 11) as f64 / 9_007_199_254_740_992.0
-}
 
 /// Returns the median time of a call in seconds.
 fn median(mut call: impl FnMut() -> Result<(), Error>) -> Result<f64, Error> {
@@ -48,11 +41,11 @@ fn main() -> Result<(), Error> {
     let bounds = solid.bounds().expect("a mesh has bounds");
     let frame = Frame::fitted(bounds.min, bounds.max, 20)?;
     let solid = Prepared::new(AnySolid::new(solid));
-    let mut state = 0;
+    let mut random = Random(0);
     let mut within = |margin: f64| {
         [0, 1, 2].map(|axis| {
             let extent = bounds.max[axis] - bounds.min[axis];
-            let x = bounds.min[axis] + ((1.0 + 2.0 * margin) * share(&mut state) - margin) * extent;
+            let x = bounds.min[axis] + ((1.0 + 2.0 * margin) * random.unit() - margin) * extent;
             f64::from(x as f32)
         })
     };

@@ -14,6 +14,7 @@ use leafless::{
     Affine, Control, Csg, Frame, Membership, Octree, Ray, Rule, Solid, SurfaceOptions, build, build_extended,
     cast_rays, contains, file, measure,
 };
+use leafless_testkit::Random;
 use std::hint::black_box;
 
 fn plate(is_turned: bool) -> Csg {
@@ -28,15 +29,6 @@ fn plate(is_turned: bool) -> Csg {
     // Twice 3-4-5, around z and around x.
     let turn = [[0.6, -0.64, 0.48, 0.0], [0.8, 0.48, -0.36, 0.0], [0.0, 0.6, 0.8, 0.0]];
     if is_turned { plate.placed(&Affine::new(turn).unwrap()).unwrap() } else { plate }
-}
-
-struct Random(u64);
-
-impl Random {
-    fn between(&mut self, low: f64, high: f64) -> f64 {
-        self.0 = self.0.wrapping_mul(6364136223846793005).wrapping_add(1442695040888963407);
-        low + (high - low) * ((self.0 >> 11) as f64 / (1u64 << 53) as f64)
-    }
 }
 
 fn speed(c: &mut Criterion) {

@@ -5,17 +5,14 @@
 //! ```
 //!
 //! A torus of half a million triangles and a quarter of a million vertices, in files of every format that
-//! `fuzz/` can write. Coordinates have six places, as most programs write them. `weld` is the last step of
-//! every reader alone. `benches/README.md` has figures measured with this file, and explains what limits
-//! them.
+//! the fuzz targets can write. Coordinates have six places, as most programs write them. `weld` is the last
+//! step of every reader alone. `benches/README.md` has figures measured with this file, and explains what
+//! limits them.
 
 use criterion::{BatchSize, Criterion, Throughput, criterion_group, criterion_main};
 use leafless::{TriangleMesh, exchange};
+use leafless_testkit::fuzz::meshes;
 use std::hint::black_box;
-
-#[path = "../fuzz/bodies/meshes.rs"]
-#[allow(dead_code)]
-mod meshes;
 
 /// A torus of 2 n² triangles; coordinates have six places if they are `short`.
 fn torus(n: u32, short: bool) -> TriangleMesh {

@@ -1,7 +1,6 @@
 //! Any bytes as attributes, honest or not, and their uses, against dense arrays.
 #![no_main]
 
-#[path = "../bodies/attributes.rs"]
-mod attributes;
+use leafless_testkit::fuzz;
 
-libfuzzer_sys::fuzz_target!(|data: &[u8]| attributes::attributes(data));
+libfuzzer_sys::fuzz_target!(|data: &[u8]| fuzz::attributes(data));

@@ -1,7 +1,6 @@
 //! Any bytes as a solid. Its boundaries are closed, and nothing contradicts their proven deviation.
 #![no_main]
 
-#[path = "../bodies/surfaces.rs"]
-mod surfaces;
+use leafless_testkit::fuzz;
 
-libfuzzer_sys::fuzz_target!(|data: &[u8]| surfaces::boundaries(data));
+libfuzzer_sys::fuzz_target!(|data: &[u8]| fuzz::boundaries(data));

@@ -1,7 +1,6 @@
 //! Any bytes as two solids that touch or nearly do. No answer contradicts another one.
 #![no_main]
 
-#[path = "../bodies/contacts.rs"]
-mod contacts;
+use leafless_testkit::fuzz;
 
-libfuzzer_sys::fuzz_target!(|data: &[u8]| contacts::contacts(data));
+libfuzzer_sys::fuzz_target!(|data: &[u8]| fuzz::contacts(data));

@@ -1,7 +1,6 @@
 //! Any bytes as a solid. Its contours are closed, and nothing contradicts their proven deviation.
 #![no_main]
 
-#[path = "../bodies/surfaces.rs"]
-mod surfaces;
+use leafless_testkit::fuzz;
 
-libfuzzer_sys::fuzz_target!(|data: &[u8]| surfaces::contours(data));
+libfuzzer_sys::fuzz_target!(|data: &[u8]| fuzz::contours(data));

@@ -1,8 +1,6 @@
 //! Any bytes as a mesh that answers rays, points and distances without cells.
 #![no_main]
 
-#[allow(dead_code)]
-#[path = "../bodies/direct.rs"]
-mod direct;
+use leafless_testkit::fuzz;
 
-libfuzzer_sys::fuzz_target!(|data: &[u8]| direct::direct(data));
+libfuzzer_sys::fuzz_target!(|data: &[u8]| fuzz::direct(data));

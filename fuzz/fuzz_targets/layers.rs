@@ -1,8 +1,6 @@
 //! Any bytes as a closed mesh that is stored with the planes of its facets.
 #![no_main]
 
-#[allow(dead_code)]
-#[path = "../bodies/direct.rs"]
-mod direct;
+use leafless_testkit::fuzz;
 
-libfuzzer_sys::fuzz_target!(|data: &[u8]| direct::layers(data));
+libfuzzer_sys::fuzz_target!(|data: &[u8]| fuzz::layers(data));

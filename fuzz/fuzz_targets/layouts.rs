@@ -2,7 +2,6 @@
 //! solids.
 #![no_main]
 
-#[path = "../bodies/layouts.rs"]
-mod layouts;
+use leafless_testkit::fuzz;
 
-libfuzzer_sys::fuzz_target!(|data: &[u8]| layouts::layouts(data));
+libfuzzer_sys::fuzz_target!(|data: &[u8]| fuzz::layouts(data));

@@ -1,7 +1,6 @@
 //! Any bytes as scenes of unit cells and queries, against integer counts.
 #![no_main]
 
-#[path = "../bodies/measures.rs"]
-mod measures;
+use leafless_testkit::fuzz;
 
-libfuzzer_sys::fuzz_target!(|data: &[u8]| measures::measures(data));
+libfuzzer_sys::fuzz_target!(|data: &[u8]| fuzz::measures(data));

@@ -1,9 +1,7 @@
 //! Any bytes through every reader of meshes.
 #![no_main]
 
-#[path = "../bodies/mod.rs"]
-mod bodies;
-
+use leafless_testkit::fuzz;
 use libfuzzer_sys::fuzz_target;
 
-fuzz_target!(|data: &[u8]| bodies::meshes::meshes(data));
+fuzz_target!(|data: &[u8]| fuzz::meshes::meshes(data));

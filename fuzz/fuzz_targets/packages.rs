@@ -1,8 +1,6 @@
 //! Any bytes as 3MF packages and their parts.
 #![no_main]
 
-#[allow(dead_code)]
-#[path = "../bodies/packages.rs"]
-mod packages;
+use leafless_testkit::fuzz;
 
-libfuzzer_sys::fuzz_target!(|data: &[u8]| packages::packages(data));
+libfuzzer_sys::fuzz_target!(|data: &[u8]| fuzz::packages::packages(data));

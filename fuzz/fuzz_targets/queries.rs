@@ -1,13 +1,11 @@
 //! All queries of an unverified tree.
 #![no_main]
 
-#[path = "../bodies/mod.rs"]
-mod bodies;
-
+use leafless_testkit::fuzz;
 use libfuzzer_sys::{fuzz_mutator, fuzz_target, fuzzer_mutate};
 
-fuzz_target!(|data: &[u8]| bodies::queries(data));
+fuzz_target!(|data: &[u8]| fuzz::queries(data));
 
 fuzz_mutator!(|data: &mut [u8], size: usize, max_size: usize, seed: u32| {
-    bodies::mutate_pair(data, size, max_size, seed, &mut fuzzer_mutate)
+    fuzz::mutate_pair(data, size, max_size, seed, &mut fuzzer_mutate)
 });

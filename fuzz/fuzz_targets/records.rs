@@ -1,7 +1,6 @@
 //! Any bytes as the arrays of voxel records.
 #![no_main]
 
-#[path = "../bodies/records.rs"]
-mod records;
+use leafless_testkit::fuzz;
 
-libfuzzer_sys::fuzz_target!(|data: &[u8]| records::records(data));
+libfuzzer_sys::fuzz_target!(|data: &[u8]| fuzz::records(data));

@@ -1,11 +1,9 @@
 //! Any bytes as a scene.
 #![no_main]
 
-#[path = "../bodies/scenes.rs"]
-mod scenes;
-
+use leafless_testkit::fuzz;
 use libfuzzer_sys::fuzz_target;
 
 fuzz_target!(|data: &[u8]| {
-    scenes::scenes(data);
+    fuzz::scenes::scenes(data);
 });

@@ -1,8 +1,6 @@
 //! Any bytes as files of volumes.
 #![no_main]
 
-#[allow(dead_code)]
-#[path = "../bodies/volumes.rs"]
-mod volumes;
+use leafless_testkit::fuzz;
 
-libfuzzer_sys::fuzz_target!(|data: &[u8]| volumes::volumes(data));
+libfuzzer_sys::fuzz_target!(|data: &[u8]| fuzz::volumes::volumes(data));

@@ -1,13 +1,11 @@
 //! Any bytes through every way in.
 #![no_main]
 
-#[path = "../bodies/mod.rs"]
-mod bodies;
-
+use leafless_testkit::fuzz;
 use libfuzzer_sys::{fuzz_mutator, fuzz_target, fuzzer_mutate};
 
-fuzz_target!(|data: &[u8]| bodies::ways_in(data));
+fuzz_target!(|data: &[u8]| fuzz::ways_in(data));
 
 fuzz_mutator!(|data: &mut [u8], size: usize, max_size: usize, seed: u32| {
-    bodies::mutate_file(data, size, max_size, seed, &mut fuzzer_mutate)
+    fuzz::mutate_file(data, size, max_size, seed, &mut fuzzer_mutate)
 });

@@ -276,16 +276,7 @@ fn cross(a: [f64; 3], b: [f64; 3]) -> [f64; 3] {
 mod tests {
     use super::*;
     use crate::cut::Slab;
-
-    /// Random integers, so that all sums below are exact and planes meet in all degenerate ways.
-    struct Random(u64);
-
-    impl Random {
-        fn below(&mut self, end: u64) -> f64 {
-            self.0 = self.0.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
-            ((self.0 >> 33) % end) as f64
-        }
-    }
+    use leafless_testkit::Random;
 
     /// The law of an enclosure at one point: whether it is certainly inside, and whether it may be inside.
     fn at(enclosure: &Enclosure, point: [f64; 3]) -> (bool, bool) {
@@ -300,24 +291,26 @@ mod tests {
 
     #[test]
     fn bounds_hold_for_all_points_and_meet() {
+        // Integers, so that all sums are exact and planes meet in all degenerate ways.
         let mut random = Random(5);
+        let mut whole = |end: u64| random.below(end) as f64;
         let grid = || (0..13).map(|i| f64::from(i) / 6.0 - 1.0);
         let (mut empty, mut exact) = (0, 0);
         for round in 0..4000 {
             let mut slabs = [Slab { normal: [0.0; 3], inner: 0.0, outer: 0.0 }; 3];
             let count = 1 + round % 3;
             for slab in &mut slabs[..count] {
-                slab.normal = [0; 3].map(|_| random.below(7) - 3.0);
-                slab.inner = random.below(33) / 4.0 - 4.0;
-                let width = random.below(3) * random.below(3) / 4.0;
+                slab.normal = [0; 3].map(|_| whole(7) - 3.0);
+                slab.inner = whole(33) / 4.0 - 4.0;
+                let width = whole(3) * whole(3) / 4.0;
                 slab.outer = slab.inner + width;
-                match random.below(12) as u32 {
+                match whole(12) as u32 {
                     0 => slab.inner = f64::NEG_INFINITY,
                     1 => slab.outer = f64::INFINITY,
                     _ => {}
                 }
             }
-            let join = if random.below(2) == 0.0 { SlabJoin::All } else { SlabJoin::Any };
+            let join = if whole(2) == 0.0 { SlabJoin::All } else { SlabJoin::Any };
             let enclosure = Enclosure { slabs, join, cone: f64::INFINITY };
             if slabs.iter().all(|slab| slab.normal == [0.0; 3]) {
                 assert_eq!(
@@ -327,7 +320,7 @@ mod tests {
                 continue;
             }
             let mut direction = [0.0; 3];
-            direction[random.below(3) as usize] = 2.0 * random.below(2) - 1.0;
+            direction[whole(3) as usize] = 2.0 * whole(2) - 1.0;
             let bound = upper(&enclosure, direction);
             assert!(bound <= 1.0);
             let found = witness(&enclosure, direction);

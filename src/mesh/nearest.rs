@@ -703,23 +703,10 @@ fn cross(a: &Point, b: &Point) -> Point {
 mod tests {
     use super::*;
     use alloc::vec;
+    use leafless_testkit::Random;
 
-    /// Random numbers from 0 to 1.
-    struct Random(u64);
-
-    impl Random {
-        fn next(&mut self) -> f64 {
-            self.0 = self.0.wrapping_mul(6364136223846793005).wrapping_add(1442695040888963407);
-            (self.0 >> 11) as f64 / (1_u64 << 53) as f64
-        }
-
-        fn point(&mut self, size: f64) -> Point {
-            array(|_| (self.next() - 0.5) * size)
-        }
-
-        fn below(&mut self, count: usize) -> usize {
-            (self.next() * count as f64) as usize
-        }
+    fn any_point(random: &mut Random, size: f64) -> Point {
+        array(|_| random.between(-0.5 * size, 0.5 * size))
     }
 
     /// Small triangles, large ones, slivers, needles, triangles without area, and some twice.
@@ -728,26 +715,26 @@ mod tests {
         let mut triangles: Vec<[u32; 3]> = Vec::new();
         while triangles.len() < count {
             let first = vertices.len() as u32;
-            if random.below(4) == 0 && !triangles.is_empty() {
-                let [a, b, c] = triangles[random.below(triangles.len())];
-                triangles.push([[a, b, c], [b, c, a], [c, b, a]][random.below(3)]);
+            if random.index(4) == 0 && !triangles.is_empty() {
+                let [a, b, c] = triangles[random.index(triangles.len())];
+                triangles.push([[a, b, c], [b, c, a], [c, b, a]][random.index(3)]);
                 continue;
             }
-            let at = random.point(1.0);
-            let size = [1.0, 0.1, 0.01][random.below(3)];
+            let at = any_point(random, 1.0);
+            let size = [1.0, 0.1, 0.01][random.index(3)];
             let corners: [Point; 3] = array(|_| {
-                let way = random.point(size);
+                let way = any_point(random, size);
                 array(|axis| at[axis] + way[axis])
             });
-            let thin = [1.0, 1e-3, 1e-6, 1e-9, 1e-15, 0.0][random.below(6)];
+            let thin = [1.0, 1e-3, 1e-6, 1e-9, 1e-15, 0.0][random.index(6)];
             let [a, b, c] = corners;
-            let along = random.next() * 1.5 - 0.25;
+            let along = random.between(-0.25, 1.25);
             let apex = array(|axis| a[axis] + along * (b[axis] - a[axis]) + thin * (c[axis] - a[axis]));
             vertices.extend([a, b, apex].map(|corner| corner.map(|x| x * scale)));
             triangles.push([first, first + 1, first + 2]);
-            if random.below(3) == 0 {
+            if random.index(3) == 0 {
                 // A neighbour.
-                vertices.push(random.point(1.0).map(|x| x * scale));
+                vertices.push(any_point(random, 1.0).map(|x| x * scale));
                 triangles.push([first + 1, first, first + 3]);
             }
         }
@@ -773,10 +760,10 @@ mod tests {
                 let tree = mesh.triangle_tree(&Control::default()).unwrap();
                 let mut hint = None;
                 for k in 0..200 {
-                    let mut point = random.point([1.0, 3.0, 1e9][k % 3]).map(|x| x * scale);
+                    let mut point = any_point(&mut random, [1.0, 3.0, 1e9][k % 3]).map(|x| x * scale);
                     if k % 5 == 0 {
                         // On the surface: at a corner, or the middle of an edge.
-                        let [a, b, _] = mesh.triangles()[random.below(mesh.triangles().len())];
+                        let [a, b, _] = mesh.triangles()[random.index(mesh.triangles().len())];
                         let [a, b] = [a, b].map(|v| mesh.vertices()[v as usize]);
                         point = if k % 2 == 0 { a } else { array(|axis| a[axis].midpoint(b[axis])) };
                     }
@@ -794,14 +781,14 @@ mod tests {
     fn triangles_that_share_the_nearest_point_are_equally_near() {
         // A fan around a vertex, and the same triangles again with other first corners.
         let mut random = Random(7);
-        let rim = (0..40).map(|_| random.point(2.0));
+        let rim = (0..40).map(|_| any_point(&mut random, 2.0));
         let vertices: Vec<Point> = core::iter::once([0.0, 0.0, 3.0]).chain(rim).collect();
         let fan = (1..40).map(|k| [0, k, k + 1]);
         let mesh =
             TriangleMesh::new(vertices, fan.clone().chain(fan.map(|[a, b, c]| [b, c, a])).collect()).unwrap();
         let tree = mesh.triangle_tree(&Control::default()).unwrap();
         for _ in 0..1000 {
-            let point = random.point(8.0);
+            let point = any_point(&mut random, 8.0);
             let found = tree.nearest(&point, None).unwrap();
             assert!(found.triangle < 39, "a later one is nearest");
             let square = |t: u32| square(&tree, t, &point);
@@ -860,21 +847,21 @@ mod tests {
                 let tree = mesh.triangle_tree(&Control::default()).unwrap();
                 for k in 0..20 {
                     let size = [2.0, 0.3, 1e-2, 1e-5, 0.0][k % 5];
-                    let mut centre = random.point([1.0, 2.0, 1e6][k % 3]);
+                    let mut centre = any_point(&mut random, [1.0, 2.0, 1e6][k % 3]);
                     if k % 2 == 0 {
-                        let [a, _, _] = mesh.triangles()[random.below(mesh.triangles().len())];
+                        let [a, _, _] = mesh.triangles()[random.index(mesh.triangles().len())];
                         centre = mesh.vertices()[a as usize].map(|x| x / scale);
                     }
-                    let half = random.point(size).map(f64::abs);
+                    let half = any_point(&mut random, size).map(f64::abs);
                     let min = array(|axis| (centre[axis] - half[axis]) * scale);
                     let max = array(|axis| (centre[axis] + half[axis]) * scale);
                     let mut seen = Seen(vec![false; mesh.triangles().len()]);
                     assert!(tree.visit_near(&Bounds { min, max }, &mut seen));
                     for sample in 0..100 {
                         let point = array(|axis| {
-                            let at = random.next();
+                            let at = random.unit();
                             let inside = min[axis] + at * (max[axis] - min[axis]);
-                            let on = [min[axis], max[axis], inside][random.below(3)];
+                            let on = [min[axis], max[axis], inside][random.index(3)];
                             (if sample % 2 == 0 { inside } else { on }).clamp(min[axis], max[axis])
                         });
                         let found = tree.nearest(&point, None).unwrap();

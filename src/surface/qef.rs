@@ -217,22 +217,14 @@ pub(super) fn eigen(matrix: [f64; 6]) -> ([f64; 3], [[f64; 3]; 3]) {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use leafless_testkit::Random;
 
-    struct Random(u64);
-
-    impl Random {
-        fn unit(&mut self) -> f64 {
-            self.0 = self.0.wrapping_mul(6364136223846793005).wrapping_add(1442695040888963407);
-            (self.0 >> 11) as f64 / (1u64 << 53) as f64
-        }
-
-        fn normal(&mut self) -> [f64; 3] {
-            loop {
-                let v = [0.0; 3].map(|_: f64| 2.0 * self.unit() - 1.0);
-                let length = sqrt(dot(v, v));
-                if length > 0.1 && length < 1.0 {
-                    return v.map(|c| c / length);
-                }
+    fn any_normal(random: &mut Random) -> [f64; 3] {
+        loop {
+            let v = [0.0; 3].map(|_: f64| random.between(-1.0, 1.0));
+            let length = sqrt(dot(v, v));
+            if length > 0.1 && length < 1.0 {
+                return v.map(|c| c / length);
             }
         }
     }
@@ -241,7 +233,7 @@ mod tests {
     fn eigenvectors_make_the_matrix() {
         let mut random = Random(1);
         for _ in 0..2000 {
-            let matrix: [f64; 6] = core::array::from_fn(|_| 2.0 * random.unit() - 1.0);
+            let matrix: [f64; 6] = core::array::from_fn(|_| random.between(-1.0, 1.0));
             let (values, vectors) = eigen(matrix);
             for i in 0..3 {
                 let image = multiplied(&matrix, vectors[i]);
@@ -262,7 +254,7 @@ mod tests {
         let mut tried = 0;
         while tried < 500 {
             let corner = [0.0; 3].map(|_: f64| random.unit());
-            let normals = [random.normal(), random.normal(), random.normal()];
+            let normals = [0; 3].map(|_| any_normal(&mut random));
             let mut qef = Qef::default();
             for normal in normals {
                 for _ in 0..2 {
@@ -313,7 +305,7 @@ mod tests {
             let mut qef = Qef::default();
             for _ in 0..4 {
                 let point = [0.0; 3].map(|_: f64| random.unit());
-                qef.add(point, Some(random.normal()));
+                qef.add(point, Some(any_normal(&mut random)));
             }
             let found = qef.solve();
             assert!(found.at.iter().all(|c| (0.0..=1.0).contains(c)), "{found:?}");

@@ -1,41 +1,24 @@
 //! Checks of interval ends beside cell centres against exact rationals, on every way into and out of
 //! tri-dexel models.
 
-use crate::common::exact::Exact;
 use leafless::dexel::{Dexel, DexelEditor, DexelEnd, DexelEnds, DexelFormat, DexelNormals, TriDexelRef};
 use leafless::op::DexelOptions;
 use leafless::{
     AnySolid, Control, Csg, Error, FillRule, Frame, MeshSolid, Rule, TriDexel, TriangleMesh, build, dexelize,
     file,
 };
+use leafless_testkit::Random;
+use leafless_testkit::exact::Exact;
 
-struct Random(u64);
-
-impl Random {
-    fn next(&mut self) -> u64 {
-        self.0 = self.0.wrapping_mul(6364136223846793005).wrapping_add(1442695040888963407);
-        self.0 >> 33
-    }
-
-    fn below(&mut self, n: u64) -> u64 {
-        self.next() % n
-    }
-
-    /// Returns a random number from 0 to 1.
-    fn unit(&mut self) -> f64 {
-        self.next() as f64 / (1u64 << 31) as f64 + self.next() as f64 / (1u64 << 62) as f64
-    }
-
-    /// Returns a frame that is not dyadic. Its origin lies at most 2^far of its edge away from zero.
-    fn frame(&mut self, depths: std::ops::RangeInclusive<u8>, far: i32) -> Frame {
-        let depth = depths.start() + self.below(u64::from(depths.end() - depths.start()) + 1) as u8;
-        let edge = (0.5 + self.unit()) * 10.0f64.powi(self.below(13) as i32 - 6);
-        let origin = [0; 3].map(|_| {
-            let power = self.below(far as u64 + 8) as i32 - 8;
-            (self.unit() - 0.5) * edge * 2.0f64.powi(power)
-        });
-        Frame::new(origin, edge, depth).unwrap()
-    }
+/// Returns a frame that is not dyadic. Its origin lies at most 2^far of its edge away from zero.
+fn any_frame(random: &mut Random, depths: std::ops::RangeInclusive<u8>, far: i32) -> Frame {
+    let depth = depths.start() + random.below(u64::from(depths.end() - depths.start()) + 1) as u8;
+    let edge = (0.5 + random.unit()) * 10.0f64.powi(random.below(13) as i32 - 6);
+    let origin = [0; 3].map(|_| {
+        let power = random.below(far as u64 + 8) as i32 - 8;
+        (random.unit() - 0.5) * edge * 2.0f64.powi(power)
+    });
+    Frame::new(origin, edge, depth).unwrap()
 }
 
 fn centre(frame: &Frame, axis: usize, k: u32) -> Exact {
@@ -188,7 +171,7 @@ fn ends_from_a_host_keep_their_side_of_every_centre() {
     let mut random = Random(5);
     let mut wrong = 0;
     for round in 0..4000 {
-        let frame = random.frame(1..=4, if round % 4 == 0 { 50 } else { 12 });
+        let frame = any_frame(&mut random, 1..=4, if round % 4 == 0 { 50 } else { 12 });
         let (axis, n) = ((random.below(3)) as usize, frame.cells());
         // Some ends, each within a few ulps of a centre.
         let mut ends: Vec<f64> = (0..2 + 2 * random.below(3))
@@ -235,7 +218,7 @@ fn ends_from_a_host_keep_their_side_of_every_centre() {
 fn ends_in_cells_are_exact_anywhere() {
     let mut random = Random(9);
     for _ in 0..500 {
-        let frame = random.frame(2..=4, 70);
+        let frame = any_frame(&mut random, 2..=4, 70);
         let (axis, n) = (random.below(3) as usize, f64::from(frame.cells()));
         let mut cells: Vec<f64> = (0..6)
             .map(|_| {
@@ -311,7 +294,7 @@ fn cube_mesh(low: [f64; 3], high: [f64; 3]) -> TriangleMesh {
 fn solids_operations_and_edits_keep_sides() {
     let (mut random, control) = (Random(77), Control::default());
     for round in 0..150 {
-        let frame = random.frame(2..=3, 10);
+        let frame = any_frame(&mut random, 2..=3, 10);
         let n = u64::from(frame.cells());
         let mut corner = |frame: &Frame, from: u64, to: u64| {
             [0, 1, 2].map(|axis| {

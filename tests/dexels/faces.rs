@@ -7,21 +7,9 @@ use leafless::{
     Affine, AnySolid, Callback, Control, Csg, FillRule, Frame, MeshSolid, TriangleMesh, Verdict, Volume,
     dexelize,
 };
+use leafless_testkit::Random;
 
 const EDGE: f64 = 2.0;
-
-struct Random(u64);
-
-impl Random {
-    fn below(&mut self, n: u64) -> u64 {
-        self.0 = self.0.wrapping_mul(6364136223846793005).wrapping_add(1442695040888963407);
-        (self.0 >> 33) % n
-    }
-
-    fn unit(&mut self) -> f64 {
-        self.below(1 << 30) as f64 / f64::from(1 << 30)
-    }
-}
 
 /// Intervals that are in order and do not touch.
 type Truth = Vec<[f64; 2]>;

@@ -1,6 +1,5 @@
 //! Octrees of tri-dexel models: how ends decide cells, and how materials are carried over.
 
-use crate::common::Random;
 use leafless::attribute::dexel_materials;
 use leafless::dexel::{Dexel, DexelEnd, DexelFormat, DexelNormals, TriDexelRef};
 use leafless::op::{DexelOptions, octree_from_dexel_ends, octree_from_dexels};
@@ -9,6 +8,7 @@ use leafless::{
     Control, Csg, Error, FillRule, Frame, MeshSolid, SurfaceOptions, Tag, TriDexel, build_extended, dexelize,
     measure,
 };
+use leafless_testkit::Random;
 
 const CONTROL: Control<'static> =
     Control { threads: 1, max_nodes: None, max_bytes: None, max_splits: None, cancel: None, progress: None };

@@ -1,10 +1,5 @@
 //! Tri-dexel models.
 
-#[path = "../common/mod.rs"]
-mod common;
-#[path = "../../fuzz/bodies/dexel_algebra.rs"]
-mod dexel_algebra;
-
 mod ends;
 mod faces;
 mod made_of;

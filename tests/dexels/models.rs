@@ -1,6 +1,5 @@
 //! Tri-dexel models: dexelisation against samples and analytic crossings, set algebra against point sets.
 
-use crate::{common, dexel_algebra};
 use leafless::dexel::{DexelEditor, DexelEnds, DexelFormat, DexelNormals};
 use leafless::op::DexelOptions;
 use leafless::solid::HalfSpace;
@@ -8,6 +7,7 @@ use leafless::{
     Affine, AnySolid, Control, Csg, Error, FillRule, Frame, MeshSolid, Octree, Rule, Solid, TriDexel,
     TriangleMesh, build, dexelize,
 };
+use leafless_testkit::fuzz::dexel_algebra;
 
 fn options() -> DexelOptions {
     DexelOptions::default()
@@ -397,7 +397,7 @@ fn triangles_tell_their_numbers_and_normals() {
 
 /// A part with many intervals: balls and boxes of several materials at random places.
 fn random_part(seed: u64, frame: &Frame, options: &DexelOptions) -> TriDexel {
-    let mut random = common::Random(seed);
+    let mut random = leafless_testkit::Random(seed);
     let control = Control::default();
     let mut parts = Vec::new();
     for material in 1..5 {
@@ -608,7 +608,7 @@ fn changes_in_place_are_set_operations() {
         let mut editor = DexelEditor::new(whole.view()).unwrap();
         let mut by_solids = DexelEditor::new(whole.view()).unwrap();
         assert_eq!(editor.directions(), options.directions);
-        let mut random = common::Random(seed);
+        let mut random = leafless_testkit::Random(seed);
         let volumes = |model: &TriDexel| {
             [0, 1, 2].map(|axis| model.view().statistics(axis).map_or(0.0, |statistics| statistics.volume))
         };
@@ -672,9 +672,9 @@ fn what_the_fuzzer_found_interesting() {
     for entry in std::fs::read_dir(corpus).into_iter().flatten() {
         dexel_algebra::dexel_algebra(&std::fs::read(entry.unwrap().path()).unwrap());
     }
-    let mut random = common::Random(23);
+    let mut random = leafless_testkit::Random(23);
     for _ in 0..300 {
-        let mut data: Vec<u8> = (0..random.below(500)).map(|_| random.next() as u8).collect();
+        let mut data: Vec<u8> = (0..random.below(500)).map(|_| random.bits() as u8).collect();
         // The numbers of triangles equal those of rays.
         if let Some(form) = data.get_mut(1) {
             *form = *form & 127 | (random.below(2) as u8) << 7;

@@ -1,10 +1,10 @@
 //! Rays of open meshes, against the winding number by its definition: a sum of solid angles over all
 //! triangles.
 
-use crate::common::Random;
 use leafless::dexel::{DexelEnds, DexelFormat};
 use leafless::op::{DexelOptions, octree_from_dexels};
 use leafless::{Control, FillRule, Frame, MeshSolid, Rule, TriDexel, TriangleMesh, build, dexelize};
+use leafless_testkit::Random;
 use std::f64::consts::{PI, TAU};
 
 fn only(axis: usize, ends: DexelEnds) -> DexelOptions {

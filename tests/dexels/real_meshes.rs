@@ -1,8 +1,6 @@
 //! Tri-dexel models of real meshes: samples, surfaces there and back, edges, and the losses of one, two and
 //! three directions.
 
-use crate::common;
-use crate::common::model;
 use glam::DVec3;
 use leafless::dexel::{DexelEnds, DexelFormat, DexelNormals};
 use leafless::exchange::{MeshOptions, read_mesh};
@@ -12,6 +10,7 @@ use leafless::{
     Control, Csg, FillRule, Frame, Membership, MeshSolid, Rule, TriDexel, TriangleMesh, build, dexelize,
     difference, intersection, union, xor,
 };
+use leafless_testkit::model;
 use std::collections::HashMap;
 
 fn read(name: &str) -> Option<TriangleMesh> {
@@ -134,7 +133,7 @@ fn to_triangle(p: DVec3, [a, b, c]: [DVec3; 3]) -> f64 {
 
 /// Returns at most `most` points of a mesh: vertices and inner points of triangles.
 fn points(mesh: &TriangleMesh, most: usize) -> Vec<(DVec3, DVec3)> {
-    let mut random = common::Random(17);
+    let mut random = leafless_testkit::Random(17);
     (0..most)
         .map(|_| {
             let triangle = mesh.triangles()[random.below(mesh.triangles().len() as u64) as usize];
@@ -172,7 +171,7 @@ fn surfaces_lead_back_to_closed_meshes() {
         for (way, extract, most) in ways {
             let (surface, report) = extract(model.view(), &control).unwrap();
             assert_eq!((report.without_rays, report.disagreeing), (0, 0), "{name}");
-            common::surfaces::assert_balanced(&surface);
+            leafless_testkit::surfaces::assert_balanced(&surface);
             assert!(surface.volume() > 0.0);
             let far = points(&surface, 4000).iter().map(|&(p, _)| source.distance(p)).fold(0.0, f64::max);
             assert!(far <= most, "{name}, {way}: {} cells from the source", far / cell);
@@ -372,7 +371,7 @@ fn parts_of_the_paper_have_their_volumes() {
     for part in dexel_parts::parts(7, &control).unwrap() {
         part.model.view().check().unwrap();
         let mesh = part.surface(&control).unwrap();
-        common::surfaces::assert_balanced(&mesh);
+        leafless_testkit::surfaces::assert_balanced(&mesh);
         let off = mesh.volume() / part.volume - 1.0;
         println!("{}: {off:e}", part.name);
         assert!(off.abs() < 1e-3, "{}: {} for {}", part.name, mesh.volume(), part.volume);

@@ -10,6 +10,7 @@ use leafless::{
     AnySolid, Classifier, Control, Csg, Error, FillRule, Frame, Membership, MeshSolid, Proof, Rule, Solid,
     Tag, TriDexel, TriangleMesh, build, dexelize, measure,
 };
+use leafless_testkit::Random;
 use std::collections::{BTreeMap, BTreeSet};
 use std::f64::consts::PI;
 
@@ -21,19 +22,6 @@ const ALL: [bool; 3] = [true; 3];
 
 /// The other two axes of each axis, ascending.
 const OTHERS: [[usize; 2]; 3] = [[1, 2], [0, 2], [0, 1]];
-
-struct Random(u64);
-
-impl Random {
-    fn below(&mut self, end: u32) -> u32 {
-        self.0 = self.0.wrapping_mul(6364136223846793005).wrapping_add(1442695040888963407);
-        ((self.0 >> 33) % u64::from(end)) as u32
-    }
-
-    fn unit(&mut self) -> f64 {
-        f64::from(self.below(1 << 30)) / f64::from(1 << 30)
-    }
-}
 
 fn plain_end(at: f64) -> DexelEnd {
     DexelEnd::new(at)
@@ -48,8 +36,8 @@ fn soup(frame: &Frame, format: DexelFormat, directions: [bool; 3], seed: u64) ->
         let mut ends: Vec<f64> = (0..2 * random.below(5))
             .map(|_| match random.below(4) {
                 // On centres, on planes of the lattice, and anywhere.
-                0 => f64::from(random.below(frame.cells())) + 0.5,
-                1 => f64::from(random.below(frame.cells() + 1)),
+                0 => random.below(frame.cells().into()) as f64 + 0.5,
+                1 => random.below(u64::from(frame.cells()) + 1) as f64,
                 _ => random.unit() * cells,
             })
             .collect();
@@ -61,7 +49,7 @@ fn soup(frame: &Frame, format: DexelFormat, directions: [bool; 3], seed: u64) ->
                 let normal = [0.0; 3].map(|_: f64| random.unit() - 0.5);
                 DexelEnd { normal: Some(normal), ..plain_end(low[axis] + at * cell) }
             };
-            Dexel { start: end(ends[0]), end: end(ends[1]), material: random.below(3) }
+            Dexel { start: end(ends[0]), end: end(ends[1]), material: random.below(3) as u32 }
         }));
         Ok(())
     };

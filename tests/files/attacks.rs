@@ -1,8 +1,6 @@
 //! Attacks that are fuzz targets, too: arbitrary bytes as scenes of unit cells and as attributes, against
 //! dense arrays.
 
-use crate::common::repeated;
-use crate::{attributes, contacts, direct, layouts, measures, records, surfaces};
 use leafless::attribute::{
     Attribute, Criterion, Detail, FillOptions, MovedAttribute, ScalarType, ValueRange, ValueType,
     fill_channel,
@@ -10,27 +8,18 @@ use leafless::attribute::{
 use leafless::query::StopReason;
 use leafless::voxel::VoxelRecords;
 use leafless::{Affine, Bounds, Cell, Control, Csg, Error, Frame, Interval, clearance};
+use leafless_testkit::fuzz::{
+    attributes, boundaries, contacts, contours, direct, layers, layouts, measures, records,
+};
+use leafless_testkit::{Random, repeated};
 use std::path::Path;
-
-/// Pseudo-random numbers (splitmix64). A seed gives the same numbers everywhere.
-struct Random(u64);
-
-impl Random {
-    fn next(&mut self) -> u64 {
-        self.0 = self.0.wrapping_add(0x9E37_79B9_7F4A_7C15);
-        let mut x = self.0;
-        x = (x ^ x >> 30).wrapping_mul(0xBF58_476D_1CE4_E5B9);
-        x = (x ^ x >> 27).wrapping_mul(0x94D0_49BB_1331_11EB);
-        x ^ x >> 31
-    }
-}
 
 /// Runs a fuzz target's body on inputs that are the same every time.
 fn any_bytes(body: fn(&[u8]), seeds: std::ops::Range<u64>, most: u64) {
     for seed in seeds {
         let mut random = Random(seed);
-        let length = 1 + random.next() % most;
-        let data: Vec<u8> = (0..length).map(|_| random.next() as u8).collect();
+        let length = 1 + random.bits() % most;
+        let data: Vec<u8> = (0..length).map(|_| random.bits() as u8).collect();
         // A failing test prints its input.
         let result = std::panic::catch_unwind(|| body(&data));
         assert!(result.is_ok(), "input {seed}: {data:?}");
@@ -139,103 +128,103 @@ fn what_is_no_cell_has_no_children_among_records() {
 
 #[test]
 fn what_the_fuzzer_found_interesting() {
-    corpus("attributes", attributes::attributes);
-    corpus("records", records::records);
-    corpus("direct", direct::direct);
+    corpus("attributes", attributes);
+    corpus("records", records);
+    corpus("direct", direct);
 }
 
 #[test]
 fn measures_that_the_fuzzer_found_interesting() {
-    corpus("measures", measures::measures);
+    corpus("measures", measures);
 }
 
 #[test]
 fn contacts_that_the_fuzzer_found_interesting() {
-    corpus("contacts", contacts::contacts);
+    corpus("contacts", contacts);
 }
 
 #[test]
 fn layers_that_the_fuzzer_found_interesting() {
-    corpus("layers", direct::layers);
+    corpus("layers", layers);
 }
 
 #[test]
 fn boundaries_that_the_fuzzer_found_interesting() {
-    corpus("boundaries", surfaces::boundaries);
+    corpus("boundaries", boundaries);
 }
 
 #[test]
 fn contours_that_the_fuzzer_found_interesting() {
-    corpus("contours", surfaces::contours);
+    corpus("contours", contours);
 }
 
 #[test]
 fn layouts_are_proven() {
-    corpus("layouts", layouts::layouts);
+    corpus("layouts", layouts);
 }
 
 #[test]
 fn solids_in_contact() {
-    any_bytes(contacts::contacts, 0..repeated(70, 200), 40);
+    any_bytes(contacts, 0..repeated(70, 200), 40);
 }
 
 #[test]
 fn surfaces_of_expressions_are_closed_and_as_near_as_is_said() {
-    any_bytes(surfaces::boundaries, 0..repeated(10, 30), 40);
+    any_bytes(boundaries, 0..repeated(10, 30), 40);
 }
 
 #[test]
 fn contours_of_anything_are_closed_and_as_near_as_is_said() {
-    any_bytes(surfaces::contours, 0..repeated(10, 30), 40);
+    any_bytes(contours, 0..repeated(10, 30), 40);
 }
 
 #[test]
 #[ignore = "minutes"]
 fn more_surfaces_are_closed_and_as_near_as_is_said() {
-    any_bytes(surfaces::boundaries, 30..4000, 40);
-    any_bytes(surfaces::contours, 30..4000, 40);
+    any_bytes(boundaries, 30..4000, 40);
+    any_bytes(contours, 30..4000, 40);
 }
 
 #[test]
 fn scenes_of_unit_cells_are_measured() {
-    any_bytes(measures::measures, 0..repeated(700, 2000), 160);
+    any_bytes(measures, 0..repeated(700, 2000), 160);
 }
 
 #[test]
 #[ignore = "minutes"]
 fn more_scenes_of_unit_cells_are_measured() {
-    any_bytes(measures::measures, 2000..100_000, 160);
+    any_bytes(measures, 2000..100_000, 160);
 }
 
 #[test]
 fn attributes_are_filled_in_and_carried() {
-    any_bytes(attributes::attributes, 0..repeated(1000, 3000), 120);
+    any_bytes(attributes, 0..repeated(1000, 3000), 120);
 }
 
 #[test]
 #[ignore = "minutes"]
 fn more_attributes_are_filled_in_and_carried() {
-    any_bytes(attributes::attributes, 3000..300_000, 120);
+    any_bytes(attributes, 3000..300_000, 120);
 }
 
 #[test]
 fn any_arrays_are_records_or_refused() {
-    any_bytes(records::records, 0..repeated(1300, 4000), 200);
+    any_bytes(records, 0..repeated(1300, 4000), 200);
 }
 
 #[test]
 #[ignore = "minutes"]
 fn more_arrays_are_records_or_refused() {
-    any_bytes(records::records, 4000..400_000, 200);
+    any_bytes(records, 4000..400_000, 200);
 }
 
 #[test]
 fn meshes_answer_rays_points_and_distances() {
-    any_bytes(direct::direct, 0..repeated(700, 2000), 160);
+    any_bytes(direct, 0..repeated(700, 2000), 160);
 }
 
 #[test]
 #[ignore = "minutes"]
 fn more_meshes_answer_rays_points_and_distances() {
-    any_bytes(direct::direct, 2000..200_000, 160);
+    any_bytes(direct, 2000..200_000, 160);
 }

@@ -3,14 +3,13 @@
 #![cfg(feature = "std")]
 
 // Its `main` is the program that writes the vectors.
-#[allow(dead_code)]
-use crate::bodies::Aligned;
 use crate::make_vectors::dexel_vectors::{self, Dexels, ValidDexels};
 use crate::make_vectors::{Way, number, put, seal};
 use leafless::dexel::{DexelEditor, DexelEnds, DexelFormat, DexelNormals, TriDexelRef};
 use leafless::error::FormatError;
 use leafless::op::DexelOptions;
 use leafless::{Control, Csg, Error, Frame, Metadata, TriDexel, dexelize, file, file::dexels};
+use leafless_testkit::{Aligned, Random};
 use std::path::{Path, PathBuf};
 
 const CONTROL: Control<'static> =
@@ -424,31 +423,28 @@ fn asked(model: &TriDexel) {
 
 #[test]
 fn whatever_the_arrays_say_reading_is_safe_and_operations_refuse() {
-    let mut state = 1u64;
-    let mut random = |end: usize| {
-        state = state.wrapping_mul(6364136223846793005).wrapping_add(1442695040888963407);
-        (state >> 33) as usize % end
-    };
+    let mut random = Random(1);
     let (mut let_in, mut sound) = (0, 0);
     for round in 0..1500 {
-        let form = forms().nth(random(168)).unwrap();
+        let form = forms().nth(random.index(168)).unwrap();
         let mut bytes = Dexels::random(round, 1 + round as u8 % 4, form).bytes();
         let probe = file::probe_bytes(&bytes).unwrap();
-        for _ in 0..1 + random(4) {
-            let section = &probe.sections[random(probe.sections.len())];
+        for _ in 0..1 + random.index(4) {
+            let section = &probe.sections[random.index(probe.sections.len())];
             let (start, length) = (section.offset as usize, section.length as usize);
-            let at = start + random(length);
-            match random(4) {
-                0 => bytes[at] ^= 1 << random(8),
-                1 => bytes[start..start + length].fill([0, 0xFF, 0x7F, 0x80][random(4)]),
+            let at = start + random.index(length);
+            match random.index(4) {
+                0 => bytes[at] ^= 1 << random.index(8),
+                1 => bytes[start..start + length].fill([0, 0xFF, 0x7F, 0x80][random.index(4)]),
                 2 => {
-                    let four = start + random(length / 4 + 1) * 4;
-                    let value = [0, u32::MAX as u64, 0x7FF0_0000, 0x8000_0000, random(100) as u64][random(5)];
+                    let four = start + random.index(length / 4 + 1) * 4;
+                    let value = [0, u32::MAX as u64, 0x7FF0_0000, 0x8000_0000, random.index(100) as u64]
+                        [random.index(5)];
                     if four + 4 <= start + length {
                         put(&mut bytes, four, value, 4);
                     }
                 }
-                _ => bytes[at] = random(256) as u8,
+                _ => bytes[at] = random.index(256) as u8,
             }
         }
         seal(&mut bytes);

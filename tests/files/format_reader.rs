@@ -6,10 +6,9 @@
 #![cfg(all(unix, feature = "std"))]
 
 // Its `main` is the program that writes the vectors.
-use crate::bodies::Random;
-#[allow(dead_code)]
-use crate::{bodies, make_vectors};
+use crate::make_vectors;
 use leafless::{Control, Membership, Octree, Proof, Tag, contains, file, file::dexels};
+use leafless_testkit::{Random, fuzz};
 use std::io::Write;
 use std::path::{Path, PathBuf};
 use std::process::{Command, Stdio};
@@ -159,13 +158,13 @@ fn points(tree: &Octree, random: &mut Random) -> Vec<[f64; 3]> {
     let frame = tree.frame();
     let mut coordinate = |axis: usize| {
         let cells = frame.cells() as u64 + 2;
-        let plane = frame.origin()[axis] + (random.next() % cells) as f64 * frame.cell_size();
-        match random.below(5) {
+        let plane = frame.origin()[axis] + (random.bits() % cells) as f64 * frame.cell_size();
+        match random.index(5) {
             0 => plane,
             1 => plane.next_up(),
             2 => plane.next_down(),
             3 => plane + frame.cell_size() / 3.0,
-            _ => frame.origin()[axis] + frame.edge() * (random.below(1000) as f64 / 990.0 - 0.005),
+            _ => frame.origin()[axis] + frame.edge() * (random.index(1000) as f64 / 990.0 - 0.005),
         }
     };
     (0..500).map(|_| [0, 1, 2].map(&mut coordinate)).collect()
@@ -185,7 +184,7 @@ fn it_agrees_with_the_library_on_what_the_library_writes() {
     let scratch = tempfile::tempdir().unwrap();
     let path = scratch.path().join("tree.lfl");
     let mut random = Random(1);
-    for tree in bodies::seeds::trees() {
+    for tree in fuzz::seeds::trees() {
         file::save(&tree, &path).unwrap();
         let (code, printed) = run(&[], &path, "");
         assert_eq!(code, 0, "{printed}");
@@ -272,16 +271,16 @@ fn it_agrees_with_the_library_on_tri_dexel_models() {
     let path = scratch.path().join("model.lfl");
     let mut random = Random(3);
     for seed in 0..60 {
-        let form = (0x20..=0xFFu8).filter(|form| form & 6 != 6).nth(random.below(168)).unwrap();
+        let form = (0x20..=0xFFu8).filter(|form| form & 6 != 6).nth(random.index(168)).unwrap();
         let mut bytes = make_vectors::dexel_vectors::Dexels::random(seed, 1 + seed as u8 % 4, form).bytes();
         if seed % 2 == 1 {
             // Anywhere but in the header, with right checksums.
-            let at = 128 + random.below(bytes.len() - 128);
-            bytes[at] = random.next() as u8;
+            let at = 128 + random.index(bytes.len() - 128);
+            bytes[at] = random.bits() as u8;
             make_vectors::seal(&mut bytes);
         }
         std::fs::write(&path, &bytes).unwrap();
-        let leaked = Box::leak(Box::new(bodies::Aligned::new(&bytes))).bytes();
+        let leaked = Box::leak(Box::new(leafless_testkit::Aligned::new(&bytes))).bytes();
         let expected = [
             file::probe_bytes(leaked).is_ok(),
             dexels::view(leaked).is_ok(),
@@ -323,7 +322,7 @@ fn it_agrees_with_the_library_on_tri_dexel_models() {
 /// Returns whether the library accepts a file at each of the four levels. The bytes stay alive until the test
 /// ends.
 fn accepted(bytes: &[u8]) -> [bool; 4] {
-    let bytes = Box::leak(Box::new(bodies::Aligned::new(bytes))).bytes();
+    let bytes = Box::leak(Box::new(leafless_testkit::Aligned::new(bytes))).bytes();
     [
         file::probe_bytes(bytes).is_ok(),
         file::view(bytes).is_ok(),
@@ -336,14 +335,14 @@ fn accepted(bytes: &[u8]) -> [bool; 4] {
 fn it_accepts_and_refuses_damaged_files_as_the_library_does() {
     let scratch = tempfile::tempdir().unwrap();
     let path = scratch.path().join("tree.lfl");
-    let seeds = bodies::seeds::files();
+    let seeds = fuzz::seeds::files();
     let mut refused = [0; 4];
     for round in 0..400u32 {
         let mut bytes = seeds[round as usize % seeds.len()].clone();
         let length = bytes.len();
         let most = length + 512;
         bytes.resize(most, 0);
-        let length = bodies::mutate_file(&mut bytes, length, most, round, &mut |bytes, size, _| {
+        let length = fuzz::mutate_file(&mut bytes, length, most, round, &mut |bytes, size, _| {
             bytes[round as usize % size] ^= 1 << (round % 8);
             size
         });

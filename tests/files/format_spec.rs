@@ -3,8 +3,6 @@
 #![cfg(feature = "std")]
 
 // Its `main` is the program that writes the vectors.
-use crate::bodies::Aligned;
-#[allow(dead_code)]
 use crate::make_vectors;
 use crate::make_vectors::{Way, hex, name, number};
 use leafless::error::FormatError;
@@ -13,6 +11,7 @@ use leafless::query::{PointCursor, PointTable};
 use leafless::{
     Control, Error, Frame, Membership, Octree, OctreeRef, Proof, compact, contains, file, measure,
 };
+use leafless_testkit::Aligned;
 use std::collections::BTreeSet;
 use std::fs;
 use std::path::{Path, PathBuf};

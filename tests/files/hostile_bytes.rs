@@ -3,16 +3,15 @@
 
 #![cfg(all(feature = "mmap", target_endian = "little"))]
 
-use crate::bodies;
-use crate::bodies::layout::{
-    BASE, BRICKS, CELL_SLABS, CUTS, File, GROUPS, LEVELS, MOMENTS, NUMBERS, PLACEMENTS, PLANES, REL, Repairs,
-    SURFACES, Section, put,
-};
-use crate::bodies::{Aligned, Random, joined, read_in_all_ways, seeds, walk};
-use crate::common::{on_all_processors, repeated};
 use leafless::error::{Damage, FormatError};
 use leafless::octree::Cursor;
 use leafless::{Error, Solid, SurfaceOptions, build_extended, file, measure, union};
+use leafless_testkit::fuzz::layout::{
+    BASE, BRICKS, CELL_SLABS, CUTS, File, GROUPS, LEVELS, MOMENTS, NUMBERS, PLACEMENTS, PLANES, REL, Repairs,
+    SURFACES, Section, put,
+};
+use leafless_testkit::fuzz::{joined, read_in_all_ways, seeds, walk};
+use leafless_testkit::{Aligned, Random, fuzz, on_all_processors, repeated};
 use std::path::Path;
 
 // ---- inputs ---------------------------------------------------------------------------------------------
@@ -20,15 +19,15 @@ use std::path::Path;
 /// A substitute for libFuzzer's own mutations.
 fn blind(random: &mut Random, data: &mut [u8], size: usize, max: usize) -> usize {
     let mut bytes = data[..size].to_vec();
-    for _ in 0..1 + random.below(3) {
-        let at = random.below(bytes.len());
-        match random.below(5) {
-            _ if bytes.is_empty() => bytes.push(random.next() as u8),
-            0 => bytes[at] ^= 1 << random.below(8),
-            1 => bytes[at] = [0, 1, 0x7F, 0x80, 0xFF][random.below(5)],
-            2 => bytes.insert(at, random.next() as u8),
+    for _ in 0..1 + random.index(3) {
+        let at = random.index(bytes.len());
+        match random.index(5) {
+            _ if bytes.is_empty() => bytes.push(random.bits() as u8),
+            0 => bytes[at] ^= 1 << random.index(8),
+            1 => bytes[at] = [0, 1, 0x7F, 0x80, 0xFF][random.index(5)],
+            2 => bytes.insert(at, random.bits() as u8),
             3 => drop(bytes.remove(at)),
-            _ => bytes[at] = random.next() as u8,
+            _ => bytes[at] = random.bits() as u8,
         }
     }
     bytes.truncate(max);
@@ -43,9 +42,9 @@ const MOST: usize = 1 << 14;
 fn mutated(bytes: &[u8], random: &mut Random) -> Vec<u8> {
     let mut data = bytes.to_vec();
     data.resize(MOST.max(bytes.len()), 0);
-    let mut draw = Random(random.next());
-    let seed = random.next() as u32;
-    let size = bodies::mutate_file(&mut data, bytes.len(), MOST, seed, &mut |data, size, max| {
+    let mut draw = Random(random.bits());
+    let seed = random.bits() as u32;
+    let size = fuzz::mutate_file(&mut data, bytes.len(), MOST, seed, &mut |data, size, max| {
         blind(&mut draw, data, size, max)
     });
     data.truncate(size);
@@ -72,7 +71,7 @@ fn small_files() -> Vec<Vec<u8>> {
     // with an unknown section, with an application's section, with other objects, of a later version, with
     // channels, with cuts of one cell, and with splits.
     let mut chosen = vec![files[0].clone()];
-    for kind in [BRICKS, PLANES, bodies::layout::ENTRIES, bodies::layout::METADATA, 17, 1 << 31] {
+    for kind in [BRICKS, PLANES, fuzz::layout::ENTRIES, fuzz::layout::METADATA, 17, 1 << 31] {
         chosen.extend(files.iter().find(|bytes| has(bytes, kind)).cloned());
     }
     let shares =
@@ -91,8 +90,8 @@ fn small_files() -> Vec<Vec<u8>> {
 
 /// Runs all queries and set operations on the tree, if the bytes contain one.
 fn exercise(bytes: &[u8]) {
-    bodies::queries(&joined(bytes, &bytes[bytes.len() / 2..]));
-    bodies::set_algebra(&joined(bytes, bytes));
+    fuzz::queries(&joined(bytes, &bytes[bytes.len() / 2..]));
+    fuzz::set_algebra(&joined(bytes, bytes));
 }
 
 // ---- the seeds and corpora ------------------------------------------------------------------------------
@@ -109,7 +108,7 @@ fn write_seeds() {
         ("ways_in", &[seeds::files(), seeds::dexel_files()].concat()),
         ("queries", &pairs),
         ("set_algebra", &pairs),
-        ("meshes", &bodies::meshes::seeds()),
+        ("meshes", &fuzz::meshes::seeds()),
     ];
     for (target, inputs) in inputs {
         let directory = Path::new(&directory).join(target);
@@ -130,8 +129,8 @@ fn the_seeds_are_good() {
         assert_eq!(parts.assemble(&Repairs::ALL), bytes);
     }
     for pair in seeds::pairs() {
-        bodies::queries(&pair);
-        bodies::set_algebra(&pair);
+        fuzz::queries(&pair);
+        fuzz::set_algebra(&pair);
     }
 }
 
@@ -147,10 +146,10 @@ fn tri_dexel_models_are_read_whatever_was_done_to_them() {
             if round % 3 != 0 {
                 // The contents of a section, with right checksums.
                 changed.clone_from(&bytes);
-                let section = &sections[random.below(sections.len())];
-                for _ in 0..1 + random.below(3) {
-                    let at = section.offset as usize + random.below(section.length as usize);
-                    changed[at] = [0, 1, 0x7F, 0x80, 0xFF, random.next() as u8][random.below(6)];
+                let section = &sections[random.index(sections.len())];
+                for _ in 0..1 + random.index(3) {
+                    let at = section.offset as usize + random.index(section.length as usize);
+                    changed[at] = [0, 1, 0x7F, 0x80, 0xFF, random.bits() as u8][random.index(6)];
                 }
                 changed = resealed(&changed).swap_remove(0);
             }
@@ -168,10 +167,10 @@ fn tri_dexel_models_are_read_whatever_was_done_to_them() {
 fn what_the_fuzzer_found_interesting() {
     type Body = fn(&[u8]);
     let targets: [(&str, Body); 4] = [
-        ("ways_in", bodies::ways_in),
-        ("queries", bodies::queries),
-        ("set_algebra", bodies::set_algebra),
-        ("meshes", bodies::meshes::meshes),
+        ("ways_in", fuzz::ways_in),
+        ("queries", fuzz::queries),
+        ("set_algebra", fuzz::set_algebra),
+        ("meshes", fuzz::meshes::meshes),
     ];
     for (target, body) in targets {
         let corpus = Path::new(env!("CARGO_MANIFEST_DIR")).join("fuzz/corpus").join(target);
@@ -255,20 +254,20 @@ fn every_byte_and_the_first_bits_flipped() {
 
 #[test]
 fn mesh_files_cut_and_changed() {
-    let seeds = bodies::meshes::seeds();
+    let seeds = fuzz::meshes::seeds();
     let mut random = Random(13);
     let (mut read, mut inputs) = (0, 0);
     for seed in &seeds {
-        (0..=seed.len()).for_each(|length| bodies::meshes::meshes(&seed[..length]));
+        (0..=seed.len()).for_each(|length| fuzz::meshes::meshes(&seed[..length]));
     }
     for _ in 0..30_000 {
-        let mut data = seeds[random.below(seeds.len())].clone();
-        for _ in 0..1 + random.below(3) {
-            let (at, from) = (random.below(data.len()), random.below(data.len()));
-            match random.below(4) {
+        let mut data = seeds[random.index(seeds.len())].clone();
+        for _ in 0..1 + random.index(3) {
+            let (at, from) = (random.index(data.len()), random.index(data.len()));
+            match random.index(4) {
                 _ if data.is_empty() => {}
                 // A word is replaced, or a line is lost or repeated.
-                0 | 1 if data[at].is_ascii_digit() => data[at] = b"0123456789-. \n/"[random.below(15)],
+                0 | 1 if data[at].is_ascii_digit() => data[at] = b"0123456789-. \n/"[random.index(15)],
                 2 => {
                     let line = data.split_inclusive(|&b| b == b'\n').nth(from % 16).unwrap_or(&[]).to_vec();
                     let before = data[..at].iter().rposition(|&b| b == b'\n').map_or(0, |end| end + 1);
@@ -282,8 +281,8 @@ fn mesh_files_cut_and_changed() {
                 }
             }
         }
-        bodies::meshes::meshes(&data);
-        read += bodies::meshes::READERS.iter().any(|(_, read)| read(&data).is_ok()) as usize;
+        fuzz::meshes::meshes(&data);
+        read += fuzz::meshes::READERS.iter().any(|(_, read)| read(&data).is_ok()) as usize;
         inputs += 1;
     }
     assert!(read > inputs / 8 && read < inputs / 2, "{read} of {inputs} were read");
@@ -339,7 +338,7 @@ fn of_a_sound_tree_a_cursor_sees_all_in_any_order() {
             if random.one_in(3) {
                 cursor.ascend();
             } else {
-                cursor.descend(random.below(8) as u8);
+                cursor.descend(random.index(8) as u8);
             }
             let (cell, below) = (cursor.cell(), tree.frame().depth() - cursor.cell().level);
             let mut fresh = Cursor::new(tree.view());
@@ -359,7 +358,7 @@ fn of_a_sound_tree_a_cursor_sees_all_in_any_order() {
 fn parts_of_another_tree_lead_nowhere() {
     use leafless::{Cell, Classifier, Verdict, Worker};
     let trees = seeds::trees();
-    let on_frames = trees.iter().map(|tree| tree.view().on(tree.frame(), &bodies::CONTROL).unwrap());
+    let on_frames = trees.iter().map(|tree| tree.view().on(tree.frame(), &fuzz::CONTROL).unwrap());
     let mut workers: Vec<_> = on_frames.map(|classifier| classifier.worker().unwrap()).collect();
     let mut parts = vec![];
     for worker in &mut workers {
@@ -420,15 +419,15 @@ fn change_files(count: usize, seed: u64) -> Reached {
     let originals = files.len();
     let mut random = Random(seed);
     for _ in 0..count {
-        let base = random.below(files.len());
+        let base = random.index(files.len());
         let data = mutated(&files[base], &mut random);
         let verified = read_in_all_ways(&data, random.one_in(8));
         let viewed = file::view(Aligned::new(&data).bytes()).is_ok();
         if random.one_in(32) {
-            bodies::threads(&data);
+            fuzz::threads(&data);
         }
-        bodies::queries(&joined(&data, &random.next().to_le_bytes().repeat(9)));
-        bodies::set_algebra(&joined(&data, &files[random.below(files.len())]));
+        fuzz::queries(&joined(&data, &random.bits().to_le_bytes().repeat(9)));
+        fuzz::set_algebra(&joined(&data, &files[random.index(files.len())]));
         reached.inputs += 1;
         reached.viewed += viewed as usize;
         reached.verified += verified as usize;
@@ -437,7 +436,7 @@ fn change_files(count: usize, seed: u64) -> Reached {
             if files.len() < 500 {
                 files.push(data);
             } else {
-                let at = originals + random.below(files.len() - originals);
+                let at = originals + random.index(files.len() - originals);
                 files[at] = data;
             }
         }
@@ -450,10 +449,10 @@ fn damage_files(count: usize, seed: u64) {
     let files = seeds::files();
     let mut random = Random(seed);
     for _ in 0..count {
-        let original = &files[random.below(files.len())];
-        let mut draw = Random(random.next());
+        let original = &files[random.index(files.len())];
+        let mut draw = Random(random.bits());
         let mut blind = |data: &mut [u8], size: usize, max: usize| blind(&mut draw, data, size, max);
-        let data = bodies::changed(original, &mut random, &mut blind, &Repairs::NONE).unwrap();
+        let data = fuzz::changed(original, &mut random, &mut blind, &Repairs::NONE).unwrap();
         let good = read_in_all_ways(&data, random.one_in(16));
         assert_eq!(good, &data == original);
     }
@@ -481,7 +480,7 @@ fn bytes_that_live_for_ever() {
     let files = seeds::files();
     let mut random = Random(9);
     for _ in 0..400 {
-        let data = mutated(&files[random.below(files.len())], &mut random);
+        let data = mutated(&files[random.index(files.len())], &mut random);
         let words: &'static [u64] = Aligned::new(&data).leak();
         let bytes = &bytemuck::cast_slice(words)[..data.len()];
         match (file::view(bytes), file::from_static(bytes)) {
@@ -505,14 +504,14 @@ fn pairs_stay_pairs_when_they_are_changed() {
     let mut random = Random(3);
     let (mut inputs, mut on_one_lattice) = (0, 0);
     for round in 0..3000 {
-        let pair = &pairs[random.below(pairs.len())];
+        let pair = &pairs[random.index(pairs.len())];
         let mut data = pair.clone();
         data.resize(MOST.max(pair.len()), 0);
         let mut draw = Random(round);
-        let size = bodies::mutate_pair(&mut data, pair.len(), MOST, round as u32, &mut |data, size, max| {
+        let size = fuzz::mutate_pair(&mut data, pair.len(), MOST, round as u32, &mut |data, size, max| {
             blind(&mut draw, data, size, max)
         });
-        let Some((a, b)) = bodies::halves(&data[..size]) else { continue };
+        let Some((a, b)) = fuzz::halves(&data[..size]) else { continue };
         let (a, b) = (Aligned::new(a), Aligned::new(b));
         if let (Ok(a), Ok(b)) = (file::view(a.bytes()), file::view(b.bytes())) {
             on_one_lattice += (a.frame() == b.frame()) as usize;
@@ -556,7 +555,7 @@ fn long_chains_of_maps_are_refused() {
         assert_eq!(read_in_all_ways(&bytes, true), is_good, "{maps} maps");
         let aligned = Aligned::new(&bytes);
         let solid = file::view(aligned.bytes()).unwrap();
-        assert_eq!(solid.on(solid.frame(), &bodies::CONTROL).is_ok(), is_good);
+        assert_eq!(solid.on(solid.frame(), &fuzz::CONTROL).is_ok(), is_good);
         exercise(&bytes);
     }
 }
@@ -589,7 +588,7 @@ fn tables_without_records_are_not_taken_for_one() {
     let others = file.assemble(&Repairs::FRAME);
     let [own, others] = [&bytes, &others].map(|bytes| file::from_bytes(bytes).unwrap());
     let count = own.view().cuts().unwrap().surfaces;
-    let both = union(own.view(), others.view(), &bodies::CONTROL).unwrap();
+    let both = union(own.view(), others.view(), &fuzz::CONTROL).unwrap();
     assert_eq!(both.view().cuts().unwrap().surfaces, 2 * count);
     both.view().check().unwrap();
 }
@@ -604,7 +603,7 @@ fn moments_of_nothing_that_is() {
     let mut random = Random(4);
     for _ in 0..3000 {
         let mut draw = |least: f64| {
-            let value = some[random.below(some.len())];
+            let value = some[random.index(some.len())];
             if random.one_in(2) && value != 0.0 { (-value).max(least) } else { value }
         };
         let mut numbers = vec![draw(f64::MIN), draw(f64::MIN), draw(f64::MIN)];
@@ -618,13 +617,12 @@ fn moments_of_nothing_that_is() {
         file.section(MOMENTS).unwrap().bytes = numbers.iter().flat_map(|c| c.to_le_bytes()).collect();
         let bytes = file.assemble(&Repairs::FRAME);
         let tree = file::from_bytes(&bytes).unwrap();
-        let found = measure(&tree, tree.frame(), 0.0, &bodies::CONTROL).unwrap();
+        let found = measure(&tree, tree.frame(), 0.0, &fuzz::CONTROL).unwrap();
         assert!(found.exact && [found.volume.lower, found.volume.upper] == numbers[3..5]);
         let tensors = [found.inertia_about_origin, found.inertia_about_centroid];
         let known = tensors.iter().flatten().flatten().chain(found.centroid.iter().flatten());
         known.for_each(|interval| assert!(interval.lower <= interval.upper, "{numbers:?}: {found:?}"));
-        let again =
-            build_extended(&tree, tree.frame(), &SurfaceOptions::default(), &bodies::CONTROL).unwrap();
+        let again = build_extended(&tree, tree.frame(), &SurfaceOptions::default(), &fuzz::CONTROL).unwrap();
         assert!(again.view().moments() == tree.view().moments() && file::to_bytes(&tree).unwrap() == bytes);
     }
 }
@@ -648,7 +646,7 @@ fn every_byte_of_cuts() {
                     good += u32::from(read_in_all_ways(&bytes, false));
                     all += 1;
                     if (at + usize::from(value)) % 7 == 0 {
-                        bodies::queries(&joined(&bytes, &bytes[bytes.len() / 2..][..90]));
+                        fuzz::queries(&joined(&bytes, &bytes[bytes.len() / 2..][..90]));
                     }
                 }
             }

@@ -1,9 +1,9 @@
 //! Attributes of meshes, written into files and read back.
 
-use crate::common::Random;
 use leafless::TriangleMesh;
 use leafless::exchange::{MeshFormat, MeshOptions, WriteOptions, read_mesh, write_mesh};
 use leafless::mesh::{AttributeDomain, MeshAttribute};
+use leafless_testkit::Random;
 
 /// A strip of `count` triangles.
 fn strip(count: usize) -> TriangleMesh {

@@ -1,9 +1,9 @@
 //! Colours and materials of PLY and 3MF files as mesh attributes. The mesh is read even if the file states
 //! its colours badly.
 
-use crate::packages::zip;
+use leafless_testkit::zip;
+use leafless_testkit::zip::{CONTENT_TYPES, Entry, RELATIONSHIPS, package};
 
-use crate::packages::zip::{CONTENT_TYPES, Entry, RELATIONSHIPS, package};
 use leafless::TriangleMesh;
 use leafless::attribute::{Attribute, SurfaceAttribute};
 use leafless::exchange::{MeshFile, MeshOptions, MeshWarning, read_mesh, read_ply};

@@ -1,10 +1,10 @@
 //! Written mesh files are unchanged when read back, by this library's readers and by foreign readers.
 
-use crate::common::{Random, cases};
 use leafless::exchange::{
     LengthUnit, MeshFormat, MeshOptions, WriteOptions, read_mesh, write_mesh, written_form,
 };
 use leafless::{Error, TriangleMesh};
+use leafless_testkit::{Random, cases};
 use ply_rs_bw::{parser::Parser, ply::DefaultElement, ply::Property};
 use proptest::prelude::*;
 

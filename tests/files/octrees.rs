@@ -3,8 +3,6 @@
 
 #![cfg(feature = "std")]
 
-use crate::bodies::Aligned;
-use crate::common::cubes::Cubes;
 use leafless::error::FormatError;
 use leafless::lattice::Cube;
 use leafless::octree::Cursor;
@@ -13,6 +11,8 @@ use leafless::{
     Control, Csg, Error, Frame, Metadata, Octree, OctreeRef, Rule, Tag, Verdict, build, compact, complement,
     difference, file, intersection, union, xor,
 };
+use leafless_testkit::Aligned;
+use leafless_testkit::cubes::Cubes;
 use std::path::Path;
 
 // ---- trees ----------------------------------------------------------------------------------------------
@@ -62,7 +62,7 @@ impl Cubes for ManyBricks {
     }
 }
 
-crate::solid_of_cubes!(Noise, ManyBricks);
+leafless_testkit::solid_of_cubes!(Noise, ManyBricks);
 
 fn frame(depth: u8) -> Frame {
     Frame::new([0.1, -2.5, 1e3], 3.3, depth).unwrap()

@@ -2,10 +2,11 @@
 
 #![cfg(feature = "scene")]
 
-use crate::scenes;
 use leafless::exchange::write_stl;
 use leafless::scene::read_scene;
 use leafless::{Affine, Control, Error, Frame, Interval, Membership, Octree, Rule, TriangleMesh, build};
+use leafless_testkit::Random;
+use leafless_testkit::fuzz::scenes;
 use std::f64::consts::PI;
 use std::fmt::Write;
 use std::path::Path;
@@ -541,12 +542,12 @@ impl Shape {
     /// Numbers with one decimal. Hardly any of them is a double.
     fn number(random: &mut Random, low: f64, high: f64) -> f64 {
         let tenths = ((high - low) * 10.0) as usize + 1;
-        ((low * 10.0).round() + random.below(tenths) as f64) / 10.0
+        ((low * 10.0).round() + random.index(tenths) as f64) / 10.0
     }
 
     fn joined(random: &mut Random, depth: u32, part: fn(&mut Random, u32) -> Shape) -> Shape {
-        let name = ["union", "intersection", "difference"][random.below(3)];
-        Shape::Joined(name, (0..1 + random.below(3)).map(|_| part(random, depth - 1)).collect())
+        let name = ["union", "intersection", "difference"][random.index(3)];
+        Shape::Joined(name, (0..1 + random.index(3)).map(|_| part(random, depth - 1)).collect())
     }
 
     /// A placement with six digits, as in OpenSCAD's dumps.
@@ -554,9 +555,9 @@ impl Shape {
         let number = |random: &mut Random, low, high| Self::number(random, low, high);
         let (sin, cos) = number(random, -3.1, 3.1).sin_cos();
         let [sin, cos] = [sin, cos].map(|c| (c * 1e6).round() / 1e6);
-        let scale = if random.below(3) == 0 { number(random, 0.5, 1.5) } else { 1.0 };
+        let scale = if random.index(3) == 0 { number(random, 0.5, 1.5) } else { 1.0 };
         let t = [0; 3].map(|_| number(random, -2.0, 2.0));
-        let rows = match random.below(if is_flat { 1 } else { 3 }) {
+        let rows = match random.index(if is_flat { 1 } else { 3 }) {
             0 => [[scale * cos, -sin, 0.0, t[0]], [scale * sin, cos, 0.0, t[1]], [0.0, 0.0, 1.0, t[2]]],
             1 => [[scale, 0.0, 0.0, t[0]], [0.0, cos, -sin, t[1]], [0.0, sin, cos, t[2]]],
             _ => [[cos, 0.3, sin, t[0]], [0.0, scale, 0.2, t[1]], [-sin, 0.0, cos, t[2]]],
@@ -566,12 +567,12 @@ impl Shape {
 
     fn figure(random: &mut Random, depth: u32) -> Shape {
         let number = |random: &mut Random, low, high| Self::number(random, low, high);
-        match random.below(if depth == 0 { 4 } else { 8 }) {
+        match random.index(if depth == 0 { 4 } else { 8 }) {
             0 => Shape::Square([number(random, 1.0, 6.0), number(random, 1.0, 6.0)]),
             1 => Shape::Disc(number(random, 0.5, 4.0)),
             // Around the origin, in the simplest form.
             2 | 3 => {
-                let n = 3 + random.below(8);
+                let n = 3 + random.index(8);
                 let corner = |i: usize| {
                     let (sin, cos) = (i as f64 * std::f64::consts::TAU / n as f64).sin_cos();
                     let radius = number(random, 1.0, 5.0);
@@ -592,7 +593,7 @@ impl Shape {
         let number = |random: &mut Random, low, high| Self::number(random, low, high);
         let (x, y) = (number(random, 3.0, 5.0), number(random, -2.0, 2.0));
         let moved = |scale: f64| [[scale, 0.0, 0.0, x], [0.0, scale, 0.0, y], [0.0, 0.0, 1.0, 0.0]];
-        let of = match random.below(if depth == 0 { 3 } else { 5 }) {
+        let of = match random.index(if depth == 0 { 3 } else { 5 }) {
             0 => Shape::Disc(number(random, 0.5, 2.0)),
             1 => Shape::Square([number(random, 0.5, 4.0), number(random, 0.5, 4.0)]),
             2 => Shape::Polygon(vec![[-2.1, 0.3], [0.2, -1.7], [1.9, 0.1], [0.4, 0.2], [-0.3, 2.2]]),
@@ -603,7 +604,7 @@ impl Shape {
 
     fn solid(random: &mut Random, depth: u32) -> Shape {
         let number = |random: &mut Random, low, high| Self::number(random, low, high);
-        match random.below(if depth == 0 { 8 } else { 13 }) {
+        match random.index(if depth == 0 { 8 } else { 13 }) {
             0 => Shape::Cube([0; 3].map(|_| number(random, 1.0, 7.0))),
             1 => Shape::Ball(number(random, 1.0, 5.0)),
             2 => {
@@ -614,12 +615,12 @@ impl Shape {
             5 | 6 => {
                 let of = Box::new(Self::figure(random, depth));
                 let uniform = number(random, 0.0, 1.5);
-                let scale = if random.below(2) == 0 { [1.0; 2] } else { [uniform; 2] };
+                let scale = if random.index(2) == 0 { [1.0; 2] } else { [uniform; 2] };
                 Shape::Prism { of, height: number(random, 1.0, 5.0), scale, lean: number(random, -1.0, 1.0) }
             }
             7 => {
                 let of = Box::new(Self::profile(random, depth));
-                let angle = if random.below(3) == 0 { 360.0 } else { number(random, -350.0, 350.0) + 0.01 };
+                let angle = if random.index(3) == 0 { 360.0 } else { number(random, -350.0, 350.0) + 0.01 };
                 Shape::Turned { of, angle, start: number(random, -90.0, 90.0) }
             }
             8 | 9 => {
@@ -641,7 +642,7 @@ fn points_never_contradict_cells() {
         let text = shape.text();
         let tree = tree(&text, &frame);
         for _ in 0..2000 {
-            let point = [0; 3].map(|_| (random.next() >> 11) as f64 / (1u64 << 53) as f64 * 16.0 - 8.0);
+            let point = [0; 3].map(|_| random.between(-8.0, 8.0));
             asked += 1;
             let answer = tree.contains(point);
             if answer != Membership::Undecided {
@@ -927,19 +928,19 @@ fn truncated_and_changed_texts_are_answered() {
     ];
     let mut read = 0;
     for _ in 0..20_000 {
-        let mut changed = scenes::SEEDS[random.below(scenes::SEEDS.len())].as_bytes().to_vec();
-        for _ in 0..1 + random.below(3) {
-            let (at, piece) = (random.below(changed.len()), PIECES[random.below(PIECES.len())]);
-            match random.below(4) {
+        let mut changed = scenes::SEEDS[random.index(scenes::SEEDS.len())].as_bytes().to_vec();
+        for _ in 0..1 + random.index(3) {
+            let (at, piece) = (random.index(changed.len()), PIECES[random.index(PIECES.len())]);
+            match random.index(4) {
                 0 => changed[at] = piece.as_bytes()[0],
                 1 => drop(changed.remove(at)),
                 2 => drop(changed.splice(at..at, piece.bytes())),
                 // Other numbers.
                 _ => {
                     let digits = changed.iter().filter(|byte| byte.is_ascii_digit()).count();
-                    let which = random.below(digits);
+                    let which = random.index(digits);
                     let digit = changed.iter_mut().filter(|byte| byte.is_ascii_digit()).nth(which);
-                    digit.into_iter().for_each(|digit| *digit = b"0123456789.-"[random.below(12)]);
+                    digit.into_iter().for_each(|digit| *digit = b"0123456789.-"[random.index(12)]);
                 }
             }
         }
@@ -956,22 +957,5 @@ fn write_seeds() {
     std::fs::create_dir_all(&folder).unwrap();
     for (i, seed) in scenes::SEEDS.iter().enumerate() {
         std::fs::write(folder.join(format!("seed-{i:03}")), seed).unwrap();
-    }
-}
-
-/// Pseudo-random numbers (splitmix64).
-struct Random(u64);
-
-impl Random {
-    fn next(&mut self) -> u64 {
-        self.0 = self.0.wrapping_add(0x9E37_79B9_7F4A_7C15);
-        let mut x = self.0;
-        x = (x ^ x >> 30).wrapping_mul(0xBF58_476D_1CE4_E5B9);
-        x = (x ^ x >> 27).wrapping_mul(0x94D0_49BB_1331_11EB);
-        x ^ x >> 31
-    }
-
-    fn below(&mut self, end: usize) -> usize {
-        if end == 0 { 0 } else { (self.next() % end as u64) as usize }
     }
 }

@@ -1,10 +1,10 @@
 //! 3MF packages: what is read from packages, and every way in which packages are refused.
 
-use crate::packages;
-use crate::packages::zip::{CONTENT_TYPES, Entry, RELATIONSHIPS, model, package, tetrahedron, zip};
 use leafless::error::PackageError;
 use leafless::exchange::{LengthUnit, MeshFile, MeshFormat, MeshOptions, MeshWarning, read_mesh};
 use leafless::{Error, FillRule};
+use leafless_testkit::fuzz::packages;
+use leafless_testkit::zip::{CONTENT_TYPES, Entry, RELATIONSHIPS, model, package, tetrahedron, zip};
 use proptest::prelude::*;
 
 #[track_caller]

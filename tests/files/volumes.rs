@@ -1,9 +1,6 @@
 //! Volume files: what is read from them, every way in which they are refused, and the corpus of the fuzz
 //! target `volumes`.
 
-use crate::common::Random;
-use crate::common::volumes::{KINDS, Sampled, extents, grid};
-use crate::fuzzed_volumes;
 use leafless::error::VolumeFileError;
 use leafless::exchange::{
     LengthUnit, MeshOptions, NrrdEncoding, RawVolume, SampleKind, VolumeFile, VolumeFormat, open_mesh,
@@ -11,6 +8,8 @@ use leafless::exchange::{
 };
 use leafless::solid::{Band, Samples, VoxelGrid};
 use leafless::{Control, Error, Frame, Rule, Solid, build, measure};
+use leafless_testkit::volumes::{KINDS, Sampled, extents, grid};
+use leafless_testkit::{Random, fuzz};
 
 /// Returns the samples as numbers.
 fn numbers(samples: &Samples<'_>, grid: &VoxelGrid) -> Vec<f64> {
@@ -620,12 +619,12 @@ fn bombs() {
 #[test]
 fn damaged_files() {
     let mut random = Random(32);
-    for seed in fuzzed_volumes::seeds() {
+    for seed in fuzz::volumes::seeds() {
         for length in 0..seed.len() {
-            fuzzed_volumes::volumes(&seed[..length]);
+            fuzz::volumes::volumes(&seed[..length]);
             let mut changed = seed.clone();
-            changed[length] = [0, b' ', b'9', b'\n', 0xFF, random.next() as u8][random.below(6) as usize];
-            fuzzed_volumes::volumes(&changed);
+            changed[length] = [0, b' ', b'9', b'\n', 0xFF, random.bits() as u8][random.below(6) as usize];
+            fuzz::volumes::volumes(&changed);
         }
     }
 }
@@ -662,21 +661,21 @@ fn mutated(random: &mut Random, seeds: &[Vec<u8>]) -> Vec<u8> {
 
 #[test]
 fn mutated_files() {
-    let (mut random, seeds) = (Random(33), fuzzed_volumes::seeds());
-    (0..4000).for_each(|_| fuzzed_volumes::volumes(&mutated(&mut random, &seeds)));
+    let (mut random, seeds) = (Random(33), fuzz::volumes::seeds());
+    (0..4000).for_each(|_| fuzz::volumes::volumes(&mutated(&mut random, &seeds)));
 }
 
 #[test]
 #[ignore = "takes a minute"]
 fn a_million_mutated_files() {
-    let (mut random, seeds) = (Random(34), fuzzed_volumes::seeds());
-    (0..1_000_000).for_each(|_| fuzzed_volumes::volumes(&mutated(&mut random, &seeds)));
+    let (mut random, seeds) = (Random(34), fuzz::volumes::seeds());
+    (0..1_000_000).for_each(|_| fuzz::volumes::volumes(&mutated(&mut random, &seeds)));
 }
 
 #[test]
 fn seeds_of_the_fuzzer() {
-    let seeds = fuzzed_volumes::seeds();
-    seeds.iter().for_each(|seed| fuzzed_volumes::volumes(seed));
+    let seeds = fuzz::volumes::seeds();
+    seeds.iter().for_each(|seed| fuzz::volumes::volumes(seed));
     let whole = seeds.iter().filter(|seed| read_volume(seed, None).is_ok()).count();
     assert_eq!(whole, 10);
 }
@@ -686,7 +685,7 @@ fn what_the_fuzzer_found_interesting() {
     let corpus = std::path::Path::new(env!("CARGO_MANIFEST_DIR")).join("fuzz/corpus/volumes");
     let mut count = 0;
     for entry in std::fs::read_dir(&corpus).unwrap() {
-        fuzzed_volumes::volumes(&std::fs::read(entry.unwrap().path()).unwrap());
+        fuzz::volumes::volumes(&std::fs::read(entry.unwrap().path()).unwrap());
         count += 1;
     }
     assert!(count > 100, "{count} inputs");
@@ -698,7 +697,7 @@ fn write_seeds() {
     let folder = std::env::var_os("LEAFLESS_SEEDS").expect("LEAFLESS_SEEDS names a folder");
     let folder = std::path::Path::new(&folder).join("volumes");
     std::fs::create_dir_all(&folder).unwrap();
-    for (k, seed) in fuzzed_volumes::seeds().iter().enumerate() {
+    for (k, seed) in fuzz::volumes::seeds().iter().enumerate() {
         std::fs::write(folder.join(format!("{k}")), seed).unwrap();
     }
 }

@@ -8,9 +8,6 @@
 #![cfg(all(feature = "mmap", unix))]
 
 use crate::allocator::{most_held, refusing};
-use crate::bodies::{Aligned, Random};
-use crate::common::{on_all_processors, repeated};
-use crate::{bodies, zip};
 use leafless::attribute::{FunctionAttribute, dexel_materials, sample_triangles};
 use leafless::dexel::{DexelEditor, DexelEnds, DexelFormat, DexelNormals};
 use leafless::layout::{Bay, Item, Layout, Objective, Orientations, SearchOptions};
@@ -38,6 +35,7 @@ use leafless::{
     bounding_box, build, build_extended, cast_rays, clearance, compact, complement, contains, deviation,
     dexelize, difference, exchange, file, intersection, marching_cubes, measure, scene, union, xor,
 };
+use leafless_testkit::{Aligned, Random, fuzz, on_all_processors, repeated, zip};
 use std::io::{self, Write};
 use std::path::Path;
 use std::process::Command;
@@ -531,8 +529,8 @@ fn operations(directory: &Path) -> Vec<(&'static str, Operation)> {
         exchange::written_form(&closed, exchange::MeshFormat::Stl, &options)?;
         exchange::written_form(&closed, exchange::MeshFormat::Stl, &Default::default()).map(drop)
     });
-    for (k, (write, read)) in bodies::meshes::WRITERS.into_iter().enumerate() {
-        const NAMES: [&str; bodies::meshes::WRITERS.len()] = [
+    for (k, (write, read)) in fuzz::meshes::WRITERS.into_iter().enumerate() {
+        const NAMES: [&str; fuzz::meshes::WRITERS.len()] = [
             "read OBJ",
             "read OBJ again",
             "read OFF",
@@ -852,7 +850,7 @@ fn weigh<R>(worst: &mut f64, fixed: usize, input: usize, work: impl FnOnce() -> 
 /// Checks the promise of `file` and `OctreeRef` for unchecked bytes.
 #[test]
 fn memory_is_a_small_multiple_of_the_input() {
-    let mut inputs = bodies::seeds::files();
+    let mut inputs = fuzz::seeds::files();
     let (mut random, small) = (Random(11), inputs.len());
     let facts = |count: usize| {
         let mut metadata = Metadata::new();
@@ -864,12 +862,12 @@ fn memory_is_a_small_multiple_of_the_input() {
     inputs.extend(large.map(|tree| file::to_bytes(&tree).unwrap()));
     let mut worst = [0.0; 7];
     for round in 0..4000 {
-        let base = if round < inputs.len() { round } else { random.below(small) };
+        let base = if round < inputs.len() { round } else { random.index(small) };
         let mut data = inputs[base].clone();
         if round >= inputs.len() {
             let (size, max) = (data.len(), data.len() + 4096);
             data.resize(max, 0);
-            let size = bodies::mutate_file(&mut data, size, max, round as u32, &mut |_, size, _| size);
+            let size = fuzz::mutate_file(&mut data, size, max, round as u32, &mut |_, size, _| size);
             data.truncate(size);
         }
         let aligned = Aligned::new(&data);
@@ -881,7 +879,7 @@ fn memory_is_a_small_multiple_of_the_input() {
         weigh(&mut worst[1], READING, length, || file::verify(bytes));
         weigh(&mut worst[2], READING, length, || file::from_bytes(bytes));
         let Ok(tree) = view else { continue };
-        let (_, held) = most_held(|| bodies::walk(leafless::octree::Cursor::new(&tree)).steps);
+        let (_, held) = most_held(|| fuzz::walk(leafless::octree::Cursor::new(&tree)).steps);
         assert!(held < READING);
         weigh(&mut worst[3], MAKING, length, || complement(&tree, &CONTROL));
         weigh(&mut worst[4], MAKING, 2 * length, || union(&tree, &tree, &CONTROL));
@@ -972,8 +970,8 @@ fn packages_take_twenty_times_their_parts() {
 #[test]
 fn meshes_take_a_small_multiple_of_their_files() {
     let mesh = TriangleMesh::from_facets(facets()).unwrap();
-    let mut files: Vec<(Vec<u8>, bodies::meshes::Reader)> = vec![];
-    for (write, read) in bodies::meshes::WRITERS {
+    let mut files: Vec<(Vec<u8>, fuzz::meshes::Reader)> = vec![];
+    for (write, read) in fuzz::meshes::WRITERS {
         files.push((write(&mesh), read));
     }
     files.push((exchange::write_stl(&mesh).unwrap(), exchange::read_stl));

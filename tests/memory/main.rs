@@ -1,12 +1,5 @@
 //! Counted memory and refused memory. The allocator of this program does both, for each thread.
 
-#[path = "../../fuzz/bodies/mod.rs"]
-mod bodies;
-#[path = "../common/mod.rs"]
-mod common;
-#[path = "../common/zip.rs"]
-mod zip;
-
 mod allocator;
 mod failures;
 mod objects;

@@ -1,9 +1,9 @@
 //! The memory that the extraction of a surface takes in addition to the mesh.
 
 use crate::allocator::most_held;
-use crate::common::alone;
 use leafless::surface::{Snap, simple_marching_cubes, surface_nets};
 use leafless::{Csg, Frame, Rule, TriangleMesh, build, marching_cubes};
+use leafless_testkit::alone;
 #[test]
 fn a_fifth_of_the_mesh_at_the_most() {
     let frame = Frame::new([-1.0; 3], 2.0, 8).unwrap();

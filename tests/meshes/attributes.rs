@@ -1,7 +1,6 @@
 //! Data on meshes: carried through all mesh operations, on polyhedra, and as attributes of space, against a
 //! search of all triangles.
 
-use crate::common::{Random, alone};
 use leafless::attribute::{
     Attribute, FillOptions, FunctionAttribute, ScalarType, SurfaceAttribute, ValueRange, ValueType,
     fill_channel, sample_triangles,
@@ -9,6 +8,7 @@ use leafless::attribute::{
 use leafless::mesh::{AttributeDomain, MeshAttribute, Polyhedron, PolyhedronArrays, PolyhedronPart};
 use leafless::surface::{VertexPlacement, marching_cubes_solid};
 use leafless::{Affine, Bounds, Control, Csg, Error, FillRule, Frame, TriangleMesh};
+use leafless_testkit::{Random, alone};
 use std::array::from_fn as array;
 
 type Point = [f64; 3];

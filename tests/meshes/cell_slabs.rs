@@ -1,8 +1,8 @@
 //! Slabs made for one cell each. Most surfaces in extended octrees of smooth meshes are such slabs.
 
-use crate::common::{Random, alone};
 use crate::oracle::{Oracle, PointOracle};
 use crate::shapes;
+use leafless_testkit::{Random, alone};
 
 use leafless::octree::SurfaceKind;
 use leafless::{

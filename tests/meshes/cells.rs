@@ -1,10 +1,10 @@
 //! The moments and areas that meshes provide for cells without splits, against exact clipping of tetrahedra.
 
-use crate::common::{Random, Way, alone, lattice_frame};
 use leafless::lattice::{CellMoments, CubeMoments, MAX_DEPTH};
 use leafless::query::{StopReason, surface_area};
 use leafless::solid::{Ask, Parts};
 use leafless::{Cell, Classifier, FillRule, Frame, MeshSolid, Solid, TriangleMesh, Verdict, Worker};
+use leafless_testkit::{Random, Way, alone, lattice_frame};
 use num_bigint::BigInt;
 use num_traits::{Signed, ToPrimitive};
 

@@ -1,6 +1,5 @@
 //! Closed triangle meshes as solids, against oracles in exact integers that share no code with the library.
 
-use crate::common::{Random, alone, cases, lattice_frame, model, repeated};
 use crate::descended::Descended;
 use crate::oracle::{Contact, Oracle, PointOracle};
 use crate::shapes;
@@ -10,6 +9,7 @@ use leafless::{
     AnySolid, Classifier, Control, Error, FillRule, Frame, Membership, MeshSolid, Octree, Rule, Solid, Tag,
     TriangleMesh, build, difference, exchange,
 };
+use leafless_testkit::{Random, alone, cases, lattice_frame, model, repeated};
 use proptest::prelude::*;
 
 const FILLS: [FillRule; 2] = [FillRule::NonZero, FillRule::EvenOdd];

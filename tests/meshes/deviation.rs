@@ -1,6 +1,5 @@
 //! Meshes that deviate from the true boundary, compared with true solids of known formulas.
 
-use crate::common::{Random, alone, repeated};
 use crate::shapes::{Soup, block, mesh, prism};
 use leafless::error::MeshError;
 use leafless::mesh::{MeshHistory, MeshMoments, MeshReport};
@@ -12,6 +11,7 @@ use leafless::{
     Affine, Bounds, Control, Csg, Error, FillRule, Frame, Interval, Membership, MeshSolid, Octree, Ray, Rule,
     Solid, SurfaceOptions, TriangleMesh, build, build_extended, contains, intersection, measure, union,
 };
+use leafless_testkit::{Random, alone, repeated};
 use std::f64::consts::PI;
 
 type Point = [f64; 3];

@@ -1,7 +1,6 @@
 //! Rays, points and distances that a mesh answers without cells, compared with an examination of every
 //! triangle and with answers by cells.
 
-use crate::common::{Random, alone};
 use crate::descended::Descended;
 use crate::oracle::PointOracle;
 use crate::shapes::{self, Soup};
@@ -10,6 +9,7 @@ use leafless::query::{RaySpans, Sight};
 use leafless::{
     Affine, FillRule, Frame, Interval, Membership, MeshSolid, Ray, TriangleMesh, cast_rays, contains,
 };
+use leafless_testkit::{Random, alone};
 
 type Point = [f64; 3];
 type Ints = [i64; 3];

@@ -1,7 +1,6 @@
 //! Extreme cases of answers without cells: empty lists, infinite numbers, all sizes and places of meshes,
 //! triangles without area, and bodies at the same place.
 
-use crate::common::{Random, alone};
 use crate::oracle::PointOracle;
 use crate::shapes::{self, Soup};
 use leafless::query::{DistanceTo, Obstacle, RayHit, RaySpans, Sight};
@@ -9,6 +8,7 @@ use leafless::query::{distances, line_of_sight, ray_spans};
 use leafless::{
     Control, Error, FillRule, Frame, Membership, MeshSolid, Ray, TriangleMesh, cast_rays, contains,
 };
+use leafless_testkit::{Random, alone};
 use std::sync::atomic::AtomicBool;
 
 type Point = [f64; 3];

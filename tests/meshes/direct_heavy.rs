@@ -8,7 +8,6 @@
 //! triangles and the time range of each. Between these ranges the winding number is constant, and exact
 //! arithmetic returns it for a point in the middle.
 
-use crate::common::{Random, alone, model, on_all_processors};
 use crate::oracle::{PointOracle, over};
 use crate::shapes::{self, Soup};
 use leafless::query::{Obstacle, RayHit, RaySpans, ray_spans};
@@ -17,6 +16,7 @@ use leafless::{
     AnySolid, FillRule, Frame, Interval, Membership, MeshSolid, Ray, TriangleMesh, cast_rays, contains,
     exchange,
 };
+use leafless_testkit::{Random, alone, model, on_all_processors};
 
 type Point = [f64; 3];
 

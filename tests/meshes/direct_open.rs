@@ -1,13 +1,13 @@
 //! Rays, boxes and distances that an open mesh answers without cells, compared with winding numbers by solid
 //! angles and with answers by cells.
 
-use crate::common::{Random, alone, repeated};
 use crate::descended::Descended;
 use crate::shapes::{self, Soup};
 use leafless::exchange::{MeshOptions, read_mesh};
 use leafless::query::{DistanceTo, Obstacle, RayHit, RaySpans, Region, Sight};
 use leafless::query::{classify_box, distances, line_of_sight, ray_spans};
 use leafless::{Affine, FillRule, Frame, Interval, MeshSolid, Ray, TriangleMesh, cast_rays};
+use leafless_testkit::{Random, alone, repeated};
 
 type Point = [f64; 3];
 

@@ -1,8 +1,6 @@
 //! The slabs of meshes, against winding numbers in exact arithmetic. For open surfaces, the winding number is
 //! computed by its definition.
 
-use crate::common::slabs::{bits, told};
-use crate::common::{Random, Way, alone, lattice_frame};
 use crate::oracle;
 use crate::oracle::PointOracle;
 use crate::shapes::*;
@@ -11,6 +9,8 @@ use crate::soup::forms::{bowl, pipe, refined, sphere};
 use crate::soup::winding::Soupy;
 use leafless::solid::{Ask, Slab};
 use leafless::{AnySolid, Classifier, Csg, FillRule, Frame, MeshSolid, Solid, TriangleMesh};
+use leafless_testkit::slabs::{bits, told};
+use leafless_testkit::{Random, Way, alone, lattice_frame};
 
 const RULES: [FillRule; 3] = [FillRule::NonZero, FillRule::EvenOdd, FillRule::Positive];
 

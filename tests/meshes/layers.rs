@@ -2,9 +2,9 @@
 //! sides.
 
 use crate::attributes::distance;
-use crate::common::{Random, alone, model, on_all_processors, repeated};
 use crate::oracle::{Oracle, PointOracle};
 use crate::shapes::{self, Soup};
+use leafless_testkit::{Random, alone, model, on_all_processors, repeated};
 
 use leafless::file::{from_bytes, to_bytes};
 use leafless::mesh::MeshMoments;

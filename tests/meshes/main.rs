@@ -1,8 +1,5 @@
 //! Meshes, and solids of meshes.
 
-#[path = "../common/mod.rs"]
-mod common;
-
 mod attributes;
 mod cell_slabs;
 mod cells;

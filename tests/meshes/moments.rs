@@ -1,8 +1,6 @@
 //! The moments of meshes without splits, against sums in exact arithmetic; intersecting triangles, against a
 //! slow search in exact arithmetic.
 
-use crate::common::exact::Exact;
-use crate::common::{Random, model};
 use leafless::lattice::VolumeMoments;
 use leafless::mesh::MeshMoments;
 use leafless::query::StopReason;
@@ -10,6 +8,8 @@ use leafless::{
     Affine, AnySolid, Control, FillRule, Frame, Interval, MassProperties, MeshSolid, TriangleMesh, exchange,
     measure,
 };
+use leafless_testkit::exact::Exact;
+use leafless_testkit::{Random, model};
 
 use std::slice::from_ref;
 

@@ -1,6 +1,7 @@
 //! Rays that pierce an open mesh an odd number of times, against a ray-by-ray count in integers.
 
 use leafless::{Control, Error, FillRule, Frame, MeshSolid, TriangleMesh};
+use leafless_testkit::Random;
 
 /// Cells along an axis. Their centres are (2 k + 1) / 2.
 const CELLS: i32 = 16;
@@ -82,24 +83,14 @@ fn a_missing_face_makes_the_rays_through_it_odd() {
     }
 }
 
-/// A random number generator after Knuth.
-struct Random(u64);
-
-impl Random {
-    fn below(&mut self, n: u32) -> u32 {
-        self.0 = self.0.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
-        ((self.0 >> 33) % u64::from(n)) as u32
-    }
-}
-
 /// Triangles anywhere, also outside the universe. Many corners lie on rays, and many edges on rows.
 #[test]
 fn any_triangles() {
     let mut random = Random(7);
     let mut odd = 0;
     for case in 0..200 {
-        let vertices = (0..12).map(|_| [(); 3].map(|()| f64::from(random.below(65)) / 2.0 - 8.0)).collect();
-        let triangles = (0..1 + case % 20).map(|_| [(); 3].map(|()| random.below(12))).collect();
+        let vertices = (0..12).map(|_| [(); 3].map(|()| random.below(65) as f64 / 2.0 - 8.0)).collect();
+        let triangles = (0..1 + case % 20).map(|_| [(); 3].map(|()| random.below(12) as u32)).collect();
         let mesh = TriangleMesh::new(vertices, triangles).unwrap();
         if mesh.triangles().is_empty() {
             continue;

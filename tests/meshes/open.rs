@@ -11,21 +11,21 @@
 //!     cargo test --release --test meshes open:: -- --ignored --nocapture --test-threads 1
 //! ```
 
-use crate::common::{Random, alone, repeated};
 use crate::descended::Descended;
 use crate::oracle::PointOracle;
 use crate::shapes::*;
+use crate::soup;
 use crate::soup::check::{Case, Effort, Findings, around_centre, examine, is_inside, trees};
 use crate::soup::damage::{self, Damage, damaged};
 use crate::soup::forms::*;
 use crate::soup::reference::{Lie, Reference};
 use crate::soup::winding::{Boundary, Soupy};
-use crate::{common, soup};
 use leafless::exchange::{MeshOptions, open_mesh};
 use leafless::file::write_to;
 use leafless::{
     Control, FillRule, Frame, Membership, MeshSolid, Octree, Rule, Solid, Tag, TriangleMesh, build,
 };
+use leafless_testkit::{Random, alone, repeated};
 
 const RULES: [FillRule; 2] = [FillRule::NonZero, FillRule::Positive];
 
@@ -359,7 +359,7 @@ fn every_centre_of_an_aligned_block_without_some_faces() {
         let mut truth = Soupy::new(&soup);
         for fill in RULES {
             let tree = &trees(&solid(&soup, fill), &frame)[1];
-            for at in common::positions(4) {
+            for at in leafless_testkit::positions(4) {
                 let winding = around_centre(&mut truth, &frame, at, true);
                 let found = tree.view().tag_at(at) == Tag::Full;
                 match is_inside(fill, winding, 1e-9) {
@@ -551,7 +551,7 @@ fn a_facet_that_is_gone_changes_little_and_only_near_it() {
 
 /// Reads a model exactly as its file has it, facet by facet.
 fn read(name: &str) -> Option<Soup> {
-    let mesh = open_mesh(common::model(name)?, &MeshOptions::default()).unwrap().mesh;
+    let mesh = open_mesh(leafless_testkit::model(name)?, &MeshOptions::default()).unwrap().mesh;
     let vertices = mesh.vertices();
     Some(mesh.triangles().iter().map(|t| t.map(|v| vertices[v as usize])).collect())
 }

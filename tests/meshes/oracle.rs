@@ -419,12 +419,13 @@ mod tests {
     fn separating_axes_agree_with_samples() {
         // Corners on a grid of half cells; the open cell (1, 2)³ is met if one of the triangle's points at
         // barycentric multiples of 1/60 lies in it, and (but for small corners of triangles) only if.
-        let mut random = crate::common::Random(7);
+        let mut random = leafless_testkit::Random(7);
         let frame = Frame::new([0.0; 3], 4.0, 2).unwrap();
         let (mut met, mut missed, mut unsampled) = (0, 0, 0);
         for _ in 0..3000 {
-            let corner =
-                |random: &mut crate::common::Random| [0; 3].map(|_: i32| random.below(11) as f64 / 2.0 - 1.0);
+            let corner = |random: &mut leafless_testkit::Random| {
+                [0; 3].map(|_: i32| random.below(11) as f64 / 2.0 - 1.0)
+            };
             let vertices = vec![corner(&mut random), corner(&mut random), corner(&mut random)];
             let mesh = TriangleMesh::new(vertices.clone(), vec![[0, 1, 2]]).unwrap();
             if mesh.triangles().is_empty() {

@@ -5,6 +5,7 @@
 use leafless::error::{MeshError, PolyhedronError};
 use leafless::mesh::{Polyhedron, PolyhedronArrays};
 use leafless::{Error, FillRule};
+use leafless_testkit::Random;
 
 /// The arrays of a polyhedron, filled part by part.
 #[derive(Debug, Clone, Default, PartialEq)]
@@ -345,48 +346,39 @@ fn regular_solids() {
     }
 }
 
-struct Random(u64);
+fn whole(random: &mut Random, low: i32, high: i32) -> i32 {
+    low + random.below((high - low + 1) as u64) as i32
+}
 
-impl Random {
-    fn below(&mut self, bound: u32) -> u32 {
-        self.0 = self.0.wrapping_mul(6364136223846793005).wrapping_add(1442695040888963407);
-        ((self.0 >> 33) % u64::from(bound)) as u32
-    }
-
-    fn between(&mut self, low: i32, high: i32) -> i32 {
-        low + self.below((high - low + 1) as u32) as i32
-    }
-
-    /// A star-shaped polygon around a point, in integers: its corners are in angular order. They are at most
-    /// `large` away, and no part of the polygon is nearer than half of `small`.
-    fn star(&mut self, [x, y]: [i32; 2], small: i32, large: i32) -> Vec<[f64; 2]> {
-        let directions = [
-            [2, 0],
-            [2, 1],
-            [2, 2],
-            [1, 2],
-            [0, 2],
-            [-1, 2],
-            [-2, 2],
-            [-2, 1],
-            [-2, 0],
-            [-2, -1],
-            [-2, -2],
-            [-1, -2],
-            [0, -2],
-            [1, -2],
-            [2, -2],
-            [2, -1],
-        ];
-        let mut points = vec![];
-        for (k, [u, v]) in directions.into_iter().enumerate() {
-            if k % 2 == 0 || self.below(2) == 0 {
-                let r = self.between(small, large / 2);
-                points.push([f64::from(x + u * r / 2), f64::from(y + v * r / 2)]);
-            }
+/// A star-shaped polygon around a point, in integers: its corners are in angular order. They are at most
+/// `large` away, and no part of the polygon is nearer than half of `small`.
+fn star(random: &mut Random, [x, y]: [i32; 2], small: i32, large: i32) -> Vec<[f64; 2]> {
+    let directions = [
+        [2, 0],
+        [2, 1],
+        [2, 2],
+        [1, 2],
+        [0, 2],
+        [-1, 2],
+        [-2, 2],
+        [-2, 1],
+        [-2, 0],
+        [-2, -1],
+        [-2, -2],
+        [-1, -2],
+        [0, -2],
+        [1, -2],
+        [2, -2],
+        [2, -1],
+    ];
+    let mut points = vec![];
+    for (k, [u, v]) in directions.into_iter().enumerate() {
+        if k % 2 == 0 || random.below(2) == 0 {
+            let r = whole(random, small, large / 2);
+            points.push([f64::from(x + u * r / 2), f64::from(y + v * r / 2)]);
         }
-        points
     }
+    points
 }
 
 fn doubled_area(points: &[[f64; 2]]) -> f64 {
@@ -396,20 +388,20 @@ fn doubled_area(points: &[[f64; 2]]) -> f64 {
 
 /// A prism over a random polygon with holes, moved by a random integer matrix; and six times its volume.
 fn random_prism(random: &mut Random) -> ((Vec<[f64; 3]>, Vec<Face>), f64) {
-    let mut polygon = vec![random.star([0, 0], 100, 400)];
+    let mut polygon = vec![star(random, [0, 0], 100, 400)];
     for x in -1..=1 {
         for y in -1..=1 {
             if random.below(3) == 0 {
-                let mut hole = random.star([20 * x, 20 * y], 4, 14);
+                let mut hole = star(random, [20 * x, 20 * y], 4, 14);
                 hole.reverse();
                 polygon.push(hole);
             }
         }
     }
     let area: f64 = polygon.iter().map(|points| doubled_area(points)).sum();
-    let height = f64::from(random.between(1, 50));
+    let height = f64::from(whole(random, 1, 50));
     loop {
-        let m: [[f64; 3]; 3] = [(); 3].map(|()| [(); 3].map(|()| f64::from(random.between(-3, 3))));
+        let m: [[f64; 3]; 3] = [(); 3].map(|()| [(); 3].map(|()| f64::from(whole(random, -3, 3))));
         let determinant = m[0][0] * (m[1][1] * m[2][2] - m[1][2] * m[2][1])
             - m[0][1] * (m[1][0] * m[2][2] - m[1][2] * m[2][0])
             + m[0][2] * (m[1][0] * m[2][1] - m[1][1] * m[2][0]);
@@ -674,8 +666,8 @@ fn random_damage() {
         for _ in 0..1 + random.below(2) {
             let array = match random.below(6) {
                 0 => {
-                    let vertex = random.below(arrays.vertices.len() as u32) as usize;
-                    arrays.vertices[vertex][random.below(3) as usize] = f64::from(random.between(-2, 10));
+                    let vertex = random.index(arrays.vertices.len());
+                    arrays.vertices[vertex][random.index(3)] = f64::from(whole(&mut random, -2, 10));
                     continue;
                 }
                 1 | 2 => &mut arrays.corners,
@@ -683,12 +675,11 @@ fn random_damage() {
                 4 => &mut arrays.faces,
                 _ => &mut arrays.shells,
             };
-            let count = array.len() as u32;
-            let [i, j] = [random.below(count) as usize, random.below(count) as usize];
+            let [i, j] = [0; 2].map(|_| random.index(array.len()));
             match random.below(5) {
                 0 => array.swap(i, j),
                 1 => array[i] = array[j],
-                2 => array[i] = array[i].wrapping_add(random.below(3)).wrapping_sub(1),
+                2 => array[i] = array[i].wrapping_add(random.below(3) as u32).wrapping_sub(1),
                 3 => drop(array.remove(i)),
                 _ => array.insert(i, array[j]),
             }

@@ -1,18 +1,9 @@
 //! Reports about meshes, and the places of their defects, against the definitions.
 
-use crate::common;
 use leafless::TriangleMesh;
 use leafless::mesh::{DefectKind, MeshDefect, MeshReport};
+use leafless_testkit::Random;
 use std::collections::{BTreeMap, BTreeSet};
-
-struct Random(u64);
-
-impl Random {
-    fn below(&mut self, bound: u32) -> u32 {
-        self.0 = self.0.wrapping_mul(6364136223846793005).wrapping_add(1442695040888963407);
-        ((self.0 >> 33) % u64::from(bound)) as u32
-    }
-}
 
 /// A unit cube from `low`, as twelve triangles.
 fn cube(low: [f64; 3]) -> Vec<[[f64; 3]; 3]> {
@@ -227,7 +218,7 @@ fn random_blocks_that_overlap() {
         let size = 3 + random.below(5);
         let mut blocks = vec![];
         while blocks.len() < count {
-            let ends = [0; 3].map(|_: i32| [random.below(size), random.below(size)]);
+            let ends = [0; 3].map(|_| [0; 2].map(|_| random.below(size) as u32));
             if ends.iter().all(|[a, b]| a != b) {
                 let sense = if random.below(3) == 0 { -1 } else { 1 };
                 blocks.push((ends.map(|[a, b]| a.min(b)), ends.map(|[a, b]| a.max(b)), sense));
@@ -470,7 +461,7 @@ fn random_soups_agree_with_the_definitions() {
     let (mut seen, mut holes) = (BTreeSet::new(), 0);
     for round in 0..600 {
         let size = 2 + round % 3;
-        let corner = |random: &mut Random| [0; 3].map(|_: i32| f64::from(random.below(size)));
+        let corner = |random: &mut Random| [0; 3].map(|_: i32| random.below(size) as f64);
         let mut facets: Vec<[[f64; 3]; 3]> = (0..1 + random.below(30))
             .map(|_| [corner(&mut random), corner(&mut random), corner(&mut random)])
             .collect();
@@ -478,11 +469,11 @@ fn random_soups_agree_with_the_definitions() {
             // Closed bodies with little damage.
             facets.truncate(random.below(3) as usize);
             for _ in 0..1 + random.below(4) {
-                let at = [0; 3].map(|_: i32| f64::from(random.below(4)));
+                let at = [0; 3].map(|_: i32| random.below(4) as f64);
                 facets.extend(if random.below(2) == 0 { cube(at) } else { turned(&cube(at)) });
             }
             if random.below(2) == 0 {
-                facets.remove(random.below(facets.len() as u32) as usize);
+                facets.remove(random.index(facets.len()));
             }
         }
         let mesh = TriangleMesh::from_facets(&facets).unwrap();
@@ -518,7 +509,7 @@ fn random_soups_agree_with_the_definitions() {
 
 #[test]
 fn a_real_file_of_several_bodies() {
-    let Some(path) = common::model("multibody.stl") else { return };
+    let Some(path) = leafless_testkit::model("multibody.stl") else { return };
     let mesh = leafless::exchange::read_stl(&std::fs::read(path).unwrap()).unwrap();
     assert_eq!(counts(&mesh), [0, 0, 12, 0, 0, 0, 0, 2, 2, 0]);
     let defects = mesh.defects(10).unwrap();
@@ -528,7 +519,7 @@ fn a_real_file_of_several_bodies() {
 
 #[test]
 fn a_real_file_with_holes() {
-    let Some(path) = common::model("stanford-bunny.obj") else { return };
+    let Some(path) = leafless_testkit::model("stanford-bunny.obj") else { return };
     let mesh = leafless::exchange::read_obj(&std::fs::read(path).unwrap()).unwrap();
     let report = mesh.report().unwrap();
     assert_eq!((report.triangles, report.boundary_edges, report.boundary_loops), (69451, 223, 5));
@@ -556,7 +547,7 @@ fn real_files() {
         ("cycloidal.ply", [0, 0, 0, 242, 0, 0, 0, 112, 0, 0]),
     ];
     for (name, expected) in known {
-        let Some(path) = common::model(name) else { return };
+        let Some(path) = leafless_testkit::model(name) else { return };
         let bytes = std::fs::read(path).unwrap();
         let mesh = match name.split_once('.').unwrap().1 {
             "obj" => leafless::exchange::read_obj(&bytes),

@@ -3,8 +3,8 @@
 // Each test program uses its own part of this.
 #![allow(dead_code)]
 
-use crate::common::Random;
 use leafless::TriangleMesh;
+use leafless_testkit::Random;
 
 pub type Soup = Vec<[[f64; 3]; 3]>;
 

@@ -1,6 +1,5 @@
 //! Solids split to a geometric tolerance.
 
-use crate::common::alone;
 use leafless::octree::Cursor;
 use leafless::op::Zone;
 use leafless::solid::{Adaptive, Ask, SplitCounter};
@@ -8,6 +7,7 @@ use leafless::{
     Affine, AnySolid, Callback, Cell, Classifier, Control, Csg, Error, FillRule, Frame, LazyOctree,
     MeshSolid, Octree, Rule, Solid, Tag, TriangleMesh, Verdict, Worker, build,
 };
+use leafless_testkit::alone;
 
 fn turned_block() -> Csg {
     let block = Csg::cuboid([-0.5, -0.4, -0.3], [0.5, 0.4, 0.3]).unwrap();

@@ -1,8 +1,7 @@
 //! The cells of a box as bits, against dense arrays and for damaged trees.
 
-use crate::aligned::Aligned;
-use crate::common::{Dense, Random, alone, cases, shapes};
 use leafless::{Cell, Control, Csg, Error, Frame, Octree, Rule, Tag, build, compact, file};
+use leafless_testkit::{Aligned, Dense, Random, alone, cases, shapes};
 use proptest::prelude::*;
 use std::sync::atomic::AtomicBool;
 
@@ -137,7 +136,7 @@ fn damaged_trees() {
         let mut bytes = good.clone();
         for _ in 0..good.len() / 20 {
             let at = 1024 + random.below(good.len() as u64 - 1024) as usize;
-            bytes[at] = random.next() as u8;
+            bytes[at] = random.bits() as u8;
         }
         let bytes = Aligned::new(&bytes);
         let Ok(tree) = file::view(bytes.bytes()) else { continue };

@@ -1,12 +1,11 @@
 //! The set algebra of stored trees against cell-by-cell three-valued logic.
 
-use crate::common;
-use crate::common::{Dense, Random, alone, assert_is, cases, lattice_frame, pairs, shapes};
 use leafless::op::{intersection_of, union_of, xor_of};
 use leafless::{
     Control, Csg, Error, Frame, Octree, OctreeRef, Rule, Tag, build, compact, complement, difference,
     intersection, union, xor,
 };
+use leafless_testkit::{Dense, Random, alone, assert_is, cases, lattice_frame, pairs, shapes};
 use proptest::prelude::*;
 use std::sync::OnceLock;
 use std::sync::atomic::{AtomicBool, Ordering};
@@ -124,7 +123,7 @@ proptest! {
 
     #[test]
     fn any_number_of_operands(
-        shapes in (1..=4u8).prop_flat_map(|depth| proptest::collection::vec(common::shapes_of(depth), 1..7)),
+        shapes in (1..=4u8).prop_flat_map(|depth| proptest::collection::vec(leafless_testkit::shapes_of(depth), 1..7)),
         coded in any::<u8>(),
     ) {
         type Many = fn(&[OctreeRef<'_>], &Control<'_>) -> Result<Octree, Error>;
@@ -164,14 +163,16 @@ proptest! {
 #[test]
 fn every_pair_of_universes_that_are_all_one_tag() {
     for depth in 1..=4 {
-        for ta in common::TAGS {
-            for tb in common::TAGS {
+        for ta in leafless_testkit::TAGS {
+            for tb in leafless_testkit::TAGS {
                 let (a, b) = (Dense::uniform(depth, ta), Dense::uniform(depth, tb));
                 compare_all(&a, &b);
                 laws(&a.octree(), &b.octree());
             }
             // One operand uniform, the other as mixed as can be.
-            let mixed = Dense::from_fn(depth, |at| common::TAGS[(common::noise(3, at) % 3) as usize]);
+            let mixed = Dense::from_fn(depth, |at| {
+                leafless_testkit::TAGS[(leafless_testkit::noise(3, at) % 3) as usize]
+            });
             compare_all(&Dense::uniform(depth, ta), &mixed);
         }
     }
@@ -179,14 +180,18 @@ fn every_pair_of_universes_that_are_all_one_tag() {
 
 #[test]
 fn the_outside_follows_the_same_logic() {
-    let dense = common::Shape { depth: 3, tape: vec![9, 6, 0, 1, 3, 5, 0, 9, 2] }.dense();
-    for ta in common::TAGS {
-        for tb in common::TAGS {
+    let dense = leafless_testkit::Shape { depth: 3, tape: vec![9, 6, 0, 1, 3, 5, 0, 9, 2] }.dense();
+    for ta in leafless_testkit::TAGS {
+        for tb in leafless_testkit::TAGS {
             let a = dense.octree_with(ta, &alone()).unwrap();
             let b = dense.complement().octree_with(tb, &alone()).unwrap();
             assert_eq!(a.view().exterior(), ta);
             for (name, op, bits) in OPERATIONS {
-                assert_eq!(apply(op, &a, &b).view().exterior(), common::kleene(bits, ta, tb), "{name}");
+                assert_eq!(
+                    apply(op, &a, &b).view().exterior(),
+                    leafless_testkit::kleene(bits, ta, tb),
+                    "{name}"
+                );
             }
             assert_eq!(not(&a).view().exterior(), ta.complement());
         }
@@ -321,7 +326,7 @@ fn threads_agree(rule: Rule) {
         let mut random = Random(7);
         for _ in 0..200_000 {
             let at = [0; 3].map(|_| random.below(2048) as u32);
-            let expected = common::kleene(bits, a.view().tag_at(at), b.view().tag_at(at));
+            let expected = leafless_testkit::kleene(bits, a.view().tag_at(at), b.view().tag_at(at));
             assert_eq!(one.view().tag_at(at), expected, "{name} {at:?}");
         }
         node_count_is_limited_with_threads(&one, &|control| op(a.view(), b.view(), control));

@@ -1,10 +1,5 @@
 //! The laws of solids, and the builder's results, against exact arithmetic.
 
-use crate::common::cubes::{Cubes, Plain};
-use crate::common::exact::Definition;
-use crate::common::{
-    Dense, Random, Shape, alone, assert_is, cases, lattice_frame, positions, repeated, shapes,
-};
 use leafless::lattice::Cube;
 use leafless::octree::Block;
 use leafless::op::{resolve, union_of};
@@ -12,6 +7,11 @@ use leafless::solid::{Ask, FreeParts, OneByOne, Parts, Question, WholeQuestion};
 use leafless::{
     AnySolid, Callback, Cell, Classifier, Control, Csg, Error, Frame, Interval, Octree, Proof, Rule, Solid,
     Tag, Verdict, Worker, build, compact, complement,
+};
+use leafless_testkit::cubes::{Cubes, Plain};
+use leafless_testkit::exact::{Definition, Exact};
+use leafless_testkit::{
+    Dense, Random, Shape, alone, assert_is, cases, lattice_frame, positions, repeated, shapes,
 };
 use proptest::prelude::*;
 use std::sync::atomic::{AtomicBool, AtomicU64, Ordering};
@@ -834,7 +834,6 @@ proptest! {
 
 #[test]
 fn callbacks_see_boxes_that_contain_their_cells() {
-    use crate::common::exact::Exact;
     for frame in frames(4) {
         let boxes = Mutex::new(Vec::new());
         let callback = Callback::new(|min, max| {
@@ -1066,7 +1065,7 @@ fn errors_of_a_solid_end_the_build() {
             }
         }
     }
-    crate::solid_of_cubes!(Failing<'a>: 'a);
+    leafless_testkit::solid_of_cubes!(Failing<'a>: 'a);
     for threads in [1, 2, 16] {
         let refused = build(
             &Failing(&AtomicU64::new(0)),

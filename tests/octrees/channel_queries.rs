@@ -1,8 +1,6 @@
 //! Queries of channels: summaries, regions and materials; and volumes as attributes.
 
-use crate::common;
-use crate::common::values::{Values, kinds, values_of};
-use crate::common::{Dense, alone, cases, lattice_frame, shapes_of};
+use crate::values::{Values, kinds, values_of};
 use leafless::attribute::{
     Attribute, ConstantAttribute, FillOptions, FunctionAttribute, Interpolation, ScalarType, ValueRange,
     ValueRegion, ValueType, VolumeAttribute, fill_channel, materials,
@@ -12,6 +10,7 @@ use leafless::{
     Bounds, Control, Csg, Error, Frame, Interval, Octree, Rule, Tag, Volume, build, intersection, measure,
     union,
 };
+use leafless_testkit::{Dense, alone, cases, lattice_frame, shapes_of};
 use proptest::prelude::*;
 use std::f64::consts::PI;
 
@@ -40,7 +39,7 @@ proptest! {
 
         let (mut least, mut greatest) = ([f64::INFINITY; 4], [f64::NEG_INFINITY; 4]);
         let (mut volume, mut without, mut integral) = ([0.0; 2], [0.0; 2], [[0.0; 2]; 4]);
-        for at in common::positions(3) {
+        for at in leafless_testkit::positions(3) {
             let length = |axis: usize| match bounds {
                 None => 1.0,
                 Some(_) => (max[axis].min(f64::from(at[axis] + 1)) - min[axis].max(f64::from(at[axis]))).max(0.0),

@@ -1,8 +1,6 @@
 //! Channels against dense arrays of values.
 
-use crate::common;
-use crate::common::values::{Value, Values, kinds, values, values_of};
-use crate::common::{Dense, alone, cases, lattice_frame, noise, positions};
+use crate::values::{Value, Values, kinds, values, values_of};
 use leafless::attribute::{
     Attribute, CarryRule, Channel, ChannelOperand, ConstantAttribute, Criterion, Detail, FillOptions,
     FunctionAttribute, MovedAttribute, ScalarType, ValueRange, ValueType, carry_channel, carry_channels,
@@ -13,6 +11,7 @@ use leafless::{
     Affine, Bounds, Control, Csg, Error, Frame, Interval, Metadata, Octree, Rule, Tag, build, difference,
     intersection, union, xor,
 };
+use leafless_testkit::{Dense, alone, cases, lattice_frame, noise, positions};
 use proptest::prelude::*;
 
 /// Returns the tag that a walk down a lattice of `depth` meets at a cell.
@@ -41,7 +40,7 @@ proptest! {
     fn inside_a_solid_a_channel_is_its_dense_array(
         (kind, values) in values(1..=4), depth in 1u8..=5, seed in any::<u8>(),
     ) {
-        let shape = common::Shape { depth, tape: (0..60).map(|i| noise(seed, [i, 0, 0]) as u8).collect() };
+        let shape = leafless_testkit::Shape { depth, tape: (0..60).map(|i| noise(seed, [i, 0, 0]) as u8).collect() };
         let dense = shape.dense();
         let solid = dense.octree();
         let channel = values.channel(depth, kind, Some(&solid), 1);
@@ -59,7 +58,7 @@ proptest! {
     fn booleans_carry_channels(
         (kind, a, b) in (kinds(), 1u8..=4, 1u8..=4)
             .prop_flat_map(|(kind, i, j)| (Just(kind), values_of(i, kind), values_of(j, kind))),
-        (p, q) in common::pairs(1..=4),
+        (p, q) in leafless_testkit::pairs(1..=4),
         rule in prop::sample::select(vec![CarryRule::Left, CarryRule::Right, CarryRule::Max, CarryRule::Mean]),
         operation in 0..4,
     ) {
@@ -107,7 +106,7 @@ proptest! {
         (kind, values) in values(1..=4), depth in 1u8..=4, tape in prop::collection::vec(any::<u8>(), 0..60),
         clear in any::<bool>(),
     ) {
-        let region = common::Shape { depth, tape }.dense();
+        let region = leafless_testkit::Shape { depth, tape }.dense();
         let channel = values.channel(depth, kind, None, 1);
         let value = (!clear).then(|| [0, 1, 2, 3].map(|k| if k < kind.components() { 2.0 + k as f64 } else { 0.0 }));
         let edited = channel.view().unwrap().with_value_in(region.octree().view(), value, &alone()).unwrap();

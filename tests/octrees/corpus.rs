@@ -4,13 +4,13 @@
 //! and PARTIAL finest cells. A resolved octree must never change. A certified octree may only become tighter.
 //! Then its first line stays in the file behind the new one, after `was`.
 
-use crate::common::{Random, alone, model, repeated};
 use leafless::octree::Cursor;
 use leafless::solid::{HalfSpace, Transform};
 use leafless::{
     Affine, AnySolid, Callback, Csg, FillRule, Frame, MeshSolid, Octree, Rule, Tag, TriangleMesh, Verdict,
     build,
 };
+use leafless_testkit::{Random, alone, model, repeated};
 use std::collections::BTreeMap;
 use std::fmt::Write;
 use std::sync::Arc;

@@ -1,10 +1,6 @@
 //! Octrees that are split on demand: compared with dense recursion over the same cells, counted, limited,
 //! cancelled, frozen and resumed.
 
-use crate::common::cubes::{Cubes, Plain};
-use crate::common::{
-    Dense, Random, alone, assert_is, cases, lattice_frame, noise, positions, repeated, shapes,
-};
 use leafless::lattice::Cube;
 use leafless::op::{Refinement, Zone};
 use leafless::solid::{Fingerprint, OneByOne, Parts, Question, SplitCounter, WholeQuestion};
@@ -12,6 +8,10 @@ use leafless::{
     AnySolid, Callback, Cell, Classifier, Control, Csg, Error, FillRule, Frame, LazyOctree, Membership,
     MeshSolid, Metadata, Octree, Proof, Rule, Solid, Tag, TriangleMesh, Verdict, Worker, build, compact,
     file,
+};
+use leafless_testkit::cubes::{Cubes, Plain};
+use leafless_testkit::{
+    Dense, Random, alone, assert_is, cases, lattice_frame, noise, positions, repeated, shapes,
 };
 use proptest::prelude::*;
 use std::collections::HashSet;
@@ -686,7 +686,7 @@ impl Cubes for Noted<'_> {
     }
 }
 
-crate::solid_of_cubes!(Noted<'a>: 'a);
+leafless_testkit::solid_of_cubes!(Noted<'a>: 'a);
 
 #[test]
 fn only_cells_that_matter_are_asked_about() {

@@ -1,10 +1,5 @@
 //! Stored octrees: their construction, laws, Booleans, channels, voxel records and proofs.
 
-#[path = "../../fuzz/bodies/aligned.rs"]
-mod aligned;
-#[path = "../common/mod.rs"]
-mod common;
-
 mod adaptive;
 mod bitmap;
 mod boolean;
@@ -17,4 +12,5 @@ mod neighbours;
 mod proof;
 mod proof_table;
 mod shards;
+mod values;
 mod voxels;

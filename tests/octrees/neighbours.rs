@@ -1,10 +1,8 @@
 //! Neighbours of cells, and iterators over cells and boundary faces, against dense arrays.
 
-use crate::aligned::Aligned;
-use crate::common;
-use crate::common::{Dense, positions};
 use leafless::octree::{BoundaryFace, CellFilter, Cursor, Direction, TaggedCell};
 use leafless::{Cell, Error, Octree, OctreeRef, Tag, compact, file};
+use leafless_testkit::{Aligned, Dense, positions};
 use proptest::prelude::*;
 use std::collections::{HashMap, HashSet};
 
@@ -250,13 +248,13 @@ proptest! {
     #![proptest_config(ProptestConfig::with_cases(60))]
 
     #[test]
-    fn neighbours_are_those_of_the_dense_array(shape in common::shapes(1..=4)) {
+    fn neighbours_are_those_of_the_dense_array(shape in leafless_testkit::shapes(1..=4)) {
         let dense = shape.dense();
         in_all_forms(&dense.octree(), |tree| assert_neighbours(tree, &dense));
     }
 
     #[test]
-    fn cells_are_those_of_the_dense_array((shape, wanted) in (common::shapes(1..=5), wanted(5))) {
+    fn cells_are_those_of_the_dense_array((shape, wanted) in (leafless_testkit::shapes(1..=5), wanted(5))) {
         let dense = shape.dense();
         in_all_forms(&dense.octree(), |tree| assert_cells(tree, &dense, &wanted));
     }
@@ -264,13 +262,13 @@ proptest! {
     #[test]
     fn faces_are_those_of_the_dense_array(
         (shape, tags, exterior) in (
-            common::shapes(1..=5),
+            leafless_testkit::shapes(1..=5),
             prop::sample::subsequence(LEAVES.to_vec(), 1..=3),
             prop::sample::select(LEAVES.to_vec()),
         )
     ) {
         let dense = shape.dense();
-        let tree = dense.octree_with(exterior, &common::alone()).unwrap();
+        let tree = dense.octree_with(exterior, &leafless_testkit::alone()).unwrap();
         in_all_forms(&tree, |tree| assert_faces(tree, &dense, &tags));
     }
 }

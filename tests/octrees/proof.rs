@@ -9,6 +9,7 @@ use leafless::{
     Affine, AnySolid, Classifier, Control, Csg, Error, FillRule, Frame, LazyOctree, MeshSolid, Octree, Proof,
     Rule, Solid, Tag, TriangleMesh, build, compact, complement, difference, file, intersection, union, xor,
 };
+use leafless_testkit::Random;
 use std::sync::Arc;
 
 const CONTROL: Control<'static> =
@@ -23,31 +24,15 @@ fn frame(depth: u8) -> Frame {
     Frame::new([0.0; 3], EDGE, depth).unwrap()
 }
 
-struct Random(u64);
+fn any_rule(random: &mut Random) -> Rule {
+    // Mostly the rule that loses nothing. After many operations with other rules little would remain
+    // proven.
+    RULES[random.below(10).saturating_sub(6) as usize]
+}
 
-impl Random {
-    fn next(&mut self) -> u64 {
-        self.0 = self.0.wrapping_add(0x9E37_79B9_7F4A_7C15);
-        let mut x = self.0;
-        x = (x ^ x >> 30).wrapping_mul(0xBF58_476D_1CE4_E5B9);
-        x = (x ^ x >> 27).wrapping_mul(0x94D0_49BB_1331_11EB);
-        x ^ x >> 31
-    }
-
-    fn below(&mut self, end: u64) -> u64 {
-        self.next() % end
-    }
-
-    fn rule(&mut self) -> Rule {
-        // Mostly the rule that loses nothing. After many operations with other rules little would remain
-        // proven.
-        RULES[self.below(10).saturating_sub(6) as usize]
-    }
-
-    /// Returns a random multiple of a quarter.
-    fn quarter(&mut self, low: u64, high: u64) -> f64 {
-        (4 * low + self.below(4 * (high - low))) as f64 / 4.0
-    }
+/// Returns a random multiple of a quarter.
+fn quarter(random: &mut Random, low: u64, high: u64) -> f64 {
+    (4 * low + random.below(4 * (high - low))) as f64 / 4.0
 }
 
 // ---- the source, exactly --------------------------------------------------------------------------------
@@ -112,12 +97,12 @@ impl Source {
     }
 
     fn primitive(random: &mut Random) -> Source {
-        let mut corner = || [0; 3].map(|_| random.quarter(0, 14));
+        let mut corner = || [0; 3].map(|_| quarter(random, 0, 14));
         let low = corner();
         if random.below(2) == 0 {
-            Source::Ball(low.map(|c| c + 1.0), random.quarter(1, 7))
+            Source::Ball(low.map(|c| c + 1.0), quarter(random, 1, 7))
         } else {
-            Source::Cuboid(low, low.map(|c| c + random.quarter(1, 9)))
+            Source::Cuboid(low, low.map(|c| c + quarter(random, 1, 9)))
         }
     }
 
@@ -246,12 +231,12 @@ fn built<S: Solid>(solid: &S, depth: u8, rule: Rule) -> (Octree, Rule) {
 
 fn leaf(random: &mut Random) -> Grown {
     let source = Source::scene(random);
-    let (tree, rule) = built(&source.csg(), 4, random.rule());
+    let (tree, rule) = built(&source.csg(), 4, any_rule(random));
     let claim = Claim { full: true, empty: true, displacement: 0.0 }.ruled(rule);
     if random.below(3) > 0 {
         return Grown::new(tree, claim, source);
     }
-    let displacement = random.quarter(0, 3);
+    let displacement = quarter(random, 0, 3);
     let tree = tree.with_proof(tree.proof().with_displacement(displacement).unwrap());
     Grown::new(tree, Claim { displacement, ..claim }, source)
 }
@@ -347,22 +332,22 @@ fn grow(random: &mut Random, level: u32) -> Grown {
         5 => Grown::new(complement(tree, &CONTROL).unwrap(), a.claim.not(), a.source.negated()),
         6 => {
             let rule =
-                if tree.is_binary() { random.rule() } else { RULES[[0, 2, 3][random.below(3) as usize]] };
+                if tree.is_binary() { any_rule(random) } else { RULES[[0, 2, 3][random.below(3) as usize]] };
             Grown::new(resolve(tree, rule, &CONTROL).unwrap(), a.claim.ruled(rule), a.source)
         }
         7 => Grown::new(compact(tree).unwrap(), a.claim, a.source),
         8 => {
             // At another depth, or the same, and back.
-            let (other, first) = built(&a.tree, 3 + random.below(3) as u8, random.rule());
+            let (other, first) = built(&a.tree, 3 + random.below(3) as u8, any_rule(random));
             let other = Grown::new(other, a.claim.ruled(first), a.source);
-            let (tree, second) = built(&other.tree, 4, random.rule());
+            let (tree, second) = built(&other.tree, 4, any_rule(random));
             Grown::new(tree, other.claim.ruled(second), other.source)
         }
         9 => {
             let deep = 1 + random.below(2) as u32;
             let (csg, claim, source) = expression(random, deep);
             let csg = Csg::union_of([a.solid(), csg]).unwrap();
-            let (tree, rule) = built(&csg, 4, random.rule());
+            let (tree, rule) = built(&csg, 4, any_rule(random));
             Grown::new(tree, Claim::joined(&[a.claim, claim]).ruled(rule), Source::Or(vec![a.source, source]))
         }
         10 => {
@@ -371,12 +356,12 @@ fn grow(random: &mut Random, level: u32) -> Grown {
             let map = placement(scale, offset);
             let claim = Claim { displacement: a.claim.displacement * scale, ..a.claim };
             let (placed, rule) = match random.below(3) {
-                0 => built(&a.solid().placed(&map).unwrap(), 4, random.rule()),
-                1 => built(&Transform::new(a.tree.clone(), a.tree.frame(), &map), 4, random.rule()),
+                0 => built(&a.solid().placed(&map).unwrap(), 4, any_rule(random)),
+                1 => built(&Transform::new(a.tree.clone(), a.tree.frame(), &map), 4, any_rule(random)),
                 _ => built(
                     &AnySolid::new(Transform::of(AnySolid::new(a.tree.clone()), &map)),
                     4,
-                    random.rule(),
+                    any_rule(random),
                 ),
             };
             Grown::new(placed, claim.ruled(rule), source)

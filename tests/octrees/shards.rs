@@ -1,7 +1,6 @@
 //! Shards of an octree. Joined, they are the whole, byte for byte; alone, each makes only true claims about
 //! the whole.
 
-use crate::common::{Random, alone, repeated, shapes};
 use leafless::op::{build_extended_shard, join, shard};
 use leafless::query::{MassSum, Obstacle, measure_in};
 use leafless::solid::ShardedOctree;
@@ -11,6 +10,7 @@ use leafless::{
     Ray, Rule, Shard, Solid, SurfaceOptions, Tag, TriangleMesh, Verdict, build, build_extended, build_shard,
     cast_rays, contains, marching_cubes, measure, union,
 };
+use leafless_testkit::{Random, alone, repeated, shapes};
 use proptest::prelude::*;
 
 /// A way to make a tree of a solid.
@@ -301,7 +301,7 @@ fn surfaces_cell_by_cell() {
 }
 
 proptest! {
-    #![proptest_config(crate::common::cases(60))]
+    #![proptest_config(leafless_testkit::cases(60))]
 
     #[test]
     fn any_tree(shape in shapes(1..=6), seed in any::<u64>()) {
@@ -320,7 +320,7 @@ proptest! {
             trees.remove(1 + place);
             let less = joined(&trees);
             let of = |tree: &Octree, at| tree.view().tag_at(at);
-            for at in crate::common::positions(depth) {
+            for at in leafless_testkit::positions(depth) {
                 let here = at.map(|a| a >> (depth - level)) == cell.at;
                 let expected = if here { Tag::Partial } else { of(&whole, at) };
                 prop_assert_eq!(of(&less, at), expected);
@@ -330,7 +330,7 @@ proptest! {
     }
 
     #[test]
-    fn booleans_of_shards(pair in crate::common::pairs(1..=5), seed in any::<u64>()) {
+    fn booleans_of_shards(pair in leafless_testkit::pairs(1..=5), seed in any::<u64>()) {
         let [a, b] = [pair.0.octree(), pair.1.octree()];
         let level = Random(seed | 1).below(u64::from(a.frame().depth()) + 1) as u8;
         let whole = union(a.view(), b.view(), &alone()).unwrap();

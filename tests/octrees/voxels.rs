@@ -1,7 +1,5 @@
 //! Voxel records, against recursion over dense arrays and against unordered searches.
 
-use crate::common;
-use crate::common::{Dense, Random, alone, cases, lattice_frame, repeated, shapes};
 use leafless::attribute::{Attribute, Criterion, Detail, FunctionAttribute, ValueRange};
 use leafless::voxel::{
     LinearCode, Symmetry, Viewpoint, VoxelBoundary, VoxelKind, VoxelOptions, VoxelRecord, VoxelRecords,
@@ -11,6 +9,8 @@ use leafless::{
     Affine, AnySolid, Bounds, Cell, Control, Csg, Error, Frame, Interval, Octree, Proof, Rule, Tag,
     TriangleMesh, build,
 };
+use leafless_testkit::exact::Exact;
+use leafless_testkit::{Dense, Random, alone, cases, lattice_frame, repeated, shapes};
 use proptest::prelude::*;
 use std::sync::atomic::AtomicBool;
 
@@ -584,7 +584,7 @@ proptest! {
         let linear = rows.map(|row| [row[0], row[1], row[2]]);
         let whole = det(linear);
         prop_assume!(whole.abs() > 0.01);
-        for at in common::positions(depth) {
+        for at in leafless_testkit::positions(depth) {
             // By Cramer's rule.
             let right = [0, 1, 2].map(|axis| at[axis] as f64 + 0.5 - rows[axis][3]);
             let point: [f64; 3] = std::array::from_fn(|k| {
@@ -756,7 +756,6 @@ fn depth_orders_hold_for_a_thousand_views() {
 
 mod triangles {
     use super::*;
-    use crate::common::exact::Exact;
 
     /// True if a triangle and a closed box have a point in common. The triangle is clipped with exact
     /// fractions: a polygon whose corners are integers over one denominator each.

@@ -1,15 +1,14 @@
 //! The area of a solid's boundary, against formulas and against the areas of smaller cells.
 
-use crate::common::cubes::Plain;
-use crate::common::{Random, Way, alone, repeated};
-use crate::random::Maker;
 use leafless::query::{StopReason, SurfaceArea, surface_area};
-#[allow(dead_code)]
 use leafless::solid::{Ask, AskWhole, HalfSpace};
 use leafless::{
     Affine, AnySolid, Cell, Classifier, Control, Csg, Error, FillRule, Frame, Interval, MeshSolid, Rule,
     Solid, SurfaceOptions, Tolerance, TriangleMesh, Verdict, Worker, build, build_extended,
 };
+use leafless_testkit::csg::Maker;
+use leafless_testkit::cubes::Plain;
+use leafless_testkit::{Random, Way, alone, repeated};
 use std::f64::consts::PI;
 
 fn frame() -> Frame {

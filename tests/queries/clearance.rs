@@ -1,13 +1,13 @@
 //! Clearance to second order: distances of primitives against closed forms, the nearest points, penetration
 //! depths, and decided gaps.
 
-use crate::common::{Random, alone};
 use leafless::query::{GapVerdict, StopReason, clearance_at, gap_at_least, gap_at_least_at};
 use leafless::solid::Transform;
 use leafless::{
     Affine, Clearance, Control, Csg, Error, FillRule, Frame, MeshSolid, Rule, SurfaceOptions, build,
     build_extended, clearance,
 };
+use leafless_testkit::{Random, alone};
 
 fn minus(a: [f64; 3], b: [f64; 3]) -> [f64; 3] {
     [0, 1, 2].map(|axis| a[axis] - b[axis])

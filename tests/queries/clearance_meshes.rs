@@ -1,10 +1,10 @@
 //! Clearance of meshes by their triangles, compared with all pairs of triangles.
 
-use crate::common::{Random, alone, model, repeated};
 use leafless::query::{GapVerdict, StopReason, clearance_at, gap_at_least, gap_at_least_at};
 use leafless::{
     Affine, Clearance, Control, Error, FillRule, Frame, MeshSolid, TriangleMesh, clearance, exchange,
 };
+use leafless_testkit::{Random, alone, model, repeated};
 
 type Point = [f64; 3];
 

@@ -1,13 +1,11 @@
 //! Columns of cells and height maps, against dense arrays.
 
-use crate::aligned::Aligned;
-use crate::common;
-use crate::common::{Dense, DenseSolid, Shape, alone, cases, lattice_frame, shapes};
 use leafless::query::{ColumnRuns, Columns, Heights, Run, Side, columns, heights};
 use leafless::{
     Control, Csg, Error, FillRule, Frame, Interval, MeshSolid, Octree, OctreeRef, Proof, Rule, Tag, build,
     exchange, file,
 };
+use leafless_testkit::{Aligned, Dense, DenseSolid, Random, Shape, alone, cases, lattice_frame, shapes};
 use proptest::prelude::*;
 use std::sync::atomic::AtomicBool;
 
@@ -98,13 +96,9 @@ fn rectangles(dense: &Dense, axis: usize, seed: u64) -> Vec<Columns> {
     let frame = lattice_frame(dense.depth);
     let n = frame.cells() as u64 + 1;
     let mut rectangles = vec![Columns::all(&frame, axis).unwrap()];
-    let mut random = seed;
-    let mut below = |n: u64| {
-        random = random.wrapping_mul(6364136223846793005).wrapping_add(1442695040888963407);
-        ((random >> 33) % n) as u32
-    };
+    let mut random = Random(seed);
     for _ in 0..3 {
-        let ends = [0; 2].map(|_| [below(n), below(n)]);
+        let ends = [0; 2].map(|_| [0; 2].map(|_| random.below(n) as u32));
         let [first, end] = [ends.map(|[a, b]| a.min(b)), ends.map(|[a, b]| a.max(b))];
         rectangles.push(Columns::within(axis, first, end).unwrap());
     }
@@ -177,7 +171,7 @@ fn solids_have_the_columns_of_their_octrees() {
 
 #[test]
 fn meshes_have_the_columns_of_their_octrees() {
-    let Some(path) = common::model("featuretype.STL") else { return };
+    let Some(path) = leafless_testkit::model("featuretype.STL") else { return };
     let mesh = exchange::read_stl(&std::fs::read(path).unwrap()).unwrap();
     let (min, max) = mesh.bounds();
     let frame = Frame::fitted(min, max, 7).unwrap();
@@ -301,13 +295,13 @@ fn damaged_trees_are_left() {
     let frame = Frame::new([-1.0; 3], 2.0, 7).unwrap();
     let ball = Csg::ball([0.1, -0.05, 0.03], 0.77).unwrap();
     let good = file::to_bytes(&build(&ball, &frame, Rule::Certified, &alone()).unwrap()).unwrap();
-    let mut random = common::Random(9);
+    let mut random = Random(9);
     let mut viewed = 0;
     for _ in 0..60 {
         let mut bytes = good.clone();
         for _ in 0..good.len() / 20 {
             let at = 1024 + random.below(good.len() as u64 - 1024) as usize;
-            bytes[at] = random.next() as u8;
+            bytes[at] = random.bits() as u8;
         }
         let bytes = Aligned::new(&bytes);
         let Ok(tree) = file::view(bytes.bytes()) else { continue };

@@ -1,12 +1,12 @@
 //! Solids in contact, nearly in contact and apart. The tests check that verdicts are reached, and that none
 //! is wrong.
 
-use crate::common::Random;
 use leafless::query::{Interference, Overlap};
 use leafless::{
     Affine, Control, Csg, Frame, Octree, Solid, SurfaceOptions, build_extended, interference, measure,
     query::{clearance_at, interference_at},
 };
+use leafless_testkit::Random;
 
 /// The program's default limits.
 fn alone() -> Control<'static> {
@@ -355,7 +355,7 @@ enum Figure {
 
 impl Figure {
     fn random(random: &mut Random) -> Figure {
-        let mut whole = |end: u64| (random.next() % end) as f64;
+        let mut whole = |end: u64| (random.bits() % end) as f64;
         let at = [0; 3].map(|_| whole(13) - 6.0);
         if whole(2) == 0.0 {
             Figure::Ball(at, 1.0 + whole(5))

@@ -1,14 +1,13 @@
 //! The number of a solid's cells in regions of any shape, and the common volume, against dense arrays,
 //! subdivided cells and formulas.
 
-use crate::common;
-use crate::common::{Dense, DenseSolid, Random, alone, cases, lattice_frame, positions, shapes};
 use leafless::query::{CellsIn, cells_in, volume_in};
 use leafless::solid::{Band, Samples, Transform, VoxelGrid};
 use leafless::{
     AnySolid, Control, Csg, Error, FillRule, Frame, Interval, MeshSolid, Octree, Proof, Rule, Tag,
     TriangleMesh, Volume, build, compact, complement,
 };
+use leafless_testkit::{Dense, DenseSolid, Random, alone, cases, lattice_frame, positions, shapes};
 use proptest::prelude::*;
 use proptest::strategy::ValueTree;
 use std::sync::atomic::AtomicBool;
@@ -55,7 +54,7 @@ proptest! {
 
     #[test]
     fn cells_of_trees_in_trees(
-        (a, b) in (1u8..=5).prop_flat_map(common::pairs_of),
+        (a, b) in (1u8..=5).prop_flat_map(leafless_testkit::pairs_of),
         max_splits in 0u64..40,
     ) {
         let frame = lattice_frame(a.depth);
@@ -154,7 +153,7 @@ fn balls() {
     let mut runner = proptest::test_runner::TestRunner::deterministic();
     for round in 0..60 {
         let depth = 1 + (round % 4) as u8;
-        let strategy = common::shapes_of(depth);
+        let strategy = leafless_testkit::shapes_of(depth);
         let dense = strategy.new_tree(&mut runner).unwrap().current().dense();
         let tree = dense.octree();
         let n = FINE << depth;
@@ -232,8 +231,9 @@ fn regions_of_every_kind() {
     let mesh = MeshSolid::new(std::sync::Arc::new(mesh), FillRule::NonZero).unwrap();
     let cuboid = Csg::cuboid([5.5; 3], [20.25; 3]).unwrap();
     let grid = VoxelGrid::new([8; 3], [4.0; 3], [2.5; 3]).unwrap();
-    let samples: Vec<u8> =
-        (0..512).map(|i| if common::noise(3, [i, 0, 0]).is_multiple_of(3) { 3 } else { 200 }).collect();
+    let samples: Vec<u8> = (0..512)
+        .map(|i| if leafless_testkit::noise(3, [i, 0, 0]).is_multiple_of(3) { 3 } else { 200 })
+        .collect();
     let voxels =
         Volume::new(Samples::from(&samples[..]), &grid, Band::at_least(100.0).unwrap(), &alone()).unwrap();
     let turn = leafless::Affine::new([[0.6, -0.8, 0.0, 16.0], [0.8, 0.6, 0.0, -4.0], [0.0, 0.0, 1.0, 0.25]]);

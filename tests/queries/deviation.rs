@@ -1,6 +1,5 @@
 //! The deviation of two boundaries: formulas, an independent sampler, and solids of all kinds.
 
-use crate::common::repeated;
 use leafless::op::DexelOptions;
 use leafless::query::{Deviation, DistanceTo, StopReason, Within, distances, ray_spans};
 use leafless::surface::DexelSolid;
@@ -8,6 +7,7 @@ use leafless::{
     Affine, AnySolid, Control, Csg, Error, FillRule, Frame, Interval, MeshSolid, Ray, Rule, Solid,
     SurfaceOptions, TriangleMesh, build, build_extended, deviation, dexelize,
 };
+use leafless_testkit::{Random, repeated};
 use std::f64::consts::{PI, TAU};
 use std::sync::atomic::AtomicBool;
 
@@ -204,15 +204,11 @@ fn sampled(from: &TriangleMesh, to: &TriangleMesh, count: usize) -> f64 {
             (middle, t.iter().map(|&p| length(minus(p, middle))).fold(0.0, f64::max))
         })
         .collect();
-    let mut state = 1u64;
-    let mut random = || {
-        state = state.wrapping_mul(6364136223846793005).wrapping_add(1442695040888963407);
-        (state >> 11) as f64 / (1u64 << 53) as f64
-    };
+    let mut random = Random(1);
     let (mut most, mut hint) = (0.0f64, 0);
     for k in 0..count {
         let [a, b, c] = from[(k * 7919) % from.len()];
-        let (mut s, mut t) = (random(), random());
+        let (mut s, mut t) = (random.unit(), random.unit());
         if s + t > 1.0 {
             (s, t) = (1.0 - s, 1.0 - t);
         }
@@ -372,47 +368,37 @@ fn every_way_in() {
     assert!(found.distance().lower == 0.0 && found.distance().upper == f64::INFINITY, "{found:?}");
 }
 
-/// Random numbers from 0 to 1.
-struct Random(u64);
+fn any_point(random: &mut Random, size: f64) -> Point {
+    [0; 3].map(|_| random.between(-size, size))
+}
 
-impl Random {
-    fn next(&mut self) -> f64 {
-        self.0 = self.0.wrapping_mul(6364136223846793005).wrapping_add(1442695040888963407);
-        (self.0 >> 11) as f64 / (1u64 << 53) as f64
+/// A random body in a ball of radius 1.2.
+fn any_body(random: &mut Random) -> Csg {
+    let size = 0.2 + 0.3 * random.unit();
+    let body = match (random.unit() * 5.0) as usize {
+        0 => Csg::ball([0.0; 3], size),
+        1 => Csg::cuboid([-size, -0.3, -0.4], [size, 0.3, 0.25]),
+        2 => Csg::cylinder(size, -0.4, 0.5),
+        3 => Csg::frustum(size, 0.5 * size, -0.3, 0.4),
+        _ => Csg::torus(0.5, 0.15 + 0.2 * size),
+    };
+    let (mut turn, at) = (any_point(random, PI), any_point(random, 0.5));
+    if random.unit() < 0.3 {
+        turn = [0.0; 3];
     }
+    let (s, c) = turn[0].sin_cos();
+    let about_z = Affine::new([[c, -s, 0.0, 0.0], [s, c, 0.0, 0.0], [0.0, 0.0, 1.0, 0.0]]).unwrap();
+    let (s, c) = turn[1].sin_cos();
+    let about_x = Affine::new([[1.0, 0.0, 0.0, at[0]], [0.0, c, -s, at[1]], [0.0, s, c, at[2]]]).unwrap();
+    body.unwrap().placed(&about_z).unwrap().placed(&about_x).unwrap()
+}
 
-    fn point(&mut self, size: f64) -> Point {
-        [0; 3].map(|_| size * (2.0 * self.next() - 1.0))
-    }
-
-    /// A random body in a ball of radius 1.2.
-    fn body(&mut self) -> Csg {
-        let size = 0.2 + 0.3 * self.next();
-        let body = match (self.next() * 5.0) as usize {
-            0 => Csg::ball([0.0; 3], size),
-            1 => Csg::cuboid([-size, -0.3, -0.4], [size, 0.3, 0.25]),
-            2 => Csg::cylinder(size, -0.4, 0.5),
-            3 => Csg::frustum(size, 0.5 * size, -0.3, 0.4),
-            _ => Csg::torus(0.5, 0.15 + 0.2 * size),
-        };
-        let (mut turn, at) = (self.point(PI), self.point(0.5));
-        if self.next() < 0.3 {
-            turn = [0.0; 3];
-        }
-        let (s, c) = turn[0].sin_cos();
-        let about_z = Affine::new([[c, -s, 0.0, 0.0], [s, c, 0.0, 0.0], [0.0, 0.0, 1.0, 0.0]]).unwrap();
-        let (s, c) = turn[1].sin_cos();
-        let about_x = Affine::new([[1.0, 0.0, 0.0, at[0]], [0.0, c, -s, at[1]], [0.0, s, c, at[2]]]).unwrap();
-        body.unwrap().placed(&about_z).unwrap().placed(&about_x).unwrap()
-    }
-
-    fn part(&mut self) -> Csg {
-        let (one, other) = (self.body(), self.body());
-        match (self.next() * 3.0) as usize {
-            0 => one,
-            1 => Csg::union_of([one, other]).unwrap(),
-            _ => one.difference(&other).unwrap(),
-        }
+fn any_part(random: &mut Random) -> Csg {
+    let (one, other) = (any_body(random), any_body(random));
+    match (random.unit() * 3.0) as usize {
+        0 => one,
+        1 => Csg::union_of([one, other]).unwrap(),
+        _ => one.difference(&other).unwrap(),
     }
 }
 
@@ -425,7 +411,7 @@ fn random_solids_beside_rays() {
     let coarse = around(2.0, 6);
     let (to, mut seen) = (DistanceTo::Boundary, 0);
     for round in 0..repeated(6, 12) {
-        let (a, b) = (random.part(), random.part());
+        let (a, b) = (any_part(&mut random), any_part(&mut random));
         let stored = |solid: &Csg| match round % 3 {
             0 => AnySolid::new(solid.clone()),
             1 => AnySolid::new(build(solid, &coarse, Rule::Certified, &alone()).unwrap()),
@@ -434,7 +420,8 @@ fn random_solids_beside_rays() {
         let frame = if round % 3 == 0 { frame } else { coarse };
         let (told_a, told_b) = (stored(&a), stored(&b));
         let found = ask(&told_a, &told_b, &frame, 0.03);
-        let ways: Vec<(Point, Point)> = (0..400).map(|_| (random.point(1.9), random.point(1.0))).collect();
+        let ways: Vec<(Point, Point)> =
+            (0..400).map(|_| (any_point(&mut random, 1.9), any_point(&mut random, 1.0))).collect();
         let fine = around(2.0, 20);
         for (way, from, other) in [(found.a_to_b, &a, &b), (found.b_to_a, &b, &a)] {
             // The boundary lies between the ends of the proven inside and of the proven outside.

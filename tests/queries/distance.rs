@@ -1,13 +1,14 @@
 //! Distances of points: against dense arrays in integers, and against solids whose distance is a formula.
 
-use crate::common;
-use crate::common::exact::Exact;
-use crate::common::{Classical, Dense, DenseSolid, Random, alone, cases, lattice_frame, positions, shapes};
 use leafless::octree::TaggedCell;
 use leafless::query::{DistanceTo, NearCell, StopReason, distances};
 use leafless::{
     Affine, AnySolid, Cell, Control, Csg, Error, Frame, Interval, Octree, Proof, Rule, Solid, Tag, build,
     compact,
+};
+use leafless_testkit::exact::Exact;
+use leafless_testkit::{
+    Classical, Dense, DenseSolid, Random, alone, cases, lattice_frame, positions, shapes,
 };
 use proptest::prelude::*;
 use std::sync::atomic::AtomicBool;
@@ -165,11 +166,11 @@ proptest! {
                 assert_eq!(coded.distance(model(point), to).unwrap(), found);
             }
             let chosen: [&[Tag]; 4] =
-                [&[Tag::Full], &[Tag::Empty, Tag::Partial], &[Tag::Full, Tag::Partial], &common::TAGS];
+                [&[Tag::Full], &[Tag::Empty, Tag::Partial], &[Tag::Full, Tag::Partial], &leafless_testkit::TAGS];
             for tags in chosen {
                 assert_nearest(&tree, &all, point, tags, [1, 2, 7, 40, 100_000][k % 5]);
             }
-            prop_assert!(tree.nearest_cells(model(point), &common::TAGS, 0).unwrap().is_empty());
+            prop_assert!(tree.nearest_cells(model(point), &leafless_testkit::TAGS, 0).unwrap().is_empty());
             prop_assert!(tree.nearest_cells(model(point), &[Tag::Branch], 3).unwrap().is_empty());
         }
     }
@@ -353,7 +354,7 @@ fn what_is_not_proven_is_not_told() {
 #[test]
 fn universes_of_one_tag() {
     for depth in [1, 2, 20] {
-        for tag in common::TAGS {
+        for tag in leafless_testkit::TAGS {
             let frame = lattice_frame(depth);
             let small = Dense::uniform(1, tag);
             let tree =

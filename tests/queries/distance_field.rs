@@ -1,8 +1,8 @@
 //! Distance fields, against dense arrays in integers and against the distances of points.
 
-use crate::common::{Dense, Random, alone, cases, positions, shapes};
 use leafless::query::DistanceTo;
 use leafless::{Control, Csg, Error, Frame, Octree, Rule, Tag, build, compact};
+use leafless_testkit::{Dense, Random, alone, cases, positions, shapes};
 use proptest::prelude::*;
 use std::sync::atomic::AtomicBool;
 

@@ -1,7 +1,6 @@
 //! Every query that accepts a solid gives intervals for an extended octree that overlap those of its source
 //! expression, and are as sharp.
 
-use crate::common::{Random, alone};
 use leafless::lattice::Frame;
 use leafless::op::{DexelOptions, Zone};
 use leafless::query::{
@@ -14,6 +13,7 @@ use leafless::{
     Affine, AnySolid, Csg, Interval, LazyOctree, Membership, Ray, Rule, Solid, SurfaceOptions, bounding_box,
     build, build_extended, cast_rays, clearance, contains, dexelize, interference, measure,
 };
+use leafless_testkit::{Random, alone};
 
 /// A query that takes a solid and returns numbers.
 struct Consumer {

@@ -1,12 +1,13 @@
 //! Bounding boxes by slabs, against formulas of the shapes' support functions and against the boxes of
 //! octrees, which have no slabs.
 
-use crate::common::alone;
+use crate::measure_primitives::{placement, vector};
 use glam::{DMat3, DVec3, EulerRot};
 use leafless::query::{BOUNDING_BOX_SPLITS, Extent, StopReason};
 use leafless::{
     Affine, Bounds, Callback, Control, Csg, Frame, Interval, Rule, Solid, Tag, Verdict, bounding_box, build,
 };
+use leafless_testkit::{Random, alone};
 
 /// A solid and its support function: its reach along a direction.
 struct Known {
@@ -93,33 +94,6 @@ fn primitives() -> Vec<Known> {
     ]
 }
 
-/// Pseudo-random numbers between −1 and 1.
-struct Random(u64);
-
-impl Random {
-    fn next(&mut self) -> f64 {
-        self.0 ^= self.0 << 13;
-        self.0 ^= self.0 >> 7;
-        self.0 ^= self.0 << 17;
-        (self.0 >> 11) as f64 / (1u64 << 52) as f64 - 1.0
-    }
-
-    fn vector(&mut self) -> DVec3 {
-        DVec3::new(self.next(), self.next(), self.next())
-    }
-
-    /// A random map that flattens nothing.
-    fn placement(&mut self) -> (DMat3, DVec3) {
-        loop {
-            let (matrix, offset) =
-                (DMat3::from_cols(self.vector(), self.vector(), self.vector()), 10.0 * self.vector());
-            if matrix.determinant().abs() > 0.2 {
-                return (matrix, offset);
-            }
-        }
-    }
-}
-
 fn affine(matrix: DMat3, offset: DVec3) -> Affine {
     let rows = matrix.transpose().to_cols_array_2d();
     Affine::new([0, 1, 2].map(|i| [rows[i][0], rows[i][1], rows[i][2], offset[i]])).unwrap()
@@ -151,7 +125,7 @@ fn intervals_hold_the_formulas_at_every_budget() {
         let mut splits = 0;
         for round in 0..12 {
             let (matrix, offset) =
-                if round == 0 { (DMat3::IDENTITY, DVec3::ZERO) } else { random.placement() };
+                if round == 0 { (DMat3::IDENTITY, DVec3::ZERO) } else { placement(&mut random) };
             let placed = solid.placed(&affine(matrix, offset)).unwrap();
             let truth: [f64; 6] = core::array::from_fn(|side| {
                 let d = outward(side);
@@ -220,14 +194,14 @@ fn polytopes_against_their_corners() {
     let (mut empty, mut slivers) = (0, 0);
     for round in 0..300 {
         let mut planes: Vec<(DVec3, f64)> =
-            (0..6).map(|side| (outward(side), 1.0 + 0.5 * random.next())).collect();
+            (0..6).map(|side| (outward(side), 1.0 + random.between(-0.5, 0.5))).collect();
         for _ in 0..1 + round % 4 {
-            planes.push((random.vector(), 0.3 * random.next()));
+            planes.push((vector(&mut random), random.between(-0.3, 0.3)));
         }
         if round % 3 == 0 {
             // A sliver with two nearly parallel faces.
             let (normal, offset) = planes[6];
-            planes.push((-normal + 1e-3 * random.vector(), 1e-2 * random.next().abs() - offset));
+            planes.push((-normal + 1e-3 * vector(&mut random), random.between(0.0, 1e-2) - offset));
         }
         let mut points = Vec::new();
         for i in 0..planes.len() {
@@ -283,10 +257,10 @@ fn expressions_beside_their_octrees() {
     for round in 0..40 {
         let mut shape = || {
             let (matrix, offset) = (
-                DMat3::from_axis_angle(random.vector().normalize(), 3.0 * random.next()),
-                0.7 * random.vector(),
+                DMat3::from_axis_angle(vector(&mut random).normalize(), random.between(-3.0, 3.0)),
+                0.7 * vector(&mut random),
             );
-            let solid = match (random.next().abs() * 4.0) as u32 {
+            let solid = match random.below(4) {
                 0 => Csg::cuboid([-0.5, -0.6, -0.7], [0.6, 0.4, 0.3]),
                 1 => Csg::ball([0.0; 3], 0.6),
                 2 => Csg::cylinder(0.4, -0.7, 0.6),

@@ -1,8 +1,6 @@
 //! Interference and clearance: the published cases, analytic truth for spheres and boxes, dense samples for
 //! all others, and the set algebra of built octrees.
 
-use crate::common::cubes::Plain;
-use crate::common::{Dense, Random, alone, model, repeated};
 use leafless::lattice::Cube;
 use leafless::query::{CLEARANCE_SPLITS, DistanceTo, Overlap, StopReason, distances, interference_at};
 use leafless::solid::{HalfSpace, Transform};
@@ -10,6 +8,8 @@ use leafless::{
     Affine, AnySolid, Cell, Clearance, Control, Csg, Error, FillRule, Frame, Interference, MeshSolid, Octree,
     Rule, Solid, Tag, TriangleMesh, bounding_box, build, clearance, exchange, interference, intersection,
 };
+use leafless_testkit::cubes::Plain;
+use leafless_testkit::{Dense, Random, alone, model, repeated};
 use std::f64::consts::PI;
 use std::sync::atomic::AtomicBool;
 
@@ -762,7 +762,7 @@ fn searches_end_before_they_take_too_much_memory() {
     let mut random = Random(3);
     let mut cubes = |count: usize| {
         let parts = (0..count).map(|_| {
-            let low = [0; 3].map(|_: u8| 1e-3 * (random.next() >> 11) as f64 / (1u64 << 53) as f64);
+            let low = [0; 3].map(|_: u8| 1e-3 * (random.bits() >> 11) as f64 / (1u64 << 53) as f64);
             Csg::cuboid(low, low.map(|c| c + 1.0)).unwrap()
         });
         Csg::union_of(parts).unwrap()

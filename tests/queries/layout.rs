@@ -1,6 +1,5 @@
 //! Layouts: checks against closed forms and dense samples, and the placements of searches.
 
-use crate::common::{Random, alone, repeated};
 use leafless::layout::{
     Bay, Beside, Direction, Item, Layout, Objective, Orientations, SearchEnd, SearchOptions, Standing,
 };
@@ -10,6 +9,7 @@ use leafless::{
     Affine, AnySolid, Control, Csg, Error, FillRule, Frame, Interval, Membership, MeshSolid, Rule, Solid,
     build, contains, surface,
 };
+use leafless_testkit::{Random, alone, repeated};
 use std::sync::atomic::{AtomicBool, AtomicUsize, Ordering};
 
 fn cuboid(size: [f64; 3]) -> AnySolid {

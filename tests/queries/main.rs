@@ -1,15 +1,5 @@
 //! Queries and measures, of octrees and of any solid.
 
-#[path = "../../fuzz/bodies/aligned.rs"]
-mod aligned;
-#[path = "../common/mod.rs"]
-mod common;
-#[allow(dead_code)]
-#[path = "../solids/csg/model.rs"]
-mod model;
-#[path = "../solids/csg/random.rs"]
-mod random;
-
 mod area;
 mod clearance;
 mod clearance_meshes;

@@ -1,9 +1,5 @@
 //! Volume, centroid and inertia, against sums in exact arithmetic and formulas.
 
-use crate::common;
-use crate::common::cubes::Plain;
-use crate::common::exact::Exact;
-use crate::common::{Dense, DenseSolid, Random, alone, cases, model, positions, repeated, shapes};
 use leafless::query::{Extent, StopReason};
 use leafless::solid::{OneByOne, Parts, Question, WholeQuestion};
 use leafless::{
@@ -11,6 +7,9 @@ use leafless::{
     MeshSolid, Proof, Rule, Solid, Tag, TriangleMesh, Verdict, Worker, bounding_box, build, complement,
     exchange, measure,
 };
+use leafless_testkit::cubes::Plain;
+use leafless_testkit::exact::Exact;
+use leafless_testkit::{Dense, DenseSolid, Random, alone, cases, model, positions, repeated, shapes};
 use proptest::prelude::*;
 use std::f64::consts::PI;
 use std::sync::Arc;
@@ -192,8 +191,8 @@ fn check_dense(dense: &Dense, frame: &Frame, random: &mut Random) {
     assert_eq!((measures.stop_reason, measures.clipped), (end, false));
     let mut choices = vec![full.clone(), all.clone()];
     for _ in 0..3 {
-        let seed = random.next() as u8;
-        choices.push(choose(&|at| common::noise(seed, at) & 1 == 0));
+        let seed = random.bits() as u8;
+        choices.push(choose(&|at| leafless_testkit::noise(seed, at) & 1 == 0));
         // Extreme choices lie on one side of a plane, or of two planes.
         let normal = [0, 1, 2].map(|_| random.below(7) as i64 - 3);
         let level = (random.below(4) as i64) << dense.depth >> 1;
@@ -256,7 +255,7 @@ fn uniform_universes() {
     let mut random = Random(5);
     for depth in 1..=3 {
         let frame = frame(&mut random, depth);
-        for tag in common::TAGS {
+        for tag in leafless_testkit::TAGS {
             check_dense(&Dense::uniform(depth, tag), &frame, &mut random);
         }
     }

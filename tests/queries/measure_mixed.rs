@@ -1,10 +1,10 @@
 //! Measures of expressions whose operands are meshes, octrees and half-spaces, against formulas.
 
-use crate::common::{Random, alone};
 use leafless::{
     Affine, AnySolid, Control, Csg, FillRule, Frame, MeshSolid, Rule, TriangleMesh, build, difference,
     intersection, measure,
 };
+use leafless_testkit::{Random, alone};
 use std::f64::consts::PI;
 
 /// A cube of edge 1 as a mesh.

@@ -1,10 +1,10 @@
 //! Volume, centroid and inertia of every primitive under random affine placements. The intervals contain the
 //! formulas' values at every depth, after every number of splits, and for every tolerance.
 
-use crate::common::repeated;
 use glam::{DMat3, DVec3};
 use leafless::query::StopReason;
 use leafless::{Affine, Bounds, Control, Csg, Error, Frame, Interval, MassProperties, Solid, measure};
+use leafless_testkit::{Random, repeated};
 use std::f64::consts::PI;
 
 /// A solid with its volume, its centroid, and ∫ (p − c)(p − c)ᵀ about the centroid.
@@ -137,25 +137,18 @@ fn primitives() -> Vec<Known> {
     ]
 }
 
-/// Pseudo-random entries between −1 and 1.
-struct Random(u64);
+/// Returns a vector with components between −1 and 1.
+pub fn vector(random: &mut Random) -> DVec3 {
+    DVec3::from_array([0; 3].map(|_| random.between(-1.0, 1.0)))
+}
 
-impl Random {
-    fn next(&mut self) -> f64 {
-        self.0 ^= self.0 << 13;
-        self.0 ^= self.0 >> 7;
-        self.0 ^= self.0 << 17;
-        (self.0 >> 11) as f64 / (1u64 << 52) as f64 - 1.0
-    }
-
-    /// A random map that flattens nothing.
-    fn placement(&mut self) -> (DMat3, DVec3) {
-        loop {
-            let mut column = || DVec3::new(self.next(), self.next(), self.next());
-            let (matrix, offset) = (DMat3::from_cols(column(), column(), column()), 10.0 * column());
-            if matrix.determinant().abs() > 0.2 {
-                return (matrix, offset);
-            }
+/// Returns a random map that flattens nothing.
+pub fn placement(random: &mut Random) -> (DMat3, DVec3) {
+    loop {
+        let [x, y, z, offset] = [0; 4].map(|_| vector(random));
+        let (matrix, offset) = (DMat3::from_cols(x, y, z), 10.0 * offset);
+        if matrix.determinant().abs() > 0.2 {
+            return (matrix, offset);
         }
     }
 }
@@ -224,7 +217,7 @@ fn intervals_hold_the_formulas() {
     for known in primitives() {
         for round in 0..repeated(2, 4) {
             let (matrix, offset) =
-                if round == 0 { (DMat3::IDENTITY, DVec3::ZERO) } else { random.placement() };
+                if round == 0 { (DMat3::IDENTITY, DVec3::ZERO) } else { placement(&mut random) };
             let placed = known.placed(matrix, offset);
             let name = format!("{}, placement {round}", known.name);
             let mut widths = Vec::new();
@@ -285,8 +278,8 @@ fn unions_and_intersections_add_up() {
     let known = primitives();
     for round in 0..repeated(7, 20) {
         let mut pick = || {
-            let (matrix, offset) = random.placement();
-            let k = (random.next().abs() * known.len() as f64) as usize % known.len();
+            let (matrix, offset) = placement(&mut random);
+            let k = random.index(known.len());
             // Near the origin, so that most pairs meet.
             known[k].placed(matrix, 0.05 * offset)
         };

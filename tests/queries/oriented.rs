@@ -1,7 +1,6 @@
 //! Stored octrees under placements. Every answer is compared with all pairs of their cells, and with the
 //! search by cells.
 
-use crate::common::{Random, alone, cases, pairs_of};
 use leafless::lattice::Cube;
 use leafless::octree::CellFilter;
 use leafless::query::{Overlap, interference_at};
@@ -10,6 +9,7 @@ use leafless::{
     Affine, AnySolid, Control, Csg, Error, Frame, Interference, Membership, Octree, Proof, Rule, Tag, build,
     interference,
 };
+use leafless_testkit::{Random, alone, cases, pairs_of};
 use proptest::prelude::*;
 
 const PROOF: f64 = f64::INFINITY;

@@ -1,16 +1,16 @@
 //! Queries of stored trees against dense arrays.
 
-use crate::common;
-use crate::common::cubes::Plain;
-use crate::common::{
-    Dense, DenseSolid, Random, Shape, alone, assert_is, cases, lattice_frame, positions, shapes,
-};
 use leafless::octree::Cursor;
 use leafless::query::{PointCursor, PointTable, Region, classify_box};
 use leafless::solid::SplitCounter;
 use leafless::{
     AnySolid, Callback, Cell, Control, Csg, Error, Frame, Membership, Octree, Rule, Solid, Tag, Verdict,
     build, compact, contains,
+};
+use leafless_testkit::cubes::Plain;
+use leafless_testkit::exact::Exact;
+use leafless_testkit::{
+    Dense, DenseSolid, Random, Shape, alone, assert_is, cases, lattice_frame, positions, shapes,
 };
 use proptest::prelude::*;
 use std::sync::atomic::{AtomicBool, AtomicU64, Ordering};
@@ -240,7 +240,6 @@ fn what_is_refused() {
 
 #[test]
 fn points_beside_planes_that_are_no_doubles() {
-    use crate::common::exact::Exact;
     // Cells of a frame whose planes are no doubles, and the doubles on both sides of the planes.
     for (origin, edge, depth) in
         [([0.1, -7.3, 1e5 / 3.0], 10.0 / 3.0, 5), ([1e8 + 0.3, -1e-9, 3e-5], 1e-3, 4), ([-0.7; 3], 1.4, 3)]
@@ -564,7 +563,7 @@ fn what_is_refused_of_any_solid() {
 #[test]
 fn a_universe_without_nodes() {
     for depth in [1, 2, 3, 20] {
-        for tag in common::TAGS {
+        for tag in leafless_testkit::TAGS {
             let tree = Octree::uniform(lattice_frame(depth), tag, Tag::Empty).unwrap();
             tree.view().check().unwrap();
             assert_eq!(tree.contains([0.5; 3]), membership(tag));
@@ -573,7 +572,7 @@ fn a_universe_without_nodes() {
             tree.contains_many(&[[0.5; 3], [f64::NAN; 3]], &mut answers).unwrap();
             assert_eq!(answers, [membership(tag), Membership::Undecided]);
             let wanted = [Region::Outside, Region::Undecided, Region::Inside]
-                [common::TAGS.iter().position(|&t| t == tag).unwrap()];
+                [leafless_testkit::TAGS.iter().position(|&t| t == tag).unwrap()];
             assert_eq!(tree.classify_box([0.25; 3], [1.5; 3]).unwrap(), wanted);
             let mut cursor = Cursor::new(tree.view());
             assert_eq!((cursor.tag(), cursor.node()), (tag, None));
@@ -589,7 +588,7 @@ fn every_tree_of_depth_one() {
     for code in 0..3u32.pow(8) {
         let dense = Dense {
             depth: 1,
-            tags: (0..8).map(|cell| common::TAGS[(code / 3u32.pow(cell) % 3) as usize]).collect(),
+            tags: (0..8).map(|cell| leafless_testkit::TAGS[(code / 3u32.pow(cell) % 3) as usize]).collect(),
         };
         let tree = dense.octree();
         assert_is(&tree, &dense);
@@ -603,7 +602,7 @@ fn shapes_vary() {
     let mut random = Random(5);
     let (mut binary, mut deep, mut branches, mut uniform) = (0, 0, 0, 0);
     for _ in 0..400 {
-        let tape = (0..random.below(150)).map(|_| random.next() as u8).collect();
+        let tape = (0..random.below(150)).map(|_| random.bits() as u8).collect();
         let dense = Shape { depth: 4, tape }.dense();
         binary += dense.is_binary() as u32;
         uniform += dense.tag_of(Cell::ROOT).is_some() as u32;

@@ -1,7 +1,6 @@
 //! The progress that long operations report. It rises, reaches the whole, and has no gap with most of the
 //! work in it.
 
-use crate::common::Random;
 use leafless::attribute::{
     FillOptions, FunctionAttribute, ScalarType, ValueType, dexel_materials, fill_channel, sample_triangles,
 };
@@ -29,6 +28,7 @@ use leafless::{
     build_extended, cast_rays, clearance, complement, contains, deviation, dexelize, difference,
     intersection, marching_cubes, measure, union, xor,
 };
+use leafless_testkit::Random;
 use std::sync::{Arc, Mutex};
 use std::time::Instant;
 

@@ -1,12 +1,12 @@
 //! Rays on meshes from files, on primitives and their combinations, and on mapped files. The true first hit
 //! lies in the returned interval.
 
-use crate::common::{Random, alone, model};
 use crate::triangles::Triangles;
 use leafless::query::{Obstacle, RayHit};
 use leafless::{
     Control, Csg, FillRule, Frame, Interval, MeshSolid, Octree, Ray, Rule, build, cast_rays, exchange, file,
 };
+use leafless_testkit::{Random, alone, model};
 
 /// A ray's origin and direction.
 type Plain = ([f64; 3], [f64; 3]);

@@ -1,10 +1,9 @@
 //! Rays against dense arrays in integers, and against balls in closed form.
 
-use crate::common;
-use crate::common::exact::Exact;
-use crate::common::{Dense, Random, Shape, alone, cases, shapes};
 use leafless::query::{Obstacle, RayHit, RaySpans, Sight, line_of_sight, ray_spans};
 use leafless::{Csg, Frame, Interval, OctreeRef, Proof, Ray, Rule, Tag, build, cast_rays, file};
+use leafless_testkit::exact::Exact;
+use leafless_testkit::{Dense, Random, Shape, alone, cases, shapes};
 use proptest::prelude::*;
 use std::cmp::Ordering;
 
@@ -80,7 +79,7 @@ fn passage(ray: &Plain, lower: [u32; 3], upper: [u32; 3]) -> Option<(Fraction, O
 
 /// Returns the time ranges in all finest cells of these tags.
 fn passages(dense: &Dense, ray: &Plain, tags: &[Tag]) -> Vec<(Fraction, Fraction)> {
-    common::positions(dense.depth)
+    leafless_testkit::positions(dense.depth)
         .filter(|&at| tags.contains(&dense.at(at)))
         .filter_map(|at| passage(ray, at, at.map(|a| a + 1)))
         .map(|(entry, exit)| (entry, exit.expect("a ray leaves every cell")))
@@ -561,7 +560,7 @@ fn damaged_trees_are_left() {
         let mut bytes = good.clone();
         for _ in 0..good.len() / 20 {
             let at = 1024 + random.below(good.len() as u64 - 1024) as usize;
-            bytes[at] = random.next() as u8;
+            bytes[at] = random.bits() as u8;
         }
         let bytes = Aligned::new(&bytes);
         let Ok(tree) = file::view(bytes.bytes()) else { continue };

@@ -1,8 +1,8 @@
 //! The part of a solid in a box, and the relation of regions of any shape to solids, against dense arrays.
 
-use crate::common::{Dense, DenseSolid, Random, alone, cases, lattice_frame, positions, shapes};
 use leafless::query::{Region, classify_box, classify_in};
 use leafless::{Control, Csg, Error, Frame, Interval, Octree, Rule, Tag, build, compact, measure};
+use leafless_testkit::{Dense, DenseSolid, Random, alone, cases, lattice_frame, positions, shapes};
 use proptest::prelude::*;
 
 /// Coordinates are multiples of 1 / ONE.

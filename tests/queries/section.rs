@@ -1,14 +1,14 @@
 //! Areas of plane sections, against formulas, dense arrays cut cell by cell, and the outlines that planes cut
 //! out of meshes.
 
-use crate::common::{Dense, DenseSolid, Random, Shape, alone, lattice_frame, model, positions, repeated};
-use crate::random::Maker;
 use glam::{DMat3, DQuat, DVec3};
 use leafless::query::{SECTION_SPLITS, SectionArea, SectionPlane, StopReason, section_area};
 use leafless::{
     Affine, Callback, Control, Csg, Error, FillRule, Frame, Interval, MeshSolid, Proof, Rule, Solid, Tag,
     Tolerance, TriangleMesh, Verdict, build, exchange,
 };
+use leafless_testkit::csg::Maker;
+use leafless_testkit::{Dense, DenseSolid, Random, Shape, alone, lattice_frame, model, positions, repeated};
 use std::f64::consts::PI;
 use std::sync::atomic::{AtomicBool, Ordering::Relaxed};
 
@@ -356,7 +356,7 @@ fn dense_sums(dense: &Dense, plane: &Plane) -> [f64; 2] {
 
 fn tape(random: &mut Random, depth: u8) -> Dense {
     let length = random.below(120);
-    Shape { depth, tape: std::iter::once(9).chain((0..length).map(|_| random.next() as u8)).collect() }
+    Shape { depth, tape: std::iter::once(9).chain((0..length).map(|_| random.bits() as u8)).collect() }
         .dense()
 }
 

@@ -1,8 +1,5 @@
 //! Pictures.
 
-#[path = "../common/mod.rs"]
-mod common;
-
 #[cfg(feature = "png")]
 mod gear;
 mod mesh_solid;

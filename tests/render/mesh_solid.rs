@@ -1,11 +1,11 @@
 //! Solids that contain meshes, against the same solids without meshes: their visibility, lighting and
 //! cut-open views.
 
-use crate::common::alone;
 use leafless::render::{
     Camera, Clip, Finish, Layer, Lens, MeshLayer, Outline, Picture, Shot, SolidLayer, render,
 };
 use leafless::{Affine, AnySolid, Control, Csg, FillRule, Frame, MeshSolid, TriangleMesh};
+use leafless_testkit::alone;
 
 const SIZE: [u32; 2] = [160, 120];
 const LOW: [f64; 3] = [-0.7, -0.55, -0.45];

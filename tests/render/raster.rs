@@ -8,6 +8,7 @@ use leafless::render::{
     SlicePlane, draw_colour_bar, draw_names, render,
 };
 use leafless::{Bounds, Cell, Control, Csg, Error, Frame, Rule, Tag, TriangleMesh, build};
+use leafless_testkit::Random;
 
 type V = [f64; 3];
 
@@ -23,17 +24,8 @@ fn cross(a: V, b: V) -> V {
     [0, 1, 2].map(|k| a[(k + 1) % 3] * b[(k + 2) % 3] - a[(k + 2) % 3] * b[(k + 1) % 3])
 }
 
-struct Random(u64);
-
-impl Random {
-    fn next(&mut self) -> f64 {
-        self.0 = self.0.wrapping_mul(6364136223846793005).wrapping_add(1442695040888963407);
-        (self.0 >> 11) as f64 / (1_u64 << 53) as f64
-    }
-
-    fn point(&mut self, reach: f64) -> V {
-        [0; 3].map(|_: i32| (2.0 * self.next() - 1.0) * reach)
-    }
+fn any_point(random: &mut Random, reach: f64) -> V {
+    [0; 3].map(|_: i32| random.between(-reach, reach))
 }
 
 /// Returns the origin and direction of the line of sight through a place of the picture, by the camera's
@@ -135,7 +127,7 @@ fn ball(n: i32) -> TriangleMesh {
 fn cameras(random: &mut Random, reach: f64) -> Vec<Camera> {
     let mut cameras = Vec::new();
     for lens in [Lens::Perspective(35.0), Lens::Perspective(110.0), Lens::Parallel(1.5)] {
-        let (eye, at, up) = (random.point(reach), random.point(0.3), random.point(1.0));
+        let (eye, at, up) = (any_point(random, reach), any_point(random, 0.3), any_point(random, 1.0));
         cameras.push(Camera::new(eye, at, up, lens).unwrap());
     }
     cameras
@@ -150,8 +142,8 @@ fn depths_of_random_triangles() {
         let size = [2.0, 1.0, 0.5, 0.05][round / 4 % 4];
         let vertices: Vec<V> = (0..count)
             .flat_map(|_| {
-                let centre = random.point(1.0);
-                [0; 3].map(|_: i32| add(centre, random.point(size), 1.0))
+                let centre = any_point(&mut random, 1.0);
+                [0; 3].map(|_: i32| add(centre, any_point(&mut random, size), 1.0))
             })
             .collect();
         let triangles = (0..count).map(|i| [3 * i, 3 * i + 1, 3 * i + 2]).collect();
@@ -172,7 +164,7 @@ fn depths_of_random_triangles() {
 fn depths_of_large_triangles() {
     let mut random = Random(41);
     for _ in 0..4 {
-        let vertices: Vec<V> = (0..9).map(|_| random.point(3.0)).collect();
+        let vertices: Vec<V> = (0..9).map(|_| any_point(&mut random, 3.0)).collect();
         let mesh = TriangleMesh::new(vertices, vec![[0, 1, 2], [3, 4, 5], [6, 7, 8]]).unwrap();
         for camera in cameras(&mut random, 2.0) {
             check_depths(&mesh, &shot(camera, [500, 410]));
@@ -240,7 +232,7 @@ fn grid_box(n: u32, step: f64) -> TriangleMesh {
                     let base = vertices.len() as u32;
                     vertices.extend([corner(0, 0), corner(1, 0), corner(1, 1), corner(0, 1)]);
                     let square =
-                        if random.next() < 0.5 { [[0, 1, 2], [0, 2, 3]] } else { [[1, 2, 3], [1, 3, 0]] };
+                        if random.unit() < 0.5 { [[0, 1, 2], [0, 2, 3]] } else { [[1, 2, 3], [1, 3, 0]] };
                     let turned = |[a, b, c]: [u32; 3]| if side == 0 { [a, c, b] } else { [a, b, c] };
                     triangles.extend(square.map(|t| turned(t).map(|v| base + v)));
                 }
@@ -305,7 +297,7 @@ fn coplanar_triangles_show_no_seams() {
     let place = |u: f64, v: f64| [u, 0.3 * u + 0.2 * v, v];
     let mut vertices = vec![place(0.013, -0.02)];
     vertices.extend((0..n).map(|i| {
-        let (sin, cos) = ((f64::from(i) + random.next()) / f64::from(n) * std::f64::consts::TAU).sin_cos();
+        let (sin, cos) = ((f64::from(i) + random.unit()) / f64::from(n) * std::f64::consts::TAU).sin_cos();
         place(cos, sin)
     }));
     let triangles = (0..n).map(|i| [0, 1 + i as u32, 1 + (i as u32 + 1) % n as u32]).collect();
@@ -559,7 +551,7 @@ fn edges_of_small_triangles_fade() {
 fn lines_cover_what_they_should() {
     let mut random = Random(23);
     for round in 0..60 {
-        let ends = [random.point(1.0), random.point(1.0)];
+        let ends = [any_point(&mut random, 1.0), any_point(&mut random, 1.0)];
         let width = [1.0, 3.0, 10.5][round % 3];
         let lens = if round % 2 == 0 { Lens::Parallel(2.0) } else { Lens::Perspective(30.0) };
         let camera = Camera::new([0.0, -5.0, 0.3], [0.0; 3], [0.1, 0.0, 1.0], lens).unwrap();

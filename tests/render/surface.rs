@@ -1,7 +1,6 @@
 //! Surfaces of octrees and solids in pictures, against formulas: visibility, depth, cut-open views and
 //! colours of values.
 
-use crate::common::alone;
 use leafless::attribute::FunctionAttribute;
 use leafless::render::{
     Camera, Clip, ClippedLayer, Finish, Layer, Lens, MeshLayer, OctreeLayer, Outline, Picture, Shot,
@@ -10,6 +9,7 @@ use leafless::render::{
 use leafless::{
     Affine, Bounds, Control, Csg, Error, Frame, Rule, SurfaceOptions, TriangleMesh, build, build_extended,
 };
+use leafless_testkit::alone;
 
 const SIZE: [u32; 2] = [120, 90];
 

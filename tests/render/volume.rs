@@ -1,11 +1,11 @@
 //! Volumes in pictures, against all voxels on each line of sight, sorted by entry, and against formulas.
 
-use crate::common::Random;
 use leafless::render::{
     Camera, Clip, ColourMap, Compositing, Lens, Picture, Shot, Transfer, VolumeLayer, render,
 };
 use leafless::voxel::{LinearCode, VoxelKind, VoxelRecords, VoxelRecordsRef};
 use leafless::{Bounds, Control, Error, Frame};
+use leafless_testkit::Random;
 use std::sync::atomic::AtomicBool;
 
 /// The cube [-1, 1]³ with at most 16 cells along an axis.

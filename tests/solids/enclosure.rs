@@ -1,17 +1,15 @@
 //! The enclosures of boundaries in cells that solids provide, against exact arithmetic.
 
-#[allow(dead_code)]
-use crate::common::exact::Exact;
-use crate::common::slabs::{bits, known, told};
-use crate::common::{Random, Way, alone, lattice_frame};
-use crate::model::{Model, Other, Point};
-use crate::random::Maker;
 use leafless::lattice::MAX_DEPTH;
 use leafless::solid::{Ask, Enclosure, GradientRange, Slab, TangentBalls, Transform};
 use leafless::{
     Affine, AnySolid, Callback, Cell, Classifier, Csg, Error, Frame, Interval, Solid, SurfaceOptions,
     Verdict, build_extended,
 };
+use leafless_testkit::csg::{Maker, Model, Other, Point};
+use leafless_testkit::exact::Exact;
+use leafless_testkit::slabs::{bits, known, told};
+use leafless_testkit::{Random, Way, alone, lattice_frame};
 
 /// Frames whose planes are integers, exact doubles, or no doubles at all; far from the origin; and tiny.
 fn frames(depth: u8) -> [Frame; 5] {

@@ -1,9 +1,6 @@
 //! A host program with slow functions: the number of calls, the number of calling threads, and the delay of a
 //! cancel.
 
-use crate::common::exact::Exact;
-use crate::common::{Random, Way};
-use crate::model::Model;
 use leafless::lattice::Cube;
 use leafless::op::{Refinement, Zone};
 use leafless::solid::{Adaptive, Batch, Prepared, SplitCounter, Transform};
@@ -12,6 +9,9 @@ use leafless::{
     Octree, Rule, Solid, SurfaceOptions, Verdict, Worker, bounding_box, build, build_extended, clearance,
     contains, interference, measure,
 };
+use leafless_testkit::csg::Model;
+use leafless_testkit::exact::Exact;
+use leafless_testkit::{Random, Way};
 use std::collections::HashSet;
 use std::sync::atomic::{AtomicBool, AtomicU64, Ordering::Relaxed};
 use std::sync::{Arc, Mutex};

@@ -1,11 +1,11 @@
 //! A solid defined outside the library: its cells in exact arithmetic, and its convergence.
 
-use crate::common::exact::Exact;
-use crate::common::slabs::told;
-use crate::common::{Random, Way};
 use example::{Ball, Metaball, Step, plain_sum, three_balls};
 use leafless::solid::Ask;
 use leafless::{Cell, Classifier, Control, Frame, Interval, Rule, Solid, Verdict, Worker, build, measure};
+use leafless_testkit::exact::Exact;
+use leafless_testkit::slabs::told;
+use leafless_testkit::{Random, Way};
 use std::f64::consts::PI;
 
 #[path = "../../examples/metaball.rs"]

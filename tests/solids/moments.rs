@@ -1,12 +1,10 @@
 //! The moments that solids provide for a cell, against those of far smaller cells.
 
-use crate::common::{Random, Way, alone, lattice_frame};
-use crate::model::Model;
-use crate::random::Maker;
 use leafless::lattice::{CellMoments, CubeMoments, MAX_DEPTH};
-#[allow(dead_code)]
 use leafless::solid::Ask;
 use leafless::{Cell, Classifier, Csg, Frame, Solid, SurfaceOptions, Verdict, Worker, build_extended};
+use leafless_testkit::csg::{Maker, Model};
+use leafless_testkit::{Random, Way, alone, lattice_frame};
 
 /// Index pairs of the second moments, in order.
 const PAIRS: [(usize, usize); 6] = [(0, 0), (1, 1), (2, 2), (0, 1), (0, 2), (1, 2)];

@@ -1,9 +1,6 @@
 //! Solids under affine maps: verdicts against exact arithmetic, and maps of the lattice onto itself, which
 //! must lose nothing.
 
-use crate::common;
-use crate::common::exact::Exact;
-use crate::common::{Dense, Random, alone, lattice_frame, positions, shapes};
 use leafless::lattice::{Cube, CubeMoments};
 use leafless::op::Zone;
 use leafless::solid::{Ask, Crossing, Segment, Transform};
@@ -11,6 +8,8 @@ use leafless::{
     Affine, AnySolid, Cell, Classifier, Control, Csg, Error, FillRule, Frame, LazyOctree, MeshSolid, Rule,
     Solid, Tag, Verdict, Worker, build, measure,
 };
+use leafless_testkit::exact::Exact;
+use leafless_testkit::{Dense, Random, alone, lattice_frame, positions, shapes};
 use proptest::prelude::*;
 use std::f64::consts::PI;
 
@@ -276,12 +275,12 @@ impl Move {
 }
 
 proptest! {
-    #![proptest_config(common::cases(150))]
+    #![proptest_config(leafless_testkit::cases(150))]
 
     #[test]
     fn maps_of_the_lattice_lose_nothing(shape in shapes(1..=4), seed: u64, outside in 0..3usize) {
         let dense = shape.dense();
-        let exterior = common::TAGS[outside];
+        let exterior = leafless_testkit::TAGS[outside];
         let tree = dense.octree_with(exterior, &alone()).unwrap();
         let frame = lattice_frame(dense.depth);
         let mut random = Random(seed);

@@ -1,13 +1,13 @@
 //! Volumes as solids, against dense arrays and exact arithmetic.
 
-use crate::common::exact::Exact;
-use crate::common::volumes::{KINDS, Sampled, extents, grid};
-use crate::common::{Random, alone};
 use leafless::solid::{Ask, Band, SampleArray, Samples, VoxelGrid};
 use leafless::{
     AnySolid, Bounds, Cell, Classifier, Control, Csg, Error, Frame, Membership, Rule, Solid, Tag, Verdict,
     Volume, Worker, build, complement, contains,
 };
+use leafless_testkit::exact::Exact;
+use leafless_testkit::volumes::{KINDS, Sampled, extents, grid};
+use leafless_testkit::{Random, alone};
 use std::sync::Arc;
 use std::sync::atomic::AtomicBool;
 

@@ -1,13 +1,13 @@
 //! Boundaries of solids that provide their surfaces.
 
-use crate::common::surfaces::euler_of_manifold;
-use crate::common::{Random, alone, repeated};
 use leafless::query::{DistanceTo, Obstacle, distances};
 use leafless::surface::{Boundary, boundary};
 use leafless::{
     Affine, AnySolid, Control, Csg, Error, FillRule, Frame, Membership, MeshSolid, Octree, Ray, Rule, Solid,
     SurfaceOptions, TriangleMesh, build, build_extended, cast_rays, contains, deviation, measure,
 };
+use leafless_testkit::surfaces::euler_of_manifold;
+use leafless_testkit::{Random, alone, repeated};
 use std::collections::BTreeMap;
 use std::f64::consts::PI;
 

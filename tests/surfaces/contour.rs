@@ -1,8 +1,5 @@
 //! Contours of any solid.
 
-use crate::common::model;
-use crate::common::surfaces::euler_of_manifold;
-use crate::common::{Random, alone, repeated};
 use leafless::exchange::{MeshOptions, read_mesh};
 use leafless::solid::{Band, VoxelGrid};
 use leafless::surface::{boundary, contour};
@@ -10,6 +7,8 @@ use leafless::{
     Affine, AnySolid, Callback, Control, Csg, Error, FillRule, Frame, MeshSolid, Rule, Solid, Tag,
     TriangleMesh, Verdict, Volume, build, deviation,
 };
+use leafless_testkit::surfaces::euler_of_manifold;
+use leafless_testkit::{Random, alone, model, repeated};
 use std::sync::atomic::{AtomicBool, AtomicU64, Ordering::Relaxed};
 
 fn turn() -> Affine {
@@ -114,7 +113,7 @@ fn hosts_that_contradict_themselves() {
     let control = Control { max_nodes: Some(300), ..alone() };
     let hash = |seed: u64, point: [f64; 3]| {
         Random(point.iter().fold(seed, |sum, c| (sum ^ c.to_bits()).wrapping_mul(0x9E37_79B9_7F4A_7C15)))
-            .next()
+            .bits()
     };
     for seed in (0..4u64).step_by(repeated(2, 1)) {
         let host = Callback::new(move |min: [f64; 3], max: [f64; 3]| {

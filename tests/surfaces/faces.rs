@@ -1,12 +1,12 @@
 //! Faces of boundaries: polygons, regions, shells, and their underlying surfaces.
 
 use crate::boundary::{of, plate, random_scene, turn};
-use crate::common::{Random, alone, repeated};
 use leafless::exchange::{MeshFormat, WriteOptions, read_obj, write_polygons};
 use leafless::mesh::{Polyhedron, PolyhedronArrays};
 use leafless::solid::SurfaceShape;
 use leafless::surface::{Boundary, BoundaryFaces, boundary};
 use leafless::{Affine, Csg, Frame, SurfaceOptions, build_extended};
+use leafless_testkit::{Random, alone, repeated};
 use std::collections::BTreeMap;
 
 fn cuboid(low: [f64; 3], high: [f64; 3]) -> Csg {

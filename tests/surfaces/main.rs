@@ -1,10 +1,5 @@
 //! Triangle meshes of octrees, solids and volumes.
 
-#[path = "../../fuzz/bodies/aligned.rs"]
-mod aligned;
-#[path = "../common/mod.rs"]
-mod common;
-
 mod boundary;
 mod contour;
 mod faces;

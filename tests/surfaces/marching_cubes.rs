@@ -1,13 +1,12 @@
 //! Surfaces of octrees: closed, with two triangles on every edge, and with the topology of the samples.
 
-use crate::aligned::Aligned;
-use crate::common::surfaces::{components, euler_of_manifold};
-use crate::common::{Dense, Random, alone, cases, lattice_frame, model, repeated, shapes};
 use leafless::surface::{Resolve, Snap, marching_cubes_reusing, simple_marching_cubes};
 use leafless::{
     Control, Csg, Error, FillRule, Frame, MeshSolid, Octree, Rule, Solid, Tag, TriangleMesh, build, exchange,
     file, marching_cubes,
 };
+use leafless_testkit::surfaces::{components, euler_of_manifold};
+use leafless_testkit::{Aligned, Dense, Random, alone, cases, lattice_frame, model, repeated, shapes};
 use proptest::prelude::*;
 
 /// Samples with a margin of two outside samples.
@@ -287,7 +286,7 @@ fn damaged_trees() {
             let mut bytes = good.clone();
             for _ in 0..if round % 2 == 0 { 3 } else { good.len() / 20 } {
                 let at = 1024 + random.below(good.len() as u64 - 1024) as usize;
-                bytes[at] = random.next() as u8;
+                bytes[at] = random.bits() as u8;
             }
             let bytes = Aligned::new(&bytes);
             let Ok(tree) = file::view(bytes.bytes()) else { continue };

@@ -1,8 +1,5 @@
 //! All surface methods on one list of solids: closed, outward, of the right volume, and consistent.
 
-use crate::aligned::Aligned;
-use crate::common::surfaces::{assert_balanced, euler_of_manifold, outlines};
-use crate::common::{Random, alone, lattice_frame, model};
 use leafless::solid::{Band, Samples, VoxelGrid};
 use leafless::surface::{
     Resolve, Snap, coplanar_shrink, published_shrink, simple_marching_cubes, surface_nets,
@@ -11,6 +8,8 @@ use leafless::{
     Affine, Control, Csg, Error, FillRule, Frame, MeshSolid, Octree, OctreeRef, Rule, Solid, Volume, build,
     exchange, file, marching_cubes,
 };
+use leafless_testkit::surfaces::{assert_balanced, euler_of_manifold, outlines};
+use leafless_testkit::{Aligned, Random, alone, lattice_frame, model};
 
 /// Sets of four normals that add up to zero: the faces of a tetrahedron. All 13 directions occur.
 const TETRAHEDRA: [[[f64; 3]; 4]; 10] = [
@@ -183,7 +182,7 @@ fn damaged_trees() {
         let mut bytes = good.clone();
         for _ in 0..if round % 2 == 0 { 3 } else { good.len() / 20 } {
             let at = 1024 + random.below(good.len() as u64 - 1024) as usize;
-            bytes[at] = random.next() as u8;
+            bytes[at] = random.bits() as u8;
         }
         let bytes = Aligned::new(&bytes);
         let Ok(tree) = file::view(bytes.bytes()) else { continue };

@@ -1,11 +1,11 @@
 //! Surface nets beside marching cubes. Both have the same samples, and so the same topology.
 
-use crate::common::surfaces::{components, euler_of_manifold};
-use crate::common::{Dense, Random, alone, cases, repeated, shapes};
 use leafless::surface::{Resolve, surface_nets};
 use leafless::{
     AnySolid, Control, Csg, Error, FillRule, Frame, Rule, Tag, TriangleMesh, build, marching_cubes,
 };
+use leafless_testkit::surfaces::{components, euler_of_manifold};
+use leafless_testkit::{Dense, Random, alone, cases, repeated, shapes};
 use proptest::prelude::*;
 
 /// Returns, by definition, the vertices of cubes between eight samples that one sheet passes through: means

@@ -1,13 +1,13 @@
 //! Coplanar shrink: the surface of simple marching cubes in far fewer triangles, without cracks; and the
 //! published form.
 
-use crate::common::surfaces::{Point, assert_balanced, components, euler_of_manifold, outlines, sample};
-use crate::common::{Dense, Random, alone, cases, lattice_frame, repeated, shapes};
 use leafless::surface::{
     Resolve, Snap, coplanar_shrink, coplanar_shrink_solid, published_shrink, published_shrink_solid,
     simple_marching_cubes, simple_marching_cubes_solid,
 };
 use leafless::{Control, Csg, Error, Frame, OctreeRef, Rule, Tag, TriangleMesh, build};
+use leafless_testkit::surfaces::{Point, assert_balanced, components, euler_of_manifold, outlines, sample};
+use leafless_testkit::{Dense, Random, alone, cases, lattice_frame, repeated, shapes};
 use proptest::prelude::*;
 use std::collections::{BTreeSet, HashMap};
 

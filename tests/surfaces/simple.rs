@@ -1,9 +1,9 @@
 //! Simple marching cubes: balanced, with vertices at samples, and of the published sizes.
 
-use crate::common::surfaces::{assert_balanced, components, euler_of_manifold};
-use crate::common::{Dense, Random, alone, cases, lattice_frame, shapes};
 use leafless::surface::{Resolve, Snap, simple_marching_cubes, simple_marching_cubes_solid};
 use leafless::{Control, Csg, Error, Frame, Rule, Tag, TriangleMesh, build, marching_cubes};
+use leafless_testkit::surfaces::{assert_balanced, components, euler_of_manifold};
+use leafless_testkit::{Dense, Random, alone, cases, lattice_frame, shapes};
 use proptest::prelude::*;
 use std::collections::HashMap;
 

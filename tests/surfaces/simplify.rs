@@ -1,12 +1,11 @@
 //! Meshes with fewer triangles.
 
-use crate::common::model;
-use crate::common::surfaces::{components, euler_of_manifold};
-use crate::common::{Random, alone};
 use leafless::exchange::{MeshOptions, open_mesh};
 use leafless::mesh::MeshAttribute;
 use leafless::surface::{VertexPlacement, marching_cubes_solid, simplify};
 use leafless::{Control, Csg, Error, Frame, TriangleMesh};
+use leafless_testkit::surfaces::{components, euler_of_manifold};
+use leafless_testkit::{Random, alone, model};
 
 fn minus(a: [f64; 3], b: [f64; 3]) -> [f64; 3] {
     [a[0] - b[0], a[1] - b[1], a[2] - b[2]]

@@ -2,12 +2,12 @@
 //! surface.
 
 use crate::boundary::{away_from_mesh, plate};
-use crate::common::surfaces::euler_of_manifold;
-use crate::common::{Random, alone, repeated};
 use leafless::exchange::{MeshFormat, WriteOptions, written_form};
 use leafless::mesh::SinglePrecision;
 use leafless::surface::{VertexPlacement, marching_cubes_solid};
 use leafless::{Affine, Csg, Error, Frame, Solid, TriangleMesh};
+use leafless_testkit::surfaces::euler_of_manifold;
+use leafless_testkit::{Random, alone, repeated};
 
 /// Marching cubes with vertices on the surface, on a lattice slightly off the faces.
 fn cubes(solid: &Csg, depth: u8) -> TriangleMesh {

@@ -1,13 +1,13 @@
 //! Surfaces of solids other than octrees: samples at corners, vertices on the surface.
 
-use crate::common::surfaces::{assert_balanced, components, euler_of_manifold};
-use crate::common::{Random, alone, lattice_frame, model};
 use leafless::solid::{Ask, Segment};
 use leafless::surface::{VertexPlacement, marching_cubes_solid};
 use leafless::{
     Affine, AnySolid, Callback, Cell, Classifier, Control, Csg, Error, FillRule, Frame, MeshSolid, Rule,
     Solid, TriangleMesh, Verdict, Worker, build, exchange,
 };
+use leafless_testkit::surfaces::{assert_balanced, components, euler_of_manifold};
+use leafless_testkit::{Random, alone, lattice_frame, model};
 
 fn crossings<S: Solid>(solid: &S, frame: &Frame) -> TriangleMesh {
     marching_cubes_solid(solid, frame, VertexPlacement::Crossing, &alone()).unwrap()

@@ -1,9 +1,9 @@
 //! Surfaces that touch and merge smoothly: a ball at the end of a round bar, the round ends of a slot.
 
 use super::boundary::{assert_deviation, assert_manifold, of, turn};
-use crate::common::surfaces::euler_of_manifold;
-use crate::common::{Random, repeated};
 use leafless::{Affine, Csg};
+use leafless_testkit::surfaces::euler_of_manifold;
+use leafless_testkit::{Random, repeated};
 use std::collections::BTreeMap;
 use std::f64::consts::PI;
 

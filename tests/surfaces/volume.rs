@@ -1,12 +1,12 @@
 //! Surfaces of volumes: vertices where the field between samples crosses the threshold.
 
-use crate::common::surfaces::{assert_balanced, euler_of_manifold};
-use crate::common::{Random, alone};
 use leafless::solid::{Band, Samples, VoxelGrid};
 use leafless::surface::{Resolve, marching_cubes_volume, marching_cubes_with_volume};
 use leafless::{
     Control, Csg, Error, Frame, Octree, Rule, TriangleMesh, Volume, build, difference, marching_cubes,
 };
+use leafless_testkit::surfaces::{assert_balanced, euler_of_manifold};
+use leafless_testkit::{Random, alone};
 use std::f64::consts::PI;
 use std::sync::atomic::AtomicBool;
 

@@ -2,50 +2,14 @@
 //! program. Each run ends by itself with code 0, 1 or 2, and reports a problem in one line. A result made
 //! from a file that `verify` accepts is good.
 
-#[path = "../../../fuzz/bodies/layout.rs"]
-#[allow(dead_code)]
-mod layout;
-#[path = "../../../fuzz/bodies/mutator.rs"]
-#[allow(dead_code)]
-mod mutator;
-
 use crate::commands::{COMMANDS, attempt, vectors};
 use crate::place::Place;
-
-/// Pseudo-random numbers (splitmix64), as the mutator takes them.
-struct Random(u64);
-
-impl Random {
-    fn next(&mut self) -> u64 {
-        self.0 = self.0.wrapping_add(0x9E37_79B9_7F4A_7C15);
-        let mut x = self.0;
-        x = (x ^ x >> 30).wrapping_mul(0xBF58_476D_1CE4_E5B9);
-        x = (x ^ x >> 27).wrapping_mul(0x94D0_49BB_1331_11EB);
-        x ^ x >> 31
-    }
-
-    fn below(&mut self, end: usize) -> usize {
-        if end == 0 { 0 } else { (self.next() % end as u64) as usize }
-    }
-
-    fn one_in(&mut self, n: usize) -> bool {
-        self.below(n) == 0
-    }
-}
-
-/// Returns `None`: no input of these tests has two parts.
-fn halves(_: &[u8]) -> Option<(&[u8], &[u8])> {
-    None
-}
-
-fn joined(first: &[u8], _: &[u8]) -> Vec<u8> {
-    first.to_vec()
-}
+use leafless_testkit::{Random, fuzz};
 
 /// A blind change of one byte.
 fn blind(random: &mut Random, data: &mut [u8], size: usize) -> usize {
     if size > 0 {
-        data[random.below(size)] = random.next() as u8;
+        data[random.index(size)] = random.bits() as u8;
     }
     size
 }
@@ -58,17 +22,17 @@ fn change(files: usize, seed: u64) -> [usize; 3] {
     let mut random = Random(seed);
     let [mut made, mut good, mut results] = [0; 3];
     while made < files {
-        let original = &vectors[random.below(vectors.len())];
-        let repairs = mutator::repairs(&mut random);
-        let mut draw = Random(random.next());
+        let original = &vectors[random.index(vectors.len())];
+        let repairs = fuzz::repairs(&mut random);
+        let mut draw = Random(random.bits());
         let mut any = |data: &mut [u8], size: usize, _: usize| blind(&mut draw, data, size);
-        let Some(bytes) = mutator::changed(original, &mut random, &mut any, &repairs) else { continue };
+        let Some(bytes) = fuzz::changed(original, &mut random, &mut any, &repairs) else { continue };
         made += 1;
         place.write("changed.lfl", &bytes);
         let path = place.path("changed.lfl");
         let is_good = place.run("verify changed.lfl").code == Some(0);
         good += usize::from(is_good);
-        let command = COMMANDS[random.below(COMMANDS.len())];
+        let command = COMMANDS[random.index(COMMANDS.len())];
         let _ = std::fs::remove_file(place.path("out.lfl"));
         attempt(&place, "160M", &path, [command].into_iter());
         if is_good && place.path("out.lfl").exists() {

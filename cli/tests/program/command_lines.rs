@@ -3,6 +3,7 @@
 //! reports a problem in one line, and leaves no temporary file.
 
 use crate::place::{Place, Run, block, stl};
+use leafless_testkit::Random;
 use std::collections::BTreeMap;
 use std::io::Write;
 use std::process::{Command, Stdio};
@@ -14,18 +15,9 @@ const MANY: u64 = 7000;
 /// Time after which a hanging command is ended.
 const PATIENCE: Duration = Duration::from_secs(100);
 
-/// Pseudo-random numbers from a seed, good enough for the tests.
-struct Random(u64);
-
-impl Random {
-    fn below(&mut self, n: usize) -> usize {
-        self.0 = self.0.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
-        ((self.0 >> 33) as usize) % n
-    }
-
-    fn one<'a, T: ?Sized>(&mut self, of: &[&'a T]) -> &'a T {
-        of[self.below(of.len())]
-    }
+/// Returns one of some words.
+fn one<'a>(random: &mut Random, of: &[&'a str]) -> &'a str {
+    of[random.index(of.len())]
 }
 
 /// An option of a subcommand, with the values that its help names.
@@ -220,17 +212,17 @@ const NEEDED: [(&str, &str); 6] = [
 
 /// Returns a random command line, without the program's name.
 fn line(random: &mut Random, name: &str, choices: &[Choice], files: &[String]) -> Vec<String> {
-    let file = |random: &mut Random| files[random.below(files.len())].clone();
+    let file = |random: &mut Random| files[random.index(files.len())].clone();
     let mut words = vec![name.to_owned()];
     let pairs = ["union", "intersection", "difference", "xor", "interfere", "deviation", "layout"];
     let operands = if pairs.contains(&name) { 2 } else { 1 };
-    for _ in 0..operands + random.below(12) / 11 {
+    for _ in 0..operands + random.index(12) / 11 {
         words.push(file(random));
     }
-    for (_, needed) in NEEDED.iter().filter(|(of, _)| *of == name && random.below(8) > 0) {
+    for (_, needed) in NEEDED.iter().filter(|(of, _)| *of == name && random.index(8) > 0) {
         words.extend(needed.split(' ').map(str::to_owned));
     }
-    if choices.iter().any(|choice| choice.name == "--output") && random.below(8) > 0 {
+    if choices.iter().any(|choice| choice.name == "--output") && random.index(8) > 0 {
         let extension = match name {
             "render" => "out.png",
             "mesh" => "out.stl",
@@ -264,33 +256,33 @@ fn line(random: &mut Random, name: &str, choices: &[Choice], files: &[String]) -
             "no/folder.lfl",
             "/dev/full",
         ];
-        words.extend(["-o".to_owned(), random.one::<str>(&names).to_owned()]);
+        words.extend(["-o".to_owned(), one(random, &names).to_owned()]);
     }
-    if choices.iter().any(|choice| choice.name == "--depth") && random.below(3) > 0 {
-        words.extend(["--depth".to_owned(), (1 + random.below(5)).to_string()]);
+    if choices.iter().any(|choice| choice.name == "--depth") && random.index(3) > 0 {
+        words.extend(["--depth".to_owned(), (1 + random.index(5)).to_string()]);
     }
     // Most lines have few options.
-    for _ in 0..random.below(4) * random.below(2) {
-        let Some(choice) = choices.get(random.below(choices.len().max(1))) else { break };
+    for _ in 0..random.index(4) * random.index(2) {
+        let Some(choice) = choices.get(random.index(choices.len().max(1))) else { break };
         if choice.name == "--output" || choice.name == "--depth" {
             continue;
         }
         words.push(choice.name.clone());
-        if choice.takes_value && random.below(20) > 0 {
+        if choice.takes_value && random.index(20) > 0 {
             let fitting = FITTING.iter().find(|(of, _)| *of == choice.name);
-            words.push(match (random.below(8), fitting) {
+            words.push(match (random.index(8), fitting) {
                 (0, _) => file(random),
                 (1..=6, _) if !choice.values.is_empty() => {
-                    choice.values[random.below(choice.values.len())].clone()
+                    choice.values[random.index(choice.values.len())].clone()
                 }
                 (1..=6, Some((_, value))) => (*value).to_owned(),
-                _ => random.one::<str>(&VALUES).to_owned(),
+                _ => one(random, &VALUES).to_owned(),
             });
         }
     }
     // Sometimes in another order.
-    if random.below(16) == 0 && words.len() > 2 {
-        let (a, b) = (1 + random.below(words.len() - 1), 1 + random.below(words.len() - 1));
+    if random.index(16) == 0 && words.len() > 2 {
+        let (a, b) = (1 + random.index(words.len() - 1), 1 + random.index(words.len() - 1));
         words.swap(a, b);
     }
     words
@@ -330,17 +322,12 @@ fn attack(seed: u64, runs: u64) {
     let mut random = Random(seed);
     let mut codes = [0; 3];
     for _ in 0..runs {
-        let name = names[random.below(names.len())];
+        let name = names[random.index(names.len())];
         let words = line(&mut random, name, &subcommands[name], &files);
-        let input = random.one::<str>(&[
-            "",
-            "0 0 0\n",
-            "1 2 3 0 0 1\n",
-            "1 0 0 0\n",
-            "nan nan nan\n",
-            "x\n\n0 0 0\n",
-            "0,0,0",
-        ]);
+        let input = one(
+            &mut random,
+            &["", "0 0 0\n", "1 2 3 0 0 1\n", "1 0 0 0\n", "nan nan nan\n", "x\n\n0 0 0\n", "0,0,0"],
+        );
         let done = run(&place, &words, input);
         let code = done.code.unwrap_or(-1);
         assert!((0..=2).contains(&code), "{done:?}");

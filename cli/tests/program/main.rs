@@ -1,10 +1,5 @@
 //! The program as its users run it: every subcommand, its output, its files, and its signals.
 
-#[path = "../../../tests/common/models.rs"]
-mod models;
-#[path = "../../../tests/common/zip.rs"]
-mod zip;
-
 mod changed_files;
 mod channels;
 mod command_lines;

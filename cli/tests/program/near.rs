@@ -4,6 +4,7 @@ use crate::place::{Place, Run, solids};
 use leafless::octree::{Cursor, Direction};
 use leafless::query::DistanceTo;
 use leafless::{Tag, file};
+use leafless_testkit::Random;
 use serde_json::{Value, json};
 
 /// Returns the numbers on each line.
@@ -16,12 +17,8 @@ fn intervals(run: &Run) -> Vec<[f64; 2]> {
 }
 
 fn random(count: usize) -> Vec<[f64; 3]> {
-    let mut state = 7u64;
-    let mut random = || {
-        state = state.wrapping_mul(6364136223846793005).wrapping_add(1442695040888963407);
-        (state >> 11) as f64 / (1u64 << 53) as f64
-    };
-    (0..count).map(|_| [0; 3].map(|_| 12.0 * random() - 4.0)).collect()
+    let mut random = Random(7);
+    (0..count).map(|_| [0; 3].map(|_| random.between(-4.0, 8.0))).collect()
 }
 
 fn lines(points: &[[f64; 3]]) -> String {

@@ -1,9 +1,9 @@
 //! What somebody means who tries the program for the first time: defaults that do it, messages that say what
 //! to do, and answers that agree with each other.
 
-use crate::models::model;
 use crate::place::{Place, block, meshes, solids, stl};
 use leafless::TriangleMesh;
+use leafless_testkit::model;
 use serde_json::Value;
 use std::f64::consts::PI;
 

@@ -3,6 +3,7 @@
 use crate::place::{Place, Run, solids};
 use leafless::query::Obstacle;
 use leafless::{Ray, exchange, file};
+use leafless_testkit::Random;
 use serde_json::Value;
 use std::io::{Read, Write};
 use std::process::Stdio;
@@ -119,12 +120,8 @@ fn cells_that_prove_nothing() {
 
 fn many(place: &Place, count: usize) {
     let slab = file::open(place.path("slab.lfl")).unwrap();
-    let mut state = 7u64;
-    let mut random = || {
-        state = state.wrapping_mul(6364136223846793005).wrapping_add(1442695040888963407);
-        (state >> 11) as f64 / (1u64 << 53) as f64
-    };
-    let rays: Vec<[f64; 6]> = (0..count).map(|_| [0; 6].map(|_| random()).map(|x| 12.0 * x - 4.0)).collect();
+    let mut random = Random(7);
+    let rays: Vec<[f64; 6]> = (0..count).map(|_| [0; 6].map(|_| random.between(-4.0, 8.0))).collect();
     let text: String = rays
         .iter()
         .map(|[x, y, z, dx, dy, dz]| format!("{x:?} {y:?} {z:?} {dx:?} {dy:?} {dz:?}\n"))

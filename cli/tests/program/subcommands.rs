@@ -1,8 +1,8 @@
 //! The program `leafless`, from outside: every subcommand, its output, and the files it leaves.
 
 use crate::place::{Place, Run, block, meshes, solids, stl};
-use crate::{models, zip};
 use leafless::{Membership, TriangleMesh, file};
+use leafless_testkit::{Random, model, zip};
 use serde_json::Value;
 use std::ffi::OsStr;
 use std::io::{Read, Write};
@@ -1393,12 +1393,8 @@ fn contains_answers_line_by_line() {
 fn contains_agrees_with_the_library_on_many_points() {
     let place = solids();
     let cube = file::open(place.path("cube.lfl")).unwrap();
-    let mut state = 7u64;
-    let mut random = || {
-        state = state.wrapping_mul(6364136223846793005).wrapping_add(1442695040888963407);
-        (state >> 11) as f64 / (1u64 << 53) as f64 * 8.4 - 0.2
-    };
-    let points: Vec<[f64; 3]> = (0..100_000).map(|_| [random(), random(), random()]).collect();
+    let mut random = Random(7);
+    let points: Vec<[f64; 3]> = (0..100_000).map(|_| [0; 3].map(|_| random.between(-0.2, 8.2))).collect();
     let text: String = points.iter().map(|[x, y, z]| format!("{x:?} {y:?} {z:?}\n")).collect();
     let run = place.run_with("contains cube.lfl", text.as_bytes()).good();
     let answers: Vec<&str> = run.text().lines().collect();
@@ -1557,7 +1553,7 @@ fn demo_does_not_follow_what_others_put_in_its_place() {
 #[test]
 fn the_volume_of_a_machined_part() {
     const TRUE_VOLUME: f64 = 11.627733;
-    let Some(path) = models::model("featuretype.STL") else { return };
+    let Some(path) = model("featuretype.STL") else { return };
     // The program runs in another folder.
     let path = std::path::absolute(path).unwrap();
     let place = Place::new();

@@ -177,39 +177,25 @@ mod tests {
     use crate::octree::Octree;
     use crate::op::{SurfaceOptions, build_extended};
     use crate::solid::Csg;
+    use leafless_testkit::Random;
     use std::vec::Vec;
 
-    struct Random(u64);
+    /// A number from -1 to 1, usually one of few numbers, so that surfaces and planes of the lattice
+    /// coincide.
+    fn number(random: &mut Random) -> f64 {
+        if random.below(3) == 0 { random.between(-1.0, 1.0) } else { random.below(17) as f64 / 8.0 - 1.0 }
+    }
 
-    impl Random {
-        fn below(&mut self, n: u64) -> u64 {
-            self.0 ^= self.0 << 13;
-            self.0 ^= self.0 >> 7;
-            self.0 ^= self.0 << 17;
-            (self.0 >> 11) % n
-        }
-
-        fn unit(&mut self) -> f64 {
-            self.below(1 << 40) as f64 / (1u64 << 40) as f64
-        }
-
-        /// A number from -1 to 1, usually one of few numbers, so that surfaces and planes of the lattice
-        /// coincide.
-        fn number(&mut self) -> f64 {
-            if self.below(3) == 0 { 2.0 * self.unit() - 1.0 } else { self.below(17) as f64 / 8.0 - 1.0 }
-        }
-
-        fn vector(&mut self) -> [f64; 3] {
-            [0; 3].map(|_| self.number())
-        }
+    fn vector(random: &mut Random) -> [f64; 3] {
+        [0; 3].map(|_| number(random))
     }
 
     fn primitive(random: &mut Random) -> Option<Csg> {
         // Most sizes are eighths, as most coordinates are, so that some rays are tangents.
-        let size = (0.125 + random.number().abs()).min(1.0);
+        let size = (0.125 + number(random).abs()).min(1.0);
         let csg = match random.below(5) {
             0 => {
-                let [a, b] = [random.vector(), random.vector()];
+                let [a, b] = [vector(random), vector(random)];
                 let ends = |pick: fn(f64, f64) -> f64| [0, 1, 2].map(|axis| pick(a[axis], b[axis]));
                 return Csg::cuboid(ends(f64::min), ends(f64::max)).ok();
             }
@@ -218,7 +204,7 @@ mod tests {
             3 => Csg::torus(0.75 * size, 0.25 * size),
             _ => Csg::ball([0.0; 3], size),
         };
-        let [x, y, z] = random.vector();
+        let [x, y, z] = vector(random);
         // Two rotations by the triangle 3-4-5, around z and around x.
         let turned = [[0.6, -0.64, 0.48, x], [0.8, 0.48, -0.36, y], [0.0, 0.6, 0.8, z]];
         let moved = [[1.0, 0.0, 0.0, x], [0.0, 1.0, 0.0, y], [0.0, 0.0, 1.0, z]];
@@ -259,18 +245,18 @@ mod tests {
                 let step = frame.edge() * 0.5f64.powi(level);
                 frame.origin().map(|origin| origin + step * random.below((1 << level) + 1) as f64)
             }
-            1 => random.vector().map(|c| 4.0 * c),
-            _ => random.vector(),
+            1 => vector(random).map(|c| 4.0 * c),
+            _ => vector(random),
         };
         let ray = match random.below(4) {
-            0 => Ray::between(from, random.vector()),
+            0 => Ray::between(from, vector(random)),
             1 => {
                 let mut direction = [0.0; 3];
                 direction[random.below(3) as usize] = if random.below(2) == 0 { 1.0 } else { -0.75 };
                 Ray::new(from, direction)
             }
             2 => Ray::new(from, [0; 3].map(|_| random.below(3) as f64 - 1.0)),
-            _ => Ray::new(from, random.vector()),
+            _ => Ray::new(from, vector(random)),
         };
         let last = if random.below(3) == 0 { 0.25 + 2.0 * random.unit() } else { f64::INFINITY };
         ray.ok()?.until(last).ok()

@@ -370,23 +370,14 @@ impl Change {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use leafless_testkit::Random;
 
-    struct Random(u64);
-
-    impl Random {
-        /// A number in −1..1.
-        fn number(&mut self) -> f64 {
-            self.0 = self.0.wrapping_mul(6364136223846793005).wrapping_add(1442695040888963407);
-            (self.0 >> 11) as f64 / (1u64 << 52) as f64 - 1.0
-        }
-
-        fn vector(&mut self) -> DVec3 {
-            DVec3::new(self.number(), self.number(), self.number())
-        }
+    fn vector(random: &mut Random) -> DVec3 {
+        DVec3::from_array([0; 3].map(|_| random.between(-1.0, 1.0)))
     }
 
     fn ray(random: &mut Random) -> (Ray, DVec3, DVec3) {
-        let (from, way) = (random.vector() * 2.0, random.vector());
+        let (from, way) = (vector(random) * 2.0, vector(random));
         let ray = Ray::new(from.to_array(), way.to_array()).unwrap();
         (ray, from, way)
     }
@@ -394,13 +385,13 @@ mod tests {
     /// A jagged loop around a random axis, and a triangle somewhere.
     fn rim(random: &mut Random, corners: usize) -> Rim {
         let mut rim = Rim::default();
-        let (u, v, middle) = (random.vector(), random.vector(), random.vector());
+        let [u, v, middle] = [0; 3].map(|_| vector(random));
         for count in [corners, 3] {
             let first = rim.edges().len();
             let points: Vec<DVec3> = (0..count)
                 .map(|k| {
                     let angle = TAU * k as f64 / count as f64;
-                    middle + u * libm::cos(angle) + v * libm::sin(angle) + 0.3 * random.vector()
+                    middle + u * libm::cos(angle) + v * libm::sin(angle) + 0.3 * vector(random)
                 })
                 .collect();
             for k in 0..count {
@@ -445,7 +436,7 @@ mod tests {
                 }
             }
             // The interval Newton bounds of the change around a time.
-            let t = 2.0 + random.number() * 2.0;
+            let t = random.between(0.0, 4.0);
             let change = line.change(t);
             let value = line.sums(t).value();
             for part in [0.4, 0.1, 1e-3] {

@@ -5,22 +5,9 @@ use super::sheets::{Inside, Sheets};
 use super::triangles::{Place, Triangles};
 use crate::error::Error;
 use crate::lattice::Cell;
+use leafless_testkit::Random;
 use std::collections::HashMap;
 use std::vec::Vec;
-
-struct Random(u64);
-
-impl Random {
-    fn next(&mut self) -> u64 {
-        self.0 = self.0.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
-        let x = (self.0 ^ self.0 >> 32).wrapping_mul(0x9E37_79B9_7F4A_7C15);
-        x ^ x >> 29
-    }
-
-    fn below(&mut self, count: u64) -> u64 {
-        (self.next() >> 11) % count
-    }
-}
 
 /// Signs by a hash of the place: `share` of 256 points lie inside.
 struct Signs {
@@ -32,7 +19,6 @@ impl Inside for Signs {
     fn is_inside(&mut self, [x, y, z]: [u32; 3]) -> Result<bool, Error> {
         let key = u64::from(x) | u64::from(y) << 21 | u64::from(z) << 42;
         let mut random = Random(self.seed ^ key.wrapping_mul(0x9E37_79B9_7F4A_7C15));
-        random.next();
         Ok(random.below(256) < self.share)
     }
 }
@@ -121,7 +107,7 @@ fn trial(seed: u64) -> usize {
         random_cells(&mut random, depth)
     };
     let share = [16, 64, 128, 192, 240][random.below(5) as usize];
-    let mut signs = Signs { seed: random.next(), share };
+    let mut signs = Signs { seed: random.bits(), share };
     let centres = random.below(4);
     let made = contour_of(&cells, &mut signs, centres);
     euler(&made.triangles);

@@ -1,9 +1,9 @@
 //! Checks that a solid represents a soup, against the soup's winding numbers.
 
 use super::winding::{Boundary, Soupy, Winding};
-use crate::common::{Random, alone};
 use crate::shapes::Soup;
 use leafless::{FillRule, Frame, Octree, Rule, Solid, Tag, build};
+use leafless_testkit::{Random, alone};
 
 /// Returns the winding number's distance beyond the threshold: 0 or more is inside the solid.
 pub fn margin(fill: FillRule, winding: f64) -> f64 {

@@ -1,7 +1,7 @@
 //! Damage to meshes, the same in every run.
 
-use crate::common::Random;
 use crate::shapes::*;
+use leafless_testkit::Random;
 
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Damage {

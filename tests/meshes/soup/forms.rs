@@ -1,8 +1,8 @@
 //! Shapes to be damaged, and shapes that are open by themselves. Raising `detail` by one doubles the number
 //! of facets in each direction.
 
-use crate::common::Random;
 use crate::shapes::*;
+use leafless_testkit::Random;
 use std::f64::consts::{PI, TAU};
 
 /// Cuts every facet into four at the middles of its edges, `times` over. The result is exact for corners with

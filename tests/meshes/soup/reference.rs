@@ -3,10 +3,10 @@
 
 use super::check::{centre, margin};
 use super::winding::{Boundary, Soupy};
-use crate::common::cubes::Cubes;
 use crate::shapes::Soup;
 use leafless::lattice::Cube;
 use leafless::{Cell, Error, FillRule, Frame, Tag, Verdict};
+use leafless_testkit::cubes::Cubes;
 use std::sync::{Arc, Mutex};
 
 /// Mistakes that a solid of this kind could make.
@@ -121,4 +121,4 @@ impl Cubes for Reference {
     }
 }
 
-crate::solid_of_cubes!(Reference);
+leafless_testkit::solid_of_cubes!(Reference);

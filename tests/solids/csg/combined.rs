@@ -1,16 +1,15 @@
 //! Set operations of extended octrees against exact arithmetic.
 
 use super::extended::{extended, is_given_up, plate, points, through_a_file};
-use super::model::Model;
 use super::oracle::frames;
-use crate::common::{Random, alone, repeated};
-use crate::random::Maker;
 use leafless::op::{difference_of, intersection_of, union_of, xor_of};
 use leafless::{
     Affine, Control, Csg, Error, FillRule, Frame, Membership, MeshSolid, Octree, Rule, Solid, SurfaceOptions,
     Tag, TriangleMesh, build, build_extended, complement, contains, difference, intersection, measure, union,
     xor,
 };
+use leafless_testkit::csg::{Maker, Model};
+use leafless_testkit::{Random, alone, repeated};
 
 /// A solid in two forms: a model and an octree.
 #[derive(Clone)]

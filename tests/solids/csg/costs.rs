@@ -1,11 +1,11 @@
 //! Constructive solid geometry: the published tables, and the costs of operations.
 
-use crate::common::cubes::Plain;
 use leafless::solid::{HalfSpace, Parts, Touch, Transform};
 use leafless::{
     Affine, AnySolid, Cell, Classifier, Control, Csg, Error, Frame, Interval, Rule, Solid, Tag, Verdict,
     Worker, build,
 };
+use leafless_testkit::cubes::Plain;
 
 type CsgWorker = <<Csg as Solid>::Classifier as Classifier>::Worker;
 type CsgPart = <CsgWorker as Parts>::Part;

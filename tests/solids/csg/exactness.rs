@@ -1,10 +1,10 @@
 //! For planes and quadrics without mixed products, the verdicts are the best possible ones at every level.
 
 use super::extremes::{Powers, Separable, Torus, Truth};
-use crate::common::exact::Exact;
-use crate::common::{Random, alone};
 use leafless::solid::HalfSpace;
 use leafless::{Affine, Cell, Classifier, Csg, Frame, Solid, Verdict, Worker};
+use leafless_testkit::exact::Exact;
+use leafless_testkit::{Random, alone};
 
 /// Descends towards `target` (in finest cells) and away from it, and compares all verdicts on the way.
 /// Returns the number of levels reached.

@@ -1,17 +1,16 @@
 //! Extended octrees: the surfaces that they keep, against exact arithmetic.
 
-use super::model::Model;
 use super::oracle::frames;
 use super::points::{Found, Judge};
-use crate::common::exact::Exact;
-use crate::common::{Random, alone};
-use crate::random::Maker;
 use leafless::op::DexelOptions;
 use leafless::{
     Affine, AnySolid, Cell, Classifier, Control, Csg, Error, FillRule, Frame, Membership, MeshSolid, Octree,
     Rule, Solid, SurfaceOptions, Tag, TriangleMesh, Verdict, Worker, build, build_extended, contains,
     dexelize, file, measure,
 };
+use leafless_testkit::csg::{Maker, Model};
+use leafless_testkit::exact::Exact;
+use leafless_testkit::{Random, alone};
 
 pub(super) fn extended(csg: &Csg, frame: &Frame) -> Octree {
     let tree = build_extended(csg, frame, &SurfaceOptions::default(), &alone()).unwrap();

@@ -1,14 +1,14 @@
 //! Laws of extended octrees that do not depend on their sources.
 
 use super::oracle::frames;
-use crate::common::{Random, alone};
-use crate::random::Maker;
 use leafless::solid::{Ask, AskWhole, Parts, Question, Transform, WholeQuestion};
 use leafless::{
     Affine, AnySolid, Callback, Cell, Classifier, Control, Csg, Error, FillRule, Frame, Membership,
     MeshSolid, Octree, Rule, Solid, SurfaceOptions, TriangleMesh, Verdict, Worker, build, build_extended,
     contains,
 };
+use leafless_testkit::csg::Maker;
+use leafless_testkit::{Random, alone};
 
 fn cuboid_mesh(min: [f64; 3], max: [f64; 3]) -> TriangleMesh {
     let corner = |k: usize| [0, 1, 2].map(|axis| if k >> axis & 1 != 0 { max[axis] } else { min[axis] });

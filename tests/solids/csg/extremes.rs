@@ -1,7 +1,7 @@
 //! The exact least and greatest value over a box of a polynomial without mixed products.
 
-use crate::common::exact::Exact;
 use leafless::{Cell, Frame, Tag};
+use leafless_testkit::exact::Exact;
 
 /// constant + Σ (square · t + linear) · t.
 #[derive(Clone, Debug)]

@@ -1,8 +1,8 @@
 //! Operations with many operands, grouped by place, against trees that are combined one by one.
 
-use crate::common::{Dense, Random, alone};
 use leafless::op::{intersection_of, union_of, xor_of};
 use leafless::{Affine, Csg, Frame, Octree, Rule, Tag, build, complement, intersection, union, xor};
+use leafless_testkit::{Dense, Random, alone};
 
 const RULES: [Rule; 4] = [Rule::Certified, Rule::Inner, Rule::Outer, Rule::Sampled];
 

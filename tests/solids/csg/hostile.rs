@@ -1,13 +1,12 @@
 //! Expressions that nobody would write by hand: enormous, deep, doubled over and over, with numbers at the
 //! ends of their ranges. Each gives a result or a clear error, and soon.
 
-use crate::common::alone;
-use crate::common::cubes::Plain;
-use crate::common::lattice_frame;
 use leafless::solid::HalfSpace;
 use leafless::{
     Affine, AnySolid, Cell, Classifier, Csg, Error, Frame, Rule, Solid, Tag, Verdict, Worker, build,
 };
+use leafless_testkit::cubes::Plain;
+use leafless_testkit::{alone, lattice_frame};
 use std::time::{Duration, Instant};
 
 /// Runs work within a time limit: far more than the work needs, and far less than work of a worse complexity

@@ -1,16 +1,15 @@
 //! Cuts queried in place, without a worker, against exact arithmetic and against the tree as a solid.
 
-use super::model::{Model, Point};
 use super::oracle::frames;
-use super::random::Maker;
-use crate::common::exact::Exact;
-use crate::common::{Random, alone};
 use leafless::octree::{StoredSurface, SurfaceKind};
 use leafless::query::{Obstacle, PointCursor, PointTable, Region};
 use leafless::{
     Cell, Control, Csg, Error, Frame, Membership, Metadata, Octree, Ray, Rule, SurfaceOptions, build,
     build_extended, cast_rays, contains, op,
 };
+use leafless_testkit::csg::{Maker, Model, Point};
+use leafless_testkit::exact::Exact;
+use leafless_testkit::{Random, alone};
 
 fn exact(p: [f64; 3]) -> Point {
     let [x, y, z] = p.map(Exact::from);

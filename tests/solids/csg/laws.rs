@@ -1,15 +1,13 @@
 //! Laws of every expression.
 
-use super::model::Model;
 use super::oracle::frames;
-use super::random::Maker;
-use crate::common::lattice_frame;
-use crate::common::{Dense, Random, alone};
 use leafless::solid::{Parts, SplitCounter};
 use leafless::{
     AnySolid, Cell, Classifier, Control, Csg, Frame, Octree, Rule, Solid, Tag, Verdict, Worker, build,
     complement,
 };
+use leafless_testkit::csg::{Maker, Model};
+use leafless_testkit::{Dense, Random, alone, lattice_frame};
 
 type CsgWorker = <<Csg as Solid>::Classifier as Classifier>::Worker;
 type CsgPart = <CsgWorker as Parts>::Part;
@@ -51,7 +49,7 @@ impl Descent {
             Verdict::Partial(part) if cell.level < depth => part,
             verdict => {
                 let edge = 1 << (depth - cell.level);
-                for at in crate::common::positions(depth - cell.level) {
+                for at in leafless_testkit::positions(depth - cell.level) {
                     let place = [0, 1, 2].map(|axis| cell.at[axis] * edge + at[axis]);
                     self.out.set(place, verdict.tag());
                 }

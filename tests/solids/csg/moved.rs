@@ -1,15 +1,14 @@
 //! Moved extended octrees: their surfaces are moved exactly, and their cells are computed anew.
 
-use super::model::Model;
 use super::oracle::frames;
-use crate::common::{Random, alone, repeated};
-use crate::random::Maker;
 use leafless::query::surface_area;
 use leafless::solid::Transform;
 use leafless::{
     Affine, AnySolid, Control, Csg, FillRule, Frame, Interval, Membership, MeshSolid, Octree, Solid,
     SurfaceOptions, TriangleMesh, build_extended, contains, difference, file, measure, union,
 };
+use leafless_testkit::csg::{Maker, Model};
+use leafless_testkit::{Random, alone, repeated};
 
 const EXACT: SurfaceOptions = SurfaceOptions { tolerance: None };
 

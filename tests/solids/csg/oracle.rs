@@ -1,11 +1,9 @@
 //! Constructive solid geometry against exact arithmetic without cells.
 
 use super::points::{Found, Judge, centre};
-use crate::common::{Random, alone, lattice_frame};
-use crate::model::Model;
-use crate::random::Maker;
-use crate::{any_bytes, common};
 use leafless::{Frame, Rule, Solid, Tag, build};
+use leafless_testkit::csg::{Maker, Model};
+use leafless_testkit::{Random, alone, fuzz, lattice_frame};
 
 /// Frames whose planes are integers, exact doubles, or no doubles at all; far from the origin; and tiny.
 pub(super) fn frames(depth: u8) -> [Frame; 5] {
@@ -100,7 +98,7 @@ fn sampled(models: u64, make: impl Fn(&mut Maker<'_>) -> Model) {
         let model = make(&mut maker);
         let Ok(csg) = model.csg(&frame) else { continue };
         let tree = build(&csg, &frame, Rule::Sampled, &alone()).unwrap();
-        for at in common::positions(frame.depth()) {
+        for at in leafless_testkit::positions(frame.depth()) {
             let probe = centre(&frame, at);
             boundary += (model.sign(&probe.at) == 0) as u64;
             let Some(inside) = model.sampled(&probe) else { continue };
@@ -127,7 +125,7 @@ fn any_bytes(count: u64) {
         let mut byte = || if random.below(20) == 0 { random.below(256) } else { 40 + random.below(100) };
         let data: Vec<u8> = (0..length).map(|_| byte() as u8).collect();
         // A failing test prints its input.
-        let result = std::panic::catch_unwind(|| any_bytes::csg(&data));
+        let result = std::panic::catch_unwind(|| fuzz::csg(&data));
         assert!(result.is_ok(), "input {seed}: {data:?}");
     }
 }
@@ -137,7 +135,7 @@ fn what_the_fuzzer_found_interesting() {
     let corpus = std::path::Path::new(env!("CARGO_MANIFEST_DIR")).join("fuzz/corpus/csg");
     let mut count = 0;
     for entry in std::fs::read_dir(&corpus).unwrap() {
-        any_bytes::csg(&std::fs::read(entry.unwrap().path()).unwrap());
+        fuzz::csg(&std::fs::read(entry.unwrap().path()).unwrap());
         count += 1;
     }
     assert!(count > 100, "{count} inputs");

@@ -1,10 +1,10 @@
 //! The published classification, as slow as published: all vertices, then all half-spaces.
 
 use super::extremes::{Separable, corners};
-use crate::common::exact::Exact;
-use crate::common::{Dense, Random, alone, lattice_frame, positions};
 use leafless::solid::{HalfSpace, Parts, Touch};
 use leafless::{Cell, Classifier, Csg, Frame, Rule, Solid, Tag, Verdict, Worker, build};
+use leafless_testkit::exact::Exact;
+use leafless_testkit::{Dense, Random, alone, lattice_frame, positions};
 
 /// A primitive in the library's form, and its half-spaces.
 #[derive(Clone)]

@@ -1,13 +1,13 @@
 //! Expressions in which only one other solid is open, in the whole universe or in a part of it. The
 //! expression passes that solid's block-wise work on.
 
-use crate::common::cubes::Plain;
-use crate::common::{alone, repeated};
 use leafless::op::resolve;
 use leafless::{
     AnySolid, Bounds, Callback, Control, Csg, FillRule, Frame, MeshSolid, Octree, Rule, Solid, Tag,
     TriangleMesh, Verdict, build, complement, difference, intersection, union, xor,
 };
+use leafless_testkit::cubes::Plain;
+use leafless_testkit::{alone, repeated};
 
 const RULES: [Rule; 4] = [Rule::Certified, Rule::Sampled, Rule::Inner, Rule::Outer];
 

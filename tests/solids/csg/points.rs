@@ -1,9 +1,9 @@
 //! Trees against points.
 
-use super::model::{Model, Point, Probe};
-use crate::common::Random;
-use crate::common::exact::Exact;
 use leafless::{Bounds, Frame, Octree, Tag};
+use leafless_testkit::Random;
+use leafless_testkit::csg::{Model, Point, Probe};
+use leafless_testkit::exact::Exact;
 
 /// Positions are multiples of 2^-20 of a finest cell.
 const STEPS: u32 = 20;

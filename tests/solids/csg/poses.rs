@@ -1,11 +1,11 @@
 //! Many poses of a block among many balls. The union is prepared once, and a pose costs only its
 //! neighbourhood.
 
-use crate::common::cubes::Plain;
-use crate::common::{Random, alone};
 use leafless::query::{Overlap, interference_at};
 use leafless::solid::SplitCounter;
 use leafless::{Affine, Csg, Frame};
+use leafless_testkit::cubes::Plain;
+use leafless_testkit::{Random, alone};
 
 /// Returns the number of half-space evaluations for each pose among `n` balls.
 fn evaluations(n: u32) -> f64 {

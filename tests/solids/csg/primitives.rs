@@ -3,13 +3,13 @@
 //! By default there are about 10⁵ points for each. A million points each take some minutes:
 //! `cargo test --release --test solids csg::primitives -- --ignored`
 
-use crate::common::exact::Exact;
-use crate::common::repeated;
 use leafless::solid::{Fingerprint, HalfSpace, Touch};
 use leafless::{
     Affine, Bounds, Classifier, Control, Csg, Error, Frame, Interval, Membership, Octree, Rule, Solid,
     Verdict, Worker, build,
 };
+use leafless_testkit::exact::Exact;
+use leafless_testkit::{Random, repeated};
 use std::f64::consts::PI;
 use std::sync::atomic::{AtomicUsize, Ordering::Relaxed};
 use std::sync::{Arc, Mutex};
@@ -329,50 +329,29 @@ fn shapes() -> Vec<Shape> {
     shapes
 }
 
-/// A SplitMix64 generator.
-struct Random(u64);
-
-impl Random {
-    fn bits(&mut self) -> u64 {
-        self.0 = self.0.wrapping_add(0x9E37_79B9_7F4A_7C15);
-        let mut z = self.0;
-        z = (z ^ (z >> 30)).wrapping_mul(0xBF58_476D_1CE4_E5B9);
-        z = (z ^ (z >> 27)).wrapping_mul(0x94D0_49BB_1331_11EB);
-        z ^ (z >> 31)
-    }
-
-    fn below(&mut self, n: u64) -> u64 {
-        self.bits() % n
-    }
-
-    fn between(&mut self, low: f64, high: f64) -> f64 {
-        low + (high - low) * (self.bits() >> 11) as f64 / (1u64 << 53) as f64
-    }
-
-    /// Scaled, sheared and mirrored placements. Some take axes to axes, some have short numbers.
-    fn placement(&mut self) -> Affine {
-        loop {
-            let (kind, length) = (self.below(4), self.below(4));
-            let mut number = |reach: f64| {
-                let x = self.between(-reach, reach);
-                match length {
-                    0 => x,
-                    1 => (x * 4096.0).round() / 4096.0,
-                    _ => (x * 4.0).round() / 4.0,
-                }
-            };
-            let mut rows = [0, 1, 2].map(|_| [number(1.5), number(1.5), number(1.5), number(3.0)]);
-            if kind < 2 {
-                let first = self.below(3) as usize;
-                for (i, row) in rows.iter_mut().enumerate() {
-                    for j in 0..3 {
-                        row[j] = if j == (i + first) % 3 { row[j] } else { 0.0 };
-                    }
+/// Scaled, sheared and mirrored placements. Some take axes to axes, some have short numbers.
+fn any_placement(random: &mut Random) -> Affine {
+    loop {
+        let (kind, length) = (random.below(4), random.below(4));
+        let mut number = |reach: f64| {
+            let x = random.between(-reach, reach);
+            match length {
+                0 => x,
+                1 => (x * 4096.0).round() / 4096.0,
+                _ => (x * 4.0).round() / 4.0,
+            }
+        };
+        let mut rows = [0, 1, 2].map(|_| [number(1.5), number(1.5), number(1.5), number(3.0)]);
+        if kind < 2 {
+            let first = random.below(3) as usize;
+            for (i, row) in rows.iter_mut().enumerate() {
+                for j in 0..3 {
+                    row[j] = if j == (i + first) % 3 { row[j] } else { 0.0 };
                 }
             }
-            if determinant(&rows).abs() > 0.1 {
-                return Affine::new(rows).unwrap();
-            }
+        }
+        if determinant(&rows).abs() > 0.1 {
+            return Affine::new(rows).unwrap();
         }
     }
 }
@@ -458,7 +437,7 @@ fn check_all_points(placements: u64, points: u64, seed: u64) {
         let mut random = Random(seed);
         let mut seen = [0; 3];
         for i in 0..placements {
-            let placement = if i == 0 { Affine::IDENTITY } else { random.placement() };
+            let placement = if i == 0 { Affine::IDENTITY } else { any_placement(&mut random) };
             let depth = 3 + (i % 4) as u8;
             let frame = frame_around(shape.bounds, &placement, i % 2 == 0, depth);
             let found = check_points(&shape, &placement, &frame, points, &mut random);
@@ -534,7 +513,7 @@ fn volumes_contain_the_truth_at_every_depth() {
     for shape in shapes() {
         let Some(volume) = shape.volume else { continue };
         for i in 0..6 {
-            let placement = random.placement();
+            let placement = any_placement(&mut random);
             let truth = volume * determinant(placement.rows()).abs();
             let placed = shape.solid.placed(&placement).unwrap();
             let mut width = f64::INFINITY;
@@ -814,7 +793,7 @@ fn a_host_half_space_is_as_good_as_its_functions() {
     let ball = Csg::ball([0.0; 3], 1.0).unwrap();
     let mut random = Random(7);
     for i in 0..20 {
-        let placement = if i == 0 { Affine::IDENTITY } else { random.placement() };
+        let placement = if i == 0 { Affine::IDENTITY } else { any_placement(&mut random) };
         let (placed, exact) = (host.placed(&placement).unwrap(), ball.placed(&placement).unwrap());
         let frame = frame_around(([-1.0; 3], [1.0; 3]), &placement, i % 2 == 0, 5);
         let (a, b) =

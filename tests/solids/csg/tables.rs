@@ -1,12 +1,11 @@
 //! Expressions of few half-spaces that occur more than once. The verdicts are those of truth tables.
 
-use super::model::Model;
 use super::oracle::frames;
 use super::points::{Found, Judge};
-use super::random::Maker;
-use crate::common::{Dense, Random, alone, lattice_frame, positions};
 use leafless::solid::HalfSpace;
 use leafless::{Affine, Cell, Classifier, Csg, Frame, Octree, Rule, Solid, Tag, Worker, build};
+use leafless_testkit::csg::{Maker, Model};
+use leafless_testkit::{Dense, Random, alone, lattice_frame, positions};
 
 const RULES: [Rule; 4] = [Rule::Certified, Rule::Sampled, Rule::Inner, Rule::Outer];
 
@@ -289,7 +288,7 @@ fn random_expressions_of_few_half_spaces() {
         }
         // The root decides expressions that no half-space affects.
         if tree.tag(&vec![Tag::Partial; count]) != Tag::Partial {
-            let mut worker = csg.on(&frame, &crate::common::alone()).unwrap().worker().unwrap();
+            let mut worker = csg.on(&frame, &leafless_testkit::alone()).unwrap().worker().unwrap();
             assert_ne!(worker.root().unwrap().tag(), Tag::Partial, "{tree:#?}");
             assert_eq!(dense.tag_of(Cell::ROOT), Some(dense.tags[0]));
         }

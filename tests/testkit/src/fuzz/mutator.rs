@@ -5,7 +5,8 @@ use super::layout::{
     HEADER_FIELDS, INDICES, LEVELS, METADATA, MOMENTS, NUMBERS, OBJECTS, ORIGINS, PLACEMENTS, PLANES, RECORD,
     RECORD_FIELDS, REL, Repairs, SEGMENTS, SURFACES, Section, number, put,
 };
-use super::{Random, halves, joined};
+use super::{halves, joined};
+use crate::Random;
 
 /// A blind change of the first `size` bytes of `data` to at most `max` bytes; returns the new size. It is
 /// libFuzzer's own mutation, or its substitute in a test.
@@ -28,7 +29,7 @@ pub fn mutate_pair(data: &mut [u8], size: usize, max: usize, seed: u32, blind: B
     };
     let (mut first, mut second) = (first.to_vec(), second.to_vec());
     let room = max.saturating_sub(4 + first.len().min(second.len()));
-    match random.below(8) {
+    match random.index(8) {
         0 => second = first.clone(),
         1..4 => first = changed_or_blind(&first, room, &mut random, blind).unwrap_or(first),
         _ => {
@@ -76,7 +77,7 @@ pub fn repairs(random: &mut Random) -> Repairs {
         checksums: [often(), often(), often()],
         ..Repairs::FRAME
     };
-    match random.below(4) {
+    match random.index(4) {
         0 => {}
         1 => (repairs.levels, repairs.cuts) = (true, true),
         _ => {
@@ -92,7 +93,7 @@ pub fn repairs(random: &mut Random) -> Repairs {
 /// Returns the file in `bytes` after a few changes and the given repairs; `None` if `bytes` are no file.
 pub fn changed(bytes: &[u8], random: &mut Random, blind: Blind<'_>, repairs: &Repairs) -> Option<Vec<u8>> {
     let mut file = File::parse(bytes)?;
-    for _ in 0..1 + random.below(3) {
+    for _ in 0..1 + random.index(3) {
         change(&mut file, random, blind);
     }
     Some(file.assemble(repairs))
@@ -108,12 +109,12 @@ fn changed_or_blind(bytes: &[u8], max: usize, random: &mut Random, blind: Blind<
     let mut bytes = changed(bytes, random, blind, &repairs)?;
     if random.one_in(64) {
         // Between sections, or behind the last one.
-        match random.below(3) {
+        match random.index(3) {
             0 => bytes.push(0),
             1 => drop(bytes.pop()),
             _ => {
-                let at = random.below(bytes.len());
-                bytes[at] ^= 1 << random.below(8);
+                let at = random.index(bytes.len());
+                bytes[at] ^= 1 << random.index(8);
             }
         }
     }
@@ -122,24 +123,24 @@ fn changed_or_blind(bytes: &[u8], max: usize, random: &mut Random, blind: Blind<
 
 /// Returns a number near some likely limit.
 fn number_near(old: u64, random: &mut Random) -> u64 {
-    match random.below(12) {
+    match random.index(12) {
         0 => 0,
         1 => 1,
         2 => old.wrapping_add(1),
         3 => old.wrapping_sub(1),
         4 => u64::MAX,
-        5 => 1 << random.below(64),
-        6 => (1u64 << random.below(64)).wrapping_sub(1),
-        7 => old ^ 1 << random.below(64),
+        5 => 1 << random.index(64),
+        6 => (1u64 << random.index(64)).wrapping_sub(1),
+        7 => old ^ 1 << random.index(64),
         8 => old.wrapping_add(64),
-        9 => random.below(32) as u64,
-        10 => random.next(),
-        _ => random.below(1 << 12) as u64,
+        9 => random.index(32) as u64,
+        10 => random.bits(),
+        _ => random.index(1 << 12) as u64,
     }
 }
 
 fn change_field(bytes: &mut [u8], fields: &[(usize, usize)], random: &mut Random) {
-    let (at, length) = fields[random.below(fields.len())];
+    let (at, length) = fields[random.index(fields.len())];
     let old = number(bytes, at, length);
     put(bytes, at, number_near(old, random), length);
 }
@@ -149,9 +150,9 @@ fn change_number(file: &mut File, kind: u32, length: usize, random: &mut Random)
     if let Some(section) = file.section(kind)
         && section.bytes.len() >= length
     {
-        let at = length * random.below(section.bytes.len() / length);
+        let at = length * random.index(section.bytes.len() / length);
         let others = section.bytes.len() / length;
-        let other = number(&section.bytes, length * random.below(others), length);
+        let other = number(&section.bytes, length * random.index(others), length);
         let old = number(&section.bytes, at, length);
         let new = if random.one_in(3) { other } else { number_near(old, random) };
         put(&mut section.bytes, at, new, length);
@@ -171,9 +172,9 @@ fn change_tag(file: &mut File, random: &mut Random) {
     let Some(section) = file.section(kind).filter(|section| section.bytes.len() >= 8 * planes) else {
         return;
     };
-    let at = 8 * planes * random.below(section.bytes.len() / (8 * planes));
+    let at = 8 * planes * random.index(section.bytes.len() / (8 * planes));
     // Near the first cells more often: the root of an odd depth has eight.
-    let cell = if random.one_in(2) { random.below(8) } else { random.below(64) };
+    let cell = if random.one_in(2) { random.index(8) } else { random.index(64) };
     for plane in 0..planes {
         if random.one_in(2) {
             section.bytes[at + 8 * plane + cell / 8] ^= 1 << (cell % 8);
@@ -186,11 +187,11 @@ fn change_extent(file: &mut File, random: &mut Random) {
     if file.sections.is_empty() {
         return;
     }
-    let i = random.below(file.sections.len());
+    let i = random.index(file.sections.len());
     let section = &mut file.sections[i];
-    match random.below(7) {
+    match random.index(7) {
         0 => {
-            let length = random.below(section.bytes.len() + 1);
+            let length = random.index(section.bytes.len() + 1);
             section.bytes.truncate(length);
         }
         1 => {
@@ -211,10 +212,10 @@ fn change_extent(file: &mut File, random: &mut Random) {
         }
         5 => file.remove(i),
         _ => {
-            let kind = random.below(48) as u32 | (random.below(2) as u32) << 31;
-            let mut section = Section::new(kind, vec![7; 8 * (1 + random.below(5))]);
-            put(&mut section.entry, 12, random.below(3) as u64 / 2, 4);
-            let at = random.below(file.sections.len() + 1);
+            let kind = random.index(48) as u32 | (random.index(2) as u32) << 31;
+            let mut section = Section::new(kind, vec![7; 8 * (1 + random.index(5))]);
+            put(&mut section.entry, 12, random.index(3) as u64 / 2, 4);
+            let at = random.index(file.sections.len() + 1);
             file.insert(at, section);
         }
     }
@@ -224,35 +225,35 @@ fn change_extent(file: &mut File, random: &mut Random) {
 fn change_objects(file: &mut File, random: &mut Random) {
     let Some(objects) = file.section(OBJECTS) else { return };
     let count = objects.bytes.len() / RECORD;
-    match random.below(4) {
+    match random.index(4) {
         0 if count < 8 => {
             let at = objects.bytes.len();
             objects.bytes.resize(at + RECORD, 0);
             let record = &mut objects.bytes[at..];
-            put(record, 0, 2 + random.below(6) as u64, 4);
+            put(record, 0, 2 + random.index(6) as u64, 4);
             put(
                 record,
                 4,
-                if random.one_in(2) { u32::MAX.into() } else { random.below(count + 1) as u64 },
+                if random.one_in(2) { u32::MAX.into() } else { random.index(count + 1) as u64 },
                 4,
             );
-            put(record, 8, random.below(4) as u64 / 3, 4);
+            put(record, 8, random.index(4) as u64 / 3, 4);
         }
         1 => {
-            let mut section = Section::new(random.below(24) as u32, vec![3; 8 * (1 + random.below(5))]);
-            put(&mut section.entry, 4, random.below(count + 1) as u64, 4);
-            put(&mut section.entry, 8, random.below(7) as u64 | 0x100, 2);
+            let mut section = Section::new(random.index(24) as u32, vec![3; 8 * (1 + random.index(5))]);
+            put(&mut section.entry, 4, random.index(count + 1) as u64, 4);
+            put(&mut section.entry, 8, random.index(7) as u64 | 0x100, 2);
             file.sections.push(section);
         }
         2 => {
             // In most cases, the bytes of an earlier section.
-            let at = random.below(file.sections.len());
+            let at = random.index(file.sections.len());
             let of =
-                if random.one_in(4) { random.below(file.sections.len() + 2) } else { random.below(at + 1) };
+                if random.one_in(4) { random.index(file.sections.len() + 2) } else { random.index(at + 1) };
             put(&mut file.sections[at].entry, 44, of as u64, 4);
         }
         _ => {
-            let at = RECORD * random.below(count);
+            let at = RECORD * random.index(count);
             if let Some(record) = objects.bytes.get_mut(at..at + RECORD) {
                 change_field(record, &RECORD_FIELDS, random);
             }
@@ -264,7 +265,7 @@ fn change_objects(file: &mut File, random: &mut Random) {
 fn change_metadata(file: &mut File, random: &mut Random) {
     match file.section(METADATA) {
         Some(section) if random.one_in(2) => {
-            let at = 4 * random.below(section.bytes.len() / 4);
+            let at = 4 * random.index(section.bytes.len() / 4);
             if section.bytes.len() >= at + 4 {
                 let old = number(&section.bytes, at, 4);
                 put(&mut section.bytes, at, number_near(old, random), 4);
@@ -281,18 +282,18 @@ fn change_metadata(file: &mut File, random: &mut Random) {
 /// Returns a double near some likely limit.
 fn double_near(old: u64, random: &mut Random) -> u64 {
     let value = f64::from_bits(old);
-    let new = match random.below(12) {
+    let new = match random.index(12) {
         0 => f64::NAN,
         1 => f64::INFINITY,
         2 => 0.0,
         3 => -value,
         4 => value.next_up(),
-        5 => value * 2f64.powi(random.below(600) as i32 - 300),
-        6 => random.below(70) as f64,
+        5 => value * 2f64.powi(random.index(600) as i32 - 300),
+        6 => random.index(70) as f64,
         7 => f64::MAX,
         8 => f64::from_bits(1),
-        9 => 2f64.powi(random.below(140) as i32 - 70),
-        10 => value * (random.below(9) as f64 - 4.0) / 3.0,
+        9 => 2f64.powi(random.index(140) as i32 - 70),
+        10 => value * (random.index(9) as f64 - 4.0) / 3.0,
         _ => return number_near(old, random),
     };
     new.to_bits()
@@ -300,7 +301,7 @@ fn double_near(old: u64, random: &mut Random) -> u64 {
 
 fn change_double(file: &mut File, kind: u32, random: &mut Random) {
     if let Some(section) = file.section(kind).filter(|section| section.bytes.len() >= 8) {
-        let at = 8 * random.below(section.bytes.len() / 8);
+        let at = 8 * random.index(section.bytes.len() / 8);
         let new = double_near(number(&section.bytes, at, 8), random);
         put(&mut section.bytes, at, new, 8);
     }
@@ -317,14 +318,14 @@ fn change_cuts(file: &mut File, random: &mut Random) {
         let doubles = [1.0, -2.0, 0.5, 7.0, -1.0, -1.0, -1.0, 20.0, 100.0, 1.0, 1.0, -1.0, 3.0, 9.0];
         // Slabs of octants of the universe: about through the middle, an eighth of the cell thick.
         let planes = |bits: u64| bits & 3 << 61 | bits & 1 << 63 | 7 << 55 | 8 << 51 | bits & 0x3FFF_3FFF;
-        let slabs: Vec<u64> = (0..3).flat_map(|k| [(8 + k) | k << 61, planes(random.next())]).collect();
-        let heads = (0..40 + random.below(40)).map(|_| match random.below(4) {
-            0 => [0, 0xFF, 0xAA, 0x55][random.below(4)],
-            _ => random.next() as u8,
+        let slabs: Vec<u64> = (0..3).flat_map(|k| [(8 + k) | k << 61, planes(random.bits())]).collect();
+        let heads = (0..40 + random.index(40)).map(|_| match random.index(4) {
+            0 => [0, 0xFF, 0xAA, 0x55][random.index(4)],
+            _ => random.bits() as u8,
         });
         let parts = [
             (CUT_HEADS, heads.collect(), 0x101),
-            (CUT_IDS, (0..60).map(|_| random.next() as u8).collect(), 0x101),
+            (CUT_IDS, (0..60).map(|_| random.bits() as u8).collect(), 0x101),
             (CUT_BLOCKS, vec![0; 24], 0x203),
             (CUT_FIRST, vec![0; 8], 0x103),
             (SURFACES, surfaces.as_flattened().iter().flat_map(|n: &u32| n.to_le_bytes()).collect(), 0x403),
@@ -347,7 +348,7 @@ fn change_cuts(file: &mut File, random: &mut Random) {
             .sections
             .sort_by_key(|section| (number(&section.entry, 4, 4), number(&section.entry, 0, 4)));
     }
-    match random.below(17) {
+    match random.index(17) {
         0..3 => change_number(file, CUT_HEADS, 1, random),
         3 => change_number(file, CUT_IDS, 1, random),
         4 => change_number(file, if random.one_in(3) { GROUPS } else { CELL_SLABS }, 8, random),
@@ -359,7 +360,7 @@ fn change_cuts(file: &mut File, random: &mut Random) {
         14 => change_number(file, if random.one_in(2) { ORIGINS } else { PLACEMENTS }, 8, random),
         15 => change_double(file, MOMENTS, random),
         _ => {
-            let gone = CUTS[random.below(CUTS.len())];
+            let gone = CUTS[random.index(CUTS.len())];
             if let Some(i) = file.sections.iter().position(|section| section.is(gone)) {
                 file.remove(i);
             }
@@ -369,27 +370,27 @@ fn change_cuts(file: &mut File, random: &mut Random) {
 
 /// Makes one change.
 fn change(file: &mut File, random: &mut Random, blind: Blind<'_>) {
-    match random.below(32) {
+    match random.index(32) {
         0 => change_field(&mut file.header, &HEADER_FIELDS, random),
         // Depth, tags, bricks and counts, on which the rest depends.
         1 => change_field(&mut file.header, &HEADER_FIELDS[11..22], random),
-        2 => file.header[64] = 1 + random.below(20) as u8,
+        2 => file.header[64] = 1 + random.index(20) as u8,
         3 => {
             let depth = file.header[64];
             file.header[64] =
                 if random.one_in(2) { depth.saturating_add(2) } else { depth.saturating_sub(2) };
         }
-        4 => file.header[65 + random.below(2)] = random.below(4) as u8,
+        4 => file.header[65 + random.index(2)] = random.index(4) as u8,
         5 => file.convert_bricks(3 - file.header[67].clamp(1, 2)),
         6 => {
             if !file.sections.is_empty() {
-                let i = random.below(file.sections.len());
+                let i = random.index(file.sections.len());
                 change_field(&mut file.sections[i].entry, &ENTRY_FIELDS, random);
             }
         }
         7 | 8 => {
             if !file.sections.is_empty() {
-                let i = random.below(file.sections.len());
+                let i = random.index(file.sections.len());
                 let bytes = std::mem::take(&mut file.sections[i].bytes);
                 file.sections[i].bytes = grown(bytes, blind);
             }

@@ -1,8 +1,8 @@
 //! Dense arrays of values, and channels made from them.
 
-use super::{lattice_frame, noise, positions, shapes_of};
 use leafless::attribute::{Channel, FillOptions, FunctionAttribute, ScalarType, ValueType, fill_channel};
 use leafless::{Control, Octree, Tag};
+use leafless_testkit::{lattice_frame, noise, positions, shapes_of};
 use proptest::prelude::*;
 
 pub type Value = Option<[f64; 4]>;

@@ -1,6 +1,7 @@
 //! All queries of a file's channels, verified or not.
 
-use super::{CONTROL, Random};
+use super::CONTROL;
+use crate::Random;
 use leafless::attribute::{Attribute, CarryRule, ChannelOperand, ChannelRef, ValueRange, carry_channel};
 use leafless::{Bounds, Control, Membership, Octree};
 
@@ -93,7 +94,7 @@ fn cells(view: &ChannelRef<'_>) -> Vec<[u32; 3]> {
     let end = view.frame().cells();
     let mut random = Random(view.value_count() ^ view.element_count() << 32);
     let mut cells = vec![[0; 3], [end - 1; 3], [end / 2; 3]];
-    cells.resize_with(CELLS, || [0; 3].map(|_: u32| (random.next() % u64::from(end)) as u32));
+    cells.resize_with(CELLS, || [0; 3].map(|_: u32| (random.bits() % u64::from(end)) as u32));
     cells
 }
 

@@ -1,55 +1,68 @@
-//! The bodies of the fuzz targets, and the mutations of their inputs. The test suite includes these files,
-//! too.
-#![allow(dead_code, unused_imports)]
+//! The bodies of the fuzz targets, and the mutations of their inputs.
 
-mod aligned;
+mod attributes;
 mod channels;
+mod contacts;
+mod csg;
+pub mod dexel_algebra;
 mod dexels;
+mod direct;
 pub mod layout;
+mod layouts;
 mod measured_trees;
+mod measures;
 pub mod meshes;
 mod mutator;
+pub mod packages;
 mod queries;
+mod records;
+pub mod scenes;
 pub mod seeds;
 mod set_algebra;
+mod surfaces;
+pub mod volumes;
 mod ways_in;
 
-pub use aligned::Aligned;
-pub use channels::channels;
-pub use dexels::dexels_in_all_ways;
-pub use measured_trees::ask_measures;
+pub use attributes::attributes;
+pub use contacts::contacts;
+pub use csg::csg;
+pub use direct::{direct, layers};
+pub use layouts::layouts;
+pub use measures::measures;
 pub use mutator::{changed, mutate_file, mutate_pair, repairs};
 pub use queries::queries;
+pub use records::records;
 pub use set_algebra::{set_algebra, threads};
+pub use surfaces::{boundaries, contours};
 pub use ways_in::{read_in_all_ways, ways_in};
 
+use channels::channels;
+use dexels::dexels_in_all_ways;
 use leafless::octree::Cursor;
 use leafless::{Control, Tag};
+use measured_trees::ask_measures;
 
 /// One thread, as for most work of this size.
 pub const CONTROL: Control<'static> =
     Control { threads: 1, max_nodes: None, max_bytes: None, max_splits: None, cancel: None, progress: None };
 
-/// Pseudo-random numbers (splitmix64). A seed gives the same numbers everywhere.
-pub struct Random(pub u64);
+/// The remaining bytes of an input; 0 for each missing one.
+struct Bytes<'a>(&'a [u8]);
 
-impl Random {
-    pub fn next(&mut self) -> u64 {
-        self.0 = self.0.wrapping_add(0x9E37_79B9_7F4A_7C15);
-        let mut x = self.0;
-        x = (x ^ x >> 30).wrapping_mul(0xBF58_476D_1CE4_E5B9);
-        x = (x ^ x >> 27).wrapping_mul(0x94D0_49BB_1331_11EB);
-        x ^ x >> 31
+impl Bytes<'_> {
+    fn byte(&mut self) -> usize {
+        let Some((&first, rest)) = self.0.split_first() else { return 0 };
+        self.0 = rest;
+        first.into()
     }
 
-    /// Returns a number below `end`; 0 if `end` is 0.
-    pub fn below(&mut self, end: usize) -> usize {
-        if end == 0 { 0 } else { (self.next() % end as u64) as usize }
+    fn below(&mut self, end: usize) -> usize {
+        self.byte() % end
     }
 
-    /// True once in `n` times.
-    pub fn one_in(&mut self, n: usize) -> bool {
-        self.below(n) == 0
+    /// Returns an integer between −`end` and `end`.
+    fn around(&mut self, end: usize) -> f64 {
+        self.below(2 * end + 1) as f64 - end as f64
     }
 }
 

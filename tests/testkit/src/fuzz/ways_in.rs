@@ -1,6 +1,7 @@
 //! Any bytes through every way in. No way panics, and all agree.
 
-use super::{Aligned, channels, dexels_in_all_ways, walk};
+use super::{channels, dexels_in_all_ways, walk};
+use crate::Aligned;
 use leafless::error::FormatError;
 use leafless::octree::Cursor;
 use leafless::{Error, Octree, Tag, file};

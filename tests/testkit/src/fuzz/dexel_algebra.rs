@@ -1,6 +1,7 @@
 //! Any bytes as tri-dexel models and as triangles: the laws of sets, changes in place, closed surfaces, and
 //! equal samples along all three axes.
 
+use super::Bytes;
 use leafless::dexel::{Dexel, DexelEditor, DexelEnd, DexelEnds, DexelFormat, DexelNormals};
 use leafless::op::{DexelOptions, octree_from_dexels};
 use leafless::surface::{dual_contouring_dexels, marching_cubes_dexels};
@@ -9,14 +10,9 @@ use leafless::{
 };
 use std::collections::HashMap;
 
-/// The remaining bytes from the front; zeros behind the end.
-struct Bytes<'a>(&'a [u8]);
-
 impl Bytes<'_> {
     fn next(&mut self) -> u8 {
-        let Some((&first, rest)) = self.0.split_first() else { return 0 };
-        self.0 = rest;
-        first
+        self.byte() as u8
     }
 }
 

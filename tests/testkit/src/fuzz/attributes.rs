@@ -2,6 +2,7 @@
 //! set operations that carry values, and voxel records. An honest attribute has one value in each unit cell,
 //! so that a dense array decides. An attribute with false ranges may hide details, and nothing else.
 
+use super::Bytes;
 use leafless::attribute::{
     Attribute, CarryRule, Channel, ChannelOperand, ChannelRef, Criterion, Detail, FillOptions,
     MovedAttribute, ScalarType, ValueRange, ValueType, carry_channel, fill_channel,
@@ -10,20 +11,7 @@ use leafless::voxel::{VoxelOptions, VoxelRecords};
 use leafless::{Affine, Bounds, Control, Csg, Error, Frame, Interval, Octree, Rule, Tag, build, union};
 use std::sync::atomic::{AtomicU64, Ordering::Relaxed};
 
-/// The remaining bytes; 0 for each missing one.
-struct Bytes<'a>(&'a [u8]);
-
 impl Bytes<'_> {
-    fn byte(&mut self) -> usize {
-        let Some((&first, rest)) = self.0.split_first() else { return 0 };
-        self.0 = rest;
-        first.into()
-    }
-
-    fn below(&mut self, end: usize) -> usize {
-        self.byte() % end
-    }
-
     /// A number: mostly a small integer, sometimes one that few types can represent.
     fn number(&mut self) -> f64 {
         let odd = [

@@ -1,10 +1,7 @@
 //! Random expressions that interact with a frame.
 
-// Each test program uses its own part of this.
-#![allow(dead_code)]
-
-use super::model::{Model, Other};
-use crate::common::{Random, alone};
+use super::{Model, Other};
+use crate::{Random, alone};
 use leafless::{Affine, Frame, Rule, build};
 
 pub struct Maker<'a> {

@@ -1,7 +1,5 @@
 //! Items shared by the tests of volumes: samples of all kinds, and the same samples as dense arrays.
 
-#![allow(dead_code)]
-
 use super::Random;
 use leafless::solid::{Band, Samples, VoxelGrid};
 

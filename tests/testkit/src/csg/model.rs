@@ -1,8 +1,8 @@
 //! Expressions by their definition: the side of the surface on which a point lies, in exact arithmetic and
 //! without cells.
 
-use crate::common::cubes::Plain;
-use crate::common::exact::Exact;
+use crate::cubes::Plain;
+use crate::exact::Exact;
 use leafless::solid::{HalfSpace, SplitCounter, Transform};
 use leafless::{
     Affine, AnySolid, Callback, Csg, Error, FillRule, Frame, Interval, MeshSolid, Octree, Tag, TriangleMesh,

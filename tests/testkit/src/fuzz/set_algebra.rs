@@ -1,7 +1,8 @@
 //! The set algebra of unverified trees: no panic, bounded work and results. For verified operands, the
 //! results are right.
 
-use super::{Aligned, CONTROL, halves, queries};
+use super::{CONTROL, halves, queries};
+use crate::Aligned;
 use leafless::op::{intersection_of, join, resolve, shard, union_of, xor_of};
 use leafless::solid::ShardedOctree;
 use leafless::{

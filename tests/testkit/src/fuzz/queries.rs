@@ -1,6 +1,7 @@
 //! All queries of a tree with any bytes: no panic, bounded work, and the same answer from all ways to it.
 
-use super::{Aligned, CONTROL, Random, ask_measures, halves, walk};
+use super::{CONTROL, ask_measures, halves, walk};
+use crate::{Aligned, Random};
 use leafless::octree::{CellFilter, Cursor, Direction, SurfaceKind, TaggedCell};
 use leafless::op::Zone;
 use leafless::query::{
@@ -466,7 +467,7 @@ pub fn points(frame: &Frame, questions: &[u8]) -> Vec<[f64; 3]> {
     let mut coordinate = |axis: usize, code: u8, value: u16| {
         let plane = frame.plane(axis, value as u32 % (frame.cells() + 1));
         match code % 16 {
-            0 => f64::from_bits(random.next()),
+            0 => f64::from_bits(random.bits()),
             1 => [f64::NAN, f64::INFINITY, f64::NEG_INFINITY, f64::MAX, -0.0][value as usize % 5],
             2 => plane.lower,
             3 => plane.upper.next_up(),

@@ -2,24 +2,10 @@
 //! points of the solids, every placement of a search is proven once more, and the number of threads changes
 //! nothing.
 
+use super::Bytes;
 use leafless::layout::{Bay, Direction, Item, Layout, Objective, Orientations, Placed, SearchOptions};
 use leafless::query::GapVerdict;
 use leafless::{Affine, AnySolid, Control, Csg};
-
-/// The remaining bytes; 0 for each missing one.
-struct Bytes<'a>(&'a [u8]);
-
-impl Bytes<'_> {
-    fn byte(&mut self) -> usize {
-        let Some((&first, rest)) = self.0.split_first() else { return 0 };
-        self.0 = rest;
-        first.into()
-    }
-
-    fn below(&mut self, end: usize) -> usize {
-        self.byte() % end
-    }
-}
 
 /// A solid with exact numbers.
 #[derive(Debug, Clone, Copy)]

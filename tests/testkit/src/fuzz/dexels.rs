@@ -1,7 +1,8 @@
 //! Any bytes through every way in to tri-dexel models. No way panics, and all agree.
 
+use super::CONTROL;
 use super::ways_in::scratch_file;
-use super::{Aligned, CONTROL};
+use crate::Aligned;
 use leafless::dexel::{DexelEditor, DexelFormat, TriDexelRef};
 use leafless::op::octree_from_dexels;
 use leafless::surface::{dual_contouring_dexels, marching_cubes_dexels};

@@ -1,7 +1,8 @@
 //! Small files of every kind, made by the library.
 
 use super::layout::{CUTS, File, OBJECTS, PLANES, RECORD, Repairs, Section, number, put};
-use super::{CONTROL, Random, joined};
+use super::{CONTROL, joined};
+use crate::Random;
 use leafless::attribute::{Channel, FillOptions, FunctionAttribute, ScalarType, ValueType, fill_channel};
 use leafless::dexel::{DexelEnds, DexelFormat, DexelNormals};
 use leafless::op::DexelOptions;
@@ -74,7 +75,7 @@ impl Worker for NoiseOnFrame {
             let split = if cell.level < 3 { 90 } else { 30 };
             match random.below(256) {
                 die if die < split => Verdict::Partial(()),
-                die => [Verdict::Empty, Verdict::Full, Verdict::Undecided][die % 3],
+                die => [Verdict::Empty, Verdict::Full, Verdict::Undecided][die as usize % 3],
             }
         }))
     }
@@ -274,7 +275,7 @@ pub fn pairs() -> Vec<Vec<u8>> {
                 pairs.push(joined(a, b));
             }
         }
-        let questions: Vec<u8> = (0..96).map(|_| random.next() as u8).collect();
+        let questions: Vec<u8> = (0..96).map(|_| random.bits() as u8).collect();
         pairs.push(joined(a, &questions));
     }
     pairs

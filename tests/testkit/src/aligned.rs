@@ -1,5 +1,4 @@
-//! Bytes that are aligned for a view. The tests of the format and of files use this module, too.
-#![allow(dead_code)]
+//! Bytes that are aligned for a view.
 
 /// Bytes at an address that is a multiple of 8.
 pub struct Aligned(Vec<u64>, usize);

@@ -1,8 +1,5 @@
 //! Test solids that are stateless functions of cubes.
 
-// Each test program uses only some of these items.
-#![allow(dead_code)]
-
 use super::exact::Definition;
 use leafless::lattice::Cube;
 use leafless::octree::Block;
@@ -150,18 +147,18 @@ impl<T: Cubes> Worker for OnFrame<T> {
 macro_rules! solid_of_cubes {
     ($($type:ty $(: $life:lifetime)?),*) => {$(
         impl $(<$life>)? leafless::Solid for $type {
-            type Classifier = $crate::common::cubes::OnFrame<$type>;
+            type Classifier = $crate::cubes::OnFrame<$type>;
 
             fn on(
                 &self,
                 frame: &leafless::Frame,
                 _: &leafless::Control<'_>,
             ) -> Result<Self::Classifier, leafless::Error> {
-                Ok($crate::common::cubes::OnFrame::new(self.clone(), frame))
+                Ok($crate::cubes::OnFrame::new(self.clone(), frame))
             }
 
             fn bounds(&self) -> Option<leafless::Bounds> {
-                $crate::common::cubes::Cubes::bounds(self)
+                $crate::cubes::Cubes::bounds(self)
             }
         }
     )*};

@@ -1,8 +1,8 @@
 //! Any bytes as an expression of half-spaces on a small lattice. By exact arithmetic, no vertex of the
 //! lattice and no centre contradicts the verdicts.
 
-use crate::common::exact::Exact;
-use crate::model::{Model, Other, Point, Probe};
+use crate::csg::{Model, Other, Point, Probe};
+use crate::exact::Exact;
 use leafless::op::{DexelOptions, octree_from_dexels};
 use leafless::{Affine, Control, Error, Frame, Octree, Rule, Tag, build, complement, dexelize};
 

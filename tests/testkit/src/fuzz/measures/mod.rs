@@ -1,9 +1,10 @@
 //! Any bytes as solids of unit cells, made in all ways that make solids, and as queries about them under
 //! changing budgets. Every answer must be true of the cells, counted in integers (`dense.rs`).
 
+mod ask;
 mod dense;
-mod measures_ask;
 
+use super::Bytes;
 use dense::{Dense, LOW, N};
 use leafless::op::Zone;
 use leafless::solid::{Adaptive, Band, SampleArray, Samples, SplitCounter, Transform, VoxelGrid};
@@ -14,20 +15,7 @@ use leafless::{
 };
 use std::sync::Arc;
 
-/// The remaining bytes; 0 for each missing one.
-pub struct Bytes<'a>(&'a [u8]);
-
 impl Bytes<'_> {
-    fn byte(&mut self) -> usize {
-        let Some((&first, rest)) = self.0.split_first() else { return 0 };
-        self.0 = rest;
-        first.into()
-    }
-
-    fn below(&mut self, end: usize) -> usize {
-        self.byte() % end
-    }
-
     /// Returns a budget of splits: unlimited, one, two, three …, a few dozen, many.
     fn budget(&mut self) -> Option<u64> {
         match self.byte() {
@@ -73,7 +61,7 @@ pub fn measures(data: &[u8]) {
         if bytes.0.is_empty() {
             break;
         }
-        measures_ask::ask(&mut bytes, &frame, &a, &b);
+        ask::ask(&mut bytes, &frame, &a, &b);
     }
 }
 

@@ -1,66 +1,10 @@
-//! Items shared by the integration tests: slow and simple oracles, random trees, exact numbers, and access to
-//! the model files.
+//! Dense arrays of tags, trees and statistics as they follow from them, and random arrays.
 
-// Each test program uses only some of these items.
-#![allow(dead_code, unused_imports)]
-
-pub mod cubes;
-pub mod exact;
-mod models;
-pub mod slabs;
-pub mod surfaces;
-pub mod values;
-pub mod volumes;
-mod way;
-
+use super::{alone, cubes, lattice_frame};
 use leafless::lattice::Cube;
 use leafless::octree::{Cursor, LevelStatistics};
 use leafless::{Cell, Control, Error, Frame, Octree, OctreeRef, Rule, Tag, Verdict, build};
-pub use models::model;
 use proptest::prelude::*;
-pub use way::Way;
-
-/// Returns the frame [0, 2^depth]³ with cells of edge 1, so that lattice coordinates are model coordinates.
-pub fn lattice_frame(depth: u8) -> Frame {
-    Frame::new([0.0; 3], (1u32 << depth) as f64, depth).unwrap()
-}
-
-/// Returns the results of `work` for all items, in order. It runs as many threads as there are processors,
-/// for the few tests that take long.
-pub fn on_all_processors<T: Sync, R: Send>(items: &[T], work: impl Fn(&T) -> R + Sync) -> Vec<R> {
-    use std::sync::atomic::{AtomicUsize, Ordering::Relaxed};
-    let next = AtomicUsize::new(0);
-    let threads = std::thread::available_parallelism().map_or(1, |count| count.get());
-    let mut found: Vec<(usize, R)> = std::thread::scope(|scope| {
-        let worker = || {
-            let mut found = Vec::new();
-            while let Some((i, item)) =
-                Some(next.fetch_add(1, Relaxed)).and_then(|i| Some((i, items.get(i)?)))
-            {
-                found.push((i, work(item)));
-            }
-            found
-        };
-        let workers: Vec<_> = (0..threads).map(|_| scope.spawn(worker)).collect();
-        workers
-            .into_iter()
-            .flat_map(|worker| worker.join().unwrap_or_else(|panic| std::panic::resume_unwind(panic)))
-            .collect()
-    });
-    found.sort_by_key(|&(i, _)| i);
-    found.into_iter().map(|(_, result)| result).collect()
-}
-
-/// Returns `most` with LEAFLESS_THOROUGH=1 and `few` without: a number of random repetitions, or the size of
-/// a long test.
-pub fn repeated<T>(few: T, most: T) -> T {
-    if std::env::var_os("LEAFLESS_THOROUGH").is_some_and(|value| value == "1") { most } else { few }
-}
-
-/// Returns a control with one thread and no limits.
-pub fn alone() -> Control<'static> {
-    Control::threads(1)
-}
 
 pub const TAGS: [Tag; 3] = [Tag::Empty, Tag::Partial, Tag::Full];
 
@@ -426,37 +370,4 @@ pub fn pairs(depths: std::ops::RangeInclusive<u8>) -> impl Strategy<Value = (Den
 
 pub fn shapes(depths: std::ops::RangeInclusive<u8>) -> impl Strategy<Value = Shape> {
     depths.prop_flat_map(shapes_of)
-}
-
-/// Returns a configuration with this number of cases, or a third of it without LEAFLESS_THOROUGH=1. Failures
-/// print their shrunk input; no file is written beside the sources.
-pub fn cases(cases: u32) -> ProptestConfig {
-    let cases = repeated(cases.div_ceil(3), cases);
-    ProptestConfig { cases, failure_persistence: None, ..ProptestConfig::default() }
-}
-
-/// The generator SplitMix64, for tests that need random numbers without shrinking.
-pub struct Random(pub u64);
-
-impl Random {
-    pub fn next(&mut self) -> u64 {
-        self.0 = self.0.wrapping_add(0x9E37_79B9_7F4A_7C15);
-        let mut z = self.0;
-        z = (z ^ z >> 30).wrapping_mul(0xBF58_476D_1CE4_E5B9);
-        z = (z ^ z >> 27).wrapping_mul(0x94D0_49BB_1331_11EB);
-        z ^ z >> 31
-    }
-
-    pub fn below(&mut self, end: u64) -> u64 {
-        self.next() % end
-    }
-
-    /// Returns a number in [0, 1).
-    pub fn unit(&mut self) -> f64 {
-        (self.next() >> 11) as f64 / (1u64 << 53) as f64
-    }
-
-    pub fn between(&mut self, low: f64, high: f64) -> f64 {
-        low + (high - low) * self.unit()
-    }
 }

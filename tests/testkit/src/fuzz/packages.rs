@@ -1,11 +1,8 @@
 //! Any bytes as a 3MF package, and as the parts of a package. The reader does not panic, and builds no more
 //! than it reports.
 
-#[path = "../../tests/common/zip.rs"]
-pub mod zip;
-
+use crate::zip::{self, CONTENT_TYPES, Entry, RELATIONSHIPS, model, tetrahedron};
 use leafless::exchange::{MeshFormat, MeshOptions, read_mesh};
-use zip::{CONTENT_TYPES, Entry, RELATIONSHIPS, model, tetrahedron};
 
 /// Reads `data` as a package. Also reads its pieces, separated by zero bytes, as a model part, another part
 /// that the first may refer to as `/b.model`, relationships and content types.

@@ -2,6 +2,7 @@
 //! cells must be true by winding numbers, computed from every triangle in integers or (with holes) by solid
 //! angles, and by distances from every triangle in doubles.
 
+use super::Bytes;
 use leafless::query::{DistanceTo, Obstacle, distances, line_of_sight, ray_spans};
 use leafless::query::{RaySpans, Sight};
 use leafless::{
@@ -10,20 +11,7 @@ use leafless::{
 };
 use num_bigint::{BigInt, Sign};
 
-/// The remaining bytes; 0 for each missing one.
-struct Bytes<'a>(&'a [u8]);
-
 impl Bytes<'_> {
-    fn byte(&mut self) -> usize {
-        let Some((&first, rest)) = self.0.split_first() else { return 0 };
-        self.0 = rest;
-        first.into()
-    }
-
-    fn below(&mut self, end: usize) -> usize {
-        self.byte() % end
-    }
-
     /// Returns a number from −1 to 1 with full precision.
     fn fraction(&mut self) -> f64 {
         let seed = (self.byte() << 8 | self.byte()) as u64 + 1;

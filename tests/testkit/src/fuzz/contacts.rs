@@ -2,31 +2,12 @@
 //! them. No answer contradicts another one, points that surely lie in both solids, or a distance known in
 //! integers.
 
+use super::Bytes;
 use leafless::query::{GapVerdict, Overlap, gap_at_least};
 use leafless::{
     Affine, AnySolid, Control, Csg, Frame, Interval, SurfaceOptions, Tolerance, build_extended, clearance,
     interference, measure,
 };
-
-/// The remaining bytes; 0 for each missing one.
-struct Bytes<'a>(&'a [u8]);
-
-impl Bytes<'_> {
-    fn byte(&mut self) -> usize {
-        let Some((&first, rest)) = self.0.split_first() else { return 0 };
-        self.0 = rest;
-        first.into()
-    }
-
-    fn below(&mut self, end: usize) -> usize {
-        self.byte() % end
-    }
-
-    /// Returns an integer between −`end` and `end`.
-    fn around(&mut self, end: usize) -> f64 {
-        self.below(2 * end + 1) as f64 - end as f64
-    }
-}
 
 /// A primitive with exact numbers.
 #[derive(Debug, Clone, Copy)]

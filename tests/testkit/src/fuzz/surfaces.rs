@@ -1,6 +1,7 @@
 //! Any bytes as a solid, and as options of its surface. Meshes are closed and manifold, and their proven
 //! distance from the solid contradicts neither points of the mesh nor rays.
 
+use super::Bytes;
 use leafless::exchange::{MeshOptions, read_mesh};
 use leafless::query::{DistanceTo, Obstacle, distances};
 use leafless::solid::{Band, VoxelGrid};
@@ -11,25 +12,7 @@ use leafless::{
 };
 use std::collections::HashMap;
 
-/// The remaining bytes; 0 for each missing one.
-struct Bytes<'a>(&'a [u8]);
-
 impl Bytes<'_> {
-    fn byte(&mut self) -> usize {
-        let Some((&first, rest)) = self.0.split_first() else { return 0 };
-        self.0 = rest;
-        first.into()
-    }
-
-    fn below(&mut self, end: usize) -> usize {
-        self.byte() % end
-    }
-
-    /// Returns an integer between −`end` and `end`.
-    fn around(&mut self, end: usize) -> f64 {
-        self.below(2 * end + 1) as f64 - end as f64
-    }
-
     /// Returns half of a small integer.
     fn size(&mut self) -> f64 {
         0.5 * (1 + self.below(8)) as f64

@@ -1,26 +1,14 @@
 //! Any bytes as the arrays of voxel records. Refused arrays are wrong, and for accepted arrays every answer
 //! is that of a search through all records.
 
+use super::Bytes;
 use leafless::lattice::MAX_DEPTH;
 use leafless::voxel::{
     LinearCode, Symmetry, Viewpoint, VoxelKind, VoxelRecords, VoxelRecordsRef, VoxelSolid,
 };
 use leafless::{Affine, Cell, Control, Csg, Frame, Tag, TriangleMesh, measure};
 
-/// The remaining bytes; 0 for each missing one.
-struct Bytes<'a>(&'a [u8]);
-
 impl Bytes<'_> {
-    fn byte(&mut self) -> usize {
-        let Some((&first, rest)) = self.0.split_first() else { return 0 };
-        self.0 = rest;
-        first.into()
-    }
-
-    fn below(&mut self, end: usize) -> usize {
-        self.byte() % end
-    }
-
     fn word(&mut self) -> u64 {
         (0..8).fold(0, |word, _| word << 8 | self.byte() as u64)
     }
