@@ -195,7 +195,7 @@ fn list(arguments: &Arguments, input: &Input, output: &Output) -> Result<(), Fai
         WriteName::Csv => output.stream(|out| csv::write(&view, triangles, out))?,
         WriteName::Npz => {
             memory::afford_file((records.bytes_each() as u64 + 24) * view.len() as u64).of(output)?;
-            let bytes = npz(&view, triangles).of(output)?;
+            let bytes = npz(&view, triangles);
             output.write(&bytes)?;
             bytes.len() as u64
         }

@@ -8,28 +8,28 @@ use leafless::{Frame, Proof, Tag};
 /// Returns the file of records.
 ///
 /// The tag's number and the two bits of the proof are those of the C interface.
-pub fn npz(view: &VoxelRecordsRef<'_>, triangles: Option<&VoxelTriangles>) -> std::io::Result<Vec<u8>> {
+pub fn npz(view: &VoxelRecordsRef<'_>, triangles: Option<&VoxelTriangles>) -> Vec<u8> {
     let (n, frame) = (view.len() as u64, view.frame());
-    let mut arrays = Arrays::new();
-    arrays.add("codes", &[n], view.codes())?;
-    arrays.add("levels", &[n], view.levels())?;
-    arrays.add("kinds", &[n], view.kinds())?;
+    let mut arrays = Arrays::default();
+    arrays.add("codes", &[n], view.codes());
+    arrays.add("levels", &[n], view.levels());
+    arrays.add("kinds", &[n], view.kinds());
     let corners: Vec<f64> = (0..view.len()).flat_map(|i| view.corner(i).unwrap_or_default()).collect();
-    arrays.add("corners", &[n, 3], &corners)?;
-    arrays.add("origin", &[3], &frame.origin())?;
-    arrays.add("edge", &[], &[frame.edge()])?;
-    arrays.add("depth", &[], &[frame.depth()])?;
-    arrays.add("exterior", &[], &[view.exterior() as u8])?;
-    arrays.add("boundary", &[], &[view.boundary() as u8])?;
-    arrays.add("proof", &[3], &proof_numbers(view))?;
+    arrays.add("corners", &[n, 3], &corners);
+    arrays.add("origin", &[3], &frame.origin());
+    arrays.add("edge", &[], &[frame.edge()]);
+    arrays.add("depth", &[], &[frame.depth()]);
+    arrays.add("exterior", &[], &[view.exterior() as u8]);
+    arrays.add("boundary", &[], &[view.boundary() as u8]);
+    arrays.add("proof", &[3], &proof_numbers(view));
     let seal = seal(view);
-    arrays.add("seal", &[seal.len() as u64], &seal)?;
+    arrays.add("seal", &[seal.len() as u64], &seal);
     if view.components() > 0 {
-        arrays.add("values", &[n, view.components() as u64], view.values())?;
+        arrays.add("values", &[n, view.components() as u64], view.values());
     }
     if let Some(found) = triangles {
-        arrays.add("triangle_offsets", &[n + 1], found.offsets())?;
-        arrays.add("triangles", &[found.triangles().len() as u64], found.triangles())?;
+        arrays.add("triangle_offsets", &[n + 1], found.offsets());
+        arrays.add("triangles", &[found.triangles().len() as u64], found.triangles());
     }
     arrays.finish()
 }
@@ -58,7 +58,7 @@ fn seal(view: &VoxelRecordsRef<'_>) -> Vec<u8> {
 /// Reads the file that [`npz`] writes. Nothing is proven unless the seal shows that the records are
 /// unchanged. Missing descriptions are unknown.
 pub fn records(bytes: &[u8]) -> Result<VoxelRecords, String> {
-    let mut arrays = Reader::new(bytes).map_err(|error| format!("is no NPZ: {error}"))?;
+    let arrays = Reader::new(bytes).map_err(|error| format!("is no NPZ: {error}"))?;
     let text = |error: std::io::Error| error.to_string();
     let one = |list: Vec<f64>| list.first().copied().ok_or("an array is empty".to_string());
     let origin = arrays.array::<f64>("origin").map_err(text)?.1;
@@ -80,12 +80,12 @@ pub fn records(bytes: &[u8]) -> Result<VoxelRecords, String> {
     };
     let records = VoxelRecords::from_arrays(&frame, codes, levels, kinds, components, values)
         .map_err(|error| error.to_string())?;
-    let tag = |arrays: &mut Reader<'_>, name: &str| match arrays.has(name) {
+    let tag = |arrays: &Reader<'_>, name: &str| match arrays.has(name) {
         true => Ok(arrays.array::<u8>(name).map_err(text)?.1.first().copied().map(Tag::from_code)),
         false => Ok::<_, String>(None),
     };
-    let exterior = tag(&mut arrays, "exterior")?.unwrap_or(Tag::Partial);
-    let boundary = tag(&mut arrays, "boundary")?.unwrap_or(Tag::Partial);
+    let exterior = tag(&arrays, "exterior")?.unwrap_or(Tag::Partial);
+    let boundary = tag(&arrays, "boundary")?.unwrap_or(Tag::Partial);
     let mut proof = Proof::new(false, false);
     if arrays.has("proof") {
         let numbers = arrays.array::<f64>("proof").map_err(text)?.1;

@@ -7,8 +7,8 @@
 
 use crate::place::Place;
 use leafless::{Octree, Tag, file};
+use leafless_testkit::zip;
 use std::collections::BTreeSet;
-use std::io::{Cursor, Read, Write};
 
 /// The rules of the inputs, in the order of the table's columns.
 const RULES: [&str; 4] = ["certified", "inner", "outer", "sampled"];
@@ -286,20 +286,15 @@ fn every_subcommand_is_in_the_table() {
 
 /// Returns an NPZ with changed arrays.
 fn changed(bytes: &[u8], change: impl Fn(&str, Vec<u8>) -> Option<Vec<u8>>) -> Vec<u8> {
-    let mut archive = zip::ZipArchive::new(Cursor::new(bytes)).unwrap();
-    let mut out = zip::ZipWriter::new(Cursor::new(vec![]));
-    for i in 0..archive.len() {
-        let mut entry = archive.by_index(i).unwrap();
-        let (name, mut bytes) = (entry.name().unwrap().into_owned(), vec![]);
-        entry.read_to_end(&mut bytes).unwrap();
-        if let Some(bytes) = change(&name, bytes) {
-            let stored = zip::CompressionMethod::Stored;
-            let options = zip::write::SimpleFileOptions::default().compression_method(stored);
-            out.start_file(name, options).unwrap();
-            out.write_all(&bytes).unwrap();
-        }
+    let archive = rawzip::ZipArchive::from_slice(bytes).unwrap();
+    let mut out = vec![];
+    for entry in archive.entries() {
+        let entry = entry.unwrap();
+        let name = std::str::from_utf8(entry.file_path().as_bytes()).unwrap().to_owned();
+        let content = archive.get_entry(entry.wayfinder()).unwrap().data();
+        out.extend(change(&name, content.to_vec()).map(|content| zip::Entry::stored(&name, content)));
     }
-    out.finish().unwrap().into_inner()
+    zip::zip(&out)
 }
 
 /// Any program with NumPy can change arrays. A proof of the original arrays is no proof of changed ones.

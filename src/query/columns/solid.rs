@@ -133,7 +133,7 @@ fn in_blocks<V: Visitor + Send>(
             for (cell, verdict) in &front {
                 if descent.shadow(&block, *cell).is_some() {
                     let mark = worker.mark();
-                    let own = verdict.clone().try_map(|part| worker.hand_over(&above, &part))?;
+                    let own = verdict.try_map(|part| worker.hand_over(&above, &part))?;
                     descent.walk(&mut worker, &block, (*cell, own), &mut visitor)?;
                     worker.release(mark);
                 }

@@ -25,7 +25,7 @@ use core::ptr;
 
 /// A solid of any kind, borrowed: the object-safe counterpart of [`Solid`]. Every solid has it, so that a
 /// reference to any solid can be passed where `&dyn DynSolid` is wanted. Each split costs one indirect call.
-pub trait DynSolid: erased::ErasedSolid {}
+pub trait DynSolid: sealed::ErasedSolid {}
 
 impl<S: Solid> DynSolid for S {}
 
@@ -88,7 +88,7 @@ impl AnySolid {
 
 // ---- the object-safe counterparts ---------------------------------------------------------------------
 
-mod erased {
+mod sealed {
     use super::*;
 
     /// The methods of [`DynSolid`]. They are not public, because their names are those of [`Solid`].
@@ -108,7 +108,7 @@ mod erased {
     }
 }
 
-impl<S: Solid> erased::ErasedSolid for S {
+impl<S: Solid> sealed::ErasedSolid for S {
     fn on<'c>(&self, frame: &Frame, control: &Control<'_>) -> Result<AnyClassifier<'c>, Error>
     where
         S: 'c,
