@@ -5,6 +5,7 @@ use super::source::{Known, Source};
 use crate::control::Control;
 use crate::error::Error;
 use crate::lattice::Cell;
+use crate::lattice::Each;
 use crate::memory;
 use crate::octree::channel::{Bits, Spot};
 use crate::octree::{Channel, ChannelRef, Octree, OctreeRef, ValueType};
@@ -217,7 +218,7 @@ impl Carried<'_> {
                 if count == 0.0 {
                     return Ok(None);
                 }
-                let mean = if self.rule == CarryRule::Mean { sum.map(|sum| sum / count) } else { sum };
+                let mean = if self.rule == CarryRule::Mean { sum.each(|sum| sum / count) } else { sum };
                 // A value between valid values is valid.
                 Ok(self.value_type.encode(mean).ok())
             }
@@ -238,7 +239,7 @@ impl Source for Carried<'_> {
 
     fn split(&self, _: Cell, part: &Part) -> Result<[Known<Part>; 8], Error> {
         let result = self.result.verdicts_below(&part.result);
-        let mut parts: [Part; 8] = result.map(|result| Part { result, operands: Vec::new() });
+        let mut parts: [Part; 8] = result.each(|result| Part { result, operands: Vec::new() });
         for part_of_child in &mut parts {
             part_of_child.operands.try_reserve_exact(self.operands.len())?;
         }
@@ -248,7 +249,7 @@ impl Source for Carried<'_> {
                 part.operands.push(child);
             }
         }
-        Ok(parts.map(|part| self.known(part)))
+        Ok(parts.each(|part| self.known(part)))
     }
 
     fn settle(&self, cells: &[(Cell, Part)], values: &mut [Option<Bits>]) -> Result<(), Error> {

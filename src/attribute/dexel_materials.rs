@@ -5,6 +5,7 @@ use super::{Attribute, ValueRange};
 use crate::control::Control;
 use crate::dexel::{Passage, TriDexelRef};
 use crate::error::Error;
+use crate::lattice::Each;
 use crate::lattice::{Bounds, axes};
 use crate::octree::{Channel, OctreeRef, ScalarType, ValueType};
 
@@ -73,7 +74,7 @@ impl Attribute for Materials<'_> {
 
     fn range(&self, bounds: &Bounds) -> Result<ValueRange, Error> {
         let frame = self.model.frame();
-        let cells = [0, 1, 2].map(|axis| frame.cells_between(axis, bounds.min[axis], bounds.max[axis]));
+        let cells = [0, 1, 2].each(|axis| frame.cells_between(axis, bounds.min[axis], bounds.max[axis]));
         let (Some((axis, _)), [Some(x), Some(y), Some(z)]) = (self.model.deciding(), cells) else {
             return Ok(ValueRange::Unknown);
         };

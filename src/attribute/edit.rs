@@ -5,6 +5,7 @@ use super::source::{Known, Source};
 use crate::control::Control;
 use crate::error::Error;
 use crate::lattice::Cell;
+use crate::lattice::Each;
 use crate::octree::channel::{Bits, Spot};
 use crate::octree::{Channel, ChannelRef, OctreeRef};
 use crate::solid::Verdict;
@@ -63,7 +64,7 @@ impl Source for Edited<'_> {
     fn split(&self, _: Cell, (verdict, spot): &Part) -> Result<[Known<Part>; 8], Error> {
         let verdicts = self.region.verdicts_below(verdict);
         let mut spots = self.channel.children(spot).into_iter();
-        Ok(verdicts.map(|verdict| self.known((verdict, spots.next().unwrap_or(Spot::Settled(None))))))
+        Ok(verdicts.each(|verdict| self.known((verdict, spots.next().unwrap_or(Spot::Settled(None))))))
     }
 
     /// If the links are sound, neither of the two is cut at the finest level, and no cell is left open.

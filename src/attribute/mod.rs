@@ -36,6 +36,7 @@ pub use value_region::ValueRegion;
 pub use volume::{Interpolation, VolumeAttribute};
 
 use crate::error::Error;
+use crate::lattice::Each;
 use crate::lattice::{Bounds, Interval};
 
 /// The range of an attribute's values in the interior of a box.
@@ -53,7 +54,7 @@ pub enum ValueRange {
 impl ValueRange {
     /// Makes the range of a value that is the same everywhere in the box.
     pub fn exactly(value: Option<[f64; 4]>) -> ValueRange {
-        value.map_or(ValueRange::Nowhere, |value| ValueRange::Within(value.map(Interval::exactly)))
+        value.map_or(ValueRange::Nowhere, |value| ValueRange::Within(value.each(Interval::exactly)))
     }
 
     /// The width of the widest of the first `components` intervals; 0 if no point has a value, ∞ if nothing

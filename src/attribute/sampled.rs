@@ -5,6 +5,7 @@ use super::source::{Known, Source};
 use super::{Attribute, Detail, ValueRange};
 use crate::control::Control;
 use crate::error::Error;
+use crate::lattice::Each;
 use crate::lattice::axes;
 use crate::lattice::{Bounds, Cell, Cube, Frame};
 use crate::octree::channel::Bits;
@@ -117,7 +118,7 @@ impl Sampled<'_> {
             ValueRange::Nowhere => return Ok(Known::Settled(None)),
             ValueRange::Within(ranges) => {
                 let end = |upper: bool| {
-                    self.value_type.encode(ranges.map(|r| if upper { r.upper } else { r.lower })).ok()
+                    self.value_type.encode(ranges.each(|r| if upper { r.upper } else { r.lower })).ok()
                 };
                 if let (Some(low), Some(high)) = (end(false), end(true))
                     && low == high

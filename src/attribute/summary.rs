@@ -2,6 +2,7 @@
 
 use crate::control::{Control, Job};
 use crate::error::Error;
+use crate::lattice::Each;
 use crate::lattice::{Bounds, Cell, Cube, Frame, Interval, valid};
 use crate::octree::channel::Spot;
 use crate::octree::{ChannelRef, OctreeRef};
@@ -127,7 +128,7 @@ impl Sums<'_> {
             let mut length = edge;
             if let Some(bounds) = &self.bounds {
                 let (min, max) = (bounds.min[axis], bounds.max[axis]);
-                let [first, last] = [first[axis], last[axis]].map(|plane| 2 * i64::from(plane));
+                let [first, last] = [first[axis], last[axis]].each(|plane| 2 * i64::from(plane));
                 let side = |x: f64, plane: i64| self.frame.side(axis, x, plane);
                 if side(min, last) >= 0 || side(max, first) <= 0 {
                     return None;
@@ -148,7 +149,7 @@ impl Sums<'_> {
             least: value,
             greatest: value,
             volume,
-            integral: value.map(|value| volume.times(Interval::exactly(value))),
+            integral: value.each(|value| volume.times(Interval::exactly(value))),
             mean: [ZERO; 4],
             volume_without: ZERO,
         };

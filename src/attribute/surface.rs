@@ -1,5 +1,6 @@
 //! Data on a mesh as an attribute of space: the value at the nearest point of the surface.
 
+use crate::lattice::Each;
 use alloc::sync::Arc;
 use alloc::vec::Vec;
 
@@ -159,8 +160,8 @@ impl Summary {
 
     fn join(self, other: Summary) -> Summary {
         Summary {
-            low: [0, 1, 2, 3].map(|k| self.low[k].min(other.low[k])),
-            high: [0, 1, 2, 3].map(|k| self.high[k].max(other.high[k])),
+            low: [0, 1, 2, 3].each(|k| self.low[k].min(other.low[k])),
+            high: [0, 1, 2, 3].each(|k| self.high[k].max(other.high[k])),
             lacks: self.lacks || other.lacks,
         }
     }
@@ -179,7 +180,7 @@ impl Summary {
         match (self.has(), self.lacks) {
             (true, false) => {
                 // NaN values have no range.
-                let ranges = [0, 1, 2, 3].map(|k| Interval::new(self.low[k], self.high[k]));
+                let ranges = [0, 1, 2, 3].each(|k| Interval::new(self.low[k], self.high[k]));
                 match ranges {
                     [Some(a), Some(b), Some(c), Some(d)] => ValueRange::Within([a, b, c, d]),
                     _ => ValueRange::Unknown,
@@ -254,7 +255,7 @@ impl Attribute for SurfaceAttribute {
 fn interpolated(attribute: &MeshAttribute, at: &NearestPoint) -> Option<[f64; 4]> {
     let [a, b, c] = attribute.corners(at.triangle as usize)?;
     let [u, v, w] = at.weights;
-    Some([0, 1, 2, 3].map(|k| {
+    Some([0, 1, 2, 3].each(|k| {
         let (low, high) = (a[k].min(b[k]).min(c[k]), a[k].max(b[k]).max(c[k]));
         (u * a[k] + v * b[k] + w * c[k]).clamp(low, high)
     }))

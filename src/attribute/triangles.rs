@@ -3,6 +3,7 @@
 use super::Attribute;
 use crate::control::{Control, Job};
 use crate::error::Error;
+use crate::lattice::Each;
 use crate::lattice::axes;
 use crate::lattice::exact::sqrt;
 use crate::memory;
@@ -71,7 +72,7 @@ pub fn sample_triangles(
         };
         known.try_reserve(1)?;
         let next = (table.len() / components) as u32;
-        let row = *known.entry(value.map(|number: f64| (number + 0.0).to_bits())).or_insert(next);
+        let row = *known.entry(value.each(|number: f64| (number + 0.0).to_bits())).or_insert(next);
         if row == next {
             table.try_reserve(components)?;
             table.extend_from_slice(&value[..components]);
@@ -109,14 +110,14 @@ fn values_of(
 
 /// The point `depth` behind a triangle's centroid.
 fn point_of(mesh: &TriangleMesh, triangle: &[u32; 3], depth: f64) -> [f64; 3] {
-    let [a, b, c] = triangle.map(|vertex| mesh.vertices()[vertex as usize]);
+    let [a, b, c] = triangle.each(|vertex| mesh.vertices()[vertex as usize]);
     let third = |k: usize| a[k] / 3.0 + b[k] / 3.0 + c[k] / 3.0;
     // (Scaled, so that squares neither overflow nor underflow.)
     let unit = |v: [f64; 3]| {
         let most = v.iter().fold(0.0, |most: f64, c| most.max(c.abs()));
-        let v = v.map(|c| c / most);
+        let v = v.each(|c| c / most);
         let length = sqrt(v.iter().map(|c| c * c).sum());
-        v.map(|c| c / length)
+        v.each(|c| c / length)
     };
     let (u, v) = (unit(axes(|k| b[k] - a[k])), unit(axes(|k| c[k] - a[k])));
     let normal = unit(axes(|k| {

@@ -2,6 +2,7 @@
 
 use crate::control::Control;
 use crate::error::Error;
+use crate::lattice::Each;
 use crate::lattice::{Bounds, Cell, Frame};
 use crate::memory;
 use crate::octree::channel::{Bits, Spot};
@@ -283,7 +284,7 @@ impl<W: Worker> RegionOnFrame<'_, W> {
         solids: Option<[Verdict<W::Part>; 8]>,
     ) -> [Verdict<RegionPart<W::Part>>; 8] {
         let (solids, spot) = match (part, solids) {
-            (RegionPart::Solid(_), Some(solids)) => return solids.map(|solid| solid.map(RegionPart::Solid)),
+            (RegionPart::Solid(_), Some(solids)) => return solids.each(|solid| solid.map(RegionPart::Solid)),
             (RegionPart::Both(_, spot), Some(solids)) => (solids, spot),
             (RegionPart::Values(spot, false), _) => ([const { Verdict::Full }; 8], spot),
             (RegionPart::Values(spot, true) | RegionPart::Both(_, spot), _) => {
@@ -292,7 +293,7 @@ impl<W: Worker> RegionOnFrame<'_, W> {
             (RegionPart::Solid(_), None) => return [const { Verdict::Undecided }; 8],
         };
         let mut spots = self.channel.children(&spot.0).into_iter();
-        solids.map(|solid| self.verdict(solid, spots.next().unwrap_or(Spot::Settled(None))))
+        solids.each(|solid| self.verdict(solid, spots.next().unwrap_or(Spot::Settled(None))))
     }
 }
 

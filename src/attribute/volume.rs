@@ -2,6 +2,7 @@
 
 use super::{Attribute, ValueRange};
 use crate::error::Error;
+use crate::lattice::Each;
 use crate::lattice::axes;
 use crate::lattice::{Bounds, Interval};
 use crate::solid::{Solid, Volume};
@@ -70,7 +71,7 @@ impl Attribute for VolumeAttribute<'_> {
             return Ok(ValueRange::Unknown);
         };
         if self.interpolation == Interpolation::Trilinear {
-            first = first.map(|a| a.saturating_sub(1));
+            first = first.each(|a| a.saturating_sub(1));
             last = axes(|axis| (last[axis] + 1).min(grid.extents()[axis] - 1));
         }
         let counts = axes(|axis| u64::from(last[axis] - first[axis]) + 1);

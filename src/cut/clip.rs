@@ -7,6 +7,7 @@
 //! face so that a line crosses its outline four times.
 
 use super::Half;
+use crate::lattice::Each;
 use crate::lattice::axes;
 use crate::lattice::{CubeMoments, PAIRS};
 
@@ -95,7 +96,7 @@ pub(super) fn middle(halves: &[Half]) -> Option<Option<[f64; 3]>> {
             corners += 1;
         }
     }
-    Some((corners > 0).then(|| sum.map(|c| c / f64::from(corners))))
+    Some((corners > 0).then(|| sum.each(|c| c / f64::from(corners))))
 }
 
 /// The faces of a clipped cube.

@@ -1,5 +1,7 @@
 //! Enclosures of the boundary in a PARTIAL cell, to second order.
 
+use crate::lattice::Each;
+
 /// A region between two parallel planes that contains the boundary. All points of the cell on one side belong
 /// to the solid, and no point on the other side does.
 ///
@@ -26,7 +28,7 @@ impl Slab {
     /// The slab of the complement.
     #[must_use]
     pub fn complement(&self) -> Slab {
-        Slab { normal: self.normal.map(|c| -c), inner: -self.outer, outer: -self.inner }
+        Slab { normal: self.normal.each(|c| -c), inner: -self.outer, outer: -self.inner }
     }
 }
 
@@ -118,7 +120,7 @@ impl Enclosure {
             SlabJoin::All => SlabJoin::Any,
             SlabJoin::Any => SlabJoin::All,
         };
-        Enclosure { slabs: self.slabs.map(|slab| slab.complement()), join, cone: self.cone }
+        Enclosure { slabs: self.slabs.each(|slab| slab.complement()), join, cone: self.cone }
     }
 }
 
@@ -147,6 +149,6 @@ impl Crossing {
     /// The crossing with the complement.
     #[must_use]
     pub fn complement(&self) -> Crossing {
-        Crossing { t: self.t, normal: self.normal.map(|c| -c) }
+        Crossing { t: self.t, normal: self.normal.each(|c| -c) }
     }
 }

@@ -7,6 +7,7 @@ use super::flux::{ROUNDING, area_of_surface};
 use super::polygon::{Line, Polygon};
 use super::quadratic::Quadratic;
 use super::taylor::Taylor;
+use crate::lattice::Each;
 use crate::lattice::Interval;
 
 /// Bounds of the area of the boundary of { x in the cell : all functions are ≥ 0 }, in squares of the half
@@ -47,7 +48,7 @@ pub(crate) fn area_within(surface: &Taylor, regions: impl Iterator<Item = [Optio
 /// Bounds of the area of a surface within the half-spaces of others; `None` if it is no graph over a wall.
 fn area_of_face<'a>(surface: &Taylor, others: impl Iterator<Item = &'a Taylor>) -> Option<Interval> {
     let f = &surface.f;
-    let size = f.gradient.map(f64::abs);
+    let size = f.gradient.each(f64::abs);
     let axis = (0..3).fold(0, |most, axis| if size[axis] > size[most] { axis } else { most });
     let length = surface.steepness();
     let bend = surface.bend + 4.0 * f64::EPSILON * length;
@@ -59,7 +60,7 @@ fn area_of_face<'a>(surface: &Taylor, others: impl Iterator<Item = &'a Taylor>) 
     // function. The greatest difference of f from that function is:
     let off = |f: &Quadratic| f.curvature() + f.error + 16.0 * f64::EPSILON * f.size();
     let axes = [(axis + 1) % 3, (axis + 2) % 3, axis];
-    let [a, b, fall] = axes.map(|axis| f.gradient[axis]);
+    let [a, b, fall] = axes.each(|axis| f.gradient[axis]);
     let plane = [a / fall, b / fall, f.value / fall];
     let moved = off(f) / fall.abs();
     let (mut inner, mut outer) = (Polygon::SQUARE, Polygon::SQUARE);
@@ -74,7 +75,7 @@ fn area_of_face<'a>(surface: &Taylor, others: impl Iterator<Item = &'a Taylor>) 
         clip(Line::new(&[0, 1, 2], &plane, &[0.0, 0.0, side], 1.0), moved)?;
     }
     for Taylor { f: other, .. } in others {
-        let line = Line::new(&axes, &plane, &other.gradient.map(|c| -c), other.value);
+        let line = Line::new(&axes, &plane, &other.gradient.each(|c| -c), other.value);
         let rise = line.rise.abs();
         let terms = rise * plane.iter().map(|c| c.abs()).sum::<f64>();
         clip(line, off(other) + rise * moved + 16.0 * f64::EPSILON * terms)?;

@@ -9,6 +9,7 @@
 
 use super::quadratic::Quadratic;
 use super::taylor::Taylor;
+use crate::lattice::Each;
 use crate::lattice::exact::sqrt;
 use crate::lattice::{Interval, PLACES};
 
@@ -57,7 +58,7 @@ fn on_wall(f: &Quadratic, axis: usize, at: f64) -> Interval {
     let square = |i: usize, j: usize| f.squares[PLACES[i][j]];
     let (i, j) = ((axis + 1) % 3, (axis + 2) % 3);
     let value = (f.value + at * f.gradient[axis]) + square(axis, axis);
-    let [along_i, along_j] = [i, j].map(|other| f.gradient[other] + 2.0 * at * square(axis, other));
+    let [along_i, along_j] = [i, j].each(|other| f.gradient[other] + 2.0 * at * square(axis, other));
     let error = f.error + 16.0 * f64::EPSILON * f.size();
     // y is the axis along which f changes faster.
     let (of_x, of_y, x, y) =

@@ -1,6 +1,7 @@
 //! Moments of a cube cut by one plane, in closed form.
 
 use super::Half;
+use crate::lattice::Each;
 use crate::lattice::axes;
 use crate::lattice::{CubeMoments, PAIRS};
 
@@ -15,7 +16,7 @@ const LARGEST_TERM: f64 = 24.0;
 /// the corners that it reaches beyond, and so on: a sum over corners by inclusion and exclusion.
 #[inline]
 pub(super) fn below(half: &Half) -> Option<CubeMoments> {
-    let m = half.normal.map(f64::abs);
+    let m = half.normal.each(f64::abs);
     // n · x = Σ m (2u − 1): the plane is m · u = α.
     let alpha = 0.5 * (half.offset + (m[0] + m[1]) + m[2]);
     let upper = alpha > 0.5;
@@ -35,7 +36,7 @@ pub(super) fn below(half: &Half) -> Option<CubeMoments> {
         _ => sums::<0b111>(&m, alpha),
     }?;
     // x = ±(2u − 1), with the opposite sign for the upper half.
-    let flip = half.normal.map(|c| if (c < 0.0) != upper { -1.0 } else { 1.0 });
+    let flip = half.normal.each(|c| if (c < 0.0) != upper { -1.0 } else { 1.0 });
     let mut moments = CubeMoments {
         volume: 8.0 * volume,
         first: axes(|i| 8.0 * flip[i] * (2.0 * first[i] - volume)),
@@ -82,7 +83,7 @@ fn sums<const USED: usize>(m: &[f64; 3], alpha: f64) -> Option<(f64, [f64; 3], [
         let v = power(rest) * if corner.count_ones() % 2 == 0 { unit } else { -unit };
         volume += v;
         // The edges of the simplex, and its centroid.
-        let edge = inverse.map(|i| rest * i);
+        let edge = inverse.each(|i| rest * i);
         for i in (0..3).filter(|&i| is_used(i)) {
             first[i] += v * (at[i] + per_first * edge[i]);
         }

@@ -2,6 +2,7 @@
 
 use super::polygon::Polygon;
 use super::quadratic::Quadratic;
+use crate::lattice::Each;
 use crate::lattice::{PAIRS, PLACES};
 use wide::f64x4;
 
@@ -44,7 +45,7 @@ impl Graph {
         f: &Quadratic,
         section: impl Fn(&[usize; 3], &[f64; 3]) -> Option<Polygon>,
     ) -> Option<Graph> {
-        let [gx, gy, gz] = f.gradient.map(f64::abs);
+        let [gx, gy, gz] = f.gradient.each(f64::abs);
         let axis = if gx > gy.max(gz) {
             0
         } else if gy > gz {
@@ -53,10 +54,10 @@ impl Graph {
             2
         };
         let axes = [(axis + 1) % 3, (axis + 2) % 3, axis];
-        let g = axes.map(|axis| f.gradient[axis]);
-        let q = PAIRS.map(|(i, j)| f.squares[PLACES[axes[i]][axes[j]]]);
+        let g = axes.each(|axis| f.gradient[axis]);
+        let q = PAIRS.each(|(i, j)| f.squares[PLACES[axes[i]][axes[j]]]);
         let times = |p: [f64; 3]| {
-            [0, 1, 2].map(|i| (q[PLACES[i][0]] * p[0] + q[PLACES[i][1]] * p[1]) + q[PLACES[i][2]] * p[2])
+            [0, 1, 2].each(|i| (q[PLACES[i][0]] * p[0] + q[PLACES[i][1]] * p[1]) + q[PLACES[i][2]] * p[2])
         };
         // The plane where the linearisation of f at a point is 0, and the derivative along z.
         let tangent = |p: [f64; 3]| {
@@ -69,7 +70,7 @@ impl Graph {
         };
         // Around the point nearest to the centre at first, then around the middle of the section.
         let square = (g[0] * g[0] + g[1] * g[1]) + g[2] * g[2];
-        let mut p = g.map(|slope| (-f.value / square * slope).clamp(-1.0, 1.0));
+        let mut p = g.each(|slope| (-f.value / square * slope).clamp(-1.0, 1.0));
         let ([a, b, c], scale) = tangent(p);
         let polygon = section(&axes, &[a, b, c])?;
         let mut shift = 0.0;
@@ -82,9 +83,9 @@ impl Graph {
         let ([a, b, c], scale) = tangent(p);
         let inverse = 1.0 / scale;
         let c = c + shift;
-        let q = q.map(|q| q * inverse);
-        let [xx, yy, zz, xy, xz, yz] = q.map(f64::abs);
-        let [rx, ry, rz] = p.map(|c| 1.0 + c.abs());
+        let q = q.each(|q| q * inverse);
+        let [xx, yy, zz, xy, xz, yz] = q.each(f64::abs);
+        let [rx, ry, rz] = p.each(|c| 1.0 + c.abs());
         let steepest = 2.0 * ((xz * rx + yz * ry) + zz * (1.0 + rz));
         let squares = ((xx * rx * rx + yy * ry * ry) + zz * rz * rz)
             + 2.0 * ((xy * rx * ry + xz * rx * rz) + yz * ry * rz);

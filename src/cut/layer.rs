@@ -1,11 +1,12 @@
 //! The greatest distance of the boundary from points of a slab in the cube.
 
 use super::Slab;
+use crate::lattice::Each;
 
 /// The corners of the intersection of a slab with the cube, up to rounding.
 pub(crate) fn corners(slab: &Slab) -> impl Iterator<Item = [f64; 3]> + Clone {
     let Slab { normal, inner, outer } = *slab;
-    let of_cube = (0..8usize).map(|k| [0, 1, 2].map(|axis| end(k >> axis & 1)));
+    let of_cube = (0..8usize).map(|k| [0, 1, 2].each(|axis| end(k >> axis & 1)));
     let met = [inner, outer].into_iter().flat_map(move |level| {
         // The points where the edges of the cube meet a side.
         (0..12usize).filter_map(move |edge| {
@@ -34,7 +35,7 @@ pub(crate) fn stray(slab: &Slab) -> f64 {
 /// from those in front of it, up to rounding. Infinite if there are no such points.
 pub(crate) fn sides(slab: &Slab) -> [f64; 2] {
     let behind = |p| distance(p, slab.normal, slab.inner);
-    let before = |p| distance(p, slab.normal.map(|c| -c), -slab.outer);
+    let before = |p| distance(p, slab.normal.each(|c| -c), -slab.outer);
     corners(slab).fold([0.0, 0.0], |[a, b], p| [f64::max(a, behind(p)), f64::max(b, before(p))])
 }
 
@@ -47,7 +48,7 @@ fn distance(p: [f64; 3], normal: [f64; 3], offset: f64) -> f64 {
     // The nearest point is p − λ n, moved into the cube. Axes along which it would leave the cube are fixed,
     // one after the other.
     let mut nearest = p;
-    let mut is_free = normal.map(|c| c != 0.0);
+    let mut is_free = normal.each(|c| c != 0.0);
     loop {
         let slope = (0..3).filter(|&k| is_free[k]).map(|k| normal[k] * normal[k]).sum::<f64>();
         if slope == 0.0 {
@@ -66,7 +67,7 @@ fn distance(p: [f64; 3], normal: [f64; 3], offset: f64) -> f64 {
             }
         }
         if !is_outside {
-            let off = [0, 1, 2].map(|k| nearest[k] - p[k]);
+            let off = [0, 1, 2].each(|k| nearest[k] - p[k]);
             return libm::sqrt(dot(off, off));
         }
     }

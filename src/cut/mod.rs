@@ -33,6 +33,7 @@ mod taylor;
 mod tests;
 mod wedge;
 
+use crate::lattice::Each;
 use crate::lattice::{CellMoments, CubeMoments};
 pub(crate) use ball::ball;
 pub use enclosure::{Crossing, Enclosure, Segment, Slab, SlabJoin};
@@ -64,7 +65,7 @@ pub(crate) fn bounds(enclosure: &Enclosure) -> (CubeMoments, CubeMoments) {
             CubeMoments::EMPTY
         }),
         // The union is the complement of the complements' intersection.
-        SlabJoin::Any => intersection(&enclosure.slabs.map(|slab| slab.complement()), !outer)
+        SlabJoin::Any => intersection(&enclosure.slabs.each(|slab| slab.complement()), !outer)
             .map_or(if outer { CubeMoments::FULL } else { CubeMoments::EMPTY }, |m| m.complement()),
     };
     (of(false), of(true))
@@ -104,7 +105,7 @@ pub(crate) fn curved(f: &Quadratic, planes: &[Slab]) -> Option<CellMoments> {
         // Seen along the axis nearest to the normal, the section is at most a face.
         error += 12.0 * open;
         if *inner < range {
-            halves[count] = Half { normal: normal.map(|c| c / range), offset: inner / range };
+            halves[count] = Half { normal: normal.each(|c| c / range), offset: inner / range };
             count += 1;
         }
     }
@@ -124,7 +125,7 @@ pub(crate) fn curved(f: &Quadratic, planes: &[Slab]) -> Option<CellMoments> {
 pub(crate) fn doubt(enclosure: &Enclosure) -> f64 {
     let (mut doubt, mut is_known) = (0.0, false);
     for Slab { normal, inner, outer } in &enclosure.slabs {
-        let [a, b, c] = normal.map(f64::abs);
+        let [a, b, c] = normal.each(f64::abs);
         let (high, rest) = (a.max(b), a.min(b));
         let (most, middle, least) = (high.max(c), high.min(c).max(rest), rest.min(c));
         if most > 0.0 {
@@ -170,7 +171,7 @@ fn intersection(slabs: &[Slab; 3], outer: bool) -> Option<CubeMoments> {
         if offset <= -range {
             return Some(CubeMoments::EMPTY);
         }
-        halves[count] = Half { normal: slab.normal.map(|c| c / range), offset: offset / range };
+        halves[count] = Half { normal: slab.normal.each(|c| c / range), offset: offset / range };
         count += 1;
     }
     match count {

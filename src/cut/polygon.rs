@@ -1,5 +1,7 @@
 //! The intersection of a plane with a cube, seen along an axis: a polygon in a square.
 
+use crate::lattice::Each;
+
 /// The greatest number of corners of a square that two faces of the cube and two planes cut.
 const CORNERS: usize = 8;
 
@@ -17,7 +19,7 @@ impl Line {
     /// The line that bounds the points of the plane z = −(a x + b y + c) on the inner side of n · x ≤ offset;
     /// `axes` are the axes of the cube that are called x, y and z.
     pub(super) fn new(axes: &[usize; 3], [a, b, c]: &[f64; 3], normal: &[f64; 3], offset: f64) -> Line {
-        let n = axes.map(|axis| normal[axis]);
+        let n = axes.each(|axis| normal[axis]);
         Line { slope: [n[2] * a - n[0], n[2] * b - n[1]], constant: offset + n[2] * c, rise: n[2] }
     }
 
@@ -119,7 +121,7 @@ impl Polygon {
     /// The lower and the upper corner of the bounding rectangle.
     pub(super) fn bounds(&self) -> [[f64; 2]; 2] {
         self.corners().iter().fold([[1.0; 2], [-1.0; 2]], |[low, high], corner| {
-            [[0, 1].map(|i| low[i].min(corner[i])), [0, 1].map(|i| high[i].max(corner[i]))]
+            [[0, 1].each(|i| low[i].min(corner[i])), [0, 1].each(|i| high[i].max(corner[i]))]
         })
     }
 }

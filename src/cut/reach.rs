@@ -5,6 +5,7 @@
 //! program from above (weak duality), and any point that satisfies the constraints bounds it from below.
 
 use super::{Enclosure, SlabJoin};
+use crate::lattice::Each;
 use crate::lattice::Interval;
 use crate::lattice::axes;
 
@@ -68,7 +69,7 @@ impl Halves {
     fn rows(&self) -> ([[f64; 3]; 6], usize) {
         let mut rows = [[0.0; 3]; 6];
         for (row, half) in rows.iter_mut().zip(self.as_slice()) {
-            *row = half.normal.map(|c| c / half.range);
+            *row = half.normal.each(|c| c / half.range);
         }
         for axis in 0..3 {
             rows[self.count + axis][axis] = 1.0;
@@ -162,7 +163,7 @@ fn is_empty(halves: &Halves, rows: &[[f64; 3]]) -> bool {
     for set in (0u32..1 << rows.len()).filter(|set| set.count_ones() == 4) {
         let mut of = [0; 4];
         (0..rows.len()).filter(|row| set >> row & 1 != 0).zip(&mut of).for_each(|(row, place)| *place = row);
-        let [a, b, c, d] = of.map(|row| rows[row]);
+        let [a, b, c, d] = of.each(|row| rows[row]);
         let (ab, cd) = (cross(a, b), cross(c, d));
         let minors = [dot(b, cd), -dot(a, cd), dot(d, ab), -dot(c, ab)];
         for sign in [1.0, -1.0] {
@@ -182,7 +183,7 @@ fn is_empty(halves: &Halves, rows: &[[f64; 3]]) -> bool {
 /// A proven upper bound of `direction` · x over the cube's points in all half-spaces, by these multipliers of
 /// normals with range 1. For the direction 0, the bound is negative only if there are no such points.
 fn dual(halves: &Halves, multipliers: [f64; 3], direction: [f64; 3]) -> f64 {
-    let (mut bound, mut rest) = (Interval::exactly(0.0), direction.map(Interval::exactly));
+    let (mut bound, mut rest) = (Interval::exactly(0.0), direction.each(Interval::exactly));
     for (half, multiplier) in halves.as_slice().iter().zip(multipliers) {
         let multiplier = multiplier / half.range;
         if !(multiplier > 0.0 && multiplier.is_finite()) {
@@ -217,7 +218,7 @@ fn farthest(halves: &Halves, direction: [f64; 3]) -> Option<[f64; 3]> {
 /// offsets moved inward.
 fn vertex(halves: &Halves, direction: [f64; 3], margin: f64) -> Option<[f64; 3]> {
     let (rows, count) = halves.rows();
-    let offsets = halves.all.map(|half| half.offset / half.range - margin);
+    let offsets = halves.all.each(|half| half.offset / half.range - margin);
     // A rounded vertex may lie slightly outside; the proof comes later.
     let slack = 0.5 * margin.max(MARGINS[0]);
     let mut best: Option<(f64, [f64; 3])> = None;
@@ -232,7 +233,7 @@ fn vertex(halves: &Halves, direction: [f64; 3], margin: f64) -> Option<[f64; 3]>
             };
             let [a, b, c] = [value(0), value(1), value(2)];
             let point = axes(|i| a * columns[0][i] + b * columns[1][i] + c * columns[2][i]);
-            let point = point.map(|c| if c.abs() <= 1.0 + slack { c.clamp(-1.0, 1.0) } else { f64::NAN });
+            let point = point.each(|c| if c.abs() <= 1.0 + slack { c.clamp(-1.0, 1.0) } else { f64::NAN });
             let is_inside = |row: usize| dot(rows[row], point) <= offsets[row] + slack;
             let reach = dot(point, direction);
             // (A comparison with NaN is false.)
@@ -252,7 +253,7 @@ fn bases(rows: &[[f64; 3]], mut visit: impl FnMut([usize; 3], [[f64; 3]; 3])) {
                 let columns = [cross(rows[j], rows[k]), cross(rows[k], rows[i]), cross(rows[i], rows[j])];
                 let inverse = 1.0 / dot(rows[i], columns[0]);
                 if inverse.is_finite() {
-                    visit([i, j, k], columns.map(|column| column.map(|c| inverse * c)));
+                    visit([i, j, k], columns.each(|column| column.each(|c| inverse * c)));
                 }
             }
         }

@@ -7,6 +7,7 @@
 
 use super::enclosure::{Enclosure, Slab, SlabJoin};
 use super::polygon::{Line, Polygon};
+use crate::lattice::Each;
 use crate::lattice::{Interval, axes};
 
 /// A bound of the error of a side's linear function at any point of the square: some dozen roundings of
@@ -60,7 +61,7 @@ impl Section {
         let known = match enclosure.join {
             SlabJoin::All => self.clipped(&enclosure.slabs),
             // The union is the complement of the complements' intersection.
-            SlabJoin::Any => whole.minus(self.clipped(&enclosure.slabs.map(|slab| slab.complement()))),
+            SlabJoin::Any => whole.minus(self.clipped(&enclosure.slabs.each(|slab| slab.complement()))),
         };
         let upper = known.upper.clamp(0.0, whole.upper);
         Interval::between(known.lower.clamp(0.0, upper), upper)
@@ -68,7 +69,7 @@ impl Section {
 
     /// Bounds of the area of the part on the inner side of all slabs.
     fn clipped(&self, slabs: &[Slab]) -> Interval {
-        let [inner, outer] = [false, true].map(|outer| {
+        let [inner, outer] = [false, true].each(|outer| {
             self.rectangle(slabs, outer).unwrap_or_else(|| match self.figure(slabs, outer) {
                 Some(figure) => area(&figure, if outer { ROUNDING } else { -ROUNDING }),
                 // A polygon with more corners than there is space for gives no bound.
@@ -113,7 +114,7 @@ impl Section {
                 (_, false) => sides[place][1] = sides[place][1].min(share),
             }
         }
-        let [a, b] = sides.map(|[low, high]| Interval::exactly(high.max(low)).minus(Interval::exactly(low)));
+        let [a, b] = sides.each(|[low, high]| Interval::exactly(high.max(low)).minus(Interval::exactly(low)));
         let area = a.times(b);
         Some(if outer { area.upper.min(ALL) } else { area.lower })
     }

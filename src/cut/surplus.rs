@@ -2,6 +2,7 @@
 
 use super::graph::Graph;
 use super::polygon::Polygon;
+use crate::lattice::Each;
 use wide::f64x4;
 
 /// Nodes and weights of a quadrature over a triangle, exact for polynomials of degree five (Radon, 1948): the
@@ -67,7 +68,7 @@ impl Surplus {
             lanes[9] += area;
             k += 4;
         }
-        let [one, x, y, xx, yy, xy, square, square_x, square_y, area] = lanes.map(sum);
+        let [one, x, y, xx, yy, xy, square, square_x, square_y, area] = lanes.each(sum);
         // On the plane, z is a linear function of x and y.
         let z = |one: f64, x: f64, y: f64| -((a * x + b * y) + c * one);
         let (xz, yz) = (z(x, xx, xy), z(y, xy, yy));
@@ -98,8 +99,8 @@ impl Surplus {
         }
         // Between corners v differs from a linear function by its second derivatives.
         let [low, high] = polygon.bounds();
-        let [wx, wy] = [0, 1].map(|i| 0.5 * (high[i] - low[i]));
-        let [xx, yy, xy] = graph.bends().map(f64::abs);
+        let [wx, wy] = [0, 1].each(|i| 0.5 * (high[i] - low[i]));
+        let [xx, yy, xy] = graph.bends().each(f64::abs);
         let v = v + ((xx * wx * wx + yy * wy * wy) + xy * wx * wy);
         let most = graph.most.min(v / (1.0 - graph.steepest) + graph.rounding);
         let r = graph.steepest.min(slope + 2.0 * graph.bend * most);

@@ -4,6 +4,7 @@ use super::columns::Columns;
 use super::format::DexelFormat;
 use super::place::{DoubleSpan, FixedSpan, Span};
 use super::view::{Rows, RowsRef, TriDexelRef, Window};
+use crate::lattice::Each;
 use crate::lattice::Frame;
 use alloc::vec::Vec;
 
@@ -71,7 +72,7 @@ pub(crate) struct ModelArrays {
 
 impl ModelArrays {
     pub fn view(&self) -> TriDexelRef<'_> {
-        let rays = self.rays.each_ref().map(|rows| {
+        let rays = self.rays.each_ref().each(|rows| {
             rows.as_ref().map(|rows| match rows {
                 OwnedRows::Fixed(rows) => Rows::Fixed(rows.view()),
                 OwnedRows::Double(rows) => Rows::Double(rows.view()),

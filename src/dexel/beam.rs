@@ -6,6 +6,7 @@ use super::normal::{NO_NORMAL, encoded};
 use super::place::{Place, Span, gap, within};
 use super::view::Window;
 use crate::error::Error;
+use crate::lattice::Each;
 use crate::memory;
 use alloc::vec::Vec;
 use core::ops::Range;
@@ -165,7 +166,7 @@ impl Beam {
             ray.cmp(other).then(ends[0].at.total_cmp(&others[0].at))
         });
         let mut own = own.into_iter().peekable();
-        let span = [self.span.start, self.span.end].map(BeamEnd::between);
+        let span = [self.span.start, self.span.end].each(BeamEnd::between);
         for v in self.rays.range(1) {
             for u in self.rays.range(0) {
                 let Some(ray) = self.window.index([u, v]) else { continue };
@@ -241,7 +242,7 @@ impl Beam {
         let mut chords = self.chords.iter().enumerate().peekable();
         for ray in 0..self.window.count() as u32 {
             while let Some((i, chord)) = chords.next_if(|(_, chord)| chord.ray == ray) {
-                let ends = chord.ends.map(|end| S::Place::rounded(end, self.depth));
+                let ends = chord.ends.each(|end| S::Place::rounded(end, self.depth));
                 let marks = if self.marked { [self.faced(i, 0), self.faced(i, 1)] } else { [Mark::NONE; 2] };
                 // Rounded intervals may touch, or be empty.
                 piece.add(&Item { ends, marks, material: 0 })?;

@@ -15,6 +15,7 @@ use super::place::{DoubleSpan, FixedSpan, Place, Span};
 use super::view::{Rows, RowsRef, TriDexelRef, Window, with_rows};
 use crate::control::{Control, Job, WHOLE};
 use crate::error::Error;
+use crate::lattice::Each;
 use crate::lattice::Frame;
 use crate::memory;
 use crate::parallel::each;
@@ -342,7 +343,7 @@ fn of_rows<S: Form>(
         SetOp::Difference => a.window,
     };
     let begin = |range: Range<u32>, piece: &mut Piece<S>| {
-        let [most_a, most_b] = [a, b].map(|rows| rows.within(range.clone()).len());
+        let [most_a, most_b] = [a, b].each(|rows| rows.within(range.clone()).len());
         piece.columns.reserve(most_a + most_b, true)
     };
     by_rows(window, format, lot, begin, |v, piece| {
@@ -372,7 +373,7 @@ fn runs<S>(
         cuts[2 + 2 * i] = window.range(0).end.clamp(all.start, all.end);
     }
     cuts.sort_unstable();
-    let ends = [1, 2, 3, 4, 5].map(|i| cuts.get(i).copied().unwrap_or(all.end));
+    let ends = [1, 2, 3, 4, 5].each(|i| cuts.get(i).copied().unwrap_or(all.end));
     (0..5).filter_map(move |i| {
         let run = cuts[i]..ends[i];
         let has = |window: &Window| window.index([run.start, v]).is_some();
@@ -444,7 +445,7 @@ fn converted<S: Span, T: Form>(
         for u in rows.window.range(0) {
             for item in rows.items([u, v]) {
                 // Without materials, or after rounding, intervals may touch that did not touch before.
-                let ends = item.ends.map(|end| T::Place::rounded(end.cells(depth), depth));
+                let ends = item.ends.each(|end| T::Place::rounded(end.cells(depth), depth));
                 piece.add(&Item { ends, marks: item.marks, material: item.material })?;
             }
             piece.end_ray()?;

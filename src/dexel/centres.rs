@@ -6,6 +6,7 @@
 use super::item::Item;
 use super::place::{Place, Span};
 use super::view::{OTHERS, Rows, RowsRef, TriDexelRef, with_rows};
+use crate::lattice::Each;
 use core::ops::Range;
 
 /// The edge of a block of cells.
@@ -131,7 +132,7 @@ fn without_centres<S: Span>(rows: &RowsRef<'_, S>, depth: u8) -> u64 {
 /// The position of a ray relative to the cells in a range.
 fn passage<S: Span>(rows: &RowsRef<'_, S>, ray: [u32; 2], cells: &Range<u32>, depth: u8) -> Passage {
     let range = rows.ray(ray);
-    let [low, high] = [cells.start, cells.end].map(|plane| S::Place::rounded(f64::from(plane), depth));
+    let [low, high] = [cells.start, cells.end].each(|plane| S::Place::rounded(f64::from(plane), depth));
     let list = &rows.columns.spans[range.clone()];
     let first = list.partition_point(|span| span.ends()[1] <= low);
     let Some([start, mut end]) = list.get(first).map(|span| span.ends()) else { return Passage::Outside };
@@ -226,7 +227,7 @@ fn column<S: Span>(spans: &[S], first: u32, depth: u8) -> u64 {
         if spans.len() > 8 { spans.partition_point(|span| span.ends()[1].gap(depth) <= first) } else { 0 };
     let mut word = 0;
     for span in &spans[skip..] {
-        let [start, end] = span.ends().map(|end| end.gap(depth));
+        let [start, end] = span.ends().each(|end| end.gap(depth));
         if start >= last {
             break;
         }

@@ -3,6 +3,7 @@
 use super::merge::SetOp;
 use super::place::{Place, Span};
 use super::view::OTHERS;
+use crate::lattice::Each;
 use crate::lattice::Frame;
 
 /// The effect of a change by a [`DexelEditor`](super::DexelEditor) on its rays.
@@ -108,7 +109,7 @@ pub(super) fn part<S: Span>(op: SetOp, own: &[S], other: &[S], made: &[S], depth
     let low = [at(own, first), at(made, first)].into_iter().flatten().reduce(f64::min)?;
     let high = [behind(own, last), behind(made, last)].into_iter().flatten().reduce(f64::max)?;
     let length = |list: &[S]| {
-        list.iter().map(|span| span.ends().map(|end| end.cells(depth))).map(|[a, b]| b - a).sum::<f64>()
+        list.iter().map(|span| span.ends().each(|end| end.cells(depth))).map(|[a, b]| b - a).sum::<f64>()
     };
     let (before, after) = (length(own), length(made));
     let (removed, added) = match op {

@@ -5,6 +5,7 @@ use super::item::{Item, Mark, NO_SURFACE};
 use super::normal::{NO_NORMAL, coarse, fine, is_code, is_code_16};
 use super::place::{Place, Span};
 use crate::error::Error;
+use crate::lattice::Each;
 use crate::memory;
 use alloc::vec::Vec;
 use core::ops::Range;
@@ -46,12 +47,12 @@ impl<S: Span> ColumnsRef<'_, S> {
         let surfaces = self.surfaces.and_then(|s| s.get(i)).copied().unwrap_or([NO_SURFACE; 2]);
         let normals = match self.normals {
             NormalsRef::None => [NO_NORMAL; 2],
-            NormalsRef::Bits16(normals) => normals.get(i).map_or([NO_NORMAL; 2], |codes| codes.map(fine)),
+            NormalsRef::Bits16(normals) => normals.get(i).map_or([NO_NORMAL; 2], |codes| codes.each(fine)),
             NormalsRef::Bits32(normals) => normals.get(i).copied().unwrap_or([NO_NORMAL; 2]),
         };
         Item {
             ends: self.spans[i].ends(),
-            marks: [0, 1].map(|k| Mark { surface: surfaces[k], normal: normals[k] }),
+            marks: [0, 1].each(|k| Mark { surface: surfaces[k], normal: normals[k] }),
             material: self.materials.and_then(|m| m.get(i)).copied().unwrap_or(0),
         }
     }
@@ -126,12 +127,12 @@ impl<S: Span> Columns<S> {
     pub fn push(&mut self, item: &Item<S::Place>) -> Result<(), Error> {
         memory::push(&mut self.spans, S::new(item.ends))?;
         if let Some(surfaces) = &mut self.surfaces {
-            memory::push(surfaces, item.marks.map(|mark| mark.surface))?;
+            memory::push(surfaces, item.marks.each(|mark| mark.surface))?;
         }
         match &mut self.normals {
             Normals::None => {}
-            Normals::Bits16(normals) => memory::push(normals, item.marks.map(|mark| coarse(mark.normal)))?,
-            Normals::Bits32(normals) => memory::push(normals, item.marks.map(|mark| mark.normal))?,
+            Normals::Bits16(normals) => memory::push(normals, item.marks.each(|mark| coarse(mark.normal)))?,
+            Normals::Bits32(normals) => memory::push(normals, item.marks.each(|mark| mark.normal))?,
         }
         if let Some(materials) = &mut self.materials {
             memory::push(materials, item.material)?;
@@ -144,12 +145,12 @@ impl<S: Span> Columns<S> {
     pub fn set(&mut self, i: usize, item: &Item<S::Place>) {
         self.spans[i] = S::new(item.ends);
         if let Some(surfaces) = &mut self.surfaces {
-            surfaces[i] = item.marks.map(|mark| mark.surface);
+            surfaces[i] = item.marks.each(|mark| mark.surface);
         }
         match &mut self.normals {
             Normals::None => {}
-            Normals::Bits16(normals) => normals[i] = item.marks.map(|mark| coarse(mark.normal)),
-            Normals::Bits32(normals) => normals[i] = item.marks.map(|mark| mark.normal),
+            Normals::Bits16(normals) => normals[i] = item.marks.each(|mark| coarse(mark.normal)),
+            Normals::Bits32(normals) => normals[i] = item.marks.each(|mark| mark.normal),
         }
         if let Some(materials) = &mut self.materials {
             materials[i] = item.material;
@@ -182,10 +183,10 @@ impl<S: Span> Columns<S> {
             (Normals::Bits16(to), NormalsRef::Bits16(from)) => to.extend_from_slice(&from[range.clone()]),
             (Normals::Bits32(to), NormalsRef::Bits32(from)) => to.extend_from_slice(&from[range.clone()]),
             (Normals::Bits16(to), _) => {
-                to.extend(range.clone().map(|i| from.item(i).marks.map(|mark| coarse(mark.normal))))
+                to.extend(range.clone().map(|i| from.item(i).marks.each(|mark| coarse(mark.normal))))
             }
             (Normals::Bits32(to), _) => {
-                to.extend(range.clone().map(|i| from.item(i).marks.map(|mark| mark.normal)))
+                to.extend(range.clone().map(|i| from.item(i).marks.each(|mark| mark.normal)))
             }
         }
         if let Some(materials) = &mut self.materials {

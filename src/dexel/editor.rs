@@ -16,6 +16,7 @@ use super::place::{DoubleSpan, FixedSpan, Place, Span};
 use super::view::{Rows, RowsRef, TriDexelRef, Window};
 use crate::control::{Control, Job, WHOLE};
 use crate::error::Error;
+use crate::lattice::Each;
 use crate::lattice::Frame;
 use crate::memory;
 use alloc::vec::Vec;
@@ -105,8 +106,8 @@ impl DexelEditor {
     /// For each axis, x, y and z, whether there are rays along it.
     pub fn directions(&self) -> [bool; 3] {
         match &self.rays {
-            Rays::Fixed(all) => all.each_ref().map(Option::is_some),
-            Rays::Double(all) => all.each_ref().map(Option::is_some),
+            Rays::Fixed(all) => all.each_ref().each(Option::is_some),
+            Rays::Double(all) => all.each_ref().each(Option::is_some),
         }
     }
 
@@ -455,7 +456,7 @@ fn cut<S: Span>(
     let [mut removed, from, to] =
         [0.0, if before { low } else { start }.cells(depth), if behind { high } else { stop }.cells(depth)];
     for span in &own[first..end] {
-        let [start, stop] = span.ends().map(|end| end.cells(depth));
+        let [start, stop] = span.ends().each(|end| end.cells(depth));
         removed += stop.min(to) - start.max(from);
     }
     let part = Part { removed, added: 0.0, along: [from, to] };

@@ -11,6 +11,7 @@ use super::place::{DoubleSpan, FixedSpan, Place, Span};
 use super::view::{Dexel, DexelEnd, Window};
 use crate::control::Control;
 use crate::error::Error;
+use crate::lattice::Each;
 use crate::lattice::Frame;
 use crate::memory;
 use alloc::vec::Vec;
@@ -124,7 +125,7 @@ impl Source<'_> {
             if !given[0].is_before(&given[1]) {
                 return refused("the end of an interval must be greater than its start");
             }
-            let mut ends = given.map(|end| end.place::<S::Place>());
+            let mut ends = given.each(|end| end.place::<S::Place>());
             if let Some((reached, place)) = last {
                 if given[0].is_before(&reached) {
                     return refused("the intervals of a ray must be in ascending order and disjoint");
@@ -137,7 +138,7 @@ impl Source<'_> {
             // (So may the two ends of one interval, which is then empty.)
             let end = if ends[1] < ends[0] { ends[0] } else { ends[1] };
             last = Some((given[1], end));
-            let marks = [dexel.start, dexel.end].map(mark);
+            let marks = [dexel.start, dexel.end].each(mark);
             piece.add(&Item { ends, marks, material: dexel.material })?;
         }
         Ok(())

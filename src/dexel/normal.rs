@@ -4,6 +4,8 @@
 //! the third is negative they are folded outward. The least number of a component, −M − 1, stands for "no
 //! normal".
 
+use crate::lattice::Each;
+
 /// M for components of 16 bits; a code takes 32.
 pub(crate) const FINE: i32 = 0x7FFF;
 
@@ -23,14 +25,14 @@ pub(crate) fn encoded(vector: [f64; 3]) -> u32 {
         return NO_NORMAL;
     }
     let scale = f64::from(FINE) / sum;
-    let [x, y, z] = vector.map(|c| c * scale);
+    let [x, y, z] = vector.each(|c| c * scale);
     let most = f64::from(FINE);
     let [a, b] = if z >= 0.0 {
         [x, y]
     } else {
         [(most - y.abs()).copysign(signed(x)), (most - x.abs()).copysign(signed(y))]
     };
-    packed([a, b].map(|c| libm::rint(c) as i32))
+    packed([a, b].each(|c| libm::rint(c) as i32))
 }
 
 /// Returns whether these 32 bits are a code, or the code of no normal.
@@ -53,7 +55,7 @@ fn packed([a, b]: [i32; 2]) -> u32 {
 }
 
 fn unpacked(code: u32) -> [i32; 2] {
-    [code as u16 as i16, (code >> 16) as u16 as i16].map(i32::from)
+    [code as u16 as i16, (code >> 16) as u16 as i16].each(i32::from)
 }
 
 /// The point of the octahedron: the sum of its coordinates' magnitudes is `most`.
@@ -79,7 +81,7 @@ pub(crate) fn decoded(code: u32) -> Option<[f64; 3]> {
     if code == NO_NORMAL {
         return None;
     }
-    let [x, y, z] = point(unpacked(code), FINE).map(f64::from);
+    let [x, y, z] = point(unpacked(code), FINE).each(f64::from);
     let length = crate::lattice::exact::sqrt(x * x + y * y + z * z);
     // (A code from a file may be invalid; the point then lies off the octahedron, but not at its centre.)
     (length > 0.0).then(|| [x / length, y / length, z / length])
@@ -90,7 +92,7 @@ pub(crate) fn flipped(code: u32) -> u32 {
     if code == NO_NORMAL {
         return code;
     }
-    packed(folded(point(unpacked(code), FINE).map(|c| -c), FINE))
+    packed(folded(point(unpacked(code), FINE).each(|c| -c), FINE))
 }
 
 /// Converts a code of 32 bits to one of 16 bits.
@@ -100,7 +102,7 @@ pub(crate) fn coarse(code: u32) -> u16 {
     }
     // Rounded on the octahedron, so that opposite codes stay opposite.
     let [x, y, _] = point(unpacked(code), FINE);
-    let upper = FINE - unpacked(code).map(i32::abs).iter().sum::<i32>() >= 0;
+    let upper = FINE - unpacked(code).each(i32::abs).iter().sum::<i32>() >= 0;
     let rounded = |c: i32| (c.abs() * COARSE + FINE / 2) / FINE * c.signum();
     let [mut x, y] = [rounded(x), rounded(y)];
     if x.abs() + y.abs() > COARSE {
@@ -116,9 +118,9 @@ pub(crate) fn fine(code: u16) -> u32 {
     if code == NO_NORMAL_16 {
         return NO_NORMAL;
     }
-    let [x, y, z] = point([code as u8 as i8, (code >> 8) as u8 as i8].map(i32::from), COARSE);
+    let [x, y, z] = point([code as u8 as i8, (code >> 8) as u8 as i8].each(i32::from), COARSE);
     // 32767 is 258 · 127 + 1: adding the one to the greatest component keeps the sum of magnitudes.
-    let mut fine = [x, y, z].map(|c| c * (FINE / COARSE));
+    let mut fine = [x, y, z].each(|c| c * (FINE / COARSE));
     let greatest = (0..3).max_by_key(|&axis| (fine[axis].abs(), axis)).unwrap_or(0);
     let rest = FINE - fine.iter().map(|c| c.abs()).sum::<i32>();
     fine[greatest] += if fine[greatest] < 0 { -rest } else { rest };

@@ -5,6 +5,7 @@ use super::centres::BLOCK;
 use super::place::{Place, Span};
 use super::view::{OTHERS, RowsRef, TriDexelRef, with_rows};
 use crate::error::Error;
+use crate::lattice::Each;
 use crate::memory;
 use alloc::vec::Vec;
 use core::ops::Range;
@@ -50,7 +51,7 @@ impl Occupied {
                     let Some(first) = rows.window.index([columns.start, v]) else { continue };
                     let spans = rows.starts[first] as usize..rows.starts[first + columns.len()] as usize;
                     for span in &rows.columns.spans[spans] {
-                        let [start, end] = span.ends().map(|end| end.gap(depth));
+                        let [start, end] = span.ends().each(|end| end.gap(depth));
                         if start < end {
                             any = true;
                             set(&mut along, start / BLOCK, (end - 1) / BLOCK);

@@ -3,6 +3,7 @@
 use super::line::Line;
 use super::place::{Place, Span};
 use super::view::{OTHERS, RowsRef, TriDexelRef, with_rows};
+use crate::lattice::Each;
 
 /// Statistics of the rays of one direction.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -61,7 +62,7 @@ impl TriDexelRef<'_> {
                 grow(u, centre(0, column), centre(0, column));
                 grow(v, centre(1, row), centre(1, row));
                 for span in &rows.columns.spans[range] {
-                    let [start, end] = span.ends().map(|end| end.cells(depth));
+                    let [start, end] = span.ends().each(|end| end.cells(depth));
                     grow(axis, start, end);
                     length += end - start;
                 }

@@ -6,6 +6,7 @@ use super::item::{Item, NO_SURFACE};
 use super::line::{Line, is_place};
 use super::normal::decoded;
 use super::place::{DoubleSpan, FixedSpan, Place, Span};
+use crate::lattice::Each;
 use crate::lattice::Frame;
 use core::ops::Range;
 use yoke::Yokeable;
@@ -27,7 +28,7 @@ impl Window {
     }
 
     pub fn of(ranges: [Range<u32>; 2]) -> Window {
-        let size = [0, 1].map(|i| ranges[i].end.saturating_sub(ranges[i].start));
+        let size = [0, 1].each(|i| ranges[i].end.saturating_sub(ranges[i].start));
         if size.contains(&0) {
             return Window::default();
         }
@@ -61,7 +62,7 @@ impl Window {
     }
 
     pub fn intersection(&self, other: &Window) -> Window {
-        Window::of([0, 1].map(|i| {
+        Window::of([0, 1].each(|i| {
             let (a, b) = (self.range(i), other.range(i));
             a.start.max(b.start)..a.end.min(b.end)
         }))
@@ -72,7 +73,7 @@ impl Window {
         if self.is_empty() || other.is_empty() {
             return if self.is_empty() { *other } else { *self };
         }
-        Window::of([0, 1].map(|i| {
+        Window::of([0, 1].each(|i| {
             let (a, b) = (self.range(i), other.range(i));
             a.start.min(b.start)..a.end.max(b.end)
         }))
@@ -103,7 +104,7 @@ impl<S: Span> RowsRef<'_, S> {
 
     /// The intervals of rows.
     pub fn within(&self, rows: Range<u32>) -> Range<usize> {
-        let [first, end] = [rows.start, rows.end].map(|row| {
+        let [first, end] = [rows.start, rows.end].each(|row| {
             let row = row.clamp(self.window.range(1).start, self.window.range(1).end) - self.window.first[1];
             self.starts.get(row as usize * self.window.size[0] as usize).map_or(0, |&start| start as usize)
         });
@@ -271,7 +272,7 @@ impl<'a> TriDexelRef<'a> {
 
     /// For each axis, x, y and z, whether there are rays along it.
     pub fn directions(&self) -> [bool; 3] {
-        self.rays.map(|rays| rays.is_some())
+        self.rays.each(|rays| rays.is_some())
     }
 
     /// The rays along an axis, if the model has any.

@@ -1,5 +1,6 @@
 //! Colours of files, collected for an attribute of a mesh.
 
+use crate::lattice::Each;
 use alloc::vec::Vec;
 
 use crate::error::Error;
@@ -19,7 +20,7 @@ impl Colours {
     pub fn push(&mut self, channels: [f64; 4]) -> Result<(), Error> {
         let is_channel = |channel: &f64| (-0.5..=255.5).contains(channel);
         let colour = if channels.iter().all(is_channel) {
-            channels.map(|channel| channel.clamp(0.0, 255.0))
+            channels.each(|channel| channel.clamp(0.0, 255.0))
         } else {
             self.unreadable += 1;
             [f64::NAN; 4]

@@ -1,6 +1,7 @@
 //! The stored properties of a tri-dexel model, in one byte.
 
 use crate::dexel::{DexelEnds, DexelFormat, DexelNormals};
+use crate::lattice::Each;
 
 /// The stored properties of intervals, and the directions that have rays.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
@@ -27,7 +28,7 @@ impl Form {
             2 => DexelNormals::Bits32,
             _ => return None,
         };
-        let directions = [0, 1, 2].map(|axis| bits >> (DIRECTIONS_SHIFT + axis) & 1 != 0);
+        let directions = [0, 1, 2].each(|axis| bits >> (DIRECTIONS_SHIFT + axis) & 1 != 0);
         let ends = if bits & DOUBLE != 0 { DexelEnds::Double } else { DexelEnds::Fixed };
         let format =
             DexelFormat { ends, normals, surfaces: bits & SURFACES != 0, materials: bits & MATERIALS != 0 };

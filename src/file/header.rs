@@ -5,6 +5,7 @@ use super::field::{demand, illegal};
 use super::form::Form;
 use super::wire::{Wire, wire_struct};
 use crate::error::{Error, FormatError};
+use crate::lattice::Each;
 use crate::lattice::Frame;
 use crate::octree::{Proof, Tag};
 use bytemuck::Zeroable;
@@ -92,7 +93,7 @@ impl Header {
             magic: MAGIC,
             major: MAJOR,
             header_length: HEADER_LENGTH as u32,
-            origin: frame.origin().map(f64::to_bits),
+            origin: frame.origin().each(f64::to_bits),
             edge: frame.edge().to_bits(),
             depth: frame.depth(),
             ..Header::zeroed()
@@ -180,7 +181,7 @@ impl Head {
             }
         }
         // Every value of a frame has only one representation, so that equal trees have equal files.
-        let frame = Frame::new(header.origin.map(f64::from_bits), f64::from_bits(header.edge), header.depth);
+        let frame = Frame::new(header.origin.each(f64::from_bits), f64::from_bits(header.edge), header.depth);
         let frame = frame.map_err(|refused| match refused {
             Error::Argument { name: "depth", .. } => illegal("depth", header.depth),
             Error::Argument { name: "edge", .. } => illegal("edge", header.edge),
@@ -264,7 +265,7 @@ impl Head {
             Model::Octree => "an octree",
             Model::Dexels => "a tri-dexel model",
         };
-        let [found, wanted] = [self.header.model(), wanted].map(name);
+        let [found, wanted] = [self.header.model(), wanted].each(name);
         if found == wanted { Ok(()) } else { Err(FormatError::OtherModel { found, wanted }) }
     }
 

@@ -15,6 +15,7 @@ use crate::dexel::{
     TriDexel, TriDexelRef, Window, with_rows,
 };
 use crate::error::{Error, FormatError};
+use crate::lattice::Each;
 use crate::lattice::axes;
 use crate::memory;
 use crate::octree::Metadata;
@@ -189,7 +190,7 @@ where
         (Column::Surfaces, Elements::Pairs32(surfaces.unwrap_or_default())),
         (Column::Materials, Elements::U32(materials.unwrap_or_default())),
     ]
-    .map(|(column, elements)| (0, Kind::along(axis, column), elements))
+    .each(|(column, elements)| (0, Kind::along(axis, column), elements))
 }
 
 /// Returns the file of `model` as bytes.

@@ -1,5 +1,6 @@
 //! Affine maps of model space.
 
+use super::array::Each;
 use super::axes;
 use super::exact::{Expansion, product_up, sign_of_products, sqrt, two_product};
 use crate::error::Error;
@@ -32,7 +33,7 @@ impl Affine {
         if !rows.iter().flatten().all(|&c| c == 0.0 || (1.0 / LARGEST..=LARGEST).contains(&c.abs())) {
             return refuse("every entry must be zero or of a magnitude between 2^-64 and 2^64");
         }
-        let map = Affine { rows: rows.map(|row| row.map(|c| c + 0.0)) };
+        let map = Affine { rows: rows.each(|row| row.each(|c| c + 0.0)) };
         if map.orientation() == 0 {
             return refuse(Affine::SINGULAR);
         }
@@ -79,7 +80,7 @@ impl Affine {
         // The square of the norm is the greatest eigenvalue of MᵀM. An eigenvalue is no greater than the sum
         // of magnitudes in some row.
         let entry = |i: usize, j: usize| {
-            let parts = self.rows.map(|row| row[i] * row[j]);
+            let parts = self.rows.each(|row| row[i] * row[j]);
             let size = parts.iter().map(|part| part.abs()).sum::<f64>();
             parts.iter().sum::<f64>().abs() + 8.0 * f64::EPSILON * size
         };
@@ -155,13 +156,13 @@ impl Affine {
             let [x, y, z] = axes(|j| cofactors[j][i].estimate() / determinant);
             [x, y, z, moved.estimate() / determinant]
         });
-        Affine::new(rows.map(|row| row.map(|c| if c.abs() < 1.0 / LARGEST { 0.0 } else { c })))
+        Affine::new(rows.each(|row| row.each(|c| if c.abs() < 1.0 / LARGEST { 0.0 } else { c })))
     }
 
     /// The image of a point, rounded. The error of each coordinate is at most 2^-50 times the sum of the
     /// magnitudes of its four summands.
     pub fn apply(&self, p: [f64; 3]) -> [f64; 3] {
-        self.rows.map(|[x, y, z, t]| ((x * p[0] + y * p[1]) + z * p[2]) + t)
+        self.rows.each(|[x, y, z, t]| ((x * p[0] + y * p[1]) + z * p[2]) + t)
     }
 }
 

@@ -1,5 +1,6 @@
 //! Boxes in model space.
 
+use super::array::Each;
 use super::axes;
 use super::composed::{Composed, RoundedSum};
 use super::exact::{sign_of_sum, two_sum};
@@ -24,7 +25,7 @@ impl Bounds {
 
     /// The universe of a frame, rounded outward to a box.
     pub fn of(frame: &Frame) -> Bounds {
-        let max = frame.origin().map(|low| match two_sum(low, frame.edge()) {
+        let max = frame.origin().each(|low| match two_sum(low, frame.edge()) {
             (sum, error) if error > 0.0 => sum.next_up(),
             (sum, _) => sum,
         });
@@ -62,8 +63,8 @@ impl Bounds {
             return *self;
         }
         Bounds {
-            min: self.min.map(|low| (low - margin).next_down()),
-            max: self.max.map(|high| (high + margin).next_up()),
+            min: self.min.each(|low| (low - margin).next_down()),
+            max: self.max.each(|high| (high + margin).next_up()),
         }
     }
 

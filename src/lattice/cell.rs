@@ -1,5 +1,7 @@
 //! Octants of the universe as integers.
 
+use super::array::Each;
+
 /// An octant of the universe. At `level` the universe is divided into 2^level cells per axis, and this cell
 /// has the integer position `at` (0 ≤ at < 2^level). Level 0 is the universe itself.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
@@ -25,14 +27,14 @@ impl Cell {
     /// The parent. The universe is its own parent.
     #[inline]
     pub fn parent(self) -> Cell {
-        Cell { level: self.level.saturating_sub(1), at: self.at.map(|a| a >> 1) }
+        Cell { level: self.level.saturating_sub(1), at: self.at.each(|a| a >> 1) }
     }
 
     /// The cell of `level` (at most this cell's own) that contains this one.
     #[inline]
     pub(crate) fn ancestor(self, level: u8) -> Cell {
         debug_assert!(level <= self.level);
-        Cell { level, at: self.at.map(|a| a >> (self.level - level)) }
+        Cell { level, at: self.at.each(|a| a >> (self.level - level)) }
     }
 
     /// The index of the cell among the cells of its level in Morton order: the octants from the universe
@@ -66,7 +68,7 @@ impl Cell {
     #[inline]
     pub fn first_at(self, level: u8) -> Cell {
         debug_assert!(level >= self.level);
-        Cell { level, at: self.at.map(|a| a << (level - self.level)) }
+        Cell { level, at: self.at.each(|a| a << (level - self.level)) }
     }
 }
 

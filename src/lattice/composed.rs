@@ -1,6 +1,7 @@
 //! Compositions of affine maps, in doubles.
 
 use super::Affine;
+use super::array::Each;
 use super::exact::{two_product, two_sum};
 
 /// The rounded composition of affine maps, with an error bound for each entry of `[M | t]`.
@@ -30,7 +31,7 @@ impl Composed {
         let (mut rows, mut errors) = ([[0.0; 4]; 3], [[0.0; 4]; 3]);
         for (i, (row, error)) in self.rows.iter().zip(&self.errors).enumerate() {
             for j in 0..4 {
-                let column = inner.rows().map(|inner| inner[j]);
+                let column = inner.rows().each(|inner| inner[j]);
                 let constant = if j == 3 { row[3] } else { 0.0 };
                 let sum = RoundedSum::of([row[0], row[1], row[2]], column, constant);
                 let carried: f64 = (0..3).map(|k| error[k] * column[k].abs()).sum();

@@ -1,5 +1,6 @@
 //! A cell together with its frame.
 
+use super::array::Each;
 use super::axes;
 use super::{Cell, Frame, Interval};
 
@@ -24,7 +25,7 @@ impl<'f> Cube<'f> {
     #[inline]
     pub fn planes(&self) -> ([u32; 3], [u32; 3]) {
         let shift = self.frame.depth() - self.cell.level;
-        (self.cell.at.map(|a| a << shift), self.cell.at.map(|a| (a + 1) << shift))
+        (self.cell.at.each(|a| a << shift), self.cell.at.each(|a| (a + 1) << shift))
     }
 
     /// A box in model units that contains the cube: its corners, rounded outward to the nearest doubles

@@ -1,5 +1,6 @@
 //! The position of the lattice in model space.
 
+use super::array::Each;
 use super::axes;
 use super::exact::{DoubleDouble, Expansion, floor, sign_of_sum, two_diff, two_product, two_sum};
 use super::{Interval, MAX_DEPTH, valid};
@@ -43,7 +44,13 @@ impl Frame {
             return Err(Error::Argument { name: "depth", problem: "must be 1 to 20" });
         }
         let cells = (1u32 << depth) as f64;
-        Ok(Frame { origin: origin.map(|c| c + 0.0), edge, depth, cell: edge / cells, per_unit: cells / edge })
+        Ok(Frame {
+            origin: origin.each(|c| c + 0.0),
+            edge,
+            depth,
+            cell: edge / cells,
+            per_unit: cells / edge,
+        })
     }
 
     /// Makes a frame around a shape with the bounds `min`, `max`: a cube of edge L·(1 + 1/32) with the same
@@ -253,7 +260,7 @@ impl Frame {
 
     /// As [`offset`](Self::offset), rounded outward. The width is tiny if `x` lies near the plane.
     pub(crate) fn rounded_offset(&self, axis: usize, x: f64, k: i64) -> Interval {
-        let [a, b, c, d] = self.offset_terms(axis, x, k).map(Interval::exactly);
+        let [a, b, c, d] = self.offset_terms(axis, x, k).each(Interval::exactly);
         c.plus(d).plus(a.plus(b))
     }
 

@@ -1,5 +1,6 @@
 //! Inverses of affine maps, with proven error bounds.
 
+use super::array::Each;
 use super::{Affine, Interval, axes};
 
 /// The inverse of an affine map, or of a composition: y = L x + o, with intervals that contain the exact
@@ -20,15 +21,15 @@ impl Inverse {
         let slack = if placement.is_monomial() { 0.0 } else { 4.0 * f64::EPSILON };
         let share = Interval::between(1.0 - slack, 1.0 + slack);
         let linear =
-            placement.inverse_linear().map(|row| row.map(|entry| Interval::exactly(entry).times(share)));
-        let moved = placement.rows().map(|[.., t]| Interval::exactly(-t));
-        Inverse { linear, offset: linear.map(|row| dot(&row, &moved)) }
+            placement.inverse_linear().each(|row| row.each(|entry| Interval::exactly(entry).times(share)));
+        let moved = placement.rows().each(|[.., t]| Interval::exactly(-t));
+        Inverse { linear, offset: linear.each(|row| dot(&row, &moved)) }
     }
 
     /// The inverse of this map followed by another one.
     pub(crate) fn then(&self, placement: &Affine) -> Inverse {
         let next = Inverse::of(placement);
-        let linear = self.linear.map(|row| axes(|j| dot(&row, &next.column(j))));
+        let linear = self.linear.each(|row| axes(|j| dot(&row, &next.column(j))));
         let offset = axes(|i| dot(&self.linear[i], &next.offset).plus(self.offset[i]));
         Inverse { linear, offset }
     }
@@ -40,9 +41,9 @@ impl Inverse {
 
     /// The inverse image of a point, if its coordinates are exact doubles.
     pub(crate) fn exact_image(&self, point: [f64; 3]) -> Option<[f64; 3]> {
-        let image = self.image(&point.map(Interval::exactly));
+        let image = self.image(&point.each(Interval::exactly));
         let is_exact = image.iter().all(|c| c.lower == c.upper && c.lower.is_finite());
-        is_exact.then(|| image.map(|c| c.lower))
+        is_exact.then(|| image.each(|c| c.lower))
     }
 
     /// Lᵀ n: converts a gradient n before the maps to a gradient after them.
@@ -51,7 +52,7 @@ impl Inverse {
     }
 
     fn column(&self, j: usize) -> [Interval; 3] {
-        self.linear.map(|row| row[j])
+        self.linear.each(|row| row[j])
     }
 
     /// All numbers, for a fingerprint.

@@ -19,6 +19,7 @@
 //! ```
 
 mod affine;
+mod array;
 mod axes;
 mod ball;
 mod bounds;
@@ -39,6 +40,7 @@ pub(crate) mod valid;
 mod window;
 
 pub use affine::Affine;
+pub(crate) use array::Each;
 pub(crate) use axes::axes;
 pub(crate) use ball::Ball;
 pub use bounds::Bounds;

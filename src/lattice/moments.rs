@@ -1,5 +1,6 @@
 //! The volume of a set and its first and second moments.
 
+use super::array::Each;
 use super::{Interval, PAIRS};
 use core::array::from_fn as array;
 
@@ -28,7 +29,7 @@ impl VolumeMoments {
 
     /// The tensor of inertia about the origin of the model, for density 1: ∫ (|x|² δij − xi xj).
     pub fn inertia_about_origin(&self) -> [[Interval; 3]; 3] {
-        let p = self.point.map(Interval::exactly);
+        let p = self.point.each(Interval::exactly);
         tensor(array(|k| {
             let (i, j) = PAIRS[k];
             let square = if i == j { p[i].square() } else { p[i].times(p[j]) };
@@ -51,7 +52,7 @@ impl VolumeMoments {
         // that Mij² ≤ Mii Mjj.
         tensor(array(|k| {
             let (i, j) = PAIRS[k];
-            let [a, b] = [i, j].map(|axis| Interval::between(0.0, self.second[axis].upper.max(0.0)));
+            let [a, b] = [i, j].each(|axis| Interval::between(0.0, self.second[axis].upper.max(0.0)));
             let radius = a.times(b).root().upper;
             Interval::between(if i == j { 0.0 } else { -radius }, radius)
         }))

@@ -1,5 +1,6 @@
 //! Half-lines and segments.
 
+use super::array::Each;
 use super::exact::two_diff;
 use super::{axes, valid};
 use crate::error::Error;
@@ -24,7 +25,7 @@ impl Ray {
     pub fn new(origin: [f64; 3], direction: [f64; 3]) -> Result<Ray, Error> {
         valid::numbers("origin", &origin)?;
         valid::numbers("direction", &direction)?;
-        Ray::along(origin, direction.map(|c| [c, 0.0]), f64::INFINITY)
+        Ray::along(origin, direction.each(|c| [c, 0.0]), f64::INFINITY)
     }
 
     /// Makes the segment between two points (model units); t runs from 0 at `from` to 1 at `to`. The

@@ -7,6 +7,7 @@ use super::relative::Relative;
 use super::wall::block_mesh;
 use crate::control::{Control, Job, WHOLE};
 use crate::error::Error;
+use crate::lattice::Each;
 use crate::lattice::{Affine, Bounds, Frame, Interval, MAX_DEPTH, axes};
 use crate::memory;
 use crate::query::{MassProperties, measure};
@@ -155,7 +156,7 @@ impl Layout {
             }
             c => c,
         });
-        lid.max = lid.max.map(|c| if is_noise(c) { 0.0 } else { c });
+        lid.max = lid.max.each(|c| if is_noise(c) { 0.0 } else { c });
         let solid = match piece.solid().get::<MeshSolid>() {
             Some(_) => block_mesh(&lid)?,
             None => AnySolid::new(Csg::cuboid(lid.min, lid.max)?),
@@ -194,7 +195,7 @@ impl Body {
     /// Returns the placed body; `None` if the solid may be empty.
     fn of(known: &MassProperties, placement: &Affine, density: f64) -> Option<Body> {
         let own = known.centroid?;
-        let rows = placement.rows().map(|row| row.map(Interval::exactly));
+        let rows = placement.rows().each(|row| row.each(Interval::exactly));
         let half = Interval::exactly(0.5);
         let tensor = &known.inertia_about_centroid;
         let trace = tensor[0][0].plus(tensor[1][1]).plus(tensor[2][2]).times(half);

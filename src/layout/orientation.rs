@@ -2,6 +2,7 @@
 
 use super::random::Random;
 use crate::error::Error;
+use crate::lattice::Each;
 use crate::lattice::exact::sqrt;
 use crate::lattice::{Affine, axes};
 use crate::memory;
@@ -58,7 +59,7 @@ impl Orientations {
             }
             Orientations::List(list) => {
                 for map in list {
-                    let own = Affine::new(map.rows().map(|[x, y, z, _]| [x, y, z, 0.0]))?;
+                    let own = Affine::new(map.rows().each(|[x, y, z, _]| [x, y, z, 0.0]))?;
                     memory::push(&mut maps, own)?;
                 }
             }
@@ -71,7 +72,7 @@ impl Orientations {
 pub(super) fn stretch(map: &Affine) -> f64 {
     // The eigenvalues of MᵀM are at most this far from 1, and their roots are no further.
     let entry = |i: usize, j: usize| {
-        let parts = map.rows().map(|row| row[i] * row[j]);
+        let parts = map.rows().each(|row| row[i] * row[j]);
         let size = parts.iter().map(|part| part.abs()).sum::<f64>();
         let unit = if i == j { 1.0 } else { 0.0 };
         let off = (parts.iter().sum::<f64>() - unit).abs();
@@ -110,7 +111,7 @@ fn any(random: &mut Random) -> Result<Affine, Error> {
             break (q, square);
         }
     };
-    let [w, x, y, z] = q.map(|c| c / sqrt(square));
+    let [w, x, y, z] = q.each(|c| c / sqrt(square));
     Affine::new([
         [1.0 - 2.0 * (y * y + z * z), 2.0 * (x * y - w * z), 2.0 * (x * z + w * y), 0.0],
         [2.0 * (x * y + w * z), 1.0 - 2.0 * (x * x + z * z), 2.0 * (y * z - w * x), 0.0],

@@ -4,6 +4,7 @@ use super::relative::Relative;
 use super::wall::{wall, wall_of_box};
 use crate::control::Control;
 use crate::error::Error;
+use crate::lattice::Each;
 use crate::lattice::exact::{sqrt, two_diff, two_sum};
 use crate::lattice::{Affine, Bounds, Frame, Interval, MAX_DEPTH, axes};
 use crate::query::{Asked, GapVerdict, Overlap, Ready, interference};
@@ -260,8 +261,8 @@ pub(super) fn wider(bounds: &Bounds, margin: f64) -> Bounds {
         _ => sum,
     };
     Bounds {
-        min: bounds.min.map(|low| rounded(two_diff(low, margin), -1.0)),
-        max: bounds.max.map(|high| rounded(two_sum(high, margin), 1.0)),
+        min: bounds.min.each(|low| rounded(two_diff(low, margin), -1.0)),
+        max: bounds.max.each(|high| rounded(two_sum(high, margin), 1.0)),
     }
 }
 
@@ -275,7 +276,7 @@ pub(super) fn boxes_apart(a: &Bounds, b: &Bounds) -> f64 {
     if gaps.iter().all(|&gap| gap < 0.0) {
         return -1.0;
     }
-    let parts = gaps.map(|gap| gap.max(0.0));
+    let parts = gaps.each(|gap| gap.max(0.0));
     let alone = parts.iter().filter(|&&part| part > 0.0).count() <= 1;
     if alone {
         return parts.iter().sum();

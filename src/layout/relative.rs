@@ -2,6 +2,7 @@
 
 use super::orientation::stretch;
 use crate::error::Error;
+use crate::lattice::Each;
 use crate::lattice::exact::sqrt;
 use crate::lattice::{Affine, Bounds, Composed, Interval};
 
@@ -67,7 +68,7 @@ pub(super) fn after(outer: &Affine, inner: &Affine) -> Result<Affine, Error> {
     let rows = *Composed::from(outer).after(inner).rows();
     // (A number that nearly vanishes by rounding counts as zero.)
     let is_noise = |c: f64| c.abs() < 1.0 / (1u64 << 60) as f64;
-    Affine::new(rows.map(|row| row.map(|c| if is_noise(c) { 0.0 } else { c })))
+    Affine::new(rows.each(|row| row.each(|c| if is_noise(c) { 0.0 } else { c })))
 }
 
 #[cfg(test)]

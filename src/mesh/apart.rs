@@ -13,6 +13,7 @@ use super::tree::{Node, Place, Tree, WIDTH};
 use super::triangle_pair::{NearPair, SLACK, at_least, dot, gap_along, nearest, surely_cross};
 use crate::control::Job;
 use crate::error::Error;
+use crate::lattice::Each;
 use crate::lattice::exact::{Expansion, sqrt, two_product};
 use crate::lattice::{Affine, Interval};
 use crate::memory;
@@ -98,7 +99,7 @@ struct Map {
 
 impl Map {
     fn new(own: &TriangleTree<'_>, other: &TriangleTree<'_>, placement: Option<&Affine>) -> Map {
-        let middles = [own, other].map(|side| side.tree.grid.centre);
+        let middles = [own, other].each(|side| side.tree.grid.centre);
         let offset: Point = array(|axis| match placement {
             None => middles[1][axis] - middles[0][axis],
             Some(placement) => {
@@ -115,13 +116,13 @@ impl Map {
             length(&array(extent)) / side.tree.grid.scale()
         };
         let stretch = placement
-            .map_or(1.0, |placement| length(&placement.rows().map(|[x, y, z, _]| length(&[x, y, z]))));
+            .map_or(1.0, |placement| length(&placement.rows().each(|[x, y, z, _]| length(&[x, y, z]))));
         let all = (reach(own) + stretch * reach(other) + length(&offset)) * (1.0 + 1e-9);
         let exponent = ((all.to_bits() >> 52) as i32 - 1023 + 1).clamp(-1000, 1000);
         let scale = f64::from_bits(((1023 - exponent) as u64) << 52);
         let linear =
-            placement.map(|placement| placement.rows().map(|[x, y, z, _]| [x, y, z].map(|c| c * scale)));
-        Map { scale, middles, linear, offset: offset.map(|c| c * scale) }
+            placement.map(|placement| placement.rows().each(|[x, y, z, _]| [x, y, z].each(|c| c * scale)));
+        Map { scale, middles, linear, offset: offset.each(|c| c * scale) }
     }
 
     fn own(&self, p: &Point) -> Point {
@@ -155,11 +156,11 @@ struct Axis {
 impl Turned {
     /// Returns the axes after the linear map from the grid of the second mesh; `None` if boxes change shape.
     fn new(linear: &[Point; 3]) -> Option<Turned> {
-        let columns: [Point; 3] = array(|k| linear.map(|row| row[k]));
-        let sizes = columns.map(|column| sqrt(dot(&column, &column)));
+        let columns: [Point; 3] = array(|k| linear.each(|row| row[k]));
+        let sizes = columns.each(|column| sqrt(dot(&column, &column)));
         let axes = array(|number| {
             let size = sizes[number];
-            Axis { number, way: columns[number].map(|c| c / size) }
+            Axis { number, way: columns[number].each(|c| c / size) }
         });
         let is_alike = |size: &f64| (size / sizes[0] - 1.0).abs() < 0.1 * ROOT;
         let is_square = [[0, 1], [0, 2], [1, 2]]
@@ -325,7 +326,7 @@ impl<'m> MeshPair<'m> {
         let scale = self.map.scale;
         let unit = self.other.tree.tree.grid.scale();
         let linear = match &self.map.linear {
-            Some(linear) => linear.map(|row| row.map(|c| c / unit)),
+            Some(linear) => linear.each(|row| row.each(|c| c / unit)),
             None => array(|axis| array(|k| if k == axis { scale / unit } else { 0.0 })),
         };
         let mut search = Search {
@@ -407,7 +408,7 @@ impl<'m> Search<'_, 'm> {
 
     /// Runs the search. Returns whether the steps were spent.
     fn run(&mut self, job: &Job<'_>) -> Result<bool, Error> {
-        let [Some(own), Some(other)] = self.trees().map(Tree::root) else { return Ok(false) };
+        let [Some(own), Some(other)] = self.trees().each(Tree::root) else { return Ok(false) };
         memory::push(&mut self.open, Pair { square: 0.0, own, other, split: Split::Both })?;
         let mut steps = 0;
         while let Some(pair) = self.open.pop() {
@@ -465,11 +466,11 @@ impl<'m> Search<'_, 'm> {
         let mut count = 0;
         let limit = self.limit * self.limit;
         let way = self.next_towards;
-        let back = way.map(|c| -c);
+        let back = way.each(|c| -c);
         let (mut ends, mut starts) = (boxes.ends(&way), others.ends(&back));
         if own.level > 0 && splits[0] {
             let unit = self.unit;
-            self.sharpen(0, own, &mut ends, (&way.map(|c| c * unit), 0.0));
+            self.sharpen(0, own, &mut ends, (&way.each(|c| c * unit), 0.0));
         }
         if other.level > 0 && splits[1] {
             let from_grid: Point = array(|k| (0..3).map(|axis| back[axis] * self.linear[axis][k]).sum());
@@ -551,16 +552,16 @@ impl<'m> Search<'_, 'm> {
         let (mut greatest, mut least) = (f64::NEG_INFINITY, f64::INFINITY);
         let first = array(|k| {
             let triangle = of_own.triangle(own, k).filter(|&triangle| facets.counts(triangle))?;
-            let corners = corners(facets.tree.mesh, triangle).map(|p| map.own(&p));
-            let [x, y, z] = corners.each_ref().map(|p| dot(&towards, p));
+            let corners = corners(facets.tree.mesh, triangle).each(|p| map.own(&p));
+            let [x, y, z] = corners.each_ref().each(|p| dot(&towards, p));
             let end = larger(x, larger(y, z));
             greatest = larger(greatest, end);
             Some(Loaded { triangle, corners, end })
         });
         let second = array(|n| {
             let triangle = of_other.triangle(other, n).filter(|&triangle| counterparts.counts(triangle))?;
-            let corners = corners(counterparts.tree.mesh, triangle).map(|p| map.other(&p));
-            let [x, y, z] = corners.each_ref().map(|p| -dot(&towards, p));
+            let corners = corners(counterparts.tree.mesh, triangle).each(|p| map.other(&p));
+            let [x, y, z] = corners.each_ref().each(|p| -dot(&towards, p));
             let end = -larger(x, larger(y, z));
             least = -larger(-least, -end);
             Some(Loaded { triangle, corners, end })
@@ -600,7 +601,7 @@ impl<'m> Search<'_, 'm> {
             self.limit = (self.upper - self.enough.tolerance).min(self.enough.lower);
             if near.square > SLACK * SLACK {
                 let length = sqrt(near.square);
-                self.next_towards = near.way.map(|c| c / length);
+                self.next_towards = near.way.each(|c| c / length);
             }
         }
         if near.square <= SLACK * SLACK {
@@ -617,7 +618,7 @@ impl<'m> Search<'_, 'm> {
                 let mesh = meshes[k];
                 !mesh.is_flat(&mesh.triangles()[triangles[k] as usize])
             };
-            let [first, second] = [0, 1].map(|k| corners(meshes[k], triangles[k]));
+            let [first, second] = [0, 1].each(|k| corners(meshes[k], triangles[k]));
             return has_area(0) && has_area(1) && meet(&first, &second, || false);
         }
         surely_cross(a, b, off * map.scale + SLACK)

@@ -8,6 +8,7 @@ use super::tree::{Place, Tree};
 use super::triangle_mesh::TriangleMesh;
 use super::triangle_pair::dot;
 use crate::error::Error;
+use crate::lattice::Each;
 use crate::lattice::exact::sqrt;
 use crate::memory;
 use alloc::vec::Vec;
@@ -83,8 +84,8 @@ fn add_corners(
         if place.level > 0 {
             add_corners(mesh, tree, place.child(k), corners)?;
         } else if let Some(triangle) = tree.triangle(place, k) {
-            let at = mesh.triangles()[triangle as usize].map(|vertex| mesh.vertices()[vertex as usize]);
-            memory::push(corners, at.map(|p| tree.grid.scaled(&p)))?;
+            let at = mesh.triangles()[triangle as usize].each(|vertex| mesh.vertices()[vertex as usize]);
+            memory::push(corners, at.each(|p| tree.grid.scaled(&p)))?;
         }
     }
     Ok(())
@@ -94,7 +95,7 @@ impl Disc {
     fn around(triangles: &[[Point; 3]]) -> Disc {
         let (mut low, mut high, mut sum) = ([f64::INFINITY; 3], [f64::NEG_INFINITY; 3], [0.0; 3]);
         for [a, b, c] in triangles {
-            let [u, v]: [Point; 2] = [b, c].map(|p| array(|axis| p[axis] - a[axis]));
+            let [u, v]: [Point; 2] = [b, c].each(|p| array(|axis| p[axis] - a[axis]));
             for axis in 0..3 {
                 let (i, j) = ((axis + 1) % 3, (axis + 2) % 3);
                 sum[axis] += u[i] * v[j] - u[j] * v[i];
@@ -104,7 +105,7 @@ impl Disc {
         }
         // (Any direction of length 1 will do.)
         let length = sqrt(dot(&sum, &sum));
-        let normal = if length > 1e-150 { sum.map(|c| c / length) } else { [0.0, 0.0, 1.0] };
+        let normal = if length > 1e-150 { sum.each(|c| c / length) } else { [0.0, 0.0, 1.0] };
         let middle: Point = array(|axis| 0.5 * (low[axis] + high[axis]));
         let from = |p: &Point| -> Point { array(|axis| p[axis] - middle[axis]) };
         let (mut below, mut above) = (f64::INFINITY, f64::NEG_INFINITY);

@@ -4,6 +4,7 @@
 //! each (separating axis theorem; for boxes Akenine-Möller 2001). Only a separation that exceeds the rounding
 //! errors counts.
 
+use crate::lattice::Each;
 use core::array::from_fn as array;
 
 use super::intersections::corners;
@@ -41,14 +42,14 @@ impl TriangleTree<'_> {
         let (at, scale) = (grid.scaled(&centre), grid.scale());
         let slack = SINGLE * at.iter().fold(1.0, |most: f64, x| most.max(x.abs()));
         // (Single precision rounds to nearest, within the slack.)
-        let [low, high] = [-1.0, 1.0].map(|sign| {
+        let [low, high] = [-1.0, 1.0].each(|sign| {
             array(|axis| (at[axis] + sign * (half[axis] * scale * (1.0 + SINGLE) + slack)) as f32)
         });
         self.tree.within(low, high, &mut |triangle| {
             if !wanted(triangle) {
                 return;
             }
-            let seen = corners(self.mesh, triangle).map(|corner| array(|axis| corner[axis] - centre[axis]));
+            let seen = corners(self.mesh, triangle).each(|corner| array(|axis| corner[axis] - centre[axis]));
             if !is_separated(&seen, &half) {
                 visit(triangle);
             }
@@ -69,7 +70,7 @@ fn is_separated(corners: &[Point; 3], half: &Point) -> bool {
     let across = edges.iter().flat_map(|edge| units.iter().map(|unit| (cross(unit, edge), length)));
     let along = [(cross(&edges[0], &edges[1]), length * length)];
     units.iter().map(|&unit| (unit, 0.0)).chain(along).chain(across).any(|(way, size)| {
-        let places = corners.map(|corner| (0..3).map(|k| way[k] * corner[k]).sum::<f64>());
+        let places = corners.each(|corner| (0..3).map(|k| way[k] * corner[k]).sum::<f64>());
         let reach: f64 = (0..3).map(|k| way[k].abs() * half[k]).sum();
         let most = way.iter().fold(size, |most, c| most.max(c.abs()));
         let wrong = ROUNDING * most * far;

@@ -12,6 +12,7 @@ use super::tree::{Search, Steps};
 use super::triangle_mesh::TriangleMesh;
 use crate::control::Control;
 use crate::error::Error;
+use crate::lattice::Each;
 use crate::lattice::exact::sign;
 use crate::memory;
 use alloc::vec::Vec;
@@ -72,10 +73,10 @@ impl TriangleMesh {
         found.sort_unstable();
         found.truncate(limit);
         let pairs = memory::collected(found.iter().map(|&triangles| {
-            let [a, b] = triangles.map(|t| corners(self, t));
+            let [a, b] = triangles.each(|t| corners(self, t));
             let (mut low, mut high) = ([0.0; 3], [0.0; 3]);
             for axis in 0..3 {
-                let [of_a, of_b] = [a, b].map(|corners| corners.map(|p| p[axis]));
+                let [of_a, of_b] = [a, b].each(|corners| corners.each(|p| p[axis]));
                 let ends = |[x, y, z]: [f64; 3]| [x.min(y).min(z), x.max(y).max(z)];
                 let ([low_a, high_a], [low_b, high_b]) = (ends(of_a), ends(of_b));
                 (low[axis], high[axis]) = (low_a.max(low_b), high_a.min(high_b));
@@ -110,13 +111,13 @@ pub(super) fn intersections(
 
 #[inline(always)]
 pub(super) fn corners(mesh: &TriangleMesh, triangle: u32) -> [Point; 3] {
-    mesh.triangles()[triangle as usize].map(|v| mesh.vertices()[v as usize])
+    mesh.triangles()[triangle as usize].each(|v| mesh.vertices()[v as usize])
 }
 
 /// Returns whether two triangles with area intersect.
 fn intersect(mesh: &TriangleMesh, a: u32, b: u32) -> bool {
     let both = [a, b];
-    let [of_a, of_b] = both.map(|t| mesh.triangles()[t as usize]);
+    let [of_a, of_b] = both.each(|t| mesh.triangles()[t as usize]);
     // For each corner of `b`, the corner of `a` that is the same vertex.
     let same: [Option<usize>; 3] = array(|k| of_a.iter().position(|&vertex| vertex == of_b[k]));
     let (a, b) = (corners(mesh, a), corners(mesh, b));
@@ -144,10 +145,10 @@ const ROUNDING: f64 = 4.0 * f64::EPSILON;
 #[cold]
 #[inline(never)]
 fn is_line_between(mesh: &TriangleMesh, both: [u32; 2]) -> bool {
-    let [of_a, of_b] = both.map(|t| mesh.triangles()[t as usize]);
+    let [of_a, of_b] = both.each(|t| mesh.triangles()[t as usize]);
     let (a, b) = (corners(mesh, both[0]), corners(mesh, both[1]));
     let [p, q, r] = &a;
-    let [u, v]: [Point; 2] = [q, r].map(|x| array(|axis| x[axis] - p[axis]));
+    let [u, v]: [Point; 2] = [q, r].each(|x| array(|axis| x[axis] - p[axis]));
     let normal: Point = array(|k| {
         let (i, j) = ((k + 1) % 3, (k + 2) % 3);
         (u[i] * v[j] - u[j] * v[i]).abs()
@@ -160,7 +161,7 @@ fn is_line_between(mesh: &TriangleMesh, both: [u32; 2]) -> bool {
     } else {
         [0, 1]
     };
-    let [seen_a, seen_b] = [a, b].map(|corners| corners.map(|p| axes.map(|axis| p[axis])));
+    let [seen_a, seen_b] = [a, b].each(|corners| corners.each(|p| axes.each(|axis| p[axis])));
     let (a, b) = ((of_a, &seen_a), (of_b, &seen_b));
     is_edge_between(a, b) || is_edge_between(b, a)
 }
@@ -187,11 +188,11 @@ fn turn(s: &[f64; 2], t: &[f64; 2], x: &[f64; 2]) -> i32 {
 /// between their middles separates them. Returns false if rounding may decide.
 #[cold]
 fn is_plane_between(v: &Point, a: [&Point; 2], b: [&Point; 2]) -> bool {
-    let [a, b]: [[Point; 2]; 2] = [a, b].map(|ends| ends.map(|p| array(|axis| p[axis] - v[axis])));
+    let [a, b]: [[Point; 2]; 2] = [a, b].each(|ends| ends.each(|p| array(|axis| p[axis] - v[axis])));
     let way: Point = array(|axis| (a[0][axis] + a[1][axis]) - (b[0][axis] + b[1][axis]));
     let is_ahead = |p: &Point, sign: f64| {
         let products: Point = array(|axis| way[axis] * p[axis]);
-        let [x, y, z] = products.map(f64::abs);
+        let [x, y, z] = products.each(f64::abs);
         sign * (products[0] + products[1] + products[2]) > ROUNDING * (x + y + z)
     };
     a.iter().all(|p| is_ahead(p, 1.0)) && b.iter().all(|p| is_ahead(p, -1.0))
@@ -252,7 +253,7 @@ fn meet_beyond_vertex(
     if of_first == [0, 0] {
         return cones_overlap(v, [p, q], [r, s], axis_of(a));
     }
-    let of_second = [p, q].map(|x| volume_sign(v, r, s, x));
+    let of_second = [p, q].each(|x| volume_sign(v, r, s, x));
     if of_second[0] * of_second[1] > 0 {
         return false;
     }
@@ -283,7 +284,7 @@ pub(super) fn meet(a: &[Point; 3], b: &[Point; 3], is_line_between: impl FnOnce(
     if is_apart(of_b) {
         return false;
     }
-    let of_a = a.each_ref().map(|p| volume_sign(&b[0], &b[1], &b[2], p));
+    let of_a = a.each_ref().each(|p| volume_sign(&b[0], &b[1], &b[2], p));
     if is_apart(of_a) {
         return false;
     }
@@ -303,7 +304,7 @@ fn edge_meets(triangle: &[Point; 3], edges: &[Point; 3], sides: [i32; 3]) -> boo
             0 if sides[k] == 0 && sides[next] == 0 => meet_in_plane(triangle, p, q),
             _ => {
                 // The line meets the plane in one point.
-                let around = [[a, b], [b, c], [c, a]].map(|[s, t]| volume_sign(p, q, s, t));
+                let around = [[a, b], [b, c], [c, a]].each(|[s, t]| volume_sign(p, q, s, t));
                 !(around.contains(&1) && around.contains(&-1))
             }
         }
@@ -317,13 +318,13 @@ fn meet_in_plane(triangle: &[Point; 3], p: &Point, q: &Point) -> bool {
     let edges = [[a, b], [b, c], [c, a]];
     let inner = cross_sign([a, b], [a, c], axis);
     let side = |[s, t]: [&Point; 2], x: &Point| cross_sign([s, t], [s, x], axis) * inner;
-    let of_p = edges.map(|edge| side(edge, p));
-    let of_q = edges.map(|edge| side(edge, q));
+    let of_p = edges.each(|edge| side(edge, p));
+    let of_q = edges.each(|edge| side(edge, q));
     if (0..3).any(|k| of_p[k] < 0 && of_q[k] < 0) {
         return false;
     }
     // No edge separates them. Neither does the segment's line if the corners lie on both sides of it.
-    let of_corners = [a, b, c].map(|x| cross_sign([p, q], [p, x], axis));
+    let of_corners = [a, b, c].each(|x| cross_sign([p, q], [p, x], axis));
     of_corners.contains(&0) || of_corners.contains(&1) && of_corners.contains(&-1)
 }
 

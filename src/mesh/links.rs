@@ -4,6 +4,7 @@
 //! which an edge of a surface may be collapsed.)
 
 use crate::error::Error;
+use crate::lattice::Each;
 use crate::memory;
 use alloc::vec::Vec;
 
@@ -82,7 +83,7 @@ impl Links {
     /// triangles would have the same corners.
     pub(super) fn collapse(&mut self, from: u32, to: u32) -> Result<bool, Error> {
         let Some(sides) = self.beside(from, to) else { return Ok(false) };
-        let apexes = sides.map(|number| self.apex(number, from, to));
+        let apexes = sides.each(|number| self.apex(number, from, to));
         let (own, others) = (self.neighbours(from)?, self.neighbours(to)?);
         let common = own.iter().filter(|vertex| others.binary_search(vertex).is_ok()).count();
         let left = self.around(from).len() + self.around(to).len() - 4;

@@ -28,6 +28,7 @@ use super::tree::{Grid, Search};
 use super::triangle_mesh::{FillRule, TriangleMesh};
 use crate::control::Control;
 use crate::error::{Error, MeshError};
+use crate::lattice::Each;
 use crate::lattice::axes;
 use crate::lattice::exact::{sqrt, two_sum};
 use crate::lattice::{Interval, VolumeMoments};
@@ -158,7 +159,7 @@ impl Sums {
     /// Adds the tetrahedron of a triangle and the grid's centre, `sense` times.
     fn add(&mut self, triangle: &[Point; 3], sense: f64) {
         let values = moments_of(triangle, |x, y| x - y);
-        let sizes = moments_of(&triangle.map(|p| p.map(f64::abs)), |x, y| x + y);
+        let sizes = moments_of(&triangle.each(|p| p.each(f64::abs)), |x, y| x + y);
         for k in 0..COUNT {
             let (sum, lost) = two_sum(self.values[k], sense * values[k]);
             self.values[k] = sum;
@@ -198,8 +199,8 @@ impl Sums {
         VolumeMoments {
             point: grid.centre,
             volume: volume.not_negative(),
-            first: [1, 2, 3].map(|k| of(k, 24.0, 4)),
-            second: [4, 5, 6, 7, 8, 9].map(|k| of(k, 120.0, 5)),
+            first: [1, 2, 3].each(|k| of(k, 24.0, 4)),
+            second: [4, 5, 6, 7, 8, 9].each(|k| of(k, 120.0, 5)),
         }
     }
 }
@@ -214,7 +215,7 @@ fn around_zero(radius: f64) -> Interval {
 /// magnitudes.
 #[inline(always)]
 fn moments_of([a, u, v]: &[Point; 3], minus: impl Fn(f64, f64) -> f64) -> [f64; COUNT] {
-    let [b, c]: [Point; 2] = [u, v].map(|edge| array(|k| a[k] + edge[k]));
+    let [b, c]: [Point; 2] = [u, v].each(|edge| array(|k| a[k] + edge[k]));
     let minor = |i: usize, j: usize| minus(u[i] * v[j], u[j] * v[i]);
     let six_fold = a[0] * minor(1, 2) + a[1] * minor(2, 0) + a[2] * minor(0, 1);
     let [x, y, z] = axes(|k| a[k] + b[k] + c[k]);

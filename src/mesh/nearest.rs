@@ -20,6 +20,7 @@
 //!
 //! Lengths are in the scale of the tree's grid, in which the mesh has a half extent of 1/2 to 1.
 
+use crate::lattice::Each;
 use core::array::from_fn as array;
 
 use alloc::vec::Vec;
@@ -187,7 +188,8 @@ impl TriangleTree<'_> {
 
     /// Returns the point with these weights, up to rounding.
     pub(crate) fn point_of(&self, near: &NearestPoint) -> Point {
-        let corners = self.mesh.triangles()[near.triangle as usize].map(|v| self.mesh.vertices()[v as usize]);
+        let corners =
+            self.mesh.triangles()[near.triangle as usize].each(|v| self.mesh.vertices()[v as usize]);
         array(|axis| (0..3).map(|k| near.weights[k] * corners[k][axis]).sum())
     }
 
@@ -238,7 +240,7 @@ impl TriangleTree<'_> {
         let &TriangleTree { mesh, tree } = self;
         let Some(root) = tree.root() else { return true };
         let grid = &tree.grid;
-        let [low, high] = [&bounds.min, &bounds.max].map(|corner| grid.scaled(corner));
+        let [low, high] = [&bounds.min, &bounds.max].each(|corner| grid.scaled(corner));
         if !low.iter().chain(&high).all(|x| x.abs() <= FAR / 1024.0) {
             return false;
         }
@@ -282,7 +284,7 @@ impl Single {
         let furthest = scaled.iter().fold(1.0, |most: f64, x| most.max(x.abs()));
         // Boxes and the point have errors of 2^-25 each, the gap a relative error of the same size.
         let slack = (furthest / f64::from(1 << 22)) as f32;
-        (furthest < FAR).then(|| Single { at: scaled.map(|x| x as f32), slack })
+        (furthest < FAR).then(|| Single { at: scaled.each(|x| x as f32), slack })
     }
 
     #[inline(always)]
@@ -295,7 +297,7 @@ impl Single {
                 squares[k] += gap * gap;
             }
         }
-        squares.map(|square| square * (1.0 - 1.0 / (1 << 20) as f32))
+        squares.each(|square| square * (1.0 - 1.0 / (1 << 20) as f32))
     }
 }
 
@@ -396,12 +398,12 @@ impl<W: Fn(u32) -> bool> Search<'_, W> {
         }
         let scale = self.tree.grid.scale();
         let from: [Point; 3] = corners(self.mesh, triangle)
-            .map(|corner| array(|axis| (self.point[axis] - corner[axis]) * scale));
+            .each(|corner| array(|axis| (self.point[axis] - corner[axis]) * scale));
         if self.best.is_some_and(|best| is_beyond(&from, best.square, self.rounding)) {
             return;
         }
         let corners = Corners::of(self.mesh, triangle, scale);
-        let (square, weights) = corners.nearest_to(&corners.corners.map(|corner| from[corner]));
+        let (square, weights) = corners.nearest_to(&corners.corners.each(|corner| from[corner]));
         let is_better = |best: &NearestPoint| (square, triangle) < (best.square, best.triangle);
         if self.best.as_ref().is_none_or(is_better) {
             self.best = Some(NearestPoint { triangle, weights, square, lower: 0.0 });
@@ -478,8 +480,8 @@ impl Corners {
                 corners.swap(a, b);
             }
         }
-        let at: [Point; 3] = corners.map(|corner| mesh.vertices()[vertices[corner] as usize]);
-        let edges = EDGES.map(|[from, to]| {
+        let at: [Point; 3] = corners.each(|corner| mesh.vertices()[vertices[corner] as usize]);
+        let edges = EDGES.each(|[from, to]| {
             let way = array(|axis| (at[to][axis] - at[from][axis]) * scale);
             Edge { way, square: dot(&way, &way) }
         });
@@ -491,7 +493,7 @@ impl Corners {
     /// Returns the vectors from the corners to a point.
     #[inline(always)]
     fn from(&self, point: &Point) -> [Point; 3] {
-        self.at.map(|corner| array(|axis| (point[axis] - corner[axis]) * self.scale))
+        self.at.each(|corner| array(|axis| (point[axis] - corner[axis]) * self.scale))
     }
 
     /// Returns the maximum by which the computed distance may exceed the true distance, for points with at
@@ -593,7 +595,7 @@ impl Base {
     #[inline(always)]
     fn of([ab, ac, bc]: &[Edge; 3]) -> Base {
         let (corners, Edge { way, square }, side) = if bc.square > ab.square && bc.square > ac.square {
-            ([1, 2, 0], *bc, ab.way.map(|x| -x))
+            ([1, 2, 0], *bc, ab.way.each(|x| -x))
         } else if ac.square > ab.square {
             ([0, 2, 1], *ac, ab.way)
         } else {
@@ -677,7 +679,7 @@ impl Near<'_> {
             return false;
         }
         let (_, weights) = corners.nearest_to(&from);
-        let [u, v, w] = corners.corners.map(|corner| weights[corner]);
+        let [u, v, w] = corners.corners.each(|corner| weights[corner]);
         !is_beyond(array(|axis| u * a[axis] + v * b[axis] + w * c[axis]))
     }
 }

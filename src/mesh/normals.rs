@@ -2,6 +2,7 @@
 
 use super::TriangleMesh;
 use crate::error::Error;
+use crate::lattice::Each;
 use crate::memory;
 use alloc::vec::Vec;
 use glam::DVec3;
@@ -27,11 +28,11 @@ impl TriangleMesh {
     pub fn vertex_normals(&self) -> Result<Vec<[f64; 3]>, Error> {
         let mut sums = memory::filled(self.vertices().len(), DVec3::ZERO)?;
         for triangle in self.triangles() {
-            let [a, b, c] = triangle.map(|v| DVec3::from(self.vertices()[v as usize]));
+            let [a, b, c] = triangle.each(|v| DVec3::from(self.vertices()[v as usize]));
             // Unit vectors only, so that lengths neither overflow nor vanish.
-            let [u, v, w] = [b - a, c - b, a - c].map(unit);
+            let [u, v, w] = [b - a, c - b, a - c].each(unit);
             let Some(normal) = unit(u.cross(v)).try_normalize() else { continue };
-            let angles = [-w.dot(u), -u.dot(v), -v.dot(w)].map(|cosine| libm::acos(cosine.clamp(-1.0, 1.0)));
+            let angles = [-w.dot(u), -u.dot(v), -v.dot(w)].each(|cosine| libm::acos(cosine.clamp(-1.0, 1.0)));
             for (&vertex, angle) in triangle.iter().zip(angles) {
                 sums[vertex as usize] += angle * normal;
             }

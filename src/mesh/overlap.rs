@@ -17,6 +17,7 @@
 //! sense if the sum has the sign of its own volume. A cavity in a body is not nested in this sense, nor is a
 //! body in a cavity.
 
+use crate::lattice::Each;
 use crate::lattice::axes;
 use alloc::vec::Vec;
 
@@ -117,7 +118,7 @@ impl Shift {
     }
 
     fn back(self) -> Shift {
-        Shift(self.0.map(|s| -s))
+        Shift(self.0.each(|s| -s))
     }
 
     /// Returns the sign of `value` or, if it is zero, the sign of the first non-zero coefficient.
@@ -195,7 +196,7 @@ impl Search<'_> {
         Ok(match (is_crossing, apart) {
             (Some(true), _) if !self.walls => Relation::Crossing,
             (Some(false), Some(shift)) => {
-                let [of_a, of_b] = [&*b, &*a].map(|body| corners(self.mesh, body.triangles[0])[0]);
+                let [of_a, of_b] = [&*b, &*a].each(|body| corners(self.mesh, body.triangles[0])[0]);
                 match (self.winding(a, &of_a, shift), self.winding(b, &of_b, shift.back())) {
                     (Some(of_a), Some(of_b)) => Relation::Around([of_a, of_b]),
                     _ => Relation::Undecided,
@@ -311,10 +312,10 @@ impl Search<'_> {
             for (reach, k) in [0.25, 1.0 / 64.0].into_iter().flat_map(|reach| (0..8).map(move |k| (reach, k)))
             {
                 // Offsets that are no round fraction of any length.
-                let [x, y, z] = Shift::new(k).0.map(f64::from);
-                let way = [x * 0.97, y * 0.71, z * 0.53].map(|way| way * reach * size);
+                let [x, y, z] = Shift::new(k).0.each(f64::from);
+                let way = [x * 0.97, y * 0.71, z * 0.53].each(|way| way * reach * size);
                 let Ok(near) = normalised(array(|axis| place[axis] + way[axis]), 0) else { continue };
-                let [Some(a), Some(b)] = pair.map(|k| self.winding(&bodies[k], &near, shift)) else {
+                let [Some(a), Some(b)] = pair.each(|k| self.winding(&bodies[k], &near, shift)) else {
                     return false;
                 };
                 parts[usize::from(a != 0) + 2 * usize::from(b != 0)] = true;
@@ -395,7 +396,7 @@ fn pierces(p: &Point, q: &Point, [a, b, c]: &[Point; 3], shift: Option<Shift>) -
 /// above, by the side that faces the point; else 0.
 fn above([a, b, c]: &[Point; 3], p: &Point, shift: Shift) -> i32 {
     for axis in 0..2 {
-        let [x, y, z] = [a, b, c].map(|corner| corner[axis]);
+        let [x, y, z] = [a, b, c].each(|corner| corner[axis]);
         if p[axis] < x.min(y).min(z) || p[axis] > x.max(y).max(z) {
             return 0;
         }

@@ -15,6 +15,7 @@ use super::signs::Point;
 use super::triangle_mesh::{FillRule, TriangleMesh};
 use crate::control::Control;
 use crate::error::Error;
+use crate::lattice::Each;
 use crate::lattice::exact::sqrt;
 use crate::memory;
 use alloc::collections::VecDeque;
@@ -150,7 +151,7 @@ fn shape([a, b, c]: &[Point; 3]) -> (f64, f64) {
 fn are_apart(a: &[Point; 3], b: &[Point; 3], margin: f64) -> bool {
     let is_between = |way: &Point| {
         let ends = |corners: &[Point; 3]| {
-            let [x, y, z] = corners.map(|corner| dot(way, &corner));
+            let [x, y, z] = corners.each(|corner| dot(way, &corner));
             [x.min(y).min(z), x.max(y).max(z)]
         };
         let ([low, high], [from, to]) = (ends(a), ends(b));

@@ -18,6 +18,7 @@
 //! the length is at most the width of the cube; and earlier rounding, which a beginning far away makes
 //! larger. Boxes are enlarged by `slack` and by the maximum deviation of the surface from the mesh.
 
+use crate::lattice::Each;
 use core::array::from_fn as array;
 
 use alloc::vec::Vec;
@@ -146,7 +147,7 @@ impl TriangleTree<'_> {
     /// Returns the normal of a triangle; its length is twice the area.
     pub(crate) fn normal(&self, triangle: u32) -> Point {
         let [a, b, c] = corners(self.mesh, triangle);
-        let [u, v]: [Point; 2] = [b, c].map(|p| array(|axis| p[axis] - a[axis]));
+        let [u, v]: [Point; 2] = [b, c].each(|p| array(|axis| p[axis] - a[axis]));
         array(|k| {
             let (i, j) = ((k + 1) % 3, (k + 2) % 3);
             u[i] * v[j] - u[j] * v[i]
@@ -224,9 +225,9 @@ impl Cast {
         mesh.tree.root()?;
         let scale = grid.scale();
         let from = grid.scaled(&ray.from);
-        let way = ray.direction.map(|[high, _]| high);
+        let way = ray.direction.each(|[high, _]| high);
         let speed = way.iter().fold(0.0, |most: f64, c| most.max(c.abs()));
-        let direction = way.map(|c| c / speed);
+        let direction = way.each(|c| c / speed);
         let furthest = from.iter().fold(1.0, |most: f64, c| most.max(c.abs()));
         // The surface may deviate from the boxes by this much.
         let displacement = mesh.displacement() * scale * (1.0 + SINGLE);
@@ -250,7 +251,7 @@ impl Cast {
         }
         /// A component of the direction that needs more than 2^60 units to cross the cube counts as zero.
         const LEAST: f32 = 1.0 / (1u64 << 60) as f32;
-        let single = direction.map(|c| {
+        let single = direction.each(|c| {
             let c = c as f32;
             if c.abs() < LEAST { LEAST.copysign(c) } else { c }
         });
@@ -259,12 +260,12 @@ impl Cast {
         let slack = if is_lost { 1e36 } else { slack as f32 };
         let start: [f32; 3] =
             array(|axis| if is_lost { 0.0 } else { (from[axis] + begins * direction[axis]) as f32 });
-        let back: [f32; 3] = single.map(|c| slack.copysign(c));
+        let back: [f32; 3] = single.each(|c| slack.copysign(c));
         Some(Cast {
             near: array(|axis| start[axis] + back[axis]),
             far: array(|axis| start[axis] - back[axis]),
-            inverse: single.map(|c| 1.0 / c),
-            is_down: single.map(|c| usize::from(c < 0.0)),
+            inverse: single.each(|c| 1.0 / c),
+            is_down: single.each(|c| usize::from(c < 0.0)),
             length: ((ends - begins) * 1.001).min(1e30) as f32,
             begins,
             speed: speed * scale,
@@ -286,7 +287,7 @@ impl Cast {
                 leaves[k] = if leave < leaves[k] { leave } else { leaves[k] };
             }
         }
-        [enters, leaves.map(|leave| leave * TIMES)]
+        [enters, leaves.each(|leave| leave * TIMES)]
     }
 
     #[inline(always)]
@@ -378,7 +379,7 @@ struct Seen {
 
 impl<'m> Line<'m> {
     fn new(mesh: &'m TriangleMesh, ray: &Ray, shift: Shift) -> Line<'m> {
-        let way = ray.direction.map(|[high, _]| high);
+        let way = ray.direction.each(|[high, _]| high);
         let size = way.iter().map(|c| c.abs()).sum();
         let displacement = mesh.displacement();
         Line { mesh, from: ray.from, direction: ray.direction, way, size, displacement, shift }
@@ -386,14 +387,14 @@ impl<'m> Line<'m> {
 
     fn meets(&self, triangle: u32) -> Met {
         let corners = corners(self.mesh, triangle);
-        let ends: [Point; 3] = corners.map(|corner| array(|axis| corner[axis] - self.from[axis]));
+        let ends: [Point; 3] = corners.each(|corner| array(|axis| corner[axis] - self.from[axis]));
         let mut reach = 0.0;
         if self.displacement > 0.0 {
             reach = ends.iter().flatten().fold(0.0, |most: f64, c| most.max(c.abs()));
         }
         let seen = Seen { ends, reach };
         let [a, b, c] = &seen.ends;
-        let sides = [[a, b], [b, c], [c, a]].map(|[p, q]| self.side(&seen, p, q));
+        let sides = [[a, b], [b, c], [c, a]].each(|[p, q]| self.side(&seen, p, q));
         let [Some(one), Some(two), Some(three)] = sides else {
             return if may_pass(sides) { self.closer(triangle, &corners, &seen, sides) } else { Met::No };
         };
@@ -439,7 +440,7 @@ impl<'m> Line<'m> {
     }
 
     fn exact_way(&self) -> [Expansion; 3] {
-        self.direction.map(Expansion::sum)
+        self.direction.each(Expansion::sum)
     }
 
     /// Returns exactly the side on which the line passes edge k; 0 if it meets the edge's line.
@@ -506,7 +507,7 @@ impl<'m> Line<'m> {
         // Differences have one more bit, products of three have the sum of their bits, and sums of six three
         // more: 51.
         const BITS: i32 = 15;
-        let along = self.direction.map(|[high, _]| high);
+        let along = self.direction.each(|[high, _]| high);
         let is_whole = self.direction.iter().all(|&[_, low]| low == 0.0);
         let points = corners.iter().chain([&self.from]).flatten().copied();
         is_whole && width_of(points) <= BITS && width_of(along) <= BITS
@@ -552,11 +553,11 @@ impl<'m> Line<'m> {
     fn along(&self, triangle: u32, corners: &[Point; 3]) -> Met {
         let mut stay = Interval::between(0.0, f64::INFINITY);
         for axis in 0..3 {
-            let at = corners.map(|corner| corner[axis]);
+            let at = corners.each(|corner| corner[axis]);
             let (low, high) = (at[0].min(at[1]).min(at[2]), at[0].max(at[1]).max(at[2]));
             let [along, rest] = self.direction[axis];
             let from = Interval::exactly(self.from[axis]);
-            let to = [low, high].map(|plane| Interval::exactly(plane).minus(from));
+            let to = [low, high].each(|plane| Interval::exactly(plane).minus(from));
             let passes = if along == 0.0 {
                 if low > self.from[axis] || high < self.from[axis] {
                     return Met::No;
@@ -595,7 +596,7 @@ impl<'m> Line<'m> {
             let is_flat = turns_along(u) == 0 && turns_along(v) == 0;
             return (!is_flat).then_some(stay);
         }
-        let way = self.direction.map(|[high, low]| exactly(high).plus(exactly(low)));
+        let way = self.direction.each(|[high, low]| exactly(high).plus(exactly(low)));
         for k in 0..3 {
             let (p, q) = (&corners[k], &corners[(k + 1) % 3]);
             let edge = [minus(q[u], p[u]), minus(q[v], p[v])];

@@ -7,6 +7,7 @@ use super::intersections::corners;
 use super::triangle_mesh::TriangleMesh;
 use crate::control::Control;
 use crate::error::Error;
+use crate::lattice::Each;
 use crate::lattice::exact::sqrt;
 use crate::memory;
 use alloc::vec::Vec;
@@ -39,7 +40,7 @@ impl FacetPlane {
     }
 
     fn with(&self, corners: [[f64; 3]; 3]) -> FacetPlane {
-        let along = corners.map(|corner| self.along(corner));
+        let along = corners.each(|corner| self.along(corner));
         let area = self.area + 0.5 * sqrt(square(twice_area(corners)));
         let (low, high) =
             along.into_iter().fold((self.low, self.high), |(low, high), a| (low.min(a), high.max(a)));
@@ -132,7 +133,7 @@ impl FacetPlanes {
                 plane.normal[2] / GRAIN,
                 plane.low * scale,
             ]
-            .map(|c| libm::round(c) as i64);
+            .each(|c| libm::round(c) as i64);
             let number = *known.entry(key).or_insert(next);
             if number != next {
                 let before = own.planes[number as usize];
@@ -245,7 +246,7 @@ impl Around {
     /// Returns the triangles that have both ends of an edge, from the list of the end that has fewer.
     fn edge<'a>(&'a self, mesh: &'a TriangleMesh, ends: [u32; 2]) -> impl Iterator<Item = u32> + use<'a> {
         let list = |vertex: u32| {
-            let [first, end] = [vertex as usize, vertex as usize + 1].map(|v| self.first[v] as usize);
+            let [first, end] = [vertex as usize, vertex as usize + 1].each(|v| self.first[v] as usize);
             &self.triangles[first..end]
         };
         let [(own, other), (others, own_end)] = [(list(ends[0]), ends[1]), (list(ends[1]), ends[0])];
@@ -260,7 +261,7 @@ fn square([x, y, z]: [f64; 3]) -> f64 {
 
 /// Returns the normal of a triangle; its length is twice the area.
 fn twice_area([a, b, c]: [[f64; 3]; 3]) -> [f64; 3] {
-    let [u, v] = [b, c].map(|p| [p[0] - a[0], p[1] - a[1], p[2] - a[2]]);
+    let [u, v] = [b, c].each(|p| [p[0] - a[0], p[1] - a[1], p[2] - a[2]]);
     [u[1] * v[2] - u[2] * v[1], u[2] * v[0] - u[0] * v[2], u[0] * v[1] - u[1] * v[0]]
 }
 
@@ -270,7 +271,7 @@ fn unit(area: [f64; 3]) -> [f64; 3] {
     if !(most > 0.0 && most.is_finite()) {
         return [0.0, 0.0, 1.0];
     }
-    let scaled = area.map(|c| c / most);
+    let scaled = area.each(|c| c / most);
     let length = sqrt(square(scaled));
-    scaled.map(|c| c / length)
+    scaled.each(|c| c / length)
 }

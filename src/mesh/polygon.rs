@@ -14,6 +14,7 @@
 //! `spade` links the standard library through one of its dependencies, so this module needs the feature
 //! `std`.
 
+use crate::lattice::Each;
 use alloc::vec::Vec;
 
 use robust::{Coord, orient2d};
@@ -152,7 +153,7 @@ impl Plane {
     }
 
     fn place(&self, vertices: &[[f64; 3]], vertex: u32) -> Result<[f64; 2], PolygonDefect> {
-        let place = vertices.get(vertex as usize).map(|p| self.0.map(|axis| p[axis]));
+        let place = vertices.get(vertex as usize).map(|p| self.0.each(|axis| p[axis]));
         place.filter(|place| place.iter().all(|x| x.is_finite())).ok_or(PolygonDefect::Input)
     }
 }
@@ -192,7 +193,7 @@ pub(crate) fn flatness(vertices: &[[f64; 3]], outer: &[u32], corners: &[u32]) ->
     if most == 0.0 {
         return None;
     }
-    let normal = normal.map(|x| x / most);
+    let normal = normal.each(|x| x / most);
     let length = normal.iter().map(|x| x * x).sum::<f64>().sqrt();
     let [mut low, mut high, mut extent] = [0.0; 3];
     let origin = vertices[corners[0] as usize];
@@ -243,7 +244,7 @@ impl<'a> Arrangement<'a> {
         sorted.try_reserve_exact(count).map_err(out_of_memory)?;
         for (k, &corner) in corners.iter().enumerate() {
             // Zeros of both signs are one place.
-            sorted.push((plane.place(vertices, corner)?.map(|x| x + 0.0), k));
+            sorted.push((plane.place(vertices, corner)?.each(|x| x + 0.0), k));
         }
         sorted.sort_unstable_by(|(a, i), (b, j)| {
             a[0].total_cmp(&b[0]).then(a[1].total_cmp(&b[1])).then(i.cmp(j))
@@ -268,7 +269,7 @@ impl<'a> Arrangement<'a> {
         arrangement.firsts.extend((0..count).filter(|&k| first_of[k] == k));
         shuffle(&mut arrangement.firsts);
         for &k in &arrangement.firsts {
-            arrangement.places.push(plane.place(vertices, corners[k])?.map(|x| x + 0.0));
+            arrangement.places.push(plane.place(vertices, corners[k])?.each(|x| x + 0.0));
         }
         let mut point_of: Vec<usize> = Vec::new();
         point_of.try_reserve_exact(count).map_err(out_of_memory)?;
@@ -281,7 +282,7 @@ impl<'a> Arrangement<'a> {
             }
             for k in start..end {
                 let next = if k + 1 < end { k + 1 } else { start };
-                let edge = [k, next].map(|k| point_of[first_of[k]]);
+                let edge = [k, next].each(|k| point_of[first_of[k]]);
                 if edge[0] != edge[1] {
                     arrangement.edges.push((edge, k));
                 }
@@ -301,7 +302,7 @@ impl<'a> Arrangement<'a> {
         let scale = self.scale();
         let scaled = self.places.iter().map(|place| {
             let [x, y] =
-                place.map(|x| x * scale).map(|x| if x.abs() < spade::MIN_ALLOWED_VALUE { 0.0 } else { x });
+                place.each(|x| x * scale).each(|x| if x.abs() < spade::MIN_ALLOWED_VALUE { 0.0 } else { x });
             Point2::new(x, y)
         });
         let mut net = Net::with_capacity(points, 3 * points, 2 * points);
@@ -367,13 +368,13 @@ impl<'a> Arrangement<'a> {
         }
         let before = triangles.len();
         for face in net.inner_faces() {
-            let points = face.vertices().map(|vertex| vertex.fix().index());
-            let [a, b, c] = points.map(|point| self.places[point]);
+            let points = face.vertices().each(|vertex| vertex.fix().index());
+            let [a, b, c] = points.each(|point| self.places[point]);
             let refusal = match windings[face.adjacent_edges()[0].face().fix().index()] {
                 Some(0) => continue,
                 Some(1) if turn(a, b, c) > 0.0 => match triangles.try_reserve(1) {
                     Ok(()) => {
-                        triangles.push(points.map(|point| self.corners[self.firsts[point]]));
+                        triangles.push(points.each(|point| self.corners[self.firsts[point]]));
                         continue;
                     }
                     Err(_) => PolygonDefect::OutOfMemory,

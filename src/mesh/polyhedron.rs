@@ -4,6 +4,7 @@
 //! voids must lie within their solids. Faces that cut through each other, and overlapping shells or solids,
 //! are accepted, because a mesh has a meaning for them.
 
+use crate::lattice::Each;
 use alloc::vec::Vec;
 
 use super::attributes::MeshAttribute;
@@ -262,7 +263,7 @@ impl<'a> Parts<'a> {
                 return Err(PolyhedronError::FewCorners { index: index as u64, corners: range.len() as u64 });
             }
             for corner in range {
-                let [from, to] = [corner, self.next(index, corner)].map(|c| self.corners[c]);
+                let [from, to] = [corner, self.next(index, corner)].each(|c| self.corners[c]);
                 if vertices[from as usize] == vertices[to as usize] {
                     let face = self.faces.part_of(index) as u64;
                     return Err(PolyhedronError::NoLength { face, from: from.into(), to: to.into() });
@@ -292,7 +293,7 @@ impl<'a> Parts<'a> {
             edges.try_reserve_exact(corners.len())?;
             for index in loops {
                 for corner in self.loops.range(index) {
-                    let [from, to] = [corner, self.next(index, corner)].map(|c| self.corners[c]);
+                    let [from, to] = [corner, self.next(index, corner)].each(|c| self.corners[c]);
                     let (low, high) = (from.min(to), from.max(to));
                     edges.push(Edge { low, high, corner: corner as u32, forward: from < to });
                 }
@@ -352,7 +353,7 @@ impl<'a> Parts<'a> {
         let edge_of = |corner: usize| {
             let corner = start + corner;
             let next = self.next(self.loops.part_of(corner), corner);
-            let [from, to] = [corner, next].map(|c| u64::from(self.corners[c]));
+            let [from, to] = [corner, next].each(|c| u64::from(self.corners[c]));
             PolyhedronError::Crossing { face: face as u64, from, to }
         };
         triangulate(vertices, self.face(face), ends, triangles).map_err(|defect| match defect {

@@ -1,5 +1,6 @@
 //! A hash table of positions, which finds vertices at exactly the same place.
 
+use crate::lattice::Each;
 use alloc::vec::Vec;
 use core::hash::{BuildHasher, Hasher};
 
@@ -146,7 +147,7 @@ pub(super) fn normalised(vertex: [f64; 3], index: u64) -> Result<[f64; 3], MeshE
     if vertex.iter().all(|x| x.abs() <= LARGEST) {
         // Products of three coordinates must not underflow, because signs of determinants are exact. (This
         // also turns -0.0 into 0.0.)
-        Ok(vertex.map(|x| if x.abs() < SMALLEST { 0.0 } else { x }))
+        Ok(vertex.each(|x| if x.abs() < SMALLEST { 0.0 } else { x }))
     } else if vertex.iter().all(|x| x.is_finite()) {
         Err(MeshError::TooLarge { vertex: index })
     } else {

@@ -1,5 +1,6 @@
 //! Reports about meshes.
 
+use crate::lattice::Each;
 use alloc::boxed::Box;
 use alloc::vec::Vec;
 
@@ -201,10 +202,10 @@ impl TriangleMesh {
             }
             let body = &mut found[body as usize];
             let origin = self.position(body.origin);
-            let [a, b, c] = triangle.map(|v| self.position(v) - origin);
+            let [a, b, c] = triangle.each(|v| self.position(v) - origin);
             body.triangles += 1;
             body.volume += a.dot(b.cross(c));
-            let [a, b, c] = [a, b, c].map(DVec3::abs);
+            let [a, b, c] = [a, b, c].each(DVec3::abs);
             body.magnitude += a.dot(b.yzx() * c.zxy() + b.zxy() * c.yzx());
         }
         for &triangle in &bodies.torn {
@@ -220,13 +221,13 @@ impl TriangleMesh {
 
     /// Returns whether the corners of a triangle lie exactly on a line.
     pub(super) fn is_flat(&self, triangle: &[u32; 3]) -> bool {
-        are_on_a_line(triangle.map(|v| self.vertices()[v as usize]))
+        are_on_a_line(triangle.each(|v| self.vertices()[v as usize]))
     }
 }
 
 /// Returns whether three points lie exactly on a line.
 pub(super) fn are_on_a_line(points: [[f64; 3]; 3]) -> bool {
-    (0..3).all(|axis| is_straight(points.map(|p| [p[axis], p[(axis + 1) % 3]])))
+    (0..3).all(|axis| is_straight(points.each(|p| [p[axis], p[(axis + 1) % 3]])))
 }
 
 /// Returns the edges of a boundary that an odd number of triangles use: those that occur an odd number of

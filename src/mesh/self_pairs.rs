@@ -14,6 +14,7 @@ use super::tree::{Grid, Place, Search, Steps, Tree, WIDTH};
 use super::triangle_mesh::TriangleMesh;
 use crate::control::Control;
 use crate::error::Error;
+use crate::lattice::Each;
 use crate::lattice::exact::sqrt;
 use crate::memory;
 use alloc::vec::Vec;
@@ -106,11 +107,11 @@ impl Pairs<'_> {
                 Some(common[self.tree.index(place.child(k))])
             } else {
                 let vertices = self.tree.triangle(place, k).map(|t| self.mesh.triangles()[t as usize]);
-                vertices.map(|all| all.map(|vertex| if self.is_busy(vertex) { vertex } else { NONE }))
+                vertices.map(|all| all.each(|vertex| if self.is_busy(vertex) { vertex } else { NONE }))
             };
             if let Some(part) = part {
                 let all = common[index];
-                let joined = all.map(|vertex| if part.contains(&vertex) { vertex } else { NONE });
+                let joined = all.each(|vertex| if part.contains(&vertex) { vertex } else { NONE });
                 common[index] = if all == [ANY; 3] { part } else { joined };
             }
         }
@@ -131,7 +132,7 @@ impl Pairs<'_> {
         if self.busy.is_empty() {
             return None;
         }
-        let [own, other] = [a, b].map(|triangle| self.mesh.triangles()[triangle as usize]);
+        let [own, other] = [a, b].each(|triangle| self.mesh.triangles()[triangle as usize]);
         own.into_iter().filter(|&vertex| self.is_busy(vertex) && other.contains(&vertex)).min()
     }
 
@@ -460,7 +461,7 @@ fn cross(a: &Point, b: &Point) -> Point {
 /// Returns the vector of length 1 with the same direction.
 fn unit(way: &Point) -> Option<Point> {
     let most = way.iter().fold(0.0, |most: f64, c| most.max(c.abs()));
-    let way = way.map(|c| c / most);
+    let way = way.each(|c| c / most);
     let length = sqrt(dot(&way, &way));
-    (length > 0.0).then(|| way.map(|c| c / length))
+    (length > 0.0).then(|| way.each(|c| c / length))
 }

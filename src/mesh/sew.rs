@@ -17,6 +17,7 @@
 use super::topology::DisjointSets;
 use super::triangle_mesh::TriangleMesh;
 use crate::error::Error;
+use crate::lattice::Each;
 use crate::memory;
 use alloc::vec::Vec;
 use hashbrown::HashMap;
@@ -39,7 +40,7 @@ impl Grid {
     /// than the spacing.
     fn place(&self, position: [f64; 3], step: [f64; 3]) -> [u64; 3] {
         // Makes -0.0 equal to 0.0.
-        [0, 1, 2].map(|axis| (libm::floor(position[axis] / self.spacing) + step[axis] + 0.0).to_bits())
+        [0, 1, 2].each(|axis| (libm::floor(position[axis] / self.spacing) + step[axis] + 0.0).to_bits())
     }
 
     fn add(&mut self, position: [f64; 3], vertex: u32) -> Result<(), Error> {

@@ -12,6 +12,7 @@ use super::topology::{DisjointSets, for_each_edge};
 use super::tree::Tree;
 use super::triangle_mesh::{FillRule, TriangleMesh};
 use crate::error::Error;
+use crate::lattice::Each;
 use crate::lattice::exact::{Dyadic, cross, dot, sign};
 use crate::memory;
 use alloc::vec::Vec;
@@ -79,7 +80,7 @@ pub(super) fn sheets(
 
 /// Returns about twice a triangle's area, in the axis-parallel projection in which it is largest.
 fn size([a, b, c]: &[Point; 3]) -> f64 {
-    let [u, v]: [Point; 2] = [b, c].map(|p| array(|axis| p[axis] - a[axis]));
+    let [u, v]: [Point; 2] = [b, c].each(|p| array(|axis| p[axis] - a[axis]));
     (0..3).fold(0.0, |size: f64, k| {
         let (i, j) = ((k + 1) % 3, (k + 2) % 3);
         size.max((u[i] * v[j] - u[j] * v[i]).abs())
@@ -159,7 +160,7 @@ fn turn([a, b, c]: &[Point; 3], p: &Point, axis: usize) -> i32 {
 /// The projections of both along the axis must have an area.
 fn is_above(upper: &[Point; 3], lower: &[Point; 3], p: &Point, axis: usize) -> bool {
     let ends = |corners: &[Point; 3]| {
-        let [x, y, z] = corners.map(|corner| corner[axis]);
+        let [x, y, z] = corners.each(|corner| corner[axis]);
         [x.min(y).min(z), x.max(y).max(z)]
     };
     let ([low, high], [from, to]) = (ends(upper), ends(lower));
@@ -169,7 +170,7 @@ fn is_above(upper: &[Point; 3], lower: &[Point; 3], p: &Point, axis: usize) -> b
     // The height of the plane through a with the normal n is n · (a − p) divided by the component of n along
     // the axis, if p has height 0.
     let height = |[a, b, c]: &[Point; 3]| {
-        let exact = |x: &Point| x.map(Dyadic::new);
+        let exact = |x: &Point| x.each(Dyadic::new);
         let (a, b, c, p) = (exact(a), exact(b), exact(c), exact(p));
         let minus = |x: &[Dyadic; 3], y: &[Dyadic; 3]| -> [Dyadic; 3] { array(|k| &x[k] - &y[k]) };
         let normal = cross(&minus(&b, &a), &minus(&c, &a));

@@ -1,5 +1,6 @@
 //! Closed shells: the regions that they enclose, and their nesting.
 
+use crate::lattice::Each;
 use alloc::vec::Vec;
 
 use robust::{Coord, Coord3D, orient2d, orient3d};
@@ -48,7 +49,7 @@ pub(crate) fn outside<'a>(
         }
         samples.sort_unstable_by(|a, b| a.place[2].total_cmp(&b.place[2]).then(a.shell.cmp(&b.shell)));
         for triangle in surface {
-            let corners = triangle.map(|v| vertices[v as usize]);
+            let corners = triangle.each(|v| vertices[v as usize]);
             let low = corners.iter().fold(f64::INFINITY, |low, p| low.min(p[2]));
             let high = corners.iter().fold(f64::NEG_INFINITY, |high, p| high.max(p[2]));
             let start = samples.partition_point(|sample| sample.place[2] < low);
@@ -116,7 +117,7 @@ pub(crate) fn volume(vertices: &[[f64; 3]], triangles: &[[u32; 3]], bounds: &Ext
     let centre = axes(|axis| bounds.low[axis].midpoint(bounds.high[axis]));
     let six_fold: f64 = (triangles.iter())
         .map(|triangle| {
-            let [a, b, c] = triangle.map(|v| {
+            let [a, b, c] = triangle.each(|v| {
                 let p = vertices[v as usize];
                 [p[0] - centre[0], p[1] - centre[1], p[2] - centre[2]]
             });

@@ -7,6 +7,7 @@ use super::tree::Search;
 use super::triangle_mesh::{FillRule, TriangleMesh};
 use crate::control::Control;
 use crate::error::Error;
+use crate::lattice::Each;
 use crate::lattice::Interval;
 use crate::memory;
 use alloc::vec::Vec;
@@ -102,7 +103,7 @@ impl Sides {
             if k % 4096 == 0 {
                 control.check()?;
             }
-            let [[p, q, r], other] = [a, b].map(|triangle| corners(mesh, triangle));
+            let [[p, q, r], other] = [a, b].each(|triangle| corners(mesh, triangle));
             if a < b && other.iter().all(|x| volume_sign(&p, &q, &r, x) == 0) {
                 return Ok(true);
             }
@@ -179,12 +180,12 @@ impl TriangleMesh {
         let zero = Interval::exactly(0.0);
         let ends = (0..).zip(&sides.senses).filter(|(_, sense)| matches!(sense, 1 | -1));
         let sum = ends.fold(zero, |sum, (triangle, _)| {
-            let [a, b, c] = corners(self, triangle).map(|p| p.map(Interval::exactly));
+            let [a, b, c] = corners(self, triangle).each(|p| p.each(Interval::exactly));
             let minor = |i: usize, j: usize| {
                 let edge = |p: &[Interval; 3], axis: usize| p[axis].minus(a[axis]);
                 edge(&b, i).times(edge(&c, j)).minus(edge(&b, j).times(edge(&c, i)))
             };
-            let squares = [(1, 2), (2, 0), (0, 1)].map(|(i, j)| minor(i, j).square());
+            let squares = [(1, 2), (2, 0), (0, 1)].each(|(i, j)| minor(i, j).square());
             sum.plus(squares[0].plus(squares[1]).plus(squares[2]).root())
         });
         Some(sum.times(Interval::exactly(0.5)))

@@ -1,5 +1,6 @@
 //! Exact signs of determinants: the sides on which points lie.
 
+use crate::lattice::Each;
 use crate::lattice::axes;
 use crate::lattice::exact::{Expansion, sign, sign_of_products, two_diff};
 use core::array::from_fn as array;
@@ -15,7 +16,7 @@ pub(super) fn volume_sign(a: &Point, b: &Point, c: &Point, d: &Point) -> i32 {
 /// Does the same in doubles; `None` if rounding may decide.
 #[inline]
 pub(super) fn sure_volume_sign(a: &Point, b: &Point, c: &Point, d: &Point) -> Option<i32> {
-    let [u, v, w]: [Point; 3] = [b, c, d].map(|p| array(|axis| p[axis] - a[axis]));
+    let [u, v, w]: [Point; 3] = [b, c, d].each(|p| array(|axis| p[axis] - a[axis]));
     let (mut value, mut magnitude) = (0.0, 0.0);
     for k in 0..3 {
         let (i, j) = ((k + 1) % 3, (k + 2) % 3);
@@ -32,14 +33,14 @@ pub(super) fn sure_volume_sign(a: &Point, b: &Point, c: &Point, d: &Point) -> Op
 #[cold]
 fn exact_volume_sign(a: &Point, points: [&Point; 3]) -> i32 {
     let is_exact = |p: &Point| (0..3).all(|axis| two_diff(p[axis], a[axis]).1 == 0.0);
-    let vectors: [Point; 3] = points.map(|p| array(|axis| p[axis] - a[axis]));
+    let vectors: [Point; 3] = points.each(|p| array(|axis| p[axis] - a[axis]));
     if points.into_iter().all(is_exact)
         && let Some([u, v, w]) = in_whole_steps(&vectors)
     {
         let minor = |i: usize, j: usize| u[i] * v[j] - u[j] * v[i];
         return (minor(1, 2) * w[0] + minor(2, 0) * w[1] + minor(0, 1) * w[2]).signum() as i32;
     }
-    let [u, v, w] = points.map(|p| axes(|axis| Expansion::sum([p[axis], -a[axis]])));
+    let [u, v, w] = points.each(|p| axes(|axis| Expansion::sum([p[axis], -a[axis]])));
     let mut sum = Expansion::default();
     for k in 0..3 {
         let (i, j) = ((k + 1) % 3, (k + 2) % 3);
@@ -59,10 +60,10 @@ fn in_whole_steps(vectors: &[Point; 3]) -> Option<[[i128; 3]; 3]> {
     }
     let power = |exponent: i32| f64::from_bits(((1023 + exponent) as u64) << 52);
     let (step, steps) = (power(exponent), power(-exponent));
-    let whole = vectors.map(|vector| vector.map(|x| (x * steps) as i64));
+    let whole = vectors.each(|vector| vector.each(|x| (x * steps) as i64));
     let is_whole = |x: f64, whole: i64| whole as f64 * step == x;
     let are_whole = vectors.iter().flatten().zip(whole.iter().flatten()).all(|(&x, &n)| is_whole(x, n));
-    are_whole.then(|| whole.map(|vector| vector.map(i128::from)))
+    are_whole.then(|| whole.each(|vector| vector.each(i128::from)))
 }
 
 /// Returns the sign of a component of the cross product of two differences, each from its first point to its
@@ -78,7 +79,7 @@ pub(super) fn cross_sign(u: [&Point; 2], v: [&Point; 2], axis: usize) -> i32 {
     let exact = |[from, to]: [&Point; 2], k: usize| two_diff(to[k], from[k]);
     let products = |(a, b): (f64, f64), (c, d): (f64, f64)| [(a, c), (a, d), (b, c), (b, d)];
     let left = products(exact(u, i), exact(v, j));
-    let right = products(exact(u, j), exact(v, i)).map(|(a, b)| (-a, b));
+    let right = products(exact(u, j), exact(v, i)).each(|(a, b)| (-a, b));
     sign_of_products([left, right].as_flattened())
 }
 

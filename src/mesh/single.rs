@@ -11,6 +11,7 @@ use super::report::are_on_a_line;
 use super::triangle_mesh::TriangleMesh;
 use crate::control::{Control, Job, WHOLE};
 use crate::error::Error;
+use crate::lattice::Each;
 use crate::lattice::exact::sqrt;
 use crate::lattice::{Bounds, axes, valid};
 use crate::memory;
@@ -130,7 +131,7 @@ impl TriangleMesh {
             let made = match &given {
                 Some(Some(given)) => {
                     let made =
-                        pairs.pairs.iter().map(|pair| sorted(pair.triangles.map(|t| numbers[t as usize])));
+                        pairs.pairs.iter().map(|pair| sorted(pair.triangles.each(|t| numbers[t as usize])));
                     memory_of(made.filter(|pair| !given.contains(pair)).take(PAIRS))?
                 }
                 _ => Vec::new(),
@@ -203,14 +204,14 @@ struct Mender<'m> {
 fn places() -> impl Iterator<Item = [f32; 3]> {
     let all = |count: usize| {
         (0..27)
-            .map(|k| [k % 3, k / 3 % 3, k / 9].map(|c: u8| f32::from(c) - 1.0))
+            .map(|k| [k % 3, k / 3 % 3, k / 9].each(|c: u8| f32::from(c) - 1.0))
             .filter(move |way| way.iter().filter(|&&c| c != 0.0).count() == count)
     };
     all(1).chain(all(2)).chain(all(3))
 }
 
 fn wide(at: [f32; 3]) -> [f64; 3] {
-    at.map(f64::from)
+    at.each(f64::from)
 }
 
 fn distance(a: [f64; 3], b: [f64; 3]) -> f64 {
@@ -223,7 +224,7 @@ impl<'m> Mender<'m> {
         let mut at = memory::with_capacity(mesh.vertices().len())?;
         for &vertex in mesh.vertices() {
             // (Makes -0.0 equal to 0.0.)
-            let single = vertex.map(|c| c as f32 + 0.0);
+            let single = vertex.each(|c| c as f32 + 0.0);
             if !single.iter().all(|c| c.is_finite()) {
                 let problem = "has a coordinate beyond the range of 32-bit floating point numbers";
                 return Err(Error::Argument { name: "mesh", problem });
@@ -245,7 +246,7 @@ impl<'m> Mender<'m> {
     }
 
     fn corners(&self, triangle: &[u32; 3]) -> [[f64; 3]; 3] {
-        triangle.map(|vertex| wide(self.at[vertex as usize]))
+        triangle.each(|vertex| wide(self.at[vertex as usize]))
     }
 
     fn is_flat(&self, triangle: &[u32; 3]) -> bool {
@@ -313,7 +314,7 @@ impl<'m> Mender<'m> {
                 *corner = *place;
             }
             // (Other triangles are dropped.)
-            let [a, b, c] = triangle.map(|vertex| self.at[vertex as usize]);
+            let [a, b, c] = triangle.each(|vertex| self.at[vertex as usize]);
             if a != b && b != c && c != a {
                 memory::push(&mut numbers, number)?;
             }
@@ -422,7 +423,7 @@ impl<'m> Mender<'m> {
         let mut all = memory::with_capacity(self.at.len())?;
         for (vertex, at) in (0u32..).zip(&self.at) {
             if !self.links.around(vertex).is_empty() {
-                all.push((at.map(f32::to_bits), vertex));
+                all.push((at.each(f32::to_bits), vertex));
             }
         }
         all.sort_unstable();

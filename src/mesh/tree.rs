@@ -11,6 +11,7 @@
 use super::signs::Point;
 use crate::control::Control;
 use crate::error::Error;
+use crate::lattice::Each;
 use crate::lattice::exact::{floor, two_diff};
 use crate::memory;
 use crate::parallel;
@@ -218,7 +219,7 @@ impl Grid {
 
     #[inline(always)]
     fn rounded(&self, p: &Point) -> [f32; 3] {
-        self.scaled(p).map(|x| x as f32)
+        self.scaled(p).each(|x| x as f32)
     }
 
     /// Returns the box around a triangle.

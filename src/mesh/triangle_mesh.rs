@@ -9,6 +9,7 @@
 //! three different corners is kept, because its edges pair with those of its neighbours: without it the mesh
 //! would be open.
 
+use crate::lattice::Each;
 use alloc::boxed::Box;
 use alloc::sync::Arc;
 use alloc::vec::Vec;
@@ -225,7 +226,7 @@ impl TriangleMesh {
         }
         vertices.truncate(kept);
         if kept < given {
-            triangles.iter_mut().for_each(|t| *t = t.map(|v| new_indices[v as usize]));
+            triangles.iter_mut().for_each(|t| *t = t.each(|v| new_indices[v as usize]));
         }
         let degenerate = drop_improper(&mut triangles, &mut attributes);
         let welded = (given - kept) as u64;
@@ -337,7 +338,7 @@ impl TriangleMesh {
         let centre = DVec3::from(low).midpoint(DVec3::from(high));
         let six_fold: f64 = (self.triangles.iter())
             .map(|t| {
-                let [a, b, c] = t.map(|v| self.position(v) - centre);
+                let [a, b, c] = t.each(|v| self.position(v) - centre);
                 a.dot(b.cross(c))
             })
             .sum();
@@ -348,7 +349,7 @@ impl TriangleMesh {
     /// Returns the sum of the triangles' areas (square model units), in doubles. O(t).
     pub fn area(&self) -> f64 {
         let twice = |t: &[u32; 3]| {
-            let [a, b, c] = t.map(|v| self.position(v));
+            let [a, b, c] = t.each(|v| self.position(v));
             (b - a).cross(c - a).length()
         };
         // An empty sum is −0.
@@ -575,7 +576,7 @@ impl TriangleMesh {
             }
         }
         self.vertices.truncate(kept);
-        self.triangles.iter_mut().for_each(|t| *t = t.map(|v| places[targets[v as usize] as usize]));
+        self.triangles.iter_mut().for_each(|t| *t = t.each(|v| places[targets[v as usize] as usize]));
         self.degenerate += drop_improper(&mut self.triangles, &mut self.attributes);
         self.sewn += moves.len() as u64;
         self.displacement = self.displacement.max(displacement);

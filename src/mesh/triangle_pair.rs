@@ -7,6 +7,7 @@
 //! Coordinates are at most 1 in magnitude, so that rounding has one bound for all: [`SLACK`].
 
 use super::signs::Point;
+use crate::lattice::Each;
 use core::array::from_fn as array;
 
 /// Upper bound of the rounding error of a computed distance, for coordinates with errors of up to 2^-50 each.
@@ -53,7 +54,7 @@ fn edges(t: &[Point; 3]) -> [Point; 3] {
 /// Returns the nearest points of two triangles, up to rounding.
 pub(super) fn nearest(a: &[Point; 3], b: &[Point; 3]) -> NearPair {
     let (of_a, of_b) = (edges(a), edges(b));
-    let (squares_a, squares_b) = (of_a.map(|e| dot(&e, &e)), of_b.map(|e| dot(&e, &e)));
+    let (squares_a, squares_b) = (of_a.each(|e| dot(&e, &e)), of_b.each(|e| dot(&e, &e)));
     let mut best = NearPair { square: f64::INFINITY, weights: [[0.0; 3]; 2], way: [0.0; 3] };
     let mut shares = (0, 0, 0.0, 0.0);
     for i in 0..3 {
@@ -92,7 +93,7 @@ fn above(a: &[Point; 3], b: &[Point; 3], edges: &[Point; 3], best: &mut NearPair
     if area == 0.0 {
         return;
     }
-    let heights = b.map(|p| dot(&normal, &minus(&p, &a[0])));
+    let heights = b.each(|p| dot(&normal, &minus(&p, &a[0])));
     // The weights of the corners at the projection of a point, if the projection lies in the triangle.
     let within = |p: &Point| -> Option<[f64; 3]> {
         let sides: [f64; 3] = array(|k| dot(&cross(&edges[k], &minus(p, &a[k])), &normal) / area);
@@ -106,7 +107,7 @@ fn above(a: &[Point; 3], b: &[Point; 3], edges: &[Point; 3], best: &mut NearPair
             let mut corner = [0.0; 3];
             corner[k] = 1.0;
             let height = heights[k] / area;
-            take(best, square, [weights, corner], normal.map(|n| n * height), is_turned);
+            take(best, square, [weights, corner], normal.each(|n| n * height), is_turned);
         }
     }
     for k in 0..3 {
@@ -126,7 +127,7 @@ fn above(a: &[Point; 3], b: &[Point; 3], edges: &[Point; 3], best: &mut NearPair
 #[inline(always)]
 fn take(best: &mut NearPair, square: f64, [own, other]: [[f64; 3]; 2], way: Point, is_turned: bool) {
     *best = if is_turned {
-        NearPair { square, weights: [other, own], way: way.map(|c| -c) }
+        NearPair { square, weights: [other, own], way: way.each(|c| -c) }
     } else {
         NearPair { square, weights: [own, other], way }
     };
@@ -154,7 +155,7 @@ pub(super) fn at_least(near: &NearPair, a: &[Point; 3], b: &[Point; 3]) -> f64 {
         let (of_a, of_b) = (edges(a), edges(b));
         let mut ask = |way: Point| {
             // (A zero vector gives NaN, which does not count.)
-            least = least.max(along(&way)).max(along(&way.map(|c| -c)));
+            least = least.max(along(&way)).max(along(&way.each(|c| -c)));
         };
         ask(cross(&of_a[0], &of_a[1]));
         ask(cross(&of_b[0], &of_b[1]));
@@ -169,7 +170,7 @@ pub(super) fn surely_cross(a: &[Point; 3], b: &[Point; 3], off: f64) -> bool {
     let side = |[a, b, c]: [&Point; 3], p: &Point| {
         let (u, v, w) = (minus(b, a), minus(c, a), minus(p, a));
         let volume = dot(&cross(&u, &v), &w);
-        let [x, y, z] = [&u, &v, &w].map(|way| libm::sqrt(dot(way, way)) + 2.0 * off);
+        let [x, y, z] = [&u, &v, &w].each(|way| libm::sqrt(dot(way, way)) + 2.0 * off);
         let wrong = 2.0 * off * (x * y + y * z + z * x) * 1.001 + x * y * z * (8.0 * f64::EPSILON) + 1e-300;
         if volume > wrong {
             1
@@ -180,10 +181,10 @@ pub(super) fn surely_cross(a: &[Point; 3], b: &[Point; 3], off: f64) -> bool {
         }
     };
     let through = |t: &[Point; 3], edges: &[Point; 3]| {
-        let heights = edges.each_ref().map(|p| side(t.each_ref(), p));
+        let heights = edges.each_ref().each(|p| side(t.each_ref(), p));
         (0..3).any(|k| {
             let (p, q) = (&edges[k], &edges[(k + 1) % 3]);
-            let around = || [[0, 1], [1, 2], [2, 0]].map(|[i, j]| side([p, q, &t[i]], &t[j]));
+            let around = || [[0, 1], [1, 2], [2, 0]].each(|[i, j]| side([p, q, &t[i]], &t[j]));
             heights[k] * heights[(k + 1) % 3] < 0 && {
                 let sides = around();
                 sides[0] != 0 && sides == [sides[0]; 3]

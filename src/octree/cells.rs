@@ -7,6 +7,7 @@ use super::view::{MAX_ELEMENT_LEVELS, OctreeRef, starts_half_way};
 use super::word::Planes;
 use crate::dispatch::{Hot, with_popcount};
 use crate::error::Error;
+use crate::lattice::Each;
 use crate::lattice::{Cell, MAX_DEPTH, morton};
 use core::ops::RangeInclusive;
 use yoke::Yokeable;
@@ -305,7 +306,7 @@ impl<'a> Cells<'a> {
             let any = todo.octants | todo.cells;
             if any == 0 {
                 self.open = e;
-                self.at = self.at.map(|a| a >> 2);
+                self.at = self.at.each(|a| a >> 2);
                 continue;
             }
             let (c, first) = (any.trailing_zeros(), any & any.wrapping_neg());

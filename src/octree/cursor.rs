@@ -6,6 +6,7 @@ use super::tag::Tag;
 use super::view::{MAX_ELEMENT_LEVELS, OctreeRef, starts_half_way};
 use super::word::Planes;
 use crate::lattice::Cell;
+use crate::lattice::Each;
 use yoke::Yokeable;
 
 /// An internal node of the leaf-free octree: the tags of a cell's eight children.
@@ -25,7 +26,7 @@ impl Node {
 
     /// Returns the eight tags in octant order.
     pub fn tags(self) -> [Tag; 8] {
-        [0, 1, 2, 3, 4, 5, 6, 7].map(|octant| self.tag(octant))
+        [0, 1, 2, 3, 4, 5, 6, 7].each(|octant| self.tag(octant))
     }
 
     /// Returns the node of an element's own cell, from the tags of its octants.

@@ -1,5 +1,7 @@
 //! The twenty-six directions from a cell to its neighbours.
 
+use crate::lattice::Each;
+
 /// A step of at most one cell along each axis, and along at least one axis. One axis leads through a face of
 /// a cell, two axes through an edge, three through a vertex.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
@@ -47,7 +49,7 @@ impl Direction {
     /// Returns the opposite direction.
     #[must_use]
     pub fn opposite(self) -> Direction {
-        Direction(self.0.map(|step| -step))
+        Direction(self.0.each(|step| -step))
     }
 }
 

@@ -8,6 +8,7 @@ use super::tag::Tag;
 use super::view::{OctreeRef, starts_half_way};
 use super::word::Planes;
 use crate::error::{Damage, Error};
+use crate::lattice::Each;
 use crate::lattice::{Cell, VolumeMoments};
 use crate::memory;
 use alloc::vec::Vec;
@@ -249,7 +250,7 @@ impl<'a> OctreeRef<'a> {
         }
         // The finest cell at the lower corner.
         let shift = self.frame().depth() - cell.level;
-        let finest = Cell { level: self.frame().depth(), at: cell.at.map(|a| a << shift) };
+        let finest = Cell { level: self.frame().depth(), at: cell.at.each(|a| a << shift) };
         let mut index = 0;
         for e in 0..self.levels() {
             let planes = self.entry(index)?;

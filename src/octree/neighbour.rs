@@ -12,6 +12,7 @@ use super::path::{Path, Place};
 use super::tag::Tag;
 use super::view::{OctreeRef, starts_half_way};
 use crate::error::Error;
+use crate::lattice::Each;
 use crate::lattice::{Cell, morton};
 
 /// A neighbour of a cell.
@@ -51,7 +52,7 @@ impl<'a> OctreeRef<'a> {
                 // One of the element's octants.
                 let [x, y, z] = at;
                 let tag = planes.octant(morton::index(2 * x, 2 * y, 2 * z) / 8);
-                let place = Place { level: e, index, at: at.map(|a| a >> 1) };
+                let place = Place { level: e, index, at: at.each(|a| a >> 1) };
                 let place = (tag == Tag::Branch).then_some(place);
                 return Some(Neighbour {
                     found: TaggedCell { cell: Cell { level: cell.level, at }, tag },
@@ -90,8 +91,8 @@ impl<'a> OctreeRef<'a> {
         visits: usize,
     ) -> Cells<'a> {
         let shift = self.frame.depth() - cell.level;
-        let mut min = cell.at.map(|a| a << shift);
-        let mut max = cell.at.map(|a| (a + 1) << shift);
+        let mut min = cell.at.each(|a| a << shift);
+        let mut max = cell.at.each(|a| (a + 1) << shift);
         for (axis, step) in direction.steps().into_iter().enumerate() {
             match step {
                 1 => max[axis] = min[axis] + 1,

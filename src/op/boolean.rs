@@ -17,6 +17,7 @@ use super::extended::{self, Combination};
 use crate::control::{Control, Job, WHOLE};
 use crate::dispatch::{Hot, with_popcount};
 use crate::error::{Damage, Error};
+use crate::lattice::Each;
 use crate::memory;
 use crate::octree::links::Windows;
 use crate::octree::view::OctreeRef;
@@ -343,7 +344,7 @@ struct Visit<'v, 'a, 'w, 'j> {
 const WORTH_THREADS: u64 = 1 << 21;
 
 fn combine(kernel: Kernel<'_>, control: &Control<'_>) -> Result<Octree, Error> {
-    let operands = kernel.operands.each_ref().map(|operand| (operand.tree, operand.flip));
+    let operands = kernel.operands.each_ref().each(|operand| (operand.tree, operand.flip));
     if operands.iter().any(|(tree, _)| tree.cuts.is_some()) {
         let combination = match kernel.op {
             Op::And => Combination::All { flip: kernel.flip },
@@ -382,12 +383,12 @@ fn combine_above(entries: u64, kernel: Kernel<'_>, control: &Control<'_>) -> Res
             }
         }
         let root = kernel.visit(0, roots, &mut walk, parallel)?;
-        let exterior = [0, 1].map(|k| {
+        let exterior = [0, 1].each(|k| {
             let operand = &kernel.operands[k];
             Planes::uniform(operand.tree.exterior()).complement_if(operand.flip)
         });
         let exterior = kernel.words(exterior).complement_if(kernel.flip).tag(0);
-        let proofs = kernel.operands.each_ref().map(|operand| {
+        let proofs = kernel.operands.each_ref().each(|operand| {
             let proof = operand.tree.proof();
             if operand.flip { proof.complement() } else { proof }
         });
@@ -530,9 +531,9 @@ impl Kernel<'_> {
             let below = match &step {
                 Step::Copy { of, parent, range, .. } => {
                     walk.windows[*of].admit(*parent, e, range.start, range.end)?;
-                    [0, 1].map(|k| (k == *of).then(|| range.clone()))
+                    [0, 1].each(|k| (k == *of).then(|| range.clone()))
                 }
-                Step::Visit(_, children) => children.map(|child| match child {
+                Step::Visit(_, children) => children.each(|child| match child {
                     Source::Element(n) => Some(n..n + 1),
                     Source::Uniform(_) => None,
                 }),

@@ -3,6 +3,7 @@
 use super::rule::Rule;
 use crate::control::{Control, Job, WHOLE};
 use crate::error::Error;
+use crate::lattice::Each;
 use crate::lattice::{Cell, Frame, Shard, morton};
 use crate::memory;
 use crate::octree::block::BLOCK_LEVELS;
@@ -270,7 +271,7 @@ impl<C: Classifier> Builder<'_, C> {
             return cell.child(c);
         }
         let [x, y, z] = morton::position(c as u32);
-        let [cx, cy, cz] = cell.at.map(|a| 4 * a);
+        let [cx, cy, cz] = cell.at.each(|a| 4 * a);
         Cell { level: cell.level + 2, at: [cx + x, cy + y, cz + z] }
     }
 

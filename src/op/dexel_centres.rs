@@ -5,6 +5,7 @@ use super::rule::Rule;
 use crate::control::Control;
 use crate::dexel::{Occupied, TriDexelRef};
 use crate::error::Error;
+use crate::lattice::Each;
 use crate::lattice::{Cell, Frame};
 use crate::octree::block::BLOCK_LEVELS;
 use crate::octree::{Block, Octree, Proof, Tag};
@@ -116,7 +117,7 @@ impl Worker for Centres<'_> {
 
     fn fill(&mut self, cell: Cell, _: &(), block: &mut Block) -> Result<bool, Error> {
         let Some(words) = block.centres_mut() else { return Ok(false) };
-        if !self.model.fill_centres(cell.at.map(|a| 64 * a), 2, words) {
+        if !self.model.fill_centres(cell.at.each(|a| 64 * a), 2, words) {
             words.fill(0);
         }
         Ok(true)

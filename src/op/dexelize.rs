@@ -12,6 +12,7 @@ use crate::dexel::{
     TriDexel, Window, assembled, first_above,
 };
 use crate::error::Error;
+use crate::lattice::Each;
 use crate::lattice::axes;
 use crate::lattice::{Bounds, Cell, Frame, MAX_DEPTH};
 use crate::memory;
@@ -129,7 +130,7 @@ fn extent(bounds: Option<Bounds>, frame: &Frame) -> [Range<u32>; 3] {
 
 /// The number of rays through the cells of an extent, in all requested directions.
 fn rays(extent: &[Range<u32>; 3], options: &DexelOptions) -> u64 {
-    let count = |axis: usize| Window::of(OTHERS[axis].map(|axis| extent[axis].clone())).count();
+    let count = |axis: usize| Window::of(OTHERS[axis].each(|axis| extent[axis].clone())).count();
     (0..3).filter(|&axis| options.directions[axis]).map(count).sum()
 }
 
@@ -155,7 +156,7 @@ fn model<S: Form>(
     };
     // Each ray stores the number of its first interval.
     control.afford("the rays", rays(&extent, options).saturating_mul(size_of::<u32>() as u64))?;
-    let window = |axis: usize| Window::of(OTHERS[axis].map(|axis| extent[axis].clone()));
+    let window = |axis: usize| Window::of(OTHERS[axis].each(|axis| extent[axis].clone()));
     let worth = rays(&extent, options) > 1 << 14;
     control.run(worth, |parallel| {
         let axes = options.directions.iter().filter(|&&has| has).count();
@@ -280,7 +281,7 @@ impl<'s> Tiles<'_, 's> {
     fn shadow(&self, window: &Window, cell: Cell) -> (Window, Range<u32>) {
         let shift = self.frame.depth() - cell.level;
         let range = |axis: usize| cell.at[axis] << shift..(cell.at[axis] + 1) << shift;
-        (Window::of(OTHERS[self.axis].map(range)).intersection(window), range(self.axis))
+        (Window::of(OTHERS[self.axis].each(range)).intersection(window), range(self.axis))
     }
 
     /// Adds the intervals in a cell. The recursion is as deep as the frame, at most 20 levels.
@@ -402,7 +403,7 @@ impl<'s> Tiles<'_, 's> {
 
 /// Adds spans that cover the whole cell.
 fn fill(beam: &mut Beam, rays: Window, span: Range<u32>) -> Result<(), Error> {
-    let [start, end] = [span.start, span.end].map(BeamEnd::between);
+    let [start, end] = [span.start, span.end].each(BeamEnd::between);
     for v in rays.range(1) {
         for u in rays.range(0) {
             beam.push([u, v], start, end)?;

@@ -2,6 +2,7 @@
 
 use crate::control::{Control, Job};
 use crate::error::Error;
+use crate::lattice::Each;
 use crate::lattice::axes;
 use crate::lattice::{Ball, Bounds, Cell, Cube, Frame, Window, morton};
 use crate::octree::cuts::{CellCut, CellIds, CutsRef, Figure, Head};
@@ -221,7 +222,7 @@ impl Search<'_, '_> {
                 let (c, level) = (8 * octant + k, level - u8::from(whole));
                 let at = morton::position(c);
                 let finest = axes(|axis| origin[axis] + (at[axis] << (depth - self.tree.cell_level(e))));
-                let cell = Cell { level, at: finest.map(|a| a >> (depth - level)) };
+                let cell = Cell { level, at: finest.each(|a| a >> (depth - level)) };
                 self.cut(cuts, cuts.record(index, planes, c), cell);
             }
         }
@@ -257,7 +258,7 @@ impl Search<'_, '_> {
         let (lower, upper) = Cube { frame, cell }.planes();
         let (mut low, mut high, mut slack) = ([0.0; 3], [0.0; 3], [0.0; 3]);
         for axis in 0..3 {
-            let [first, last] = [lower[axis], upper[axis]].map(|i| frame.plane(axis, i));
+            let [first, last] = [lower[axis], upper[axis]].each(|i| frame.plane(axis, i));
             low[axis] = first.lower.max(self.asked[0][axis]);
             high[axis] = last.upper.min(self.asked[1][axis]).max(low[axis]);
             // The part of the box in the cell certainly meets a piece thicker than this.
@@ -274,7 +275,7 @@ impl Search<'_, '_> {
                 axes(|axis| (high[axis] - centre[axis]).max(centre[axis] - low[axis]) * (1.0 + f64::EPSILON));
             for (i, figure) in figures.iter().enumerate().filter(|_| centre.iter().all(|c| c.is_finite())) {
                 if let (true, Some(figure)) = (Head::needs(table, i), figure)
-                    && let Some(side) = figure.side(centre.map(Ball::exactly), radius)
+                    && let Some(side) = figure.side(centre.each(Ball::exactly), radius)
                 {
                     table = Head::on_side(table, i, side);
                 }

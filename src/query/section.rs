@@ -4,6 +4,7 @@ use super::{StopReason, Tolerance};
 use crate::control::{Control, Job, WHOLE};
 use crate::cut::{SETTLED, Section};
 use crate::error::Error;
+use crate::lattice::Each;
 use crate::lattice::exact::Dyadic;
 use crate::lattice::{Cell, Frame, Interval, MAX_DEPTH, valid};
 use crate::octree::Proof;
@@ -39,14 +40,14 @@ impl SectionPlane {
 
     /// The axis that the normal is nearest to.
     fn axis(&self) -> usize {
-        let size = self.normal.map(f64::abs);
+        let size = self.normal.each(f64::abs);
         (0..3).fold(0, |most, axis| if size[axis] > size[most] { axis } else { most })
     }
 
     /// The ratio of an area in the plane to its projection along that axis.
     fn steepness(&self) -> Interval {
         let nearest = Interval::exactly(self.normal[self.axis()].abs());
-        let squares = self.normal.map(|c| Interval::exactly(c).over(nearest).square());
+        let squares = self.normal.each(|c| Interval::exactly(c).over(nearest).square());
         squares[0].plus(squares[1]).plus(squares[2]).root()
     }
 }
@@ -189,7 +190,7 @@ impl Placed {
         let slopes = [normal[order[0]] / normal[last], normal[order[1]] / normal[last]];
         let layer = if slopes == [0.0; 2] { Some(frame.cell_at(last, point[last])?) } else { None };
         let half = Dyadic::new(frame.edge()).shifted(-i64::from(MAX_DEPTH) - 1);
-        let steps = normal.map(|c| &Dyadic::new(c) * &half);
+        let steps = normal.each(|c| &Dyadic::new(c) * &half);
         let start = (0..3).fold(Dyadic::zero(), |sum, axis| {
             let from = &Dyadic::new(frame.origin()[axis]) - &Dyadic::new(point[axis]);
             &sum + &(&Dyadic::new(normal[axis]) * &from)
@@ -199,7 +200,7 @@ impl Placed {
         if start.magnitude().is_some_and(|magnitude| magnitude >= FAR_BITS) {
             return None;
         }
-        let steps = steps.map(|step| rounded(&step.shifted(power)));
+        let steps = steps.each(|step| rounded(&step.shifted(power)));
         Some(Placed { order, slopes, start: rounded(&start), steps, layer, depth: frame.depth() })
     }
 
@@ -265,7 +266,7 @@ impl<C: Classifier> Search<'_, C> {
             }
             self.report(budget)?;
             let Some((cell, verdict, known)) = self.open.pop() else { return Ok(StopReason::Exhausted) };
-            self.sums = [0, 1].map(|side| self.sums[side] - known[side]);
+            self.sums = [0, 1].each(|side| self.sums[side] - known[side]);
             let Verdict::Partial(part) = verdict else { continue };
             for (octant, verdict) in (0..8).zip(self.subject.split(cell, &part)?) {
                 self.note(plane, cell.child(octant), verdict)?;
@@ -292,8 +293,8 @@ impl<C: Classifier> Search<'_, C> {
         let shift = 2 * u32::from(MAX_DEPTH - cell.level);
         // The casts are of integers below 2^47.
         let known =
-            [libm::floor(area.lower * SHARE), libm::ceil(area.upper * SHARE)].map(|x| (x as i128) << shift);
-        self.sums = [0, 1].map(|side| self.sums[side] + known[side]);
+            [libm::floor(area.lower * SHARE), libm::ceil(area.upper * SHARE)].each(|x| (x as i128) << shift);
+        self.sums = [0, 1].each(|side| self.sums[side] + known[side]);
         let is_open = cell.level < plane.depth && area.width() > SETTLED;
         if is_open && matches!(verdict, Verdict::Partial(_)) {
             self.open.push((known[1] - known[0], Reverse(self.open.met())), (cell, verdict, known))?;
@@ -303,7 +304,7 @@ impl<C: Classifier> Search<'_, C> {
 
     /// The present bounds of the area.
     fn area(&self) -> Interval {
-        let [lower, upper] = self.sums.map(|sum| Interval::of_integer(sum).times(self.unit));
+        let [lower, upper] = self.sums.each(|sum| Interval::of_integer(sum).times(self.unit));
         Interval::between(lower.lower, upper.upper)
     }
 

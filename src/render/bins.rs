@@ -4,6 +4,7 @@ use super::mapped::mapped;
 use super::tile::{TILE, Tile};
 use crate::control::Job;
 use crate::error::Error;
+use crate::lattice::Each;
 use crate::memory;
 use alloc::vec::Vec;
 
@@ -37,7 +38,7 @@ impl Bins {
         job: &Job<'_>,
         place: impl Fn(usize) -> Option<[f64; 4]> + Sync,
     ) -> Result<Bins, Error> {
-        let tiles = size.map(|side| side.div_ceil(TILE) as usize);
+        let tiles = size.each(|side| side.div_ceil(TILE) as usize);
         let mut spans: Vec<Span> =
             mapped(job, count, |i| place(i).map_or(NOWHERE, |place| span(place, size)))?;
         let mut starts: Vec<usize> = memory::filled(tiles[0] * tiles[1] + 1, 0)?;
@@ -65,7 +66,7 @@ impl Bins {
 
     /// Returns the things that may be visible in a tile, in ascending order.
     pub fn of(&self, tile: &Tile<'_>) -> Result<Vec<u32>, Error> {
-        let [column, row] = tile.first.map(|first| first / TILE);
+        let [column, row] = tile.first.each(|first| first / TILE);
         let at = row as usize * self.columns + column as usize;
         let own = &self.items[self.starts[at]..self.starts[at + 1]];
         let mut found = memory::copied(own)?;
@@ -86,7 +87,7 @@ impl Bins {
 fn span([left, top, right, bottom]: [f64; 4], size: [u32; 2]) -> Span {
     // Rounding moves nothing by this much.
     const MARGIN: f64 = 1e-3;
-    let [width, height] = size.map(f64::from);
+    let [width, height] = size.each(f64::from);
     if right + MARGIN < 0.0 || bottom + MARGIN < 0.0 || left - MARGIN > width || top - MARGIN > height {
         return NOWHERE;
     }

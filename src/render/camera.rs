@@ -2,6 +2,7 @@
 
 use super::light::Lamps;
 use crate::error::Error;
+use crate::lattice::Each;
 use crate::lattice::Frame;
 use crate::lattice::valid::numbers;
 use glam::DVec3;
@@ -41,7 +42,7 @@ impl Camera {
     /// [`Error::Argument`] if a number is not zero and not between 2^-256 and 2^256 in magnitude, if `eye`
     /// and `at` are the same point, if `up` is zero or parallel to the view, or if the lens is invalid.
     pub fn new(eye: [f64; 3], at: [f64; 3], up: [f64; 3], lens: Lens) -> Result<Camera, Error> {
-        let [eye, at, up] = [("eye", eye), ("at", at), ("up", up)].map(|(name, v)| vector(name, v));
+        let [eye, at, up] = [("eye", eye), ("at", at), ("up", up)].each(|(name, v)| vector(name, v));
         let (eye, at, up) = (eye?, at?, up?);
         check(lens)?;
         let refused = |name, problem| Error::Argument { name, problem };
@@ -110,7 +111,7 @@ impl Camera {
             Lens::Perspective(_) => {
                 // The eye lies where the wedges from left and right, and those from above and below, just
                 // contain all points.
-                let [wide, high] = [(tangent * aspect, 0), (tangent, 1)].map(|(tangent, axis)| {
+                let [wide, high] = [(tangent * aspect, 0), (tangent, 1)].each(|(tangent, axis)| {
                     let sides = seen(&camera).fold([f64::NEG_INFINITY; 2], |sides, at| {
                         let (across, deep) = (at[axis] / tangent, at.z);
                         [sides[0].max(-across - deep), sides[1].max(across - deep)]

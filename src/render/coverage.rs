@@ -10,6 +10,7 @@
 //! on an edge counts as shifted by (ε, −ε²), to the right and downward: edges on the left and on top belong
 //! to a triangle.
 
+use crate::lattice::Each;
 use crate::lattice::exact::{certain, sign, sign_of_products, sign_of_sum, two_product};
 use core::ops::Range;
 use glam::{DVec3, Vec3Swizzles};
@@ -102,7 +103,7 @@ impl Coverage {
     /// the triangle is seen edge-on.
     pub fn new([a, b, c]: [DVec3; 3], reach: [f64; 2]) -> Option<Coverage> {
         let facing = determinant_sign(a, b, c);
-        let edges = [(b, c), (c, a), (a, b)].map(|(from, to)| EdgeFunction::new(from, to, reach));
+        let edges = [(b, c), (c, a), (a, b)].each(|(from, to)| EdgeFunction::new(from, to, reach));
         (facing != 0).then_some(Coverage { edges, facing })
     }
 
@@ -120,7 +121,7 @@ impl Coverage {
             *weight = (value * f64::from(self.facing)).max(0.0);
         }
         let sum = weights[0] + weights[1] + weights[2];
-        Some(if sum > 0.0 { weights.map(|weight| weight / sum) } else { [1.0 / 3.0; 3] })
+        Some(if sum > 0.0 { weights.each(|weight| weight / sum) } else { [1.0 / 3.0; 3] })
     }
 
     /// Returns a range of `columns`, with x = x₀ + i · step for column i, that contains all covered samples

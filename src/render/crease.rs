@@ -3,6 +3,7 @@
 use super::mapped::mapped;
 use crate::control::Job;
 use crate::error::Error;
+use crate::lattice::Each;
 use crate::memory;
 use crate::mesh::{Edge, TriangleMesh, for_each_edge};
 use alloc::vec::Vec;
@@ -32,7 +33,7 @@ fn moderate_unit(v: DVec3) -> Option<DVec3> {
 }
 
 fn corners(mesh: &TriangleMesh, triangle: [u32; 3]) -> [DVec3; 3] {
-    triangle.map(|v| DVec3::from(mesh.vertices()[v as usize]))
+    triangle.each(|v| DVec3::from(mesh.vertices()[v as usize]))
 }
 
 /// The outward unit normals of the triangles; zero for a triangle without area.
@@ -67,8 +68,8 @@ pub fn corner_normals(
     }
     let angles: Vec<[f32; 3]> = mapped(job, mesh.triangles().len(), |i| {
         let [a, b, c] = corners(mesh, mesh.triangles()[i]);
-        let [u, v, w] = [b - a, c - b, a - c].map(unit);
-        [-w.dot(u), -u.dot(v), -v.dot(w)].map(|cosine| libm::acosf(cosine.clamp(-1.0, 1.0) as f32))
+        let [u, v, w] = [b - a, c - b, a - c].each(unit);
+        [-w.dot(u), -u.dot(v), -v.dot(w)].each(|cosine| libm::acosf(cosine.clamp(-1.0, 1.0) as f32))
     })?;
     let mut around: Vec<(u32, f32)> = memory::filled(sum, (0, 0.0))?;
     for (i, (triangle, angles)) in (0..).zip(mesh.triangles().iter().zip(&angles)) {
@@ -81,7 +82,7 @@ pub fn corner_normals(
     drop(angles);
     mapped(job, mesh.triangles().len(), |i| {
         let own = normals[i];
-        mesh.triangles()[i].map(|v| {
+        mesh.triangles()[i].each(|v| {
             let around = &around[ends[v as usize]..ends[v as usize + 1]];
             if around.len() > MOST_TRIANGLES {
                 return own.as_vec3();
@@ -108,7 +109,7 @@ pub fn features(
         let mut two = edge.triangles();
         let is_feature = match (edge.count(), two.next(), two.next()) {
             (2, Some(a), Some(b)) => {
-                let [a, b] = [a, b].map(|i| normals[i as usize]);
+                let [a, b] = [a, b].each(|i| normals[i as usize]);
                 // Two triangles that use the edge in the same direction face opposite ways.
                 let cosine = if edge.excess() == 0 { a.dot(b) } else { -a.dot(b) };
                 // A triangle without area has no normal, so a bend at its edges is not known.

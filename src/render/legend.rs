@@ -2,6 +2,7 @@
 
 use super::picture::Picture;
 use crate::error::Error;
+use crate::lattice::Each;
 use core::convert::Infallible;
 use core::fmt::Write;
 use embedded_graphics::mono_font::iso_8859_1::{FONT_5X8, FONT_6X10, FONT_8X13, FONT_10X20};
@@ -423,7 +424,7 @@ impl Ticks {
             return none;
         }
         let lowest = libm::floor(libm::log10(extent / f64::from(most))) as i32;
-        let candidates = (lowest..lowest + 3).flat_map(|exponent| [1, 2, 5].map(|step| (step, exponent)));
+        let candidates = (lowest..lowest + 3).flat_map(|exponent| [1, 2, 5].each(|step| (step, exponent)));
         for (step, exponent) in candidates {
             let unit = Ticks::value_of(step, exponent);
             // A number that is a multiple up to rounding errors counts as one.

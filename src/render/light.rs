@@ -1,5 +1,6 @@
 //! Linear colours, premultiplied by their opacity.
 
+use crate::lattice::Each;
 use core::ops::{Add, Mul};
 use glam::{DVec3, Vec4};
 
@@ -13,7 +14,7 @@ impl Light {
 
     /// The light of an sRGB colour and an opacity, 0 to 255.
     pub fn of(rgba: [u8; 4]) -> Light {
-        let [r, g, b] = [rgba[0], rgba[1], rgba[2]].map(linear);
+        let [r, g, b] = [rgba[0], rgba[1], rgba[2]].each(linear);
         let a = f32::from(rgba[3]) / 255.0;
         Light(Vec4::new(r * a, g * a, b * a, a))
     }
@@ -53,7 +54,7 @@ impl Tones {
             return [0; 4];
         }
         let byte = |x: f32| (self.from.partition_point(|&from| from <= x).max(1) - 1) as u8;
-        let [r, g, b] = [light.0.x, light.0.y, light.0.z].map(|x| byte(x / a));
+        let [r, g, b] = [light.0.x, light.0.y, light.0.z].each(|x| byte(x / a));
         [r, g, b, (a.clamp(0.0, 1.0) * 255.0 + 0.5) as u8]
     }
 }

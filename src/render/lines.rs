@@ -5,6 +5,7 @@ use super::stage::{Draw, Painter, Stage};
 use super::stroke::Strokes;
 use super::tile::Tile;
 use crate::error::Error;
+use crate::lattice::Each;
 use crate::lattice::axes;
 use crate::lattice::valid::numbers;
 use crate::lattice::{Cell, Frame};
@@ -50,7 +51,7 @@ impl<'a> LinesLayer<'a> {
                 continue;
             }
             let shift = frame.depth() - cell.level;
-            let (low, high) = (cell.at.map(|a| a << shift), cell.at.map(|a| (a + 1) << shift));
+            let (low, high) = (cell.at.each(|a| a << shift), cell.at.each(|a| (a + 1) << shift));
             for (axis, edges) in edges.iter_mut().enumerate() {
                 let (u, v) = ((axis + 1) % 3, (axis + 2) % 3);
                 for (u, v) in [(low[u], low[v]), (high[u], low[v]), (low[u], high[v]), (high[u], high[v])] {
@@ -72,7 +73,7 @@ impl<'a> LinesLayer<'a> {
                     (next.from, next.to) = (line.from, line.to.max(next.to));
                     continue;
                 }
-                memory::push(&mut lines, [line.from, line.to].map(|end| line.point(frame, axis, end)))?;
+                memory::push(&mut lines, [line.from, line.to].each(|end| line.point(frame, axis, end)))?;
             }
         }
         Ok(LinesLayer { lines: Cow::Owned(lines), width: 1.0, colour: [0, 0, 0, 255] })
@@ -127,7 +128,7 @@ impl Draw for LinesLayer<'_> {
     fn prepare<'a>(&'a self, stage: &Stage<'a>) -> Result<Box<dyn Painter + 'a>, Error> {
         check_width(self.width)?;
         self.lines.iter().flatten().try_for_each(|point| numbers("lines", point))?;
-        let lines = self.lines.iter().map(|line| (line.map(DVec3::from), 1.0));
+        let lines = self.lines.iter().map(|line| (line.each(DVec3::from), 1.0));
         Ok(Box::new(Lines(Strokes::new(stage, lines, self.width, Light::of(self.colour))?)))
     }
 }

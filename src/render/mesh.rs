@@ -12,6 +12,7 @@ use super::stage::{Draw, Painter, Stage};
 use super::stroke::Strokes;
 use super::tile::Tile;
 use crate::error::Error;
+use crate::lattice::Each;
 use crate::memory;
 use crate::mesh::TriangleMesh;
 use alloc::boxed::Box;
@@ -126,7 +127,7 @@ impl Draw for MeshLayer<'_> {
         let seen = mapped(stage.job, mesh.vertices().len(), |v| view.camera.seen(vertex(v)))?;
         let triangles = mesh.triangles();
         let bins = Bins::new([view.width, view.height], triangles.len(), stage.job, |i| {
-            place(view, triangles[i].map(|v| seen[v as usize]))
+            place(view, triangles[i].each(|v| seen[v as usize]))
         })?;
         let normals = crease::normals(mesh, stage.job)?;
         let smooth = match self.crease {
@@ -141,7 +142,7 @@ impl Draw for MeshLayer<'_> {
             }
             MeshEdges::All => {
                 let opacities = mapped(stage.job, triangles.len(), |i| {
-                    edge_opacity(view, triangles[i].map(|v| seen[v as usize]))
+                    edge_opacity(view, triangles[i].each(|v| seen[v as usize]))
                 })?;
                 // The edge between a large and a small triangle is visible.
                 crease::edges(mesh, stage.job, |edge| {
@@ -150,10 +151,10 @@ impl Draw for MeshLayer<'_> {
                 })?
             }
         };
-        let lines = edges.into_iter().map(|(ends, opacity)| (ends.map(|v| vertex(v as usize)), opacity));
+        let lines = edges.into_iter().map(|(ends, opacity)| (ends.each(|v| vertex(v as usize)), opacity));
         let edges = Strokes::new(stage, lines, self.edge_width, Light::of(self.edge_colour))?;
         // The coordinates of the outermost samples: x and y of a line of sight with length 1 along the view.
-        let reach = [view.width, view.height].map(|side| 0.5 * f64::from(side) * view.pixel_at(1.0));
+        let reach = [view.width, view.height].each(|side| 0.5 * f64::from(side) * view.pixel_at(1.0));
         let lights = lights(self.colour, self.inside);
         Ok(Box::new(Ready { layer: self, stage: *stage, seen, bins, normals, smooth, edges, reach, lights }))
     }
@@ -168,7 +169,7 @@ fn place(view: &View, corners: [DVec3; 3]) -> Option<[f64; 4]> {
         return None;
     }
     if corners.iter().all(is_before) || !view.is_perspective() {
-        let [a, b, c] = corners.map(|corner| view.place(corner));
+        let [a, b, c] = corners.each(|corner| view.place(corner));
         if [a, b, c].iter().flatten().all(|x| x.is_finite()) {
             let least = |axis: usize| a[axis].min(b[axis]).min(c[axis]);
             let most = |axis: usize| a[axis].max(b[axis]).max(c[axis]);
@@ -213,7 +214,7 @@ fn edge_opacity(view: &View, corners: [DVec3; 3]) -> f32 {
     if view.is_perspective() && corners.iter().any(|corner| corner.z <= 0.0) {
         return 1.0;
     }
-    let [a, b, c] = corners.map(|corner| DVec2::from(view.place(corner)));
+    let [a, b, c] = corners.each(|corner| DVec2::from(view.place(corner)));
     let longest = (b - a).length().max((c - b).length()).max((a - c).length());
     // (A triangle that is seen as a point has no height.)
     let height = if longest > 0.0 { (b - a).perp_dot(c - a).abs() / longest } else { 0.0 };
@@ -250,7 +251,7 @@ struct Samples {
 impl Samples {
     fn new(tile: &Tile<'_>, stage: &Stage<'_>) -> Result<Samples, Error> {
         let view = stage.view;
-        let (pixel, [width, height]) = (view.pixel_at(1.0), [view.width, view.height].map(f64::from));
+        let (pixel, [width, height]) = (view.pixel_at(1.0), [view.width, view.height].each(f64::from));
         let columns = (0..tile.width()).map(|column| (tile.place(column, 0)[0] - 0.5 * width) * pixel);
         let rows = (0..tile.height()).map(|row| (0.5 * height - tile.place(0, row)[1]) * pixel);
         let (columns, rows) = (memory::collected(columns)?, memory::collected(rows)?);
@@ -297,7 +298,7 @@ impl Ready<'_> {
     fn draw(&self, tile: &mut Tile<'_>, samples: &Samples, i: usize) -> Result<(), Error> {
         let mesh = self.layer.mesh;
         let view = self.stage.view;
-        let corners = mesh.triangles()[i].map(|v| self.seen[v as usize]);
+        let corners = mesh.triangles()[i].each(|v| self.seen[v as usize]);
         let Some([left, top, right, bottom]) = place(view, corners) else { return Ok(()) };
         // Rounding moves nothing by this much.
         const MARGIN: f64 = 1e-3;
@@ -307,8 +308,8 @@ impl Ready<'_> {
             return Ok(());
         }
         let flat = |corner: DVec3| if view.is_perspective() { corner } else { corner.with_z(1.0) };
-        let Some(coverage) = Coverage::new(corners.map(flat), self.reach) else { return Ok(()) };
-        let depths = corners.map(|corner| corner.z);
+        let Some(coverage) = Coverage::new(corners.each(flat), self.reach) else { return Ok(()) };
+        let depths = corners.each(|corner| corner.z);
         let mut shade = None;
         let first = [samples.columns[0], view.pixel_at(1.0) / f64::from(tile.grid)];
         for row in rows {

@@ -10,6 +10,7 @@ use super::occupancy::Occupancy;
 use super::place_cache::Places;
 use super::plane::{Fitting, Plane};
 use crate::error::Error;
+use crate::lattice::Each;
 use crate::lattice::Frame;
 use crate::lattice::axes;
 use crate::lattice::morton;
@@ -120,8 +121,8 @@ impl<'a> Normals<'a> {
     /// The gradient of the occupancy over 5³ cells.
     fn gradient(&mut self, at: [u32; 3]) -> Result<DVec3, Error> {
         let mut sum = DVec3::ZERO;
-        let low = at.map(|a| a as i32 - 2);
-        let (first, last) = (low.map(|a| a >> 2), low.map(|a| (a + 4) >> 2));
+        let low = at.each(|a| a as i32 - 2);
+        let (first, last) = (low.each(|a| a >> 2), low.each(|a| (a + 4) >> 2));
         for z in first[2]..=last[2] {
             for y in first[1]..=last[1] {
                 for x in first[0]..=last[0] {
@@ -139,7 +140,7 @@ impl<'a> Normals<'a> {
                                 let solid =
                                     f64::from((word.upper >> c & 1) as u32 + (word.full() >> c & 1) as u32);
                                 let from = DVec3::from(
-                                    [i - low[0] - 2, j - low[1] - 2, k - low[2] - 2].map(f64::from),
+                                    [i - low[0] - 2, j - low[1] - 2, k - low[2] - 2].each(f64::from),
                                 );
                                 sum -= from * (solid * WEIGHTS[from.length_squared() as usize]);
                             }
@@ -197,7 +198,7 @@ pub fn normal_of_cells(
         // (A cast saturates.)
         (scaled[axis] as u32).clamp(low, high)
     });
-    let low = DVec3::from(at.map(f64::from));
+    let low = DVec3::from(at.each(f64::from));
     normals.at(scaled.clamp(low, low + 1.0), at)
 }
 

@@ -2,6 +2,7 @@
 
 use super::place_cache::Places;
 use crate::error::Error;
+use crate::lattice::Each;
 use crate::lattice::axes;
 use crate::lattice::morton;
 use crate::octree::links::Step;
@@ -45,7 +46,7 @@ impl<'a> Occupancy<'a> {
         if !self.is_inside(at) {
             return Ok(self.outside);
         }
-        let part = self.part(at.map(|i| i >> 2))?;
+        let part = self.part(at.each(|i| i >> 2))?;
         Ok(word_of(&self.tree, self.parts.item(part).source, index(at)))
     }
 
@@ -54,8 +55,8 @@ impl<'a> Occupancy<'a> {
     pub fn window(&mut self, at: [i32; 3], large: bool) -> Result<[u64; 27], Error> {
         // Blocks of a part along each axis: 2^shift.
         let shift = if large { 1 } else { 2 };
-        let low = at.map(|i| i - 1);
-        let [first, last] = [0, 2].map(|more| low.map(|i| (i + more) >> shift));
+        let low = at.each(|i| i - 1);
+        let [first, last] = [0, 2].each(|more| low.each(|i| (i + more) >> shift));
         let mut window = [0; 27];
         for part_z in first[2]..=last[2] {
             for part_y in first[1]..=last[1] {
@@ -107,13 +108,13 @@ impl<'a> Occupancy<'a> {
 
     #[inline(never)]
     fn found(&self, at: [i32; 3]) -> Part {
-        let first = at.map(|i| 4 * i);
+        let first = at.each(|i| 4 * i);
         if !self.is_inside(first) {
             let shares = [set_bits(self.outside); 64];
             return Part { source: Source::Alike(self.outside), shares };
         }
-        let source = self.source(at.map(|i| i as u32));
-        let all_inside = self.is_inside(first.map(|i| i + 3));
+        let source = self.source(at.each(|i| i as u32));
+        let all_inside = self.is_inside(first.each(|i| i + 3));
         let mut shares = [0; 64];
         for (c, share) in (0..).zip(&mut shares) {
             let place = morton::position(c);
@@ -137,7 +138,7 @@ impl<'a> Occupancy<'a> {
                 0 => return Source::Alike(planes),
                 1 => return Source::Element(index, planes),
                 more => {
-                    let [x, y, z] = at.map(|i| i >> (2 * (more - 2)));
+                    let [x, y, z] = at.each(|i| i >> (2 * (more - 2)));
                     match tree.step(e, index, planes, morton::index(x, y, z)) {
                         Step::Into(child) => (e, index) = (e + 1, child),
                         Step::Settled(tag) => return Source::Alike(Planes::uniform(tag)),
@@ -163,7 +164,7 @@ fn word_of(tree: &OctreeRef<'_>, source: Source, c: u32) -> Planes {
 /// The place of a word in its part, in Morton order.
 #[inline]
 fn index(word: [i32; 3]) -> u32 {
-    let [x, y, z] = word.map(|i| i as u32);
+    let [x, y, z] = word.each(|i| i as u32);
     morton::index(x, y, z)
 }
 

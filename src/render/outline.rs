@@ -11,6 +11,7 @@ use super::tile::Tile;
 use super::window::Window;
 use crate::control::Job;
 use crate::error::Error;
+use crate::lattice::Each;
 use crate::lattice::Frame;
 use crate::memory;
 use alloc::vec::Vec;
@@ -130,7 +131,7 @@ impl<'v> Field<'v> {
 
     /// The place of the tile's first sample in the field.
     fn corner(&self, tile: &Window<'_>) -> [usize; 2] {
-        [0, 1].map(|k| ((tile.first[k] - self.window.first[k]) * tile.grid) as usize)
+        [0, 1].each(|k| ((tile.first[k] - self.window.first[k]) * tile.grid) as usize)
     }
 
     /// Draws the edges.
@@ -185,13 +186,13 @@ impl<'v> Field<'v> {
         let reach = (self.blur / pixel).max(REACH[0]) * f64::from(self.window.grid);
         [[1.0, 0.0], [0.0, 1.0], [DIAGONAL, DIAGONAL], [DIAGONAL, -DIAGONAL]]
             .iter()
-            .any(|direction| self.turns(at, here, direction.map(|along| along * reach)))
+            .any(|direction| self.turns(at, here, direction.each(|along| along * reach)))
     }
 
     /// Returns whether the sides at both ends of a line through a sample meet at the sample.
     fn turns(&self, at: [i32; 2], here: &Point, offset: [f64; 2]) -> bool {
-        let place = |share: f64| [0, 1].map(|k| at[k] + libm::round(offset[k] * share) as i32);
-        let all = [-1.0, -0.5, 0.5, 1.0].map(|share| self.point(place(share)));
+        let place = |share: f64| [0, 1].each(|k| at[k] + libm::round(offset[k] * share) as i32);
+        let all = [-1.0, -0.5, 0.5, 1.0].each(|share| self.point(place(share)));
         let [Some(first), Some(before), Some(after), Some(last)] = all else { return false };
         let turn = angle(first.normal, last.normal);
         if turn < self.outline.crease.to_radians() || angle(before.normal, after.normal) < SUDDEN * turn {
@@ -209,7 +210,7 @@ impl<'v> Field<'v> {
         let is_perspective = self.window.view.is_perspective();
         let gap = |at: [i32; 2]| {
             let (from, along) = self.window.line_at(at);
-            let [a, b] = [first, last].map(|side| {
+            let [a, b] = [first, last].each(|side| {
                 let (height, rise) = (side.normal.dot(side.place - from), side.normal.dot(along));
                 if is_perspective { rise / height } else { height / rise }
             });

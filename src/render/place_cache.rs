@@ -2,6 +2,7 @@
 
 use crate::error::Error;
 use crate::lattice::Cell;
+use crate::lattice::Each;
 use crate::memory;
 use alloc::vec::Vec;
 use hashbrown::HashMap;
@@ -25,7 +26,7 @@ impl From<[i32; 3]> for Place {
     /// Three integers from −2^20 to 2^20 − 1.
     #[inline]
     fn from(at: [i32; 3]) -> Place {
-        let [x, y, z] = at.map(|i| u64::from(i.wrapping_add(1 << 20) as u32));
+        let [x, y, z] = at.each(|i| u64::from(i.wrapping_add(1 << 20) as u32));
         Place(x | y << 21 | z << 42)
     }
 }
@@ -34,7 +35,7 @@ impl From<Cell> for Place {
     /// A cell of any level; the first set bit of each coordinate encodes the level.
     #[inline]
     fn from(cell: Cell) -> Place {
-        let [x, y, z] = cell.at.map(|i| u64::from(i + (1 << cell.level)));
+        let [x, y, z] = cell.at.each(|i| u64::from(i + (1 << cell.level)));
         Place(x | y << 21 | z << 42)
     }
 }

@@ -1,5 +1,6 @@
 //! Planes fitted to the surface in a window of cells.
 
+use crate::lattice::Each;
 use glam::{DMat3, DVec3, Vec3, Vec3A};
 
 /// A plane through the surface around a block.
@@ -85,7 +86,7 @@ impl Fitting {
 
     fn through(&self, crossings: &[Crossings; 3]) -> Plane {
         let count: f64 = crossings.iter().map(|found| f64::from(found.count)).sum();
-        let out = DVec3::from(crossings.map(|found| f64::from(found.out))).normalize_or_zero();
+        let out = DVec3::from(crossings.each(|found| f64::from(found.out))).normalize_or_zero();
         // Crossings of lines parallel to the surface are unreliable.
         let weights = (out * out).to_array();
         let total: f64 = (0..3).map(|axis| weights[axis] * f64::from(crossings[axis].count)).sum();
@@ -120,8 +121,8 @@ impl Fitting {
         }
         let flat = ((self.plane[1] - off) / (self.plane[1] - self.plane[0])).clamp(0.0, 1.0);
         // A thin plate has both sides in the window. They cancel out, and only its rim would remain.
-        let all = DVec3::from(crossings.map(|found| f64::from(found.all))).length();
-        let agreement = DVec3::from(crossings.map(|found| f64::from(found.out))).length() / all;
+        let all = DVec3::from(crossings.each(|found| f64::from(found.all))).length();
+        let agreement = DVec3::from(crossings.each(|found| f64::from(found.out))).length() / all;
         let confidence = flat * ((agreement - AGREEMENT[0]) / (AGREEMENT[1] - AGREEMENT[0])).clamp(0.0, 1.0);
         let normal = if normal.dot(out) < 0.0 { -normal } else { normal };
         Plane { normal: normal.as_vec3(), confidence: confidence as f32 }

@@ -6,6 +6,7 @@ use super::outline::Outline;
 use super::stage::Stage;
 use super::window::Window;
 use crate::lattice::Bounds;
+use crate::lattice::Each;
 use crate::query::Ray;
 use glam::DVec3;
 
@@ -71,7 +72,7 @@ impl SightLine {
         let aside = |depth: f64| (ASIDE * unit).max(ROUNDINGS * depth);
         // Far from the universe a time would be too inexact for a place in it.
         let enters = (0..3).fold(0.0f64, |enters, axis| {
-            let planes = [low[axis], high[axis]].map(|plane| (plane - eye[axis]) / along[axis]);
+            let planes = [low[axis], high[axis]].each(|plane| (plane - eye[axis]) / along[axis]);
             // (A line parallel to the planes does not cross them.)
             if along[axis] == 0.0 { enters } else { enters.max(planes[0].min(planes[1])) }
         });
@@ -88,8 +89,8 @@ impl SightLine {
     #[inline]
     pub fn beyond(&self, t: f64) -> Option<Ray> {
         // Components far below a rounding of the others only disturb.
-        let plain = self.along.to_array().map(|c| if c.abs() < 1e-60 { 0.0 } else { c });
-        let from = (self.from + self.along * t).to_array().map(|c| if c.abs() < 1e-60 { 0.0 } else { c });
+        let plain = self.along.to_array().each(|c| if c.abs() < 1e-60 { 0.0 } else { c });
+        let from = (self.from + self.along * t).to_array().each(|c| if c.abs() < 1e-60 { 0.0 } else { c });
         Ray::new(from, plain).and_then(|ray| ray.until(self.length - t)).ok()
     }
 

@@ -8,6 +8,7 @@ use super::tile::Tile;
 use crate::attribute::Attribute;
 use crate::control::Control;
 use crate::error::Error;
+use crate::lattice::Each;
 use crate::lattice::axes;
 use crate::lattice::valid::numbers;
 use crate::lattice::{Cell, Frame};
@@ -92,7 +93,7 @@ impl SlicePlane {
     fn steps(&self, view: &View, along: DVec3, depth: f64) -> DVec3 {
         let camera = &view.camera;
         let pixel = view.pixel_at(depth);
-        let [x, y] = [camera.right(), camera.up()].map(|side| {
+        let [x, y] = [camera.right(), camera.up()].each(|side| {
             let side = DVec3::from(side);
             side - along * (self.normal.dot(side) / self.normal.dot(along))
         });
@@ -255,7 +256,7 @@ impl<W: Worker> Finder for InSolid<'_, W> {
 impl Draw for SliceLayer<'_> {
     fn prepare<'a>(&'a self, stage: &Stage<'a>) -> Result<Box<dyn Painter + 'a>, Error> {
         let ready = self.source.ready(stage.job.control())?;
-        let colours = self.colours.map(Light::of);
+        let colours = self.colours.each(Light::of);
         let outlines = self.outlines.map(Light::of);
         Ok(Box::new(Slice { layer: self, stage: *stage, ready, colours, outlines }))
     }

@@ -12,6 +12,7 @@ use super::told::{Told, ask, probe};
 use crate::attribute::Attribute;
 use crate::control::Control;
 use crate::error::Error;
+use crate::lattice::Each;
 use crate::lattice::{Cell, Cube, Frame, MAX_DEPTH, Ray};
 use crate::memory;
 use crate::octree::{Octree, Tag};
@@ -255,7 +256,7 @@ impl SolidPainter<'_> {
         if let Some(met) = self.told(hand, (cell, &part), sight, ([enters, leaves], face))? {
             return Ok(met);
         }
-        let mut ways = OCTANTS.map(|k| {
+        let mut ways = OCTANTS.each(|k| {
             let [a, b] = stay(frame, cell.child(k), sight);
             (a.max(enters), b.min(leaves), cell.child(k))
         });
@@ -385,7 +386,7 @@ impl SolidPainter<'_> {
         let point = sight.from + sight.along * t;
         for offset in [DVec3::ZERO, outward, -outward] {
             let Some(at) = finest.cell_of((point + offset).to_array()) else { continue };
-            let near = Cell { level, at: at.map(|a| a >> (MAX_DEPTH - level)) };
+            let near = Cell { level, at: at.each(|a| a >> (MAX_DEPTH - level)) };
             let Known::Enclosed(found) = self.known(hand, near)? else { continue };
             let normal = DVec3::from(found.slabs[0].normal);
             let [enters, leaves] = stay(&finest, near, sight);
@@ -506,7 +507,7 @@ fn entry(frame: &Frame, cell: Cell, sight: &SightLine) -> DVec3 {
 /// The lower corner and the edge of a cell, up to rounding.
 fn corner_of(frame: &Frame, cell: Cell) -> (DVec3, f64) {
     let edge = frame.edge() / f64::from(1u32 << cell.level);
-    (DVec3::from(frame.origin()) + DVec3::from(cell.at.map(f64::from)) * edge, edge)
+    (DVec3::from(frame.origin()) + DVec3::from(cell.at.each(f64::from)) * edge, edge)
 }
 
 /// The times at which a line of sight enters and leaves a cell. The line misses the cell if it leaves before
@@ -515,7 +516,7 @@ fn stay(frame: &Frame, cell: Cell, sight: &SightLine) -> [f64; 2] {
     let (low, edge) = corner_of(frame, cell);
     let axes = (0..3).filter(|&axis| sight.along[axis] != 0.0);
     axes.fold([f64::NEG_INFINITY, f64::INFINITY], |[enters, leaves], axis| {
-        let [a, b] = [0.0, edge].map(|more| (low[axis] + more - sight.from[axis]) / sight.along[axis]);
+        let [a, b] = [0.0, edge].each(|more| (low[axis] + more - sight.from[axis]) / sight.along[axis]);
         [enters.max(a.min(b)), leaves.min(a.max(b))]
     })
 }

@@ -6,6 +6,7 @@ use super::light::Light;
 use super::stage::Stage;
 use super::tile::Tile;
 use crate::error::Error;
+use crate::lattice::Each;
 use crate::memory;
 use alloc::vec::Vec;
 use glam::{DVec2, DVec3};
@@ -59,9 +60,9 @@ impl Strokes {
                 stage.job.check()?;
             }
             let cut = stage.clip.planes().iter().try_fold(line, |line, &(normal, offset)| {
-                cut(line, line.map(|end| normal.dot(end) + offset))
+                cut(line, line.each(|end| normal.dot(end) + offset))
             });
-            let ends = cut.map(|line| line.map(|end| view.camera.seen(end)));
+            let ends = cut.map(|line| line.each(|end| view.camera.seen(end)));
             let near = |ends: [DVec3; 2]| match view.is_perspective() {
                 true => NEAREST * ends[0].z.max(ends[1].z),
                 false => 0.0,
@@ -69,14 +70,14 @@ impl Strokes {
             seen.extend(ends.and_then(|ends| {
                 let near = near(ends);
                 // NaN is not visible.
-                let ends = cut_numbers(ends, ends.map(|end| end.z - near))?;
-                Some(Line { ends: ends.map(|end| End::new(view, end, near)), opacity })
+                let ends = cut_numbers(ends, ends.each(|end| end.z - near))?;
+                Some(Line { ends: ends.each(|end| End::new(view, end, near)), opacity })
             }));
         }
         let margin = DVec2::splat(half_width);
         let size = DVec2::new(f64::from(view.width), f64::from(view.height));
         let bins = Bins::new([view.width, view.height], seen.len(), stage.job, |i| {
-            let [a, b] = within(seen[i].ends.map(|end| end.place), -margin, size + margin)?;
+            let [a, b] = within(seen[i].ends.each(|end| end.place), -margin, size + margin)?;
             let (low, high) = (a.min(b) - margin, a.max(b) + margin);
             Some([low.x, low.y, high.x, high.y])
         })?;
@@ -117,7 +118,7 @@ impl Strokes {
             // The part of the line that lies within reach of the row.
             let part = |y: f64| ((y - a.place.y) / along.y).clamp(0.0, 1.0);
             let parts = if along.y == 0.0 { [0.0, 1.0] } else { [part(y - reach), part(y + reach)] };
-            let ends = parts.map(|part| a.place.x + along.x * part);
+            let ends = parts.each(|part| a.place.x + along.x * part);
             let (left, right) = (ends[0].min(ends[1]) - reach, ends[0].max(ends[1]) + reach);
             for column in tile.between(0, left, right) {
                 let from = DVec2::from(tile.place(column, row)) + NUDGE - a.place;
@@ -149,7 +150,7 @@ impl End {
 /// The part of a line where a linear function is not negative, given its values at the ends.
 fn cut(line: [DVec3; 2], heights: [f64; 2]) -> Option<[DVec3; 2]> {
     let [a, b] = line;
-    match heights.map(|height| height >= 0.0) {
+    match heights.each(|height| height >= 0.0) {
         [true, true] => Some(line),
         [false, false] => None,
         [a_is_kept, _] => {
@@ -176,7 +177,7 @@ fn within(line: [DVec2; 2], low: DVec2, high: DVec2) -> Option<[DVec2; 2]> {
             }
             continue;
         }
-        let [enter, leave] = [low, high].map(|side| (side[axis] - a[axis]) / along[axis]);
+        let [enter, leave] = [low, high].each(|side| (side[axis] - a[axis]) / along[axis]);
         from = enter.min(leave).max(from);
         to = enter.max(leave).min(to);
     }

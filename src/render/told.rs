@@ -2,6 +2,7 @@
 
 use crate::control::Control;
 use crate::error::Error;
+use crate::lattice::Each;
 use crate::lattice::{Cell, Frame, Ray};
 use crate::octree::{Block, Planes};
 use crate::solid::forward::{forward_batch, forward_classifier, forward_parts};
@@ -43,7 +44,7 @@ impl<C: Classifier> Classifier for Told<C> {
 
 /// A ray that meets nothing, so that a solid answers it at once.
 pub fn probe(frame: &Frame) -> Result<Ray, Error> {
-    Ray::new(frame.origin().map(|low| low - frame.edge()), [-1.0; 3])
+    Ray::new(frame.origin().each(|low| low - frame.edge()), [-1.0; 3])
 }
 
 pub struct ToldWorker<W> {

@@ -2,6 +2,7 @@
 
 use super::light::Light;
 use crate::error::Error;
+use crate::lattice::Each;
 use crate::lattice::valid::{length as valid_length, numbers};
 use crate::memory;
 use alloc::vec::Vec;
@@ -170,7 +171,7 @@ impl Transfer {
     /// counts as missing.
     pub fn colour(&self, value: &[f64]) -> [u8; 3] {
         match *value {
-            [r, g, b] | [r, g, b, _] if is_known(value) => [r, g, b].map(|x| step_of(x / 255.0) as u8),
+            [r, g, b] | [r, g, b, _] if is_known(value) => [r, g, b].each(|x| step_of(x / 255.0) as u8),
             [x] | [x, _] if is_known(value) => self.map.colour(self.place(x)),
             _ => Transfer::NEUTRAL,
         }
@@ -259,7 +260,7 @@ impl Looks {
     pub fn of(&self, value: &[f64]) -> (DVec3, f64) {
         let colour = match *value {
             [r, g, b] | [r, g, b, _] if is_known(value) => {
-                DVec3::from([r, g, b].map(|x| self.bytes[step_of(x / 255.0)]))
+                DVec3::from([r, g, b].each(|x| self.bytes[step_of(x / 255.0)]))
             }
             [x] | [x, _] if is_known(value) => self.map[step_of(self.transfer.place(x))],
             _ => self.neutral,

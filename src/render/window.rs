@@ -1,6 +1,7 @@
 //! A part of a picture, and the lines of sight of its samples.
 
 use super::camera::View;
+use crate::lattice::Each;
 use glam::DVec3;
 
 /// The samples of some pixels.
@@ -18,8 +19,8 @@ impl<'v> Window<'v> {
     /// The window with some more pixels on each side, up to the borders of the picture.
     pub fn widened(&self, pixels: u32) -> Window<'v> {
         let whole = [self.view.width, self.view.height];
-        let first = self.first.map(|first| first.saturating_sub(pixels));
-        let end = [0, 1].map(|k| (self.first[k] + self.size[k] + pixels).min(whole[k]));
+        let first = self.first.each(|first| first.saturating_sub(pixels));
+        let end = [0, 1].each(|k| (self.first[k] + self.size[k] + pixels).min(whole[k]));
         Window { first, size: [end[0] - first[0], end[1] - first[1]], ..*self }
     }
 

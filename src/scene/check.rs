@@ -1,5 +1,6 @@
 //! Converts calls to shapes.
 
+use crate::lattice::Each;
 use alloc::boxed::Box;
 use alloc::format;
 use alloc::string::String;
@@ -276,7 +277,7 @@ impl Checker<'_> {
         let Some(figure) = self.figure(call, first)? else { return Ok(Shape::Nothing) };
         let [low, high] = heights(height, is_centred);
         // As in OpenSCAD, an extrusion downwards is empty, and negative scales are 0.
-        let scale = scale.map(|scale| scale.max(0.0));
+        let scale = scale.each(|scale| scale.max(0.0));
         if low >= high || direction[2] <= 0.0 {
             return self.node(Node::Solid(Csg::empty()));
         }
@@ -454,7 +455,7 @@ impl Checker<'_> {
         if sides.iter().any(|[low, high]| low >= high) {
             return Ok(Node::Solid(Csg::empty()));
         }
-        let cuboid = Csg::cuboid(sides.map(|side| side[0]), sides.map(|side| side[1]));
+        let cuboid = Csg::cuboid(sides.each(|side| side[0]), sides.each(|side| side[1]));
         Ok(Node::Solid(self.at(call, cuboid)?))
     }
 
@@ -474,7 +475,7 @@ impl Checker<'_> {
                     let angle = 180.0 * (ring as f64 + 0.5) / rings as f64;
                     [radius * sin_degrees(angle), radius * cos_degrees(angle)]
                 }));
-                let ends = [profile.last(), profile.first()].map(|end| [0.0, end.map_or(0.0, |end| end[1])]);
+                let ends = [profile.last(), profile.first()].each(|end| [0.0, end.map_or(0.0, |end| end[1])]);
                 profile.extend(ends);
                 self.at(call, Figure::polygon(&profile))?.turned(fan)
             }

@@ -1,5 +1,6 @@
 //! Calls that move their blocks: matrices, and the corresponding calls of OpenSCAD's own language.
 
+use crate::lattice::Each;
 use alloc::format;
 
 use super::Node;
@@ -40,7 +41,7 @@ impl Checker<'_> {
         let scale = if factors.is_list() { components(&factors, 1.0)? } else { [factors.number()?; 3] };
         self.moved(
             &factors,
-            linear([0, 1, 2].map(|i| [0, 1, 2].map(|j| if i == j { scale[i] } else { 0.0 }))),
+            linear([0, 1, 2].each(|i| [0, 1, 2].each(|j| if i == j { scale[i] } else { 0.0 }))),
             first,
         )
     }
@@ -52,10 +53,10 @@ impl Checker<'_> {
         let n = components(&normal, 0.0)?;
         let longest = n.iter().fold(0.0, |longest: f64, c| longest.max(c.abs()));
         // The division is last in each entry, so that planes of two equal axes swap these exactly.
-        let n = n.map(|c| if longest > 0.0 { c / longest } else { 0.0 });
+        let n = n.each(|c| if longest > 0.0 { c / longest } else { 0.0 });
         let square = n.iter().map(|c| c * c).sum::<f64>().max(f64::MIN_POSITIVE);
         let entry = |i: usize, j: usize| f64::from(u8::from(i == j)) - 2.0 * (n[i] * n[j]) / square;
-        self.moved(&normal, linear([0, 1, 2].map(|i| [0, 1, 2].map(|j| entry(i, j)))), first)
+        self.moved(&normal, linear([0, 1, 2].each(|i| [0, 1, 2].each(|j| entry(i, j)))), first)
     }
 
     /// Rotates by an angle about an axis, which is z by default; or about x, then y, then z, each by its own
@@ -110,13 +111,13 @@ fn components(vector: &Item<'_>, rest: f64) -> Result<[f64; 3], Error> {
 
 /// Returns a map that keeps the origin fixed.
 fn linear(matrix: [[f64; 3]; 3]) -> Rows {
-    matrix.map(|[x, y, z]| [x, y, z, 0.0])
+    matrix.each(|[x, y, z]| [x, y, z, 0.0])
 }
 
 /// Returns the rotation about an axis through the origin; the zero vector as an axis rotates nothing.
 fn about(axis: [f64; 3], degrees: f64) -> [[f64; 3]; 3] {
     let longest = axis.iter().fold(0.0, |longest: f64, c| longest.max(c.abs()));
-    let [x, y, z] = axis.map(|c| if longest > 0.0 { c / longest } else { 0.0 });
+    let [x, y, z] = axis.each(|c| if longest > 0.0 { c / longest } else { 0.0 });
     let length = libm::sqrt(x * x + y * y + z * z);
     if length == 0.0 {
         return [[1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]];
@@ -132,5 +133,5 @@ fn about(axis: [f64; 3], degrees: f64) -> [[f64; 3]; 3] {
 }
 
 fn product(a: [[f64; 3]; 3], b: [[f64; 3]; 3]) -> [[f64; 3]; 3] {
-    a.map(|row| [0, 1, 2].map(|j| row[0] * b[0][j] + row[1] * b[1][j] + row[2] * b[2][j]))
+    a.each(|row| [0, 1, 2].each(|j| row[0] * b[0][j] + row[1] * b[1][j] + row[2] * b[2][j]))
 }

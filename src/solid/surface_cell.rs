@@ -7,6 +7,7 @@ use super::half_space::{Placed, function};
 use super::{LayersQuestion, OpenSurfaces, Question};
 use crate::error::Error;
 use crate::lattice::Cell;
+use crate::lattice::Each;
 
 /// The functions in the children of a cell. `all` are the surfaces of the list, on the universe.
 pub(crate) fn split(all: &[Placed], cell: Cell, known: &OpenSurfaces) -> Result<[OpenSurfaces; 8], Error> {
@@ -18,7 +19,7 @@ pub(crate) fn split(all: &[Placed], cell: Cell, known: &OpenSurfaces) -> Result<
             *table = table.known(i, sides, k);
         }
     }
-    Ok(tables.map(|table| known.with_table(table).shortened()))
+    Ok(tables.each(|table| known.with_table(table).shortened()))
 }
 
 /// Answers a question about a cell by its function.

@@ -1,6 +1,7 @@
 //! Rays, nearest points and boxes against a solid, without cells.
 
 use crate::error::Error;
+use crate::lattice::Each;
 use crate::lattice::{Interval, Ray};
 use crate::memory;
 use crate::mesh::TriangleMesh;
@@ -72,7 +73,7 @@ impl RayTrace {
         let mut open: Option<RayCrossing> = None;
         loop {
             // At equal times, crossings begin before others end.
-            let times = [0, 1].map(|k| (sides[k].time(), sides[k].is_within));
+            let times = [0, 1].each(|k| (sides[k].time(), sides[k].is_within));
             let k = usize::from(times[1] < times[0]);
             let Some(crossing) = sides[k].advance() else { return Ok(united) };
             let state = match [sides[0].state, sides[1].state] {
@@ -108,7 +109,7 @@ impl RayTrace {
             // The complement is closed, too: it contains its limit points.
             crossing.is_met = before || crossing.is_inside_after;
             before = crossing.is_inside_after;
-            crossing.normal = crossing.normal.map(|c| -c);
+            crossing.normal = crossing.normal.each(|c| -c);
         }
     }
 

@@ -11,6 +11,7 @@ use super::size::{self, Least};
 use super::table::MARCHING_CUBES;
 use crate::control::{Job, WHOLE};
 use crate::error::{Error, MeshError};
+use crate::lattice::Each;
 use crate::lattice::axes;
 use crate::memory;
 use crate::parallel::each;
@@ -92,7 +93,7 @@ fn tasks(samples: &Samples<'_>) -> Result<Vec<Task>, Error> {
         // The first seven nodes lie outside, and the universe is their neighbour.
         let at = axes(|axis| (place >> axis & 1) as i32 - 1);
         let nodes = [0, 1, 2, 3, 4, 5, 6, 7]
-            .map(|j| if place | j == 7 && place & j == 0 { samples.root() } else { Node::Void });
+            .each(|j| if place | j == 7 && place & j == 0 { samples.root() } else { Node::Void });
         tasks.push(Task { e: 0, key: place as Key, at, nodes });
     }
     // Two levels down there are enough tasks.
@@ -149,7 +150,7 @@ fn split(
     put: &mut impl FnMut(Task) -> Result<(), Error>,
 ) -> Result<(), Error> {
     let sets = sets(samples, task)?;
-    let [solid, void] = [corners(sets.map(|sets| sets.solid)), corners(sets.map(|sets| sets.void))];
+    let [solid, void] = [corners(sets.each(|sets| sets.solid)), corners(sets.each(|sets| sets.void))];
     for c in bits(!(all(&solid) | all(&void))) {
         let mut nodes = [Node::Void; 8];
         for (node, (of, inner)) in nodes.iter_mut().zip(CORNER_AT[c as usize]) {
@@ -175,7 +176,7 @@ fn sets(samples: &Samples<'_>, task: &Task) -> Result<[super::samples::Sets; 8],
 /// Appends a block of the finest level, if the surface crosses it.
 #[inline(always)]
 fn leaf(samples: &Samples<'_>, task: &Task, list: &mut Vec<Block>) -> Result<(), Error> {
-    let words = corners(sets(samples, task)?.map(|sets| sets.solid));
+    let words = corners(sets(samples, task)?.each(|sets| sets.solid));
     let mixed = any(&words) & !all(&words);
     if mixed == 0 {
         return Ok(());

@@ -12,6 +12,7 @@ use super::table::{ENDS, MARCHING_CUBES};
 use crate::control::{Control, Job, WHOLE};
 use crate::dispatch::{Hot, with_popcount};
 use crate::error::Error;
+use crate::lattice::Each;
 use crate::lattice::{Cell, morton};
 use crate::memory;
 use crate::mesh::TriangleMesh;
@@ -159,7 +160,7 @@ pub fn marching_cubes_in(
                 memory::push(&mut own, vertices[vertex as usize])?;
             }
             for triangle in &mut list {
-                *triangle = triangle.map(|vertex| numbers[vertex as usize]);
+                *triangle = triangle.each(|vertex| numbers[vertex as usize]);
             }
             Ok(TriangleMesh::from_welded(own, list, 0, 0))
         })
@@ -230,7 +231,7 @@ impl Hot for Midpoints<'_> {
             }
             for axis in 0..3 {
                 for (c, vertex) in bits(block.cut[axis]).zip(&mut places) {
-                    let mut place = morton::position(c).map(|place| 2 * place as usize);
+                    let mut place = morton::position(c).each(|place| 2 * place as usize);
                     place[axis] += 1;
                     *vertex = [along[0][place[0]], along[1][place[1]], along[2][place[2]]];
                 }
@@ -274,7 +275,7 @@ impl Hot for Fill<'_> {
             for c in bits(self.list[i].mixed) {
                 let of_cell = &MARCHING_CUBES[configuration(&corners, c)];
                 for (triangle, place) in of_cell.list().iter().zip(&mut places) {
-                    *place = triangle.map(|edge| around.vertex(c, edge));
+                    *place = triangle.each(|edge| around.vertex(c, edge));
                 }
             }
         }

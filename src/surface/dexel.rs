@@ -14,6 +14,7 @@ use super::weld::weld;
 use crate::control::{Control, Job, WHOLE};
 use crate::dexel::{DexelFormat, DexelNormals, TriDexelRef};
 use crate::error::Error;
+use crate::lattice::Each;
 use crate::lattice::{Frame, axes};
 use crate::memory;
 use crate::mesh::TriangleMesh;
@@ -304,7 +305,7 @@ impl Rays<'_> {
                         Said::At { place, normal, several: more } => {
                             several += usize::from(more);
                             let t = place - (f64::from(edge.lower[edge.axis]) + 0.5);
-                            let normal = normal.map_or([0.0; 3], |normal| normal.map(|c| c as f32));
+                            let normal = normal.map_or([0.0; 3], |normal| normal.each(|c| c as f32));
                             hermite = Hermite { t: t.clamp(0.0, 1.0), normal };
                         }
                     }

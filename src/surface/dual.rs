@@ -25,6 +25,7 @@ use super::vanished::is_kept;
 use super::weld::weld;
 use crate::control::{Job, WHOLE};
 use crate::error::{Error, MeshError};
+use crate::lattice::Each;
 use crate::lattice::axes;
 use crate::lattice::morton;
 use crate::memory;
@@ -122,7 +123,7 @@ pub(super) fn extract(
         bodies = crossings.vanished(blocks, &covered)?;
         weld(vertices, triangles)?
     };
-    let [means, clamped] = [means, clamped].map(|count| count.into_inner() as u64);
+    let [means, clamped] = [means, clamped].each(|count| count.into_inner() as u64);
     Ok((mesh, DualCounts { means, clamped, vanished: bodies }))
 }
 
@@ -307,7 +308,7 @@ impl Cube {
     /// Returns whether the last edge along an axis begins inside; `None` if the edge is not cut.
     #[inline(always)]
     fn last_edge(&self, axis: usize) -> Option<bool> {
-        let [low, high] = ENDS[4 * axis + 3].map(|corner| self.configuration >> corner & 1);
+        let [low, high] = ENDS[4 * axis + 3].each(|corner| self.configuration >> corner & 1);
         (low != high).then_some(low == 1)
     }
 
@@ -372,7 +373,8 @@ impl Dual<'_> {
             }
             let inner = morton::position(c);
             let lower = axes(|axis| f64::from(4 * at[axis] + inner[axis] as i32) + 0.5);
-            let bounds = |axis: usize| [0.0, 1.0].map(|side| self.lattice.position(axis, lower[axis] + side));
+            let bounds =
+                |axis: usize| [0.0, 1.0].each(|side| self.lattice.position(axis, lower[axis] + side));
             let bounds = [bounds(0), bounds(1), bounds(2)];
             let mut set = [[0.0; 3]; 4];
             let count = (loops.count as usize).min(4);
@@ -434,7 +436,7 @@ impl Dual<'_> {
                     for along in [b, t] {
                         let half = 0.5 * f64::from(corner >> along & 1);
                         let [low, high] =
-                            [half, half + 0.5].map(|part| self.lattice.position(along, lower[along] + part));
+                            [half, half + 0.5].each(|part| self.lattice.position(along, lower[along] + part));
                         is_welded &= low < place[along] && place[along] < high;
                     }
                     if let Some(vertex) = places.next() {
@@ -463,8 +465,8 @@ impl Dual<'_> {
                 let Some(starts_inside) = cube.last_edge(axis) else { continue };
                 // Counter-clockwise as seen from above.
                 let (u, v) = (1 << ((axis + 1) % 3), 1 << ((axis + 2) % 3));
-                let mut quad = [0, u, u | v, v].map(|step| self.vertex(&nodes, c, axis, step));
-                let mut joints = sides(axis).map(|side| {
+                let mut quad = [0, u, u | v, v].each(|step| self.vertex(&nodes, c, axis, step));
+                let mut joints = sides(axis).each(|side| {
                     let first = self.cubes.joint(self.blocks, &nodes, c, side)?;
                     // The number of the segment that ends at this edge: the segment around its inside end.
                     let b = OTHERS[side.1][0];
@@ -481,7 +483,7 @@ impl Dual<'_> {
                 let number = around.vertex(c, edge);
                 crossing[axis] += crossings.at(number).t;
                 let crossing = axes(|axis| self.lattice.position(axis, crossing[axis]));
-                if self.turns(axis, crossing, quad.map(|vertex| vertices[vertex as usize])) {
+                if self.turns(axis, crossing, quad.each(|vertex| vertices[vertex as usize])) {
                     quad.rotate_left(1);
                     joints.rotate_left(1);
                 }
@@ -501,7 +503,7 @@ impl Dual<'_> {
     #[inline(always)]
     fn vertex(&self, nodes: &[Option<usize>; 8], c: u32, axis: usize, step: usize) -> u32 {
         let (_, cube) = self.cubes.beside(self.blocks, nodes, c, step);
-        let [b, c] = OTHERS[axis].map(|other| !step >> other & 1);
+        let [b, c] = OTHERS[axis].each(|other| !step >> other & 1);
         let edge = 4 * axis + b + 2 * c;
         cube.vertex + u32::from(LOOPS[cube.configuration as usize].of_edge[edge])
     }
@@ -512,7 +514,7 @@ impl Dual<'_> {
         let (u, v) = ((axis + 1) % 3, (axis + 2) % 3);
         let cell = self.lattice.cell();
         let [p, q, r, s] =
-            corners.map(|corner| [u, v, axis].map(|axis| (corner[axis] - crossing[axis]) / cell));
+            corners.each(|corner| [u, v, axis].each(|axis| (corner[axis] - crossing[axis]) / cell));
         let distances = [height([p, q, r, s]), height([q, r, s, p])];
         if let [Some(first), Some(second)] = distances
             && (first.abs() - second.abs()).abs() > ALIKE

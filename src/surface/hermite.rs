@@ -2,6 +2,7 @@
 //! model.
 
 use crate::dexel::{OTHERS, Place, RowsRef, Span, TriDexelRef, decoded, with_rows};
+use crate::lattice::Each;
 use crate::walk::Edge;
 
 /// The crossing of a cut edge between two samples.
@@ -17,7 +18,7 @@ impl Hermite {
     /// The normal, if it is known.
     #[inline(always)]
     pub fn normal(&self) -> Option<[f64; 3]> {
-        (self.normal != [0.0; 3]).then(|| self.normal.map(f64::from))
+        (self.normal != [0.0; 3]).then(|| self.normal.each(f64::from))
     }
 }
 
@@ -48,7 +49,7 @@ pub(super) fn said(model: &TriDexelRef<'_>, edge: &Edge) -> Said {
 
 fn on_ray<S: Span>(rows: &RowsRef<'_, S>, edge: &Edge, depth: u8) -> Said {
     // (There are no rays before the universe.)
-    let ray = OTHERS[edge.axis].map(|axis| edge.lower[axis] as u32);
+    let ray = OTHERS[edge.axis].each(|axis| edge.lower[axis] as u32);
     let gap = (edge.lower[edge.axis] + 1) as u32;
     let range = rows.ray(ray);
     let spans = &rows.columns.spans[range.clone()];

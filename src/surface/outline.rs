@@ -16,6 +16,7 @@ use super::snapped::Snapped;
 use super::table::{ENDS, MARCHING_CUBES, MOST, Triangles};
 use crate::control::Job;
 use crate::error::{Error, MeshError};
+use crate::lattice::Each;
 use crate::lattice::axes;
 use crate::memory;
 use crate::parallel;
@@ -150,7 +151,7 @@ fn corners(sides: &[Side], parallel: bool) -> Result<Vec<u64>, Error> {
     let mut before = None;
     for side in sides {
         if before.replace((side.at, side.direction())) != Some((side.at, side.direction())) {
-            ends.extend(side.ends().map(|end| (end, side.direction())));
+            ends.extend(side.ends().each(|end| (end, side.direction())));
         }
     }
     parallel::sort(&mut ends, parallel);
@@ -233,7 +234,7 @@ impl OfCell {
         for (from, to, plane) in &self.sides[..self.count] {
             let way = axes(|axis| to[axis] - from[axis]);
             let steps = way.iter().map(|w| w.abs()).max().unwrap_or(0);
-            let by = way.map(i32::signum);
+            let by = way.each(i32::signum);
             sides.try_reserve(steps as usize)?;
             for k in 0..steps {
                 let from = axes(|axis| corner[axis] + from[axis] + k * by[axis]);
@@ -248,10 +249,9 @@ impl OfCell {
 fn outlines(table: &Snapped) -> [OfCell; 256] {
     let mut outlines = [OfCell::NONE; 256];
     for (of_cell, triangles) in outlines.iter_mut().zip(&table.triangles) {
-        let placed = triangles
-            .list()
-            .iter()
-            .map(|&corners| (plane::of_corners(corners), corners.map(|corner| plane::corner(corner.into()))));
+        let placed = triangles.list().iter().map(|&corners| {
+            (plane::of_corners(corners), corners.each(|corner| plane::corner(corner.into())))
+        });
         *of_cell = OfCell::of(placed);
     }
     outlines
@@ -269,7 +269,7 @@ pub(super) fn super_triangles(cell: &Cell, corner: [i32; 3]) -> impl Iterator<It
     let triangles: &'static Triangles = &MARCHING_CUBES[cell.configuration as usize];
     let (plane, size) = (cell.plane, 1 << cell.level);
     let placed = triangles.list().iter().map(move |triangle| {
-        triangle.map(|edge| {
+        triangle.each(|edge| {
             let (axis, lower) = (edge as usize / 4, plane::corner(ENDS[edge as usize][0].into()));
             let mut point = axes(|axis| corner[axis] + size * lower[axis]);
             // A cut edge crosses the plane.

@@ -4,6 +4,7 @@
 //! are −1, 0 and 1, and d is an integer. There are 26 such normals, 13 up to sign.
 
 use super::simple::Snap;
+use crate::lattice::Each;
 use crate::lattice::axes;
 
 /// A plane with its outer side. Planes ascend by their normals, then by their offsets.
@@ -121,7 +122,7 @@ pub(super) fn of_configuration(configuration: usize, snap: Snap) -> Plane {
 
 /// The plane of a triangle whose corners are corners of a cell.
 pub(super) fn of_corners(corners: [u8; 3]) -> Plane {
-    let [p, q, r] = corners.map(|c| corner(c.into()));
+    let [p, q, r] = corners.each(|c| corner(c.into()));
     let (u, v) = (axes(|k| q[k] - p[k]), axes(|k| r[k] - p[k]));
     Plane::through(axes(|k| u[(k + 1) % 3] * v[(k + 2) % 3] - u[(k + 2) % 3] * v[(k + 1) % 3]), p)
 }

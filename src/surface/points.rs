@@ -1,5 +1,7 @@
 //! Numbers of samples, and steps between neighbouring samples.
 
+use crate::lattice::Each;
+
 /// Bits of a coordinate.
 const BITS: u32 = 21;
 /// Added to coordinates, so that −1 becomes non-negative.
@@ -8,13 +10,13 @@ const BIAS: i32 = 1;
 /// The number of a sample: z, y and x plus one, 21 bits each. The difference of two numbers depends only on
 /// the difference of the samples.
 pub(super) fn code(at: [i32; 3]) -> u64 {
-    let [x, y, z] = at.map(|a| (a + BIAS) as u64);
+    let [x, y, z] = at.each(|a| (a + BIAS) as u64);
     z << (2 * BITS) | y << BITS | x
 }
 
 /// The sample of a number.
 pub(super) fn position(code: u64) -> [i32; 3] {
-    [0, 1, 2].map(|axis| (code >> (axis * BITS) & ((1 << BITS) - 1)) as i32 - BIAS)
+    [0, 1, 2].each(|axis| (code >> (axis * BITS) & ((1 << BITS) - 1)) as i32 - BIAS)
 }
 
 /// A step to a neighbouring sample, along an axis or a diagonal. The directions up to sign are 0 to 12.
@@ -34,7 +36,7 @@ impl Step {
     /// The amount by which a forward step changes the number of a sample.
     pub fn stride(direction: u8) -> u64 {
         let n = i32::from(direction) + 14;
-        let by = [n % 3 - 1, n / 3 % 3 - 1, n / 9 - 1].map(i64::from);
+        let by = [n % 3 - 1, n / 3 % 3 - 1, n / 9 - 1].each(i64::from);
         (by[0] + (by[1] << BITS) + (by[2] << (2 * BITS))) as u64
     }
 }

@@ -8,6 +8,7 @@ use super::points;
 use super::simple::Snap;
 use crate::control::Job;
 use crate::error::{Error, MeshError};
+use crate::lattice::Each;
 use crate::lattice::axes;
 use crate::memory;
 use crate::parallel;
@@ -29,7 +30,7 @@ pub(super) fn triangles(
             let corner = cell.corner(bias);
             if cell.level == 0 {
                 for triangle in table.triangles[cell.configuration as usize].list() {
-                    let points = triangle.map(|c| {
+                    let points = triangle.each(|c| {
                         let place = plane::corner(c.into());
                         points::code(axes(|axis| corner[axis] + place[axis]))
                     });
@@ -37,7 +38,7 @@ pub(super) fn triangles(
                 }
             } else {
                 for triangle in super_triangles(cell, corner) {
-                    memory::push(&mut found, triangle.map(points::code))?;
+                    memory::push(&mut found, triangle.each(points::code))?;
                 }
             }
         }
@@ -53,6 +54,6 @@ pub(super) fn triangles(
     }
     let number = |point: u64| vertices.partition_point(|&vertex| vertex < point) as u32;
     let mut triangles = memory::with_capacity(count)?;
-    triangles.extend(found.iter().flatten().map(|triangle| triangle.map(number)));
+    triangles.extend(found.iter().flatten().map(|triangle| triangle.each(number)));
     Ok((vertices, triangles))
 }

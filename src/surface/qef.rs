@@ -6,6 +6,7 @@
 //! eigenvectors of the normals' matrix with small eigenvalues are ignored; in their directions the result is
 //! the mean of the points.
 
+use crate::lattice::Each;
 use crate::lattice::axes;
 use crate::lattice::exact::sqrt;
 
@@ -67,9 +68,9 @@ impl Qef {
         if self.points == 0 {
             return Minimum { at: [0.5; 3], clamped: false, is_mean: true };
         }
-        let mean = self.sum.map(|sum| sum / f64::from(self.points));
+        let mean = self.sum.each(|sum| sum / f64::from(self.points));
         if self.planes == 0 {
-            return Minimum { at: mean.map(|c| c.clamp(0.0, 1.0)), clamped: false, is_mean: true };
+            return Minimum { at: mean.each(|c| c.clamp(0.0, 1.0)), clamped: false, is_mean: true };
         }
         let (values, vectors) = eigen(self.matrix);
         let greatest = values.iter().fold(0.0, |most: f64, &value| most.max(value));
@@ -109,7 +110,7 @@ impl Qef {
 /// are solved for.
 fn in_cube(matrix: &[f64; 6], best: [f64; 3]) -> [f64; 3] {
     let m = full(matrix);
-    let (mut least, mut at) = (f64::INFINITY, best.map(|c| if c > 0.5 { 1.0 } else { 0.0 }));
+    let (mut least, mut at) = (f64::INFINITY, best.each(|c| if c > 0.5 { 1.0 } else { 0.0 }));
     // Each axis is at its lower end, at its upper end, or free; the last combination would be all free.
     for combination in 0..26 {
         let states = [combination % 3, combination / 3 % 3, combination / 9];
@@ -168,7 +169,7 @@ fn full(&[xx, xy, xz, yy, yz, zz]: &[f64; 6]) -> [[f64; 3]; 3] {
 }
 
 fn multiplied(matrix: &[f64; 6], v: [f64; 3]) -> [f64; 3] {
-    full(matrix).map(|row| dot(row, v))
+    full(matrix).each(|row| dot(row, v))
 }
 
 fn dot(a: [f64; 3], b: [f64; 3]) -> f64 {

@@ -1,6 +1,7 @@
 //! The samples of an octree: its finest cells, inside or outside.
 
 use crate::error::{Damage, Error};
+use crate::lattice::Each;
 use crate::lattice::morton;
 use crate::octree::{OctreeRef, Tag};
 
@@ -110,7 +111,7 @@ impl<'a> Samples<'a> {
             }
         };
         let size = 1i64 << (2 * (self.levels() - 1 - e));
-        let last = at.map(|a| 4 * i64::from(a) + 4);
+        let last = at.each(|a| 4 * i64::from(a) + 4);
         if last.iter().any(|last| last * size > i64::from(self.end)) {
             self.cut(&mut sets, last, size);
         }

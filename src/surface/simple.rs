@@ -13,6 +13,7 @@ use super::snapped::{FAT, Snapped, THIN};
 use crate::control::{Control, Job, WHOLE};
 use crate::dispatch::{Hot, with_popcount};
 use crate::error::{Error, MeshError};
+use crate::lattice::Each;
 use crate::lattice::axes;
 use crate::lattice::morton;
 use crate::memory;
@@ -256,7 +257,7 @@ impl Hot for Fill<'_> {
             for c in bits(block.mixed) {
                 let of_cell = &self.table.triangles[configuration(&corners, c)];
                 for (triangle, free) in of_cell.list().iter().zip(&mut free) {
-                    *free = triangle.map(|corner| {
+                    *free = triangle.each(|corner| {
                         let (node, inner) = CORNER_AT[c as usize][corner as usize];
                         let node = &nodes[node as usize];
                         node.vertex + rank(node.used, inner.into())

@@ -13,6 +13,7 @@ use super::size::Least;
 use super::weld::weld;
 use crate::control::{Control, Job};
 use crate::error::Error;
+use crate::lattice::Each;
 use crate::lattice::axes;
 use crate::lattice::{Frame, MAX_DEPTH, morton};
 use crate::mesh::TriangleMesh;
@@ -182,7 +183,7 @@ impl Corners {
         }
         // If doubles resolve the cells of the frame, they also resolve its corners, up to rounding.
         Lattice::new(frame)?;
-        let origin = frame.origin().map(|o| o - 0.5 * frame.cell_size());
+        let origin = frame.origin().each(|o| o - 0.5 * frame.cell_size());
         let frame_of_corners = Frame::new(origin, 2.0 * frame.edge(), frame.depth() + 1)?;
         let lattice = Lattice::new(&frame_of_corners)?;
         let tree =

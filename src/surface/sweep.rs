@@ -7,6 +7,7 @@
 //! are cut off. All vertices are integers, so every decision is exact.
 
 use crate::error::Error;
+use crate::lattice::Each;
 use crate::memory;
 use alloc::vec::Vec;
 use core::ops::Range;
@@ -225,7 +226,7 @@ impl Sweep {
         let corners = [self.links[lower as usize].point, v, self.links[upper as usize].point];
         let has_area = area(&self.points, corners) > 0;
         if has_area {
-            memory::push(triangles, corners.map(|corner| self.points[corner as usize].1))?;
+            memory::push(triangles, corners.each(|corner| self.points[corner as usize].1))?;
         }
         Ok(has_area)
     }
@@ -239,6 +240,6 @@ fn push(links: &mut Vec<Link>, point: u32) -> Result<u32, Error> {
 
 /// Twice the area of a triangle; positive if it turns counter-clockwise.
 fn area(points: &[Vertex], corners: [u32; 3]) -> i64 {
-    let [p, q, r] = corners.map(|corner| points[corner as usize].0.map(i64::from));
+    let [p, q, r] = corners.each(|corner| points[corner as usize].0.each(i64::from));
     (q[0] - p[0]) * (r[1] - p[1]) - (q[1] - p[1]) * (r[0] - p[0])
 }

@@ -8,6 +8,7 @@ use super::blocks::Blocks;
 use super::solid::edges;
 use crate::dexel::TriDexelRef;
 use crate::error::Error;
+use crate::lattice::Each;
 use crate::walk::Edge;
 use alloc::collections::VecDeque;
 use hashbrown::HashMap;
@@ -65,7 +66,7 @@ pub(super) fn vanished(
 /// The inside end of a cut edge.
 fn inner(edge: &Edge) -> [u32; 3] {
     // (The inside end lies in the universe.)
-    let mut centre = edge.lower.map(|at| at as u32);
+    let mut centre = edge.lower.each(|at| at as u32);
     if !edge.starts_inside {
         centre[edge.axis] = centre[edge.axis].wrapping_add(1);
     }
@@ -117,6 +118,6 @@ fn has_triangles(
 
 /// Returns whether a triangle is kept: its three corners are distinct.
 pub(super) fn is_kept(vertices: &[[f64; 3]], triangle: [u32; 3]) -> bool {
-    let [p, q, r] = triangle.map(|vertex| vertices[vertex as usize]);
+    let [p, q, r] = triangle.each(|vertex| vertices[vertex as usize]);
     p != q && q != r && r != p
 }

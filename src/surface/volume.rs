@@ -11,6 +11,7 @@ use super::solid::edges;
 use super::weld::weld;
 use crate::control::{Control, Job, WHOLE};
 use crate::error::{Error, MeshError};
+use crate::lattice::Each;
 use crate::lattice::axes;
 use crate::lattice::{LARGEST, SMALLEST};
 use crate::memory;
@@ -168,8 +169,8 @@ impl Places<'_> {
     /// volume does not cross it in this direction.
     fn crossing(&self, edge: &Edge, at: [i64; 3]) -> f64 {
         // (Places beyond such numbers are beyond the grid.)
-        let at = at.map(|a| i32::try_from(a).unwrap_or(i32::MAX - 1));
-        let starts_inside = self.volume.contains_voxel(at.map(|a| u32::try_from(a).unwrap_or(u32::MAX)));
+        let at = at.each(|a| i32::try_from(a).unwrap_or(i32::MAX - 1));
+        let starts_inside = self.volume.contains_voxel(at.each(|a| u32::try_from(a).unwrap_or(u32::MAX)));
         match self.volume.crossing_between(at, edge.axis) {
             Some(t) if starts_inside == edge.starts_inside => t,
             _ => 0.5,

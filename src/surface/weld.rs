@@ -1,6 +1,7 @@
 //! Merging vertices at one place.
 
 use crate::error::Error;
+use crate::lattice::Each;
 use crate::memory;
 use crate::mesh::TriangleMesh;
 use alloc::vec::Vec;
@@ -27,6 +28,6 @@ pub(super) fn weld(vertices: Vec<[f64; 3]>, triangles: Vec<[u32; 3]>) -> Result<
             vertices.push(vertex);
         }
     }
-    let triangles = mesh.triangles().iter().map(|triangle| triangle.map(|v| places[v as usize]));
+    let triangles = mesh.triangles().iter().map(|triangle| triangle.each(|v| places[v as usize]));
     Ok(TriangleMesh::from_welded(vertices, memory::collected(triangles)?, 0, 0))
 }

@@ -1,6 +1,7 @@
 //! The linear octree code of a cell.
 
 use crate::error::Error;
+use crate::lattice::Each;
 use crate::lattice::{Cell, MAX_DEPTH};
 use core::fmt;
 
@@ -133,7 +134,7 @@ pub(super) fn size(level: u8, depth: u8) -> u64 {
 /// The number of a valid cell.
 #[inline(always)]
 pub(super) fn number_of(cell: Cell, depth: u8) -> u64 {
-    let [x, y, z] = cell.at.map(|a| spread(a as u64));
+    let [x, y, z] = cell.at.each(|a| spread(a as u64));
     (x | y << 1 | z << 2) << (3 * (depth - cell.level))
 }
 
@@ -141,7 +142,7 @@ pub(super) fn number_of(cell: Cell, depth: u8) -> u64 {
 #[inline(always)]
 pub(super) fn cell_of(number: u64, level: u8, depth: u8) -> Cell {
     let own = number >> (3 * (depth - level));
-    Cell { level, at: [own, own >> 1, own >> 2].map(|bits| gather(bits) as u32) }
+    Cell { level, at: [own, own >> 1, own >> 2].each(|bits| gather(bits) as u32) }
 }
 
 /// Moves the low 21 bits to every third bit.

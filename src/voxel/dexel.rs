@@ -4,6 +4,7 @@ use super::record::VoxelKind;
 use crate::control::Control;
 use crate::dexel::{BLOCK, Occupied, TriDexelRef};
 use crate::error::Error;
+use crate::lattice::Each;
 use crate::lattice::Frame;
 use crate::lattice::axes;
 use crate::memory;
@@ -256,7 +257,7 @@ fn layer(
             blocks.get(blocks.partition_point(|block| block.at[0] < from)).map(|block| block.at[0])
         };
         let Some(x) = layers.iter().flatten().filter_map(first).min() else { break };
-        let strips = |x: Option<u32>| layers.map(|layer| Some((layer?.slab.strip(x?), layer?.z)));
+        let strips = |x: Option<u32>| layers.each(|layer| Some((layer?.slab.strip(x?), layer?.z)));
         let (own, before) = (strips(Some(x)), strips(x.checked_sub(1)));
         for i in 0..deep {
             let lower = if i > 0 { own } else { before };

@@ -5,6 +5,7 @@ use super::record::VoxelKind;
 use super::records::VoxelRecordsRef;
 use crate::control::Control;
 use crate::error::Error;
+use crate::lattice::Each;
 use crate::lattice::{Bounds, Cell, Frame};
 use crate::octree::{Octree, Proof, Tag};
 use crate::op::{Rule, build};
@@ -152,7 +153,7 @@ impl Worker for VoxelsOnFrame<'_> {
     fn split(&mut self, cell: Cell, part: &(usize, usize)) -> Result<[Verdict<(usize, usize)>; 8], Error> {
         let end = part.1.min(self.solid.records.len());
         let part = Part { cell, range: part.0.min(end)..end };
-        Ok(self.solid.records.split(&part).map(|part| self.solid.verdict(&part)))
+        Ok(self.solid.records.split(&part).each(|part| self.solid.verdict(&part)))
     }
 
     fn answer(&mut self, _: Cell, _: &(usize, usize), _: Question<'_>) -> Result<(), Error> {

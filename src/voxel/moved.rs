@@ -6,6 +6,7 @@ use super::records::{VoxelRecords, VoxelRecordsRef};
 use super::symmetry::Symmetry;
 use crate::control::Control;
 use crate::error::Error;
+use crate::lattice::Each;
 use crate::lattice::{Cell, axes};
 use crate::memory;
 use crate::octree::Tag;
@@ -58,7 +59,7 @@ impl VoxelRecordsRef<'_> {
             let (cell, kind) = (from.cell_at(record), from.kind_at(record));
             let shift = depth - cell.level;
             let first = axes(|axis| (i64::from(cell.at[axis]) << shift) + i64::from(offset[axis]));
-            let image = Range { first, end: first.map(|a| a + (1 << shift)) };
+            let image = Range { first, end: first.each(|a| a + (1 << shift)) };
             let inside = image.common(&universe);
             let is_whole = (inside.first, inside.end) == (image.first, image.end);
             is_cut |= !is_whole && matches!(kind, VoxelKind::Inside | VoxelKind::Boundary);
@@ -114,8 +115,8 @@ impl Range {
         put: &mut impl FnMut(Cell) -> Result<(), Error>,
     ) -> Result<(), Error> {
         let shift = depth - cell.level;
-        let first = cell.at.map(|a| i64::from(a) << shift);
-        let own = Range { first, end: first.map(|a| a + (1 << shift)) };
+        let first = cell.at.each(|a| i64::from(a) << shift);
+        let own = Range { first, end: first.each(|a| a + (1 << shift)) };
         let common = self.common(&own);
         if (0..3).any(|axis| common.first[axis] >= common.end[axis]) {
             return Ok(());

@@ -2,6 +2,7 @@
 
 use crate::error::Error;
 use crate::lattice::Affine;
+use crate::lattice::Each;
 
 /// One of the 48 symmetries of a cube: a permutation of the axes, with some axes reversed.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
@@ -31,7 +32,7 @@ impl Symmetry {
     pub fn all() -> impl Iterator<Item = Symmetry> {
         let orders = [[0, 1, 2], [1, 2, 0], [2, 0, 1], [1, 0, 2], [0, 2, 1], [2, 1, 0]];
         orders.into_iter().flat_map(|axes| {
-            (0..8u8).map(move |bits| Symmetry { axes, flipped: [0, 1, 2].map(|axis| bits >> axis & 1 != 0) })
+            (0..8u8).map(move |bits| Symmetry { axes, flipped: [0, 1, 2].each(|axis| bits >> axis & 1 != 0) })
         })
     }
 

@@ -5,6 +5,7 @@
 //! triangle's normal, and the products of the axes with the triangle's edges. Intervals decide nearly all
 //! cases; integers decide the rest.
 
+use crate::lattice::Each;
 use crate::lattice::axes;
 use crate::lattice::exact::Dyadic;
 use crate::lattice::{Bounds, Cube, Interval};
@@ -15,7 +16,7 @@ pub(super) type Corners = [[f64; 3]; 3];
 
 /// The corners of a triangle of a mesh.
 pub(super) fn corners(mesh: &TriangleMesh, triangle: [u32; 3]) -> Corners {
-    triangle.map(|vertex| mesh.vertices()[vertex as usize])
+    triangle.each(|vertex| mesh.vertices()[vertex as usize])
 }
 
 /// The least box around a triangle.
@@ -37,7 +38,7 @@ pub(super) fn may_meet(corners: &Corners, cube: &Cube<'_>) -> bool {
 }
 
 fn by_intervals(corners: &Corners, cube: &Cube<'_>) -> Option<bool> {
-    let places = corners.map(|corner| cube.centre_from(corner).map(Interval::negated));
+    let places = corners.each(|corner| cube.centre_from(corner).each(Interval::negated));
     let edge = |k: usize, axis: usize| {
         Interval::exactly(corners[(k + 1) % 3][axis]).minus(Interval::exactly(corners[k][axis]))
     };
@@ -52,7 +53,7 @@ fn exactly(corners: &Corners, cube: &Cube<'_>) -> Option<bool> {
         let middle = Dyadic::new((lower[axis] + upper[axis]) as f64);
         &Dyadic::new(cube.frame.origin()[axis]) + &(&middle * &half_cell)
     });
-    let places = corners.map(|corner| axes(|axis| &Dyadic::new(corner[axis]) - &centre[axis]));
+    let places = corners.each(|corner| axes(|axis| &Dyadic::new(corner[axis]) - &centre[axis]));
     let edges = axes(|k| axes(|axis| &places[(k + 1) % 3][axis] - &places[k][axis]));
     apart(&places, &edges, &Dyadic::new(cube.half_edge())).map(|apart| !apart)
 }

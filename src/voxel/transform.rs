@@ -6,6 +6,7 @@ use super::records::{VoxelRecords, VoxelRecordsRef};
 use super::symmetry::Symmetry;
 use crate::control::Control;
 use crate::error::Error;
+use crate::lattice::Each;
 use crate::lattice::exact::sign_of_sum;
 use crate::lattice::{Affine, Cell, Frame};
 use crate::octree::{Proof, Tag};
@@ -135,14 +136,14 @@ impl Sampler<'_, '_, '_> {
         let depth = self.frame.depth();
         let finest = |at: [u32; 3]| centre(self.frame, Cell { level: depth, at });
         let shift = depth - cell.level;
-        let first = finest(cell.at.map(|c| c << shift));
-        let last = finest(cell.at.map(|c| (c << shift) + ((1 << shift) - 1)));
+        let first = finest(cell.at.each(|c| c << shift));
+        let last = finest(cell.at.each(|c| (c << shift) + ((1 << shift) - 1)));
         let rows = self.placement.rows();
         let sum = |row: &[f64; 3], low: [f64; 3], high: [f64; 3]| {
             let summand = |k: usize| row[k] * (if row[k] >= 0.0 { low } else { high }[k] - rows[k][3]);
             summand(0) + summand(1) + summand(2)
         };
-        (self.inverse.map(|row| sum(&row, first, last)), self.inverse.map(|row| sum(&row, last, first)))
+        (self.inverse.each(|row| sum(&row, first, last)), self.inverse.each(|row| sum(&row, last, first)))
     }
 
     fn look(&self, cell: Cell) -> Known {
@@ -162,7 +163,7 @@ impl Sampler<'_, '_, '_> {
         }
         let differ = (0..3).fold(0, |bits, axis| bits | (first[axis] ^ last[axis]));
         let level = own.depth() - (32 - differ.leading_zeros()) as u8;
-        let around = Cell { level, at: first.map(|a| a >> (own.depth() - level)) };
+        let around = Cell { level, at: first.each(|a| a >> (own.depth() - level)) };
         match self.from.containing(around) {
             Some(index) if !beyond => Known::One(Some(index)),
             _ => self.from.uniform(first, last, beyond).map_or(Known::Unknown, Known::One),

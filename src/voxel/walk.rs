@@ -5,6 +5,7 @@ use super::record::{VoxelKind, centre, edge};
 use super::{VoxelRecord, code};
 use crate::attribute::{Attribute, ValueRange};
 use crate::error::Error;
+use crate::lattice::Each;
 use crate::lattice::{Bounds, Cell, Cube, Frame};
 use crate::octree::{CellFilter, Cells, Direction, OctreeRef, Tag};
 
@@ -207,7 +208,7 @@ impl<'a> Walk<'a> {
     fn touches(&self, cell: Cell) -> bool {
         let cells = self.tree.frame().cells();
         let shift = self.tree.frame().depth() - cell.level;
-        let (min, max) = (cell.at.map(|a| a << shift), cell.at.map(|a| (a + 1) << shift));
+        let (min, max) = (cell.at.each(|a| a << shift), cell.at.each(|a| (a + 1) << shift));
         let outside = CellFilter::tags(&[Tag::Empty]).levels(0..=self.boundary_level);
         let any = |min, max| self.tree.cells(outside.within(min, max)).next().is_some();
         let at_end = (0..3).any(|axis| min[axis] == 0 || max[axis] == cells);
@@ -215,7 +216,7 @@ impl<'a> Walk<'a> {
             return true;
         }
         // Most cells have no outside cells around them.
-        if !any(min.map(|a| a.saturating_sub(1)), max.map(|a| a + 1)) {
+        if !any(min.each(|a| a.saturating_sub(1)), max.each(|a| a + 1)) {
             return false;
         }
         (0..3).any(|axis| {

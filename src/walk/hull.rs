@@ -4,6 +4,7 @@ use super::split::split_one;
 use crate::control::Control;
 use crate::error::Error;
 use crate::lattice::Cell;
+use crate::lattice::Each;
 use crate::lattice::axes;
 use crate::solid::{Verdict, Worker};
 use core::ops::Range;
@@ -57,7 +58,7 @@ impl<W: Worker> Search<'_, W> {
     /// recursion is as deep as the frame, at most 20 levels.
     fn visit(&mut self, cell: Cell, verdict: Verdict<W::Part>) -> Result<bool, Error> {
         let shift = self.depth - cell.level;
-        let (low, high) = (cell.at.map(|a| a << shift), cell.at.map(|a| (a + 1) << shift));
+        let (low, high) = (cell.at.each(|a| a << shift), cell.at.each(|a| (a + 1) << shift));
         if (0..3).all(|axis| self.low[axis] <= low[axis] && high[axis] <= self.high[axis]) {
             return Ok(true);
         }

@@ -2,6 +2,7 @@
 
 use crate::control::Control;
 use crate::error::Error;
+use crate::lattice::Each;
 use crate::lattice::{Cell, Frame};
 use crate::octree::{Planes, Proof, Tag};
 use crate::solid::forward::forward_parts;
@@ -132,7 +133,7 @@ impl<W: Worker> Worker for ProvenWorker<W> {
         if self.proof.is_certified() {
             return self.inner.split(cell, part);
         }
-        Ok(self.inner.split(cell, part)?.map(|verdict| proven(self.proof, verdict)))
+        Ok(self.inner.split(cell, part)?.each(|verdict| proven(self.proof, verdict)))
     }
 
     /// If the solid proves only one side, answers about a cell are kept for that side only.

@@ -1,5 +1,6 @@
 //! The steps for reading an element: the needed properties and their meaning.
 
+use crate::lattice::Each;
 use alloc::vec::Vec;
 
 use super::header::{Element, Property};
@@ -115,7 +116,7 @@ fn channels(element: &Element) -> [Option<usize>; 4] {
         [b"red", b"green", b"blue", b"alpha"],
         [b"diffuse_red", b"diffuse_green", b"diffuse_blue", b"diffuse_alpha"],
     ];
-    let all = names.map(|names| names.map(find));
+    let all = names.each(|names| names.each(find));
     match all.into_iter().find(|channels| channels[..3].iter().all(Option::is_some)) {
         Some([red, green, blue, alpha]) => [red, green, blue, alpha.or(all[0][3])],
         None => [None; 4],

@@ -49,6 +49,7 @@ mod properties;
 mod transform;
 mod xml;
 
+use crate::lattice::Each;
 use alloc::vec::Vec;
 
 use model::{Component, Models, Object, Purpose, Shape, Target};
@@ -310,7 +311,7 @@ fn build(
                 }
                 let own_triangles = models.triangles.get(own_triangles.clone()).unwrap_or(&[]);
                 triangles.extend(own_triangles.iter().map(|&triangle| {
-                    let [a, b, c] = triangle.map(|vertex| base + vertex);
+                    let [a, b, c] = triangle.each(|vertex| base + vertex);
                     if placement.mirrors { [a, c, b] } else { [a, b, c] }
                 }));
             }

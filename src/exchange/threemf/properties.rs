@@ -3,6 +3,7 @@
 //! A triangle names a group and a member for each corner, or uses those of its object. There are no errors
 //! here: unreadable and missing properties are counted, and the mesh is read without them.
 
+use crate::lattice::Each;
 use alloc::borrow::Cow;
 use alloc::string::String;
 use alloc::vec::Vec;
@@ -194,7 +195,7 @@ impl<'a> BuiltProperties<'a> {
                     Some(_) => [members[0]; 3],
                     None => members,
                 }
-                .map(|member| group.first + member);
+                .each(|member| group.first + member);
                 material = group.material.map_or(material, |first| first + members[0]);
             }
             Ok(None) => {}
@@ -259,7 +260,7 @@ impl<'a> BuiltProperties<'a> {
         let mut attributes = Vec::new();
         let mut table = Colours::default();
         for colour in colours {
-            table.push(colour.map_or([f64::NAN; 4], |colour| colour.map(f64::from)))?;
+            table.push(colour.map_or([f64::NAN; 4], |colour| colour.each(f64::from)))?;
         }
         let unreadable = table.unreadable;
         if self.colours.as_flattened().iter().any(|&row| row != MeshAttribute::NO_ROW) {

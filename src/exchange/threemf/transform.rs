@@ -1,5 +1,7 @@
 //! Affine transforms of row vectors.
 
+use crate::lattice::Each;
+
 /// An affine map. It maps a point p to p · (the first three rows) + the last row.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(super) struct Transform {
@@ -24,7 +26,7 @@ impl Transform {
         for x in rows.as_flattened_mut() {
             *x = words.next()?.parse().ok().filter(|x: &f64| x.is_finite())?;
         }
-        let [a, b, c, _] = rows.map(unit_row);
+        let [a, b, c, _] = rows.each(unit_row);
         let determinant = a[0] * (b[1] * c[2] - b[2] * c[1])
             + a[1] * (b[2] * c[0] - b[0] * c[2])
             + a[2] * (b[0] * c[1] - b[1] * c[0]);
@@ -58,7 +60,7 @@ impl Transform {
 /// Scales a row to about 1, so that products neither overflow nor vanish.
 fn unit_row(row: [f64; 3]) -> [f64; 3] {
     let most = row.iter().fold(0.0, |most: f64, x| most.max(x.abs()));
-    if most > 0.0 { row.map(|x| x / most) } else { row }
+    if most > 0.0 { row.each(|x| x / most) } else { row }
 }
 
 #[cfg(test)]

@@ -1,6 +1,7 @@
 //! Sample types of files, and their conversion.
 
 use crate::error::{Error, VolumeFileError};
+use crate::lattice::Each;
 use crate::memory;
 use crate::solid::{Samples, VoxelGrid};
 use alloc::vec::Vec;
@@ -81,7 +82,7 @@ impl SampleKind {
 
     /// Returns the number of bytes of a grid's samples; `None` beyond 2^64.
     pub(super) fn bytes(self, grid: &VoxelGrid) -> Option<u64> {
-        let [nx, ny, nz] = grid.extents().map(u64::from);
+        let [nx, ny, nz] = grid.extents().each(u64::from);
         let each = match self {
             SampleKind::Bit => return nx.div_ceil(8).checked_mul(ny)?.checked_mul(nz),
             SampleKind::I8 | SampleKind::U8 => 1,
@@ -173,7 +174,7 @@ impl SampleKind {
 
 /// Packs rows of bytes into rows of words.
 fn bits(bytes: &[u8], grid: &VoxelGrid) -> Result<Vec<u64>, Error> {
-    let [nx, ny, nz] = grid.extents().map(|extent| extent as usize);
+    let [nx, ny, nz] = grid.extents().each(|extent| extent as usize);
     let mut words = memory::with_capacity(grid.words() * ny * nz)?;
     for row in bytes.chunks(nx.div_ceil(8)) {
         for few in row.chunks(8) {

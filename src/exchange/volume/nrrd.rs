@@ -5,6 +5,7 @@ use super::header::{Encoding, Header, Line, Lines, Place, Skip, extents, number}
 use super::kind::SampleKind;
 use super::place::Axes;
 use crate::error::{Error, VolumeFileError};
+use crate::lattice::Each;
 use crate::memory;
 use alloc::vec::Vec;
 
@@ -282,7 +283,7 @@ fn axes(fields: &Fields<'_>, extents: [u32; 3], chosen: [usize; 3], count: u64) 
                 "node" | "none" | "???" => Some(false),
                 _ => None,
             })?;
-            chosen.map(|axis| all.get(axis).copied())
+            chosen.each(|axis| all.get(axis).copied())
         }
         None => [None; 3],
     };

@@ -2,6 +2,7 @@
 
 use crate::error::{Error, VolumeFileError};
 use crate::lattice::Affine;
+use crate::lattice::Each;
 use crate::lattice::axes;
 use crate::lattice::exact::sqrt;
 use crate::solid::VoxelGrid;
@@ -42,12 +43,12 @@ impl Axes {
             };
             return Ok((grid.map_err(wrong)?, None));
         }
-        let spacing = self.steps.map(|[x, y, z]| match [x.abs(), y.abs(), z.abs()] {
+        let spacing = self.steps.each(|[x, y, z]| match [x.abs(), y.abs(), z.abs()] {
             // Along a single axis nothing is rounded.
             [only, 0.0, 0.0] | [0.0, only, 0.0] | [0.0, 0.0, only] => only,
             _ => sqrt(x * x + y * y + z * z),
         });
-        let first = if self.is_corner { spacing.map(|edge| 0.5 * edge) } else { [0.0; 3] };
+        let first = if self.is_corner { spacing.each(|edge| 0.5 * edge) } else { [0.0; 3] };
         let grid = VoxelGrid::with_first_sample(extents, first, spacing).map_err(wrong)?;
         if self.is_flat(spacing) {
             return Err(VolumeFileError::Place.into());
@@ -65,7 +66,7 @@ impl Axes {
     /// Returns whether the directions lie in one plane, up to the rounding of decimal numbers: their
     /// parallelepiped then has less than 2^-40 of the volume that it would have with right angles.
     fn is_flat(&self, spacing: [f64; 3]) -> bool {
-        let [a, b, c] = axes(|axis| self.steps[axis].map(|x| x / spacing[axis]));
+        let [a, b, c] = axes(|axis| self.steps[axis].each(|x| x / spacing[axis]));
         let cross = axes(|i| {
             let (j, k) = ((i + 1) % 3, (i + 2) % 3);
             a[j] * b[k] - a[k] * b[j]

@@ -1,6 +1,7 @@
 //! Attributes of a mesh in the form that files need.
 
 use crate::error::Error;
+use crate::lattice::Each;
 use crate::memory;
 use crate::mesh::{AttributeDomain, MeshAttribute, TriangleMesh};
 use alloc::string::String;
@@ -14,7 +15,7 @@ fn colour(attribute: &MeshAttribute, triangle: usize, corner: usize) -> Option<[
     let [r, g, b, a] = attribute.value(triangle, corner)?;
     let a = if attribute.components() == 3 { 255.0 } else { a };
     // (Numbers out of range are clamped.)
-    Some([r, g, b, a].map(|channel| (channel + 0.5) as u8))
+    Some([r, g, b, a].each(|channel| (channel + 0.5) as u8))
 }
 
 /// Returns an attribute if it is a colour.
@@ -27,7 +28,7 @@ fn colours<'a>(mesh: &'a TriangleMesh, name: &str) -> Option<&'a MeshAttribute> 
 pub(super) fn of_corners<'a>(mesh: &'a TriangleMesh) -> Option<impl Fn(usize) -> Option<[[u8; 4]; 3]> + 'a> {
     let found = colours(mesh, "colour").or_else(|| colours(mesh, "face_colour"))?;
     Some(move |triangle| {
-        let [a, b, c] = [0, 1, 2].map(|corner| colour(found, triangle, corner));
+        let [a, b, c] = [0, 1, 2].each(|corner| colour(found, triangle, corner));
         Some([a?, b?, c?])
     })
 }

@@ -4,6 +4,7 @@ use super::stl::{rounded, text};
 use super::{WriteOptions, refuse};
 use crate::error::Error;
 use crate::exchange::{MeshFormat, read_stl};
+use crate::lattice::Each;
 use crate::memory;
 use crate::mesh::{FacetWelder, TriangleMesh};
 use alloc::borrow::Cow;
@@ -67,10 +68,10 @@ pub fn written_form<'a>(
         };
         return Ok(WrittenForm { mesh, rounding: 0.0, merged: 0, degenerate: 0 });
     }
-    let corners = |triangle: &[u32; 3]| triangle.map(|v| mesh.vertices()[v as usize]);
+    let corners = |triangle: &[u32; 3]| triangle.each(|v| mesh.vertices()[v as usize]);
     let single = |corners: [[f64; 3]; 3]| -> Result<[[f64; 3]; 3], Error> {
-        let [a, b, c] = corners.map(rounded);
-        Ok([a?, b?, c?].map(|corner| corner.map(f64::from)))
+        let [a, b, c] = corners.each(rounded);
+        Ok([a?, b?, c?].each(|corner| corner.each(f64::from)))
     };
     let kept = if options.text {
         // Readers take decimal numbers for the nearest doubles, not for 32-bit numbers.
@@ -91,7 +92,7 @@ pub fn written_form<'a>(
         let [a, b, c] = single(given)?;
         let is_kept = a != b && b != c && c != a;
         let found = if is_kept { triangles.next() } else { None };
-        let found = found.map_or([a, b, c], |found| found.map(|v| kept.vertices()[v as usize]));
+        let found = found.map_or([a, b, c], |found| found.each(|v| kept.vertices()[v as usize]));
         for (x, y) in given.as_flattened().iter().zip(found.as_flattened()) {
             rounding = rounding.max((x - y).abs());
         }

@@ -1,6 +1,7 @@
 //! Text output with fallible allocation.
 
 use crate::error::Error;
+use crate::lattice::Each;
 use alloc::vec::Vec;
 use core::fmt::{self, Write};
 
@@ -48,7 +49,7 @@ pub(super) struct Point<T>(pub [T; 3]);
 
 impl<T: Copy + Into<f64> + fmt::Display + fmt::LowerExp> fmt::Display for Point<T> {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        let [x, y, z] = self.0.map(Number);
+        let [x, y, z] = self.0.each(Number);
         write!(f, "{x} {y} {z}")
     }
 }

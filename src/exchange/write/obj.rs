@@ -5,6 +5,7 @@ use super::attributes::Materials;
 use super::lines::{Lines, Point};
 use crate::error::Error;
 use crate::exchange::stated::Line;
+use crate::lattice::Each;
 use crate::mesh::TriangleMesh;
 use alloc::vec::Vec;
 
@@ -18,7 +19,7 @@ pub(super) fn write(mesh: &TriangleMesh, options: &WriteOptions) -> Result<Vec<u
     }
     if options.normals {
         for normal in mesh.vertex_normals()? {
-            lines.add(format_args!("vn {}\n", Point(normal.map(|x| x as f32))))?;
+            lines.add(format_args!("vn {}\n", Point(normal.each(|x| x as f32))))?;
         }
     }
     let (materials, mut current) = (Materials::of(mesh)?, None);
@@ -34,7 +35,7 @@ pub(super) fn write(mesh: &TriangleMesh, options: &WriteOptions) -> Result<Vec<u
             }
             current = next;
         }
-        let [a, b, c] = triangle.map(|v| u64::from(v) + 1);
+        let [a, b, c] = triangle.each(|v| u64::from(v) + 1);
         if options.normals {
             lines.add(format_args!("f {a}//{a} {b}//{b} {c}//{c}\n"))?;
         } else {

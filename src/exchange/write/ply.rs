@@ -5,6 +5,7 @@ use super::attributes::{Palette, line_of};
 use super::lines::{Lines, Point};
 use crate::error::Error;
 use crate::exchange::stated::Line;
+use crate::lattice::Each;
 use crate::memory;
 use crate::mesh::{AttributeDomain, MeshAttribute, TriangleMesh};
 use alloc::vec::Vec;
@@ -22,7 +23,7 @@ struct Content<'a> {
 
 pub(super) fn write(mesh: &TriangleMesh, options: &WriteOptions) -> Result<Vec<u8>, Error> {
     let normals = if options.normals {
-        memory::collected(mesh.vertex_normals()?.iter().map(|normal| normal.map(|x| x as f32)))?
+        memory::collected(mesh.vertex_normals()?.iter().map(|normal| normal.each(|x| x as f32)))?
     } else {
         Vec::new()
     };

@@ -11,6 +11,7 @@ use super::{WriteOptions, stated};
 use crate::error::{Error, PolyhedronError};
 use crate::exchange::MeshFormat;
 use crate::exchange::stated::Line;
+use crate::lattice::Each;
 use crate::memory;
 use crate::mesh::polygon::{PolygonDefect, triangulate};
 use crate::mesh::{Polyhedron, PolyhedronArrays};
@@ -162,7 +163,7 @@ impl Polygons {
         sides.try_reserve(3 * triangles.len())?;
         for (number, [a, b, c]) in triangles.iter().enumerate() {
             for edge in [[a, b], [b, c], [c, a]] {
-                sides.insert(edge.map(|&vertex| vertex), number);
+                sides.insert(edge.each(|&vertex| vertex), number);
             }
         }
         let mut is_taken = memory::filled(triangles.len(), false)?;

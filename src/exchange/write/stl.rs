@@ -3,6 +3,7 @@
 use super::lines::{Lines, Point};
 use crate::error::{Error, MeshError};
 use crate::exchange::stl::{HEADER, binary_length};
+use crate::lattice::Each;
 use crate::memory;
 use crate::mesh::TriangleMesh;
 use alloc::vec::Vec;
@@ -31,7 +32,7 @@ pub fn write_stl(mesh: &TriangleMesh) -> Result<Vec<u8>, Error> {
     bytes.resize(HEADER - 4, b' ');
     bytes.extend_from_slice(&count.to_le_bytes());
     for triangle in mesh.triangles() {
-        let corners = triangle.map(|v| mesh.vertices()[v as usize]);
+        let corners = triangle.each(|v| mesh.vertices()[v as usize]);
         for vector in [normal(corners)].into_iter().chain(corners) {
             for x in rounded(vector)? {
                 bytes.extend_from_slice(&x.to_le_bytes());
@@ -47,7 +48,7 @@ pub(super) fn text(mesh: &TriangleMesh) -> Result<Vec<u8>, Error> {
     let mut lines = Lines::default();
     lines.add(format_args!("solid leafless\n"))?;
     for triangle in mesh.triangles() {
-        let corners = triangle.map(|v| mesh.vertices()[v as usize]);
+        let corners = triangle.each(|v| mesh.vertices()[v as usize]);
         lines.add(format_args!("facet normal {}\nouter loop\n", Point(rounded(normal(corners))?)))?;
         for corner in corners {
             lines.add(format_args!("vertex {}\n", Point(rounded(corner)?)))?;
@@ -60,7 +61,7 @@ pub(super) fn text(mesh: &TriangleMesh) -> Result<Vec<u8>, Error> {
 
 /// Rounds a vector to 32-bit numbers.
 pub(super) fn rounded(vector: [f64; 3]) -> Result<[f32; 3], Error> {
-    let vector = vector.map(|x| x as f32);
+    let vector = vector.each(|x| x as f32);
     if !vector.iter().all(|x| x.is_finite()) {
         let problem = "has a coordinate beyond the range of 32-bit floating point numbers";
         return Err(Error::Argument { name: "mesh", problem });
@@ -70,7 +71,7 @@ pub(super) fn rounded(vector: [f64; 3]) -> Result<[f32; 3], Error> {
 
 /// Returns the unit normal, or zero for a triangle without area.
 fn normal(corners: [[f64; 3]; 3]) -> [f64; 3] {
-    let [a, b, c] = corners.map(DVec3::from);
+    let [a, b, c] = corners.each(DVec3::from);
     // Scaled to about 1, so that the squares neither overflow nor vanish.
     let unit = |v: DVec3| (v / v.abs().max_element()).normalize_or_zero();
     unit(unit(b - a).cross(unit(c - a))).to_array()

@@ -9,6 +9,7 @@ use crate::exchange::LengthUnit;
 use crate::exchange::stated::{self, Shown};
 use crate::exchange::threemf::model::DEVIATION;
 use crate::lattice::Affine;
+use crate::lattice::Each;
 use crate::memory;
 use crate::mesh::TriangleMesh;
 use alloc::boxed::Box;
@@ -174,7 +175,7 @@ fn model(
             // (Transposed, because a 3MF multiplies row vectors.)
             let rows = placement.rows();
             for column in 0..4 {
-                let [x, y, z] = rows.map(|row| Number(row[column]));
+                let [x, y, z] = rows.each(|row| Number(row[column]));
                 write!(out, "{}{x} {y} {z}", if column == 0 { " transform=\"" } else { " " })?;
             }
             write!(out, "\"")?;
@@ -205,7 +206,7 @@ impl Object<'_> {
         }
         write!(out, ">\n<mesh>\n<vertices>\n")?;
         for vertex in mesh.vertices() {
-            let [x, y, z] = vertex.map(Number);
+            let [x, y, z] = vertex.each(Number);
             writeln!(out, "<vertex x=\"{x}\" y=\"{y}\" z=\"{z}\"/>")?;
         }
         write!(out, "</vertices>\n<triangles>\n")?;

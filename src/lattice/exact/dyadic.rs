@@ -1,6 +1,7 @@
 //! Integers times powers of two. Every double is such a number, and so are sums and products of them. This
 //! code is not performance-critical.
 
+use crate::lattice::Each;
 use alloc::vec::Vec;
 use core::cmp::Ordering;
 use core::ops::{Add, Mul, Neg, Sub};
@@ -145,7 +146,7 @@ impl Dyadic {
             if terms.count == most || !outer.is_finite() || inner == 0.0 {
                 return None;
             }
-            let [to_inner, to_outer] = [inner, outer].map(|term| &rest - &Dyadic::new(term));
+            let [to_inner, to_outer] = [inner, outer].each(|term| &rest - &Dyadic::new(term));
             let is_outer = (&to_inner + &to_outer).sign() == rest.sign();
             *terms.doubles.get_mut(terms.count)? = if is_outer { outer } else { inner };
             terms.count += 1;
@@ -199,7 +200,7 @@ pub(crate) fn dot(a: [&Dyadic; 3], b: [&Dyadic; 3]) -> Dyadic {
 
 /// The cross product a × b in three dimensions.
 pub(crate) fn cross(a: &[Dyadic], b: &[Dyadic]) -> [Dyadic; 3] {
-    [(1, 2), (2, 0), (0, 1)].map(|(i, j)| &(&a[i] * &b[j]) - &(&a[j] * &b[i]))
+    [(1, 2), (2, 0), (0, 1)].each(|(i, j)| &(&a[i] * &b[j]) - &(&a[j] * &b[i]))
 }
 
 impl Ord for Dyadic {

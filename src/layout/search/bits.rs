@@ -1,6 +1,7 @@
 //! Boxes of cells as bits: rows along x, each of whole words.
 
 use crate::error::Error;
+use crate::lattice::Each;
 use crate::lattice::axes;
 use crate::memory;
 use alloc::vec::Vec;
@@ -101,7 +102,7 @@ impl Bits {
     /// Returns the turned cells. The coordinate along axis i of the result is the coordinate along axis
     /// `order[i]` of this set, counted from the other end if `flip[i]`.
     pub(super) fn turned(&self, order: [usize; 3], flip: [bool; 3]) -> Result<Bits, Error> {
-        let mut turned = Bits::new(order.map(|axis| self.size[axis]))?;
+        let mut turned = Bits::new(order.each(|axis| self.size[axis]))?;
         for z in 0..self.size[2] {
             for y in 0..self.size[1] {
                 self.runs_of(y, z, |x, length| {
@@ -139,7 +140,7 @@ impl Bits {
     /// Returns all cells nearer than `distance` cells to a cell of this set, in a box that is larger by `pad`
     /// at every end. `pad` must be at least the distance.
     pub(super) fn grown(&self, distance: f64, pad: usize) -> Result<Bits, Error> {
-        let mut grown = Bits::new(self.size.map(|size| size + 2 * pad))?;
+        let mut grown = Bits::new(self.size.each(|size| size + 2 * pad))?;
         let reach = pad as isize;
         // The square of the gap, in cells, between rows that are `steps` apart in one direction.
         let between = |steps: isize| {

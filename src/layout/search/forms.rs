@@ -7,6 +7,7 @@ use super::tally::Figure;
 use super::voxels::Voxels;
 use crate::control::Control;
 use crate::error::Error;
+use crate::lattice::Each;
 use crate::lattice::{Affine, axes};
 use crate::memory;
 use alloc::vec::Vec;
@@ -78,7 +79,7 @@ impl Forms {
             } else {
                 shape.grown_far(clearance / cell)?
             };
-            let centre = centre(&voxels.bits)?.map(|c| fine * c);
+            let centre = centre(&voxels.bits)?.each(|c| fine * c);
             memory::push(
                 &mut all,
                 Form { map: *map, shape: own, halo, taken, scale, below, origin: voxels.origin, centre },
@@ -142,5 +143,5 @@ fn centre(bits: &Bits) -> Result<[f64; 3], Error> {
         (0..3).for_each(|k| sums[k] += length * at[k]);
         count += length;
     }
-    Ok(sums.map(|sum| if count > 0.0 { sum / count } else { 0.0 }))
+    Ok(sums.each(|sum| if count > 0.0 { sum / count } else { 0.0 }))
 }

@@ -9,6 +9,7 @@ use super::voxels::{Voxels, outside};
 use super::{Direction, SearchOptions};
 use crate::control::Control;
 use crate::error::Error;
+use crate::lattice::Each;
 use crate::lattice::exact::sqrt;
 use crate::lattice::{Affine, Bounds, axes};
 use crate::memory;
@@ -35,7 +36,7 @@ impl Lattice {
         let container = &layout.container;
         let margin = if container.is_box() { container.clearance() } else { 0.0 };
         let bounds = container.bounds();
-        let origin = bounds.min.map(|low| low + margin);
+        let origin = bounds.min.each(|low| low + margin);
         let length: [f64; 3] = axes(|k| (bounds.max[k] - margin - origin[k]).max(0.0));
         let longest = length.into_iter().fold(f64::MIN_POSITIVE, f64::max);
         let cells = match options.cells {
@@ -49,7 +50,7 @@ impl Lattice {
         };
         let cell = longest / libm::ceil(cells);
         // (The proof rejects places that rounding makes too large.)
-        let size = length.map(|length| (length / cell * (1.0 + 1e-12)) as usize);
+        let size = length.each(|length| (length / cell * (1.0 + 1e-12)) as usize);
         Lattice { origin, cell, size }
     }
 
@@ -100,7 +101,7 @@ impl Lattice {
             let margin = container.clearance().min(across) / self.cell;
             let scale = scale_for(margin);
             let (margin, cell) = (margin / scale as f64, self.cell * scale as f64);
-            let size = self.size.map(|size| size.div_ceil(scale));
+            let size = self.size.each(|size| size.div_ceil(scale));
             let pad = libm::ceil(margin) as usize;
             let wall = outside(container.solid(), self.origin, cell, size, pad, control)?;
             let wall = if pad > 0 { wall.grown(margin, pad)? } else { wall };
@@ -138,14 +139,14 @@ impl Lattice {
         let is_near = reach <= REACH;
         let pad = if is_near { libm::ceil(reach) as usize } else { 0 };
         let bits = if pad > 0 { bits.grown(reach, pad)? } else { bits };
-        let first = at.map(|at| at - pad as isize);
-        let low = first.map(|first| first.div_euclid(FINER as isize));
+        let first = at.each(|at| at - pad as isize);
+        let low = first.each(|first| first.div_euclid(FINER as isize));
         let beyond: [usize; 3] = axes(|k| (first[k] - low[k] * FINER as isize) as usize);
         let cells = bits.coarser(FINER, beyond)?;
         if is_near {
             return Ok((cells, 1, low));
         }
         let (grown, scale, below) = cells.grown_far(clearance / self.cell)?;
-        Ok((grown, scale, low.map(|low| low - below as isize)))
+        Ok((grown, scale, low.each(|low| low - below as isize)))
     }
 }

@@ -9,6 +9,7 @@ use super::space::{Layer, Space};
 use super::tally::{Figure, Masses};
 use super::{Direction, Objective, SearchOptions};
 use crate::error::Error;
+use crate::lattice::Each;
 use crate::lattice::{Affine, axes};
 use crate::memory;
 use crate::parallel;
@@ -73,7 +74,7 @@ impl Round<'_> {
                     continue;
                 }
                 let number = layout.place(item, &placement)?;
-                let offset = place.at.map(|at| at as isize - form.below as isize);
+                let offset = place.at.each(|at| at as isize - form.below as isize);
                 // Later items must get out, too: no item may go where this one would be in its way.
                 space.take(&form.taken, form.scale, offset, self.options.free_along.map(Direction::back))?;
                 masses.add(layout, self.figures, &layout.placed[number]);
@@ -151,7 +152,7 @@ impl Round<'_> {
                 for [x, y] in layer.corners() {
                     let at = [x, y, z];
                     let contact = space.contact(&form.halo, at);
-                    let mut rank = plan.rank(at.map(|c| c as f64), size.map(|c| c as f64), 0.0);
+                    let mut rank = plan.rank(at.each(|c| c as f64), size.each(|c| c as f64), 0.0);
                     rank[0] -= plan.grip * contact * mean;
                     if best.is_none_or(|best| rank < best.rank) && is_free(at) {
                         best = Some(Place { rank, form: number, at });

@@ -9,6 +9,7 @@
 
 use super::bits::{Bits, Run};
 use crate::error::Error;
+use crate::lattice::Each;
 use crate::memory;
 use alloc::vec::Vec;
 
@@ -69,7 +70,7 @@ impl Space {
     /// Returns the part of the cells around a shape that are taken, or beyond the sides or the floor.
     pub(super) fn contact(&self, halo: &Halo, at: [usize; 3]) -> f64 {
         let mut count = 0;
-        let size = self.size.map(|size| size as isize);
+        let size = self.size.each(|size| size as isize);
         for run in &halo.runs {
             let y = (at[1] + run.y as usize) as isize - 1;
             let z = (at[2] + run.z as usize) as isize - 1;
@@ -150,7 +151,7 @@ impl Space {
         offset: [isize; 3],
         shade: Option<(usize, bool)>,
     ) -> Result<(), Error> {
-        let [nx, ny, nz] = self.size.map(|size| size as isize);
+        let [nx, ny, nz] = self.size.each(|size| size as isize);
         let size = scale as isize;
         for z in 0..cells.size[2] {
             for y in 0..cells.size[1] {

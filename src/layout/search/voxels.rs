@@ -4,6 +4,7 @@ use super::super::item::on_any_frame;
 use super::bits::Bits;
 use crate::control::Control;
 use crate::error::Error;
+use crate::lattice::Each;
 use crate::lattice::{Bounds, Frame, MAX_DEPTH, axes};
 use crate::memory;
 use crate::op::{Rule, build};
@@ -72,7 +73,7 @@ pub(super) fn outside(
     let frame = Frame::new(origin, cell * f64::from(1u32 << depth), depth as u8)?;
     let mut inside = Bits::new(size)?;
     inside.bits = on_frame(solid, &frame, &mut inside, control)?;
-    let mut outside = Bits::new(size.map(|size| size + 2 * pad))?;
+    let mut outside = Bits::new(size.each(|size| size + 2 * pad))?;
     for z in 0..outside.size[2] {
         for y in 0..outside.size[1] {
             let is_beyond = |at: usize, k: usize| at < pad || at >= size[k] + pad;
@@ -105,7 +106,7 @@ fn on_frame(
     let own = Control { progress: None, max_splits: None, ..*control };
     let tree = build(&on_any_frame(solid), frame, Rule::Certified, &own)?;
     let mut inner = memory::filled(outer.bits.len(), 0)?;
-    let end = outer.size.map(|cells| cells as u32);
+    let end = outer.size.each(|cells| cells as u32);
     tree.bitmap(frame.depth(), [0; 3], end, &mut inner, Some(&mut outer.bits), &own)?;
     Ok(inner)
 }

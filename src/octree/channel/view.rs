@@ -1,6 +1,7 @@
 //! The borrowed view of a channel, which does all reading.
 
 use super::value::{Bits, ValueType};
+use crate::lattice::Each;
 use crate::lattice::{Frame, morton};
 use crate::octree::Tag;
 use crate::octree::view::OctreeRef;
@@ -124,7 +125,7 @@ impl<'a> ChannelRef<'a> {
         for e in 0..levels {
             let planes = self.tree.entry(index)?;
             let shift = 2 * (levels - 1 - e);
-            let [x, y, z] = at.map(|a| a >> shift);
+            let [x, y, z] = at.each(|a| a >> shift);
             let c = morton::index(x, y, z);
             match planes.tag(c) {
                 Tag::Empty => return None,

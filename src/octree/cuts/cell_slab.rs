@@ -1,5 +1,6 @@
 //! Slabs made for one cell: two words each.
 
+use crate::lattice::Each;
 use crate::lattice::{Cell, axes};
 use bytemuck::{Pod, Zeroable};
 use core::ops::RangeInclusive;
@@ -63,7 +64,7 @@ impl CellSlab {
     /// Returns the slab of a cell with this `index`, 0 to 2.
     pub(crate) fn new(cell: Cell, index: u8, steps: &Steps) -> CellSlab {
         let octants = 1 << (3 * cell.level) | cell.morton();
-        let [a, b] = steps.others.map(|own| u64::from(own as u16));
+        let [a, b] = steps.others.each(|own| u64::from(own as u16));
         let offset = (steps.offset as u32 & 0x7_FFFF).into();
         let parts = [
             (a, 16),

@@ -5,6 +5,7 @@
 //! on a frame.
 
 use super::surfaces::{MOST_MAPS, Numbers, SurfaceKind, SurfacesRef};
+use crate::lattice::Each;
 use crate::lattice::exact::sqrt;
 use crate::lattice::{Ball, axes};
 
@@ -34,7 +35,7 @@ fn dot(a: [Ball; 3], b: [Ball; 3]) -> Ball {
 
 /// Returns the inverse of the linear part of a map: its adjugate, and one divided by its determinant.
 fn inverse(rows: &[[f64; 4]; 3]) -> ([[Ball; 3]; 3], Ball) {
-    let m = rows.map(|[a, b, c, _]| [a, b, c].map(Ball::exactly));
+    let m = rows.each(|[a, b, c, _]| [a, b, c].each(Ball::exactly));
     let minor = |i: usize, j: usize| {
         let [r, s] = [(i + 1) % 3, (i + 2) % 3];
         let [p, q] = [(j + 1) % 3, (j + 2) % 3];
@@ -52,10 +53,10 @@ impl<'a> Figure<'a> {
         let mut numbers = [Ball::ZERO; 10];
         if let Numbers::Slab([x, y, z, inner, outer]) = own {
             // In model space, where no map is needed.
-            let normal = [x, y, z].map(Ball::exactly);
-            let along = dot(normal, surfaces.universe.origin.map(Ball::exactly));
+            let normal = [x, y, z].each(Ball::exactly);
+            let along = dot(normal, surfaces.universe.origin.each(Ball::exactly));
             let edge = Ball::exactly(surfaces.universe.edge);
-            let [inner, outer] = [inner, outer].map(|offset| edge.times(Ball::exactly(offset)).plus(along));
+            let [inner, outer] = [inner, outer].each(|offset| edge.times(Ball::exactly(offset)).plus(along));
             numbers[..3].copy_from_slice(&normal);
             numbers[3..5].copy_from_slice(&[inner, outer]);
         } else {
@@ -113,8 +114,8 @@ impl<'a> Figure<'a> {
     #[inline]
     pub(crate) fn side(&self, centre: [Ball; 3], radius: [f64; 3]) -> Option<bool> {
         let (at, reach) = if self.is_placed {
-            let (at, reach) = self.pulled(centre, radius.map(Ball::exactly), true);
-            (at, reach.map(Ball::magnitude))
+            let (at, reach) = self.pulled(centre, radius.each(Ball::exactly), true);
+            (at, reach.each(Ball::magnitude))
         } else {
             (centre, radius)
         };
@@ -176,7 +177,7 @@ impl<'a> Figure<'a> {
         if self.kind != SurfaceKind::Quadric {
             return 0.0;
         }
-        let [a, b, c, d, e, f, ..] = self.numbers.map(Ball::magnitude);
+        let [a, b, c, d, e, f, ..] = self.numbers.each(Ball::magnitude);
         (a * x * x + b * y * y + c * z * z) + (d * x * y + e * y * z + f * z * x)
     }
 
@@ -201,7 +202,7 @@ impl<'a> Figure<'a> {
         let n = &self.numbers;
         if self.kind == SurfaceKind::Torus {
             let [major, square, scale, shift] = [n[0], n[1], n[2], n[3]];
-            let [x, y, z] = at.map(|c| c.times(scale));
+            let [x, y, z] = at.each(|c| c.times(scale));
             let across = x.times(x).plus(y.times(y)).root().minus(major);
             let z = z.plus(shift);
             return square.minus(across.times(across)).minus(z.times(z));
@@ -217,14 +218,14 @@ impl<'a> Figure<'a> {
 
     /// Returns the approximate gradient at a point (model units), which points to the positive side.
     pub(crate) fn gradient(&self, point: [f64; 3]) -> [f64; 3] {
-        let (at, _) = self.pulled(point.map(Ball::exactly), [Ball::ZERO; 3], false);
+        let (at, _) = self.pulled(point.each(Ball::exactly), [Ball::ZERO; 3], false);
         let n = &self.numbers;
         let mut gradient = match (self.polynomial(at), self.kind) {
             // A slab is positive where its linear form is smaller.
-            (Some((_, own)), SurfaceKind::Slab) => own.map(|c| -c.value),
-            (Some((_, own)), _) => own.map(|c| c.value),
+            (Some((_, own)), SurfaceKind::Slab) => own.each(|c| -c.value),
+            (Some((_, own)), _) => own.each(|c| c.value),
             (None, SurfaceKind::Torus) => {
-                let [x, y, z] = at.map(|c| c.value * n[2].value);
+                let [x, y, z] = at.each(|c| c.value * n[2].value);
                 let along = Ball::exactly(x * x + y * y).root().value;
                 let across = if along > 0.0 { (n[0].value - along) / along } else { 0.0 };
                 [across * x, across * y, -(z + n[3].value)]
@@ -331,7 +332,7 @@ impl FigureLine<'_> {
         let (mut least, mut is_crossing) = (high, false);
         for level in levels {
             let own = [c.minus(*level), *b, *a];
-            for t in crossings(own.map(|number| number.value)).into_iter().filter(|t| t.is_finite()) {
+            for t in crossings(own.each(|number| number.value)).into_iter().filter(|t| t.is_finite()) {
                 // Values below this may have either sign.
                 let value = Self::value(&own, t);
                 let unsure = value.error + value.value.abs();

@@ -1,5 +1,6 @@
 //! The moments of the solid, as they are stored.
 
+use crate::lattice::Each;
 use crate::lattice::{Interval, VolumeMoments};
 use bytemuck::{Pod, Zeroable};
 
@@ -19,10 +20,10 @@ impl StoredMoments {
         // (Zero has one representation.)
         let ends = |own: Interval| [own.lower + 0.0, own.upper + 0.0];
         StoredMoments {
-            point: moments.point.map(|c| c + 0.0),
+            point: moments.point.each(|c| c + 0.0),
             volume: ends(moments.volume),
-            first: moments.first.map(ends),
-            second: moments.second.map(ends),
+            first: moments.first.each(ends),
+            second: moments.second.each(ends),
         }
     }
 
@@ -41,8 +42,8 @@ impl StoredMoments {
         is_sound.then(|| VolumeMoments {
             point: self.point,
             volume: interval(self.volume),
-            first: self.first.map(interval),
-            second: self.second.map(interval),
+            first: self.first.each(interval),
+            second: self.second.each(interval),
         })
     }
 }

@@ -3,6 +3,7 @@
 
 use super::cell_slab::CellSlab;
 use crate::error::{Damage, Error};
+use crate::lattice::Each;
 use crate::lattice::{Affine, Frame, valid};
 use crate::memory;
 use alloc::vec::Vec;
@@ -245,7 +246,7 @@ impl SurfaceWriter {
             }
             self.places.try_reserve(1)?;
             let next = self.all.placements.len() as u64 + 1;
-            let place = *self.places.entry((outer, rows.map(|row| row.map(f64::to_bits)))).or_insert(next);
+            let place = *self.places.entry((outer, rows.each(|row| row.each(f64::to_bits)))).or_insert(next);
             if place == next {
                 memory::push(&mut self.all.placements, Placement { rows: *rows, outer })?;
             }
@@ -384,7 +385,7 @@ impl<'a> SurfacesRef<'a> {
     /// Compares a surface with another one, of the same table or not, by the number of words that they take,
     /// the kind, the numbers of doubles, the doubles, the maps, and for slabs the identity.
     pub(crate) fn order(&self, id: usize, others: &SurfacesRef<'_>, other: usize) -> Ordering {
-        let [own, theirs] = [(self, id), (others, other)].map(|(table, id)| {
+        let [own, theirs] = [(self, id), (others, other)].each(|(table, id)| {
             let (kind, numbers) =
                 table.get(id).unwrap_or((SurfaceKind::Plane, Numbers::Stored { terms: 0, doubles: &[] }));
             (table, id, kind, numbers)

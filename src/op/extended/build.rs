@@ -4,6 +4,7 @@ use super::element::{Family, Fate, Output, Source, element};
 use super::function::{Done, Function, Known, MOST_KEPT};
 use crate::control::{Control, Job, WHOLE};
 use crate::error::Error;
+use crate::lattice::Each;
 use crate::lattice::{Bounds, Cell, Cube, Frame, Shard, valid};
 use crate::memory;
 use crate::octree::cuts::{CellSlab, Cut, Origin, StoredMoments};
@@ -557,7 +558,7 @@ impl<C: Classifier> Extended<'_, C> {
             // Children that need slabs, and their places.
             let (mut cells, mut places) = (Vec::new(), Vec::new());
             for ((cell, _), verdicts) in front.iter().zip(verdicts) {
-                let mut eight = OCTANTS.map(|_| Fate::Settled(Tag::Empty));
+                let mut eight = OCTANTS.each(|_| Fate::Settled(Tag::Empty));
                 for ((k, verdict), known) in OCTANTS.into_iter().zip(verdicts).zip(&mut eight) {
                     let child = cell.child(k);
                     let wants_slabs;
@@ -585,7 +586,7 @@ impl<C: Classifier> Extended<'_, C> {
             let first = families.len() + all.len();
             families.try_reserve(all.len())?;
             for ((cell, _), eight) in front.iter().zip(all) {
-                let mut told = OCTANTS.map(|_| Fate::Settled(Tag::Empty));
+                let mut told = OCTANTS.each(|_| Fate::Settled(Tag::Empty));
                 for ((k, known), told) in OCTANTS.into_iter().zip(eight).zip(&mut told) {
                     *told = match known {
                         Fate::Settled(tag) => Fate::Settled(tag),
@@ -662,7 +663,7 @@ impl<'j, C: Classifier> Source<'j> for Directly<'_, '_, C> {
 
     fn children(&self, cell: Cell, part: &Part<C>, hand: &mut Hand<'j, C>) -> Result<Family<Part<C>>, Error> {
         let verdicts = hand.worker.split(cell, part)?;
-        let mut cells = OCTANTS.map(|_| Fate::Settled(Tag::Empty));
+        let mut cells = OCTANTS.each(|_| Fate::Settled(Tag::Empty));
         for ((k, verdict), fate) in OCTANTS.into_iter().zip(verdicts).zip(&mut cells) {
             *fate = self.0.fate(cell.child(k), verdict, hand)?;
         }
@@ -715,7 +716,7 @@ impl<'j, C: Classifier> Source<'j> for Told<'_, '_, C> {
             Asked::Children(family) => self.families.get(*family),
             Asked::Part(_) => None,
         };
-        Ok(family.cloned().unwrap_or_else(|| OCTANTS.map(|_| Fate::Ends(Cut::None))))
+        Ok(family.cloned().unwrap_or_else(|| OCTANTS.each(|_| Fate::Ends(Cut::None))))
     }
 
     fn elements(

@@ -10,6 +10,7 @@ use super::function::{Done, Function, Known};
 use super::joint::JointSurfaces;
 use crate::control::{Control, Job, WHOLE};
 use crate::error::{Damage, Error};
+use crate::lattice::Each;
 use crate::lattice::{Cell, Frame, Shard};
 use crate::memory;
 use crate::octree::cuts::{CellCut, Cut, Cuts, CutsRef, Head, StoredMoments, SurfacesRef};
@@ -296,7 +297,7 @@ impl Walk<'_> {
         let opposite = if settled == Tag::Full { Tag::Empty } else { Tag::Full };
         let first = cell.first_at(self.frame.depth()).at;
         let edge = 1 << (self.frame.depth() - cell.level);
-        let against = CellFilter::tags(&[opposite]).within(first, first.map(|at| at + edge));
+        let against = CellFilter::tags(&[opposite]).within(first, first.each(|at| at + edge));
         for (of, side) in open {
             let is_split = matches!(side, Side::Element { .. } | Side::Octant { .. });
             if is_split && self.operand(*of).0.cells(against).next().is_some() {
@@ -403,7 +404,7 @@ impl Walk<'_> {
             let brick = index.saturating_sub(tree.planes.len()) as u64;
             tree.entry(index).ok_or(Damage::Dictionary { brick })
         };
-        let mut met = OCTANTS.map(|_| Met::Open(Side::Unknown));
+        let mut met = OCTANTS.each(|_| Met::Open(Side::Unknown));
         let partial = |index: usize, planes: Planes, c: u32| {
             let record = tree.cuts.as_ref().map(|cuts| cuts.record(index, planes, c));
             Met::Open(record.map_or(Side::Unknown, |record| self.record(of, record)))
@@ -644,7 +645,7 @@ impl<'j> Source<'j> for Threads<'_, '_> {
     }
 
     fn children(&self, cell: Cell, part: &Part, hand: &mut Hand<'j>) -> Result<Family<Part>, Error> {
-        let mut family = OCTANTS.map(|_| Fate::Ends(Cut::None));
+        let mut family = OCTANTS.each(|_| Fate::Ends(Cut::None));
         match part {
             Part::Copy(_) => {}
             Part::Function(function) => {
@@ -664,7 +665,7 @@ impl<'j> Source<'j> for Threads<'_, '_> {
                 let mut below = memory::with_capacity(sides.len())?;
                 for (of, side) in sides {
                     let windows = &mut hand.windows[*of as usize];
-                    below.push((*of, self.walk.below(*of, side, cell, e, windows)?.map(Some)));
+                    below.push((*of, self.walk.below(*of, side, cell, e, windows)?.each(Some)));
                 }
                 for (k, fate) in OCTANTS.into_iter().zip(&mut family) {
                     let met = below.iter_mut().map(|(of, met)| {

@@ -2,6 +2,7 @@
 
 use super::function::{Done, Function, Known};
 use crate::error::Error;
+use crate::lattice::Each;
 use crate::lattice::{Cell, Frame};
 use crate::memory;
 use crate::octree::cuts::{Cut, CutWriter};
@@ -129,7 +130,7 @@ pub(super) fn element<'j, S: Source<'j>>(
                 Octant::Eight(eight) => {
                     open.try_reserve(8)?;
                     let mut octants = OCTANTS.into_iter();
-                    Octant::Eight(eight.map(|fate| {
+                    Octant::Eight(eight.each(|fate| {
                         let child = octants.next().map(|k| octant.child(k));
                         fate.done().map_err(|part| open.extend(child.map(|child| (child, part)))).ok()
                     }))
@@ -144,7 +145,7 @@ pub(super) fn element<'j, S: Source<'j>>(
             Octant::One(one) => Octant::One(one),
             Octant::Eight(eight) => {
                 let eight =
-                    eight.map(|done| done.or_else(|| written.next()).unwrap_or((Tag::Partial, Cut::None)));
+                    eight.each(|done| done.or_else(|| written.next()).unwrap_or((Tag::Partial, Cut::None)));
                 match joined(at, eight.iter(), source)? {
                     Some(done) => Octant::One(done),
                     None => merged(eight),
@@ -203,14 +204,14 @@ fn put(e: usize, octants: Vec<Octant<Done>>, out: &mut Output<'_>) -> Result<Don
             let mut own = octants.into_iter().map(|octant| match octant {
                 Octant::One((_, cut)) => cut,
                 // (At an odd depth, the root element has only one octant.)
-                Octant::Eight(eight) => Cut::of_children(eight.map(|(_, cut)| cut)),
+                Octant::Eight(eight) => Cut::of_children(eight.each(|(_, cut)| cut)),
             });
             let children: [Option<Cut>; 8] = core::array::from_fn(|_| own.next());
             Ok((
                 tag,
                 match children {
                     [Some(one), None, ..] => one,
-                    all => Cut::of_children(all.map(|cut| cut.unwrap_or(Cut::None))),
+                    all => Cut::of_children(all.each(|cut| cut.unwrap_or(Cut::None))),
                 },
             ))
         }
@@ -224,5 +225,5 @@ fn merged(cells: [Done; 8]) -> Octant<Done> {
     if tag == Tag::Branch || cells.iter().any(|(other, _)| *other != tag) {
         return Octant::Eight(cells);
     }
-    Octant::One((tag, Cut::of_children(cells.map(|(_, cut)| cut))))
+    Octant::One((tag, Cut::of_children(cells.each(|(_, cut)| cut))))
 }

@@ -2,6 +2,7 @@
 
 use crate::error::Error;
 use crate::lattice::Cell;
+use crate::lattice::Each;
 use crate::octree::Tag;
 use crate::octree::cuts::{Cut, Head};
 use crate::solid::OCTANTS;
@@ -161,7 +162,7 @@ impl Function {
                 child.table = child.table.known(i, sides, k);
             }
         }
-        Ok(children.map(|child| child.reduced(Table::FULL)))
+        Ok(children.each(|child| child.reduced(Table::FULL)))
     }
 
     /// Returns the joint function of a cell with eight finished children. It has up to three surfaces, and

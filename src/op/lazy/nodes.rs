@@ -2,6 +2,7 @@
 
 use crate::control::Control;
 use crate::error::Error;
+use crate::lattice::Each;
 use crate::lattice::{Cell, Frame, MAX_DEPTH};
 use crate::octree::view::LevelCounts;
 use crate::octree::{Node, Proof, Statistics, Tag};
@@ -326,7 +327,7 @@ impl Worker for &Nodes {
     }
 
     fn split(&mut self, _: Cell, part: &usize) -> Result<[Verdict<usize>; 8], Error> {
-        Ok(OCTANTS.map(|octant| self.verdict(Place { split: *part, octant })))
+        Ok(OCTANTS.each(|octant| self.verdict(Place { split: *part, octant })))
     }
 
     fn answer(&mut self, _: Cell, _: &usize, _: Question<'_>) -> Result<(), Error> {

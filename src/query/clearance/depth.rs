@@ -8,6 +8,7 @@ use super::piece::{self, Bodies, Content, Piece};
 use super::search::Search;
 use crate::control::Job;
 use crate::error::Error;
+use crate::lattice::Each;
 use crate::lattice::exact::product_down;
 use crate::lattice::{Interval, axes};
 use crate::octree::Tag;
@@ -36,7 +37,7 @@ pub(super) fn common_ball<A: Classifier, B: Classifier>(
         let mut best = None;
         // Try the 26 directions to the neighbours of a cube, until one is better.
         for way in (0..27).filter(|way| *way != 13) {
-            let offset = [way % 3, way / 3 % 3, way / 9].map(|k: u32| step * (f64::from(k) - 1.0));
+            let offset = [way % 3, way / 3 % 3, way / 9].each(|k: u32| step * (f64::from(k) - 1.0));
             let moved = axes(|axis| centre[axis] + offset[axis]);
             left = left.saturating_sub(1);
             let found = around(search, moved, job)?;
@@ -134,7 +135,7 @@ fn free<C: Classifier>(
     let mut radius = most;
     if nodes.subject.classifier.exterior() != Tag::Full {
         for c in centre {
-            let [below, above] = [c, cells - c].map(|c| c.next_down());
+            let [below, above] = [c, cells - c].each(|c| c.next_down());
             radius = radius.min(below).min(above);
         }
     } else if !centre.iter().all(|&c| (0.0..=cells).contains(&c)) {

@@ -7,6 +7,7 @@
 use super::search::Goal;
 use crate::control::{Control, Job};
 use crate::error::Error;
+use crate::lattice::Each;
 use crate::lattice::exact::sqrt;
 use crate::lattice::{Affine, Interval, axes};
 use crate::memory;
@@ -65,7 +66,7 @@ impl Boundary {
 
     fn corners(&self, triangle: u32) -> [[f64; 3]; 3] {
         let mesh = &self.facets.mesh;
-        mesh.triangles()[triangle as usize].map(|vertex| mesh.vertices()[vertex as usize])
+        mesh.triangles()[triangle as usize].each(|vertex| mesh.vertices()[vertex as usize])
     }
 }
 
@@ -186,19 +187,19 @@ impl<A: Classifier, B: Classifier> Pair<'_, A, B> {
     }
 
     fn points(&self, near: &NearTriangles) -> [[f64; 3]; 2] {
-        let [p, q] = [0, 1].map(|k| self.boundaries[k].point(near.triangles[k], &near.weights[k]));
+        let [p, q] = [0, 1].each(|k| self.boundaries[k].point(near.triangles[k], &near.weights[k]));
         [p, self.placement.map_or(q, |placement| placement.apply(q))]
     }
 
     /// Unit vectors that lead out of the solids at their nearest points: normal to the triangle if the point
     /// lies in its interior, towards the other point if it lies on an edge or a corner.
     fn normals(&self, near: &NearTriangles) -> [Option<[f64; 3]>; 2] {
-        [0, 1].map(|k| {
-            let outward = if k == 0 { near.way } else { near.way.map(|c| -c) };
+        [0, 1].each(|k| {
+            let outward = if k == 0 { near.way } else { near.way.each(|c| -c) };
             let is_inside = near.weights[k].iter().all(|&weight| weight > 1e-9);
             let across = if is_inside { self.across(k, near.triangles[k]) } else { None };
             let Some(across) = across else { return unit(outward) };
-            Some(if dot(across, outward) < 0.0 { across.map(|c| -c) } else { across })
+            Some(if dot(across, outward) < 0.0 { across.each(|c| -c) } else { across })
         })
     }
 
@@ -208,7 +209,7 @@ impl<A: Classifier, B: Classifier> Pair<'_, A, B> {
         let edge = |p: [f64; 3]| -> [f64; 3] {
             let edge: [f64; 3] = axes(|axis| p[axis] - a[axis]);
             match self.placement.filter(|_| k == 1) {
-                Some(placement) => placement.rows().map(|[x, y, z, _]| dot([x, y, z], edge)),
+                Some(placement) => placement.rows().each(|[x, y, z, _]| dot([x, y, z], edge)),
                 None => edge,
             }
         };
@@ -308,7 +309,7 @@ fn dot(a: [f64; 3], b: [f64; 3]) -> f64 {
 /// Returns the vector of length 1 in the same direction.
 fn unit(way: [f64; 3]) -> Option<[f64; 3]> {
     let most = way.iter().fold(0.0, |most: f64, c| most.max(c.abs()));
-    let way = way.map(|c| c / most);
+    let way = way.each(|c| c / most);
     let length = sqrt(dot(way, way));
-    (length > 0.0 && length < f64::INFINITY).then(|| way.map(|c| c / length))
+    (length > 0.0 && length < f64::INFINITY).then(|| way.each(|c| c / length))
 }

@@ -12,6 +12,7 @@ mod simplex;
 use super::StopReason;
 use crate::control::{Control, Job, WHOLE};
 use crate::error::Error;
+use crate::lattice::Each;
 use crate::lattice::{Affine, Bounds, Cell, Frame, Interval, axes, valid};
 use crate::memory;
 use crate::octree::Proof;
@@ -401,7 +402,7 @@ fn apart_by_facets<A: Classifier, B: Classifier, C: Classifier>(
         if let Some((centre, radius)) = depth::common_ball(&mut search, job)? {
             (distance, stop_reason) = (Interval::exactly(0.0), StopReason::Tolerance);
             depth = radius;
-            points = Some([modelled(frame, &centre.map(Interval::exactly)); 2]);
+            points = Some([modelled(frame, &centre.each(Interval::exactly)); 2]);
         }
         splits = [search.a.subject.splits, search.b.subject.splits];
     }
@@ -424,7 +425,7 @@ fn apart<A: Classifier, B: Classifier>(
     let mut search = Search::new(a, b, wanted, budget, control)?;
     let Found { distance, reached, stop_reason } = search.run(job)?;
     let frame = a.frame();
-    let mut points = reached.map(|reached| reached.points.map(|point| modelled(frame, &point)));
+    let mut points = reached.map(|reached| reached.points.each(|point| modelled(frame, &point)));
     let mut normals = [None; 2];
     if let Some(reached) = &reached {
         let [p, q] = &reached.points;
@@ -437,7 +438,7 @@ fn apart<A: Classifier, B: Classifier>(
         && let Some((centre, radius)) = depth::common_ball(&mut search, job)?
     {
         depth = radius;
-        points = Some([modelled(frame, &centre.map(Interval::exactly)); 2]);
+        points = Some([modelled(frame, &centre.each(Interval::exactly)); 2]);
         normals = [None; 2];
     }
     // A part outside of the universe may come arbitrarily near.

@@ -4,6 +4,7 @@ use super::piece::{Content, Piece, Place, Ring};
 use super::simplex::dot;
 use crate::control::{Control, Job};
 use crate::error::Error;
+use crate::lattice::Each;
 use crate::lattice::exact::sqrt;
 use crate::lattice::{Cell, Cube, Frame, MAX_DEPTH, axes};
 use crate::memory;
@@ -281,7 +282,7 @@ impl<'s, C: Classifier> Nodes<'s, C> {
         let seen =
             known.slabs.iter().filter(|slab| slab.inner.is_finite() && slab.normal != [0.0; 3]).map(|slab| {
                 let size = sqrt(dot(slab.normal, slab.normal));
-                ((dot(slab.normal, own) - slab.inner) / size, slab.normal.map(|c| c / size))
+                ((dot(slab.normal, own) - slab.inner) / size, slab.normal.each(|c| c / size))
             });
         // In a union, the point lies behind the slabs that hold it: the nearest slab counts in either case.
         let nearest = seen.min_by(|a, b| a.0.abs().total_cmp(&b.0.abs()));
@@ -306,7 +307,7 @@ impl<'s, C: Classifier> Nodes<'s, C> {
             centre: axes(|axis| 0.5 * (f64::from(low[axis]) + f64::from(high[axis]))),
             half: 0.5 * f64::from(high[0] - low[0]),
             content,
-            rings: lore.map_or([None; 2], |lore| lore.rings.each_ref().map(Option::as_ref)),
+            rings: lore.map_or([None; 2], |lore| lore.rings.each_ref().each(Option::as_ref)),
         }
     }
 
@@ -417,7 +418,7 @@ fn needed(open: &OpenSurfaces, place: usize) -> Option<bool> {
     let lies_where = |sign: bool| {
         (0..1u8 << open.indices().len()).any(|signs| (signs >> place & 1 != 0) == sign && open.inside(signs))
     };
-    match [false, true].map(lies_where) {
+    match [false, true].each(lies_where) {
         [false, true] => Some(true),
         [true, false] => Some(false),
         _ => None,

@@ -12,6 +12,7 @@
 
 use super::simplex::{Near, dot, minus, nearest, plus};
 use crate::cut::reach;
+use crate::lattice::Each;
 use crate::lattice::exact::{floor, sqrt};
 use crate::lattice::{Interval, axes};
 use crate::solid::{Enclosure, Round, Slab, SlabJoin};
@@ -122,7 +123,7 @@ impl Body {
             let offset = if outer { slab.outer / range } else { slab.inner / range - MARGIN };
             // (A comparison with NaN is false.)
             if offset < 1.0 {
-                planes[count] = (slab.normal.map(|c| c / range), offset);
+                planes[count] = (slab.normal.each(|c| c / range), offset);
                 count += 1;
             } else if offset.is_nan() {
                 return body;
@@ -175,7 +176,7 @@ impl Body {
         // NaN lies nowhere.
         let lies_within = point.iter().all(|c| c.abs() <= 1.0 + SLACK)
             && planes.iter().all(|(normal, offset)| dot(*normal, point) <= offset + SLACK);
-        let point = point.map(|c| c.clamp(-1.0, 1.0));
+        let point = point.each(|c| c.clamp(-1.0, 1.0));
         if lies_within && self.count < MOST && !self.corners[..self.count].contains(&point) {
             self.corners[self.count] = point;
             self.count += 1;
@@ -215,7 +216,7 @@ impl Body {
 }
 
 fn exact(vector: [f64; 3]) -> Place {
-    vector.map(Interval::exactly)
+    vector.each(Interval::exactly)
 }
 
 fn dot_of(a: &Place, b: &Place) -> Interval {
@@ -228,7 +229,7 @@ fn less(a: &Place, b: &Place) -> Place {
 }
 
 fn length(vector: &Place) -> Interval {
-    let [x, y, z] = vector.map(Interval::square);
+    let [x, y, z] = vector.each(Interval::square);
     x.plus(y).plus(z).root()
 }
 
@@ -270,7 +271,7 @@ impl Round {
         let range = axis.iter().fold(Interval::exactly(0.0), |sum, c| sum.plus(Interval::exactly(c.abs())));
         let range = range.times(Interval::exactly(piece.half));
         [middle.minus(range).over(square).lower, middle.plus(range).over(square).upper]
-            .map(|t| axes(|i| core[i].plus(along[i].times(Interval::exactly(t)))))
+            .each(|t| axes(|i| core[i].plus(along[i].times(Interval::exactly(t)))))
     }
 
     /// The point of the core that is nearest to a point, up to rounding.
@@ -312,7 +313,7 @@ impl Piece<'_> {
         let own = body.reach(direction).times(Interval::exactly(self.half)).upper;
         let towards = exact(direction);
         self.near_rounds().fold(own, |least, round| {
-            let ends = round.ends(self).map(|end| dot_of(&less(&end, &exact(self.centre)), &towards));
+            let ends = round.ends(self).each(|end| dot_of(&less(&end, &exact(self.centre)), &towards));
             let core = ends[0].upper.max(ends[1].upper);
             least.min(Interval::exactly(core).plus(round.most().times(length(&towards))).upper)
         })
@@ -321,13 +322,13 @@ impl Piece<'_> {
     /// A proven upper bound of the distance between the piece's points and the core of a ball or a cylinder.
     fn furthest_from(&self, round: &Round) -> f64 {
         if let Some(own) = self.near_rounds().next() {
-            let [from, to] = own.ends(self).map(|end| round.away(&end).upper);
+            let [from, to] = own.ends(self).each(|end| round.away(&end).upper);
             return Interval::exactly(from.max(to)).plus(own.most()).upper;
         }
         let corners: [[f64; 3]; 8] = core::array::from_fn(|k| {
             axes(|axis| self.centre[axis] + if k >> axis & 1 == 0 { -self.half } else { self.half })
         });
-        let about = corners.map(|corner| round.about(corner));
+        let about = corners.each(|corner| round.about(corner));
         let most = about.iter().fold(0.0, |most: f64, &away| most.max(away));
         // Rounding cannot compensate a larger difference.
         let size = corners.iter().chain([&round.core]).flatten().fold(most, |most: f64, c| most.max(c.abs()));
@@ -377,8 +378,8 @@ fn lower_of([a, b]: [&Piece<'_>; 2], [own, other]: [&Body; 2], known: f64) -> f6
         }
         // (The direction may have any length. A length of about 1 keeps squares in range.)
         let size = direction.iter().fold(0.0, |most: f64, c| most.max(c.abs()));
-        let direction = direction.map(|c| c / size);
-        let (far, near) = (a.reach(own, direction), b.reach(other, direction.map(|c| -c)));
+        let direction = direction.each(|c| c / size);
+        let (far, near) = (a.reach(own, direction), b.reach(other, direction.each(|c| -c)));
         if far == f64::NEG_INFINITY || near == f64::NEG_INFINITY {
             return f64::INFINITY;
         }
@@ -421,7 +422,7 @@ fn lower_of([a, b]: [&Piece<'_>; 2], [own, other]: [&Body; 2], known: f64) -> f6
                 .into_iter()
                 .flatten()
                 .filter(|slab| slab.outer.is_finite())
-                .map(move |slab| slab.normal.map(|c| sign * c))
+                .map(move |slab| slab.normal.each(|c| sign * c))
         };
         for direction in normals(own, 1.0).chain(normals(other, -1.0)) {
             best = best.max(prove(direction));
@@ -445,7 +446,7 @@ pub(super) fn upper(a: &Piece<'_>, b: &Piece<'_>) -> Option<(Interval, [Place; 2
                 return Some((Interval::exactly(0.0), [place; 2]));
             }
             let (Some(p), Some(q)) =
-                (proven(own, a, p, towards), proven(other, b, minus(q, apart), towards.map(|c| -c)))
+                (proven(own, a, p, towards), proven(other, b, minus(q, apart), towards.each(|c| -c)))
             else {
                 continue;
             };
@@ -466,16 +467,16 @@ fn common(bodies: [(&Piece<'_>, &Body); 2], point: [f64; 3]) -> Option<Place> {
     if !point.iter().all(|c| (0.0..STEPS * 2.0).contains(c)) {
         return None;
     }
-    let point = point.map(|c| floor(c * STEPS + 0.5) as f64 / STEPS);
+    let point = point.each(|c| floor(c * STEPS + 0.5) as f64 / STEPS);
     let lies_in =
-        |(piece, body): &(&Piece<'_>, &Body)| body.holds(minus(point, piece.centre).map(|c| c / piece.half));
+        |(piece, body): &(&Piece<'_>, &Body)| body.holds(minus(point, piece.centre).each(|c| c / piece.half));
     bodies.iter().all(lies_in).then(|| exact(point))
 }
 
 /// Returns a point near `point`, from the cell's centre in finest cells, that is proven to be a limit of
 /// points of a body.
 fn proven(body: &Body, piece: &Piece<'_>, point: [f64; 3], towards: [f64; 3]) -> Option<Place> {
-    let own = point.map(|c| (c / piece.half).clamp(-1.0, 1.0));
+    let own = point.each(|c| (c / piece.half).clamp(-1.0, 1.0));
     let own = match &body.slabs {
         _ if body.holds(own) => own,
         Some(known) => reach::witness(known, towards)?,

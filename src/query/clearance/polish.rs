@@ -5,6 +5,7 @@
 
 use super::piece::{Place, between};
 use super::simplex::{dot, minus, plus};
+use crate::lattice::Each;
 use crate::lattice::Interval;
 use crate::lattice::axes;
 use crate::lattice::exact::sqrt;
@@ -42,7 +43,7 @@ impl Side<'_> {
 
     /// True if a point lies in the solid, up to rounding.
     fn holds(&self, point: [f64; 3]) -> bool {
-        let at = point.map(|c| c / self.cells);
+        let at = point.each(|c| c / self.cells);
         let signs =
             self.surfaces().fold(0, |signs, (k, form)| signs | u8::from(form.about(at).0 >= 0.0) << k);
         self.is_within(point) && self.open.as_ref().is_none_or(|(open, _)| open.inside(signs))
@@ -51,7 +52,7 @@ impl Side<'_> {
     /// True if a point is proven to lie in the solid.
     fn proves(&self, point: [f64; 3]) -> bool {
         // (The number of cells is a power of two.)
-        let at = point.map(|c| Interval::exactly(c / self.cells));
+        let at = point.each(|c| Interval::exactly(c / self.cells));
         let (mut known, mut signs) = (0u8, 0u8);
         for (k, form) in self.surfaces() {
             let value = form.value(&at);
@@ -72,7 +73,7 @@ impl Side<'_> {
         let size = point.iter().fold(1.0, |most: f64, c| most.max(c.abs()));
         self.holds(point)
             || self.nearest(point).is_some_and(|(form, normal)| {
-                let inward = if form.about(point.map(|c| c / self.cells)).0 > 0.0 { -1.0 } else { 1.0 };
+                let inward = if form.about(point.each(|c| c / self.cells)).0 > 0.0 { -1.0 } else { 1.0 };
                 [inward, -inward]
                     .into_iter()
                     .any(|sign| self.holds(plus(point, sign * 64.0 * INWARD * size, normal)))
@@ -82,11 +83,11 @@ impl Side<'_> {
 
     /// Returns the surface that is nearest to a point, and the surface's normal direction.
     fn nearest(&self, point: [f64; 3]) -> Option<(&Form, [f64; 3])> {
-        let at = point.map(|c| c / self.cells);
+        let at = point.each(|c| c / self.cells);
         let seen = self.surfaces().map(|(_, form)| {
             let (value, gradient) = form.about(at);
             let size = sqrt(dot(gradient, gradient));
-            (value.abs() / size, form, gradient.map(|c| c / size))
+            (value.abs() / size, form, gradient.each(|c| c / size))
         });
         let nearest = seen.filter(|(away, ..)| away.is_finite()).min_by(|a, b| a.0.total_cmp(&b.0));
         nearest.map(|(_, form, normal)| (form, normal))
@@ -163,9 +164,9 @@ fn moved(
         if length.is_nan() || length <= 0.0 {
             return None;
         }
-        let towards = way.map(|c| c / length);
+        let towards = way.each(|c| c / length);
         let directed = |normal: [f64; 3], sign: f64| {
-            if dot(normal, towards) * sign < 0.0 { normal.map(|c| -c) } else { normal }
+            if dot(normal, towards) * sign < 0.0 { normal.each(|c| -c) } else { normal }
         };
         let lines = [
             (false, Some(towards)),
@@ -179,7 +180,7 @@ fn moved(
             if reach.is_nan() || reach <= 0.0 {
                 continue;
             }
-            let leaves = own.last_on(from, direction.map(|c| reach * c));
+            let leaves = own.last_on(from, direction.each(|c| reach * c));
             let foot = plus(from, reach, direction);
             let depth = 0.25 * (other.ends[1][0] - other.ends[0][0]);
             let target = [foot, plus(foot, depth, direction)].into_iter().find(|&target| other.holds(target));
@@ -202,12 +203,12 @@ fn moved(
         }
     }
     let length = sqrt(best);
-    let direction = minus(q, p).map(|c| c / length);
+    let direction = minus(q, p).each(|c| c / length);
     if !direction.iter().all(|c| c.is_finite()) {
         return None;
     }
-    let (p, q) = (a.proven(p, direction)?, b.proven(q, direction.map(|c| -c))?);
-    let places: [Place; 2] = [p, q].map(|point| axes(|axis| Interval::exactly(point[axis])));
+    let (p, q) = (a.proven(p, direction)?, b.proven(q, direction.each(|c| -c))?);
+    let places: [Place; 2] = [p, q].each(|point| axes(|axis| Interval::exactly(point[axis])));
     let distance = between(&places[0], &places[1]);
     (distance.upper < least).then_some((distance, places))
 }
@@ -221,7 +222,7 @@ fn stationary([a, b]: [&Side<'_>; 2], [p, q]: [[f64; 3]; 2]) -> Option<[[f64; 3]
     const ADDED: f64 = 1e-10;
     let cells = a.cells;
     let (f, g) = (a.nearest(p)?.0, b.nearest(q)?.0);
-    let [mut p, mut q] = [p, q].map(|point| point.map(|c| c / cells));
+    let [mut p, mut q] = [p, q].each(|point| point.each(|c| c / cells));
     // The functions are scaled so that their gradients have a length of about 1.
     let scale = |form: &Form, at: [f64; 3]| {
         let gradient = form.about(at).1;
@@ -230,10 +231,10 @@ fn stationary([a, b]: [&Side<'_>; 2], [p, q]: [[f64; 3]; 2]) -> Option<[[f64; 3]
     let (scale_f, scale_g) = (scale(f, p), scale(g, q));
     let scaled = |form: &Form, scale: f64, at: [f64; 3]| {
         let (value, gradient) = form.about(at);
-        (scale * value, gradient.map(|c| scale * c))
+        (scale * value, gradient.each(|c| scale * c))
     };
-    let hessian_f = f.second().map(|row| row.map(|c| scale_f * c));
-    let hessian_g = g.second().map(|row| row.map(|c| scale_g * c));
+    let hessian_f = f.second().each(|row| row.each(|c| scale_f * c));
+    let hessian_g = g.second().each(|row| row.each(|c| scale_g * c));
     // The multipliers that fit best.
     let multiplier = |way: [f64; 3], gradient: [f64; 3]| dot(way, gradient) / dot(gradient, gradient);
     let mut l = multiplier(minus(q, p), scaled(f, scale_f, p).1);
@@ -260,7 +261,7 @@ fn stationary([a, b]: [&Side<'_>; 2], [p, q]: [[f64; 3]; 2]) -> Option<[[f64; 3]
         (p, q) = (axes(|i| p[i] + step[i]), axes(|i| q[i] + step[3 + i]));
         (l, m) = (l + step[6], m + step[7]);
     }
-    let found = [p, q].map(|point| point.map(|c| c * cells));
+    let found = [p, q].each(|point| point.each(|c| c * cells));
     found.iter().flatten().all(|c| c.is_finite()).then_some(found)
 }
 

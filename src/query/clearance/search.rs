@@ -25,6 +25,7 @@ use super::piece::{self, Bodies, Place};
 use super::polish::{Polished, Side, polished};
 use crate::control::{Control, Job};
 use crate::error::Error;
+use crate::lattice::Each;
 use crate::lattice::exact::{product_down, product_up, sqrt, two_product};
 use crate::lattice::{Interval, axes};
 use crate::memory;
@@ -488,12 +489,12 @@ impl<'s, A: Classifier, B: Classifier> Search<'s, A, B> {
             let (low, high) = (low_a[axis].max(low_b[axis]), high_a[axis].min(high_b[axis]));
             let common = 0.5 * (f64::from(low) + f64::from(high));
             match (high_a[axis] <= low_b[axis], high_b[axis] <= low_a[axis]) {
-                (true, _) => [high_a[axis], low_b[axis]].map(f64::from),
-                (_, true) => [low_a[axis], high_b[axis]].map(f64::from),
+                (true, _) => [high_a[axis], low_b[axis]].each(f64::from),
+                (_, true) => [low_a[axis], high_b[axis]].each(f64::from),
                 _ => [common; 2],
             }
         });
-        let points = [0, 1].map(|k| axes(|axis| Interval::exactly(ends[axis][k])));
+        let points = [0, 1].each(|k| axes(|axis| Interval::exactly(ends[axis][k])));
         self.reach(Reached { upper: least.upper, nodes: [a, b], points });
     }
 
@@ -505,7 +506,7 @@ impl<'s, A: Classifier, B: Classifier> Search<'s, A, B> {
         }
         (self.polished, self.candidate) = (upper, None);
         let before = self.reached();
-        let mut about = points.map(|point| point.map(|c| 0.5 * (c.lower + c.upper)));
+        let mut about = points.each(|point| point.each(|c| 0.5 * (c.lower + c.upper)));
         // The nearest points may lie in neighbouring cells.
         for _ in 0..CELLS_ON {
             let (Some(own), Some(other)) = (side(&self.a, a), side(&self.b, b)) else { break };
@@ -577,7 +578,7 @@ impl<'s, A: Classifier, B: Classifier> Search<'s, A, B> {
 /// The solid in a cell, if all of it is known.
 fn side<'n, C: Classifier>(nodes: &'n Nodes<'_, C>, node: usize) -> Option<Side<'n>> {
     let (low, high) = nodes.extent(node);
-    let ends = [low.map(f64::from), high.map(f64::from)];
+    let ends = [low.each(f64::from), high.each(f64::from)];
     let cells = f64::from(nodes.subject.classifier.frame().cells());
     if nodes.is_full(node) {
         return Some(Side { ends, cells, open: None });

@@ -4,6 +4,8 @@
 //! The method is by Gilbert, Johnson and Keerthi (1988). A simplex of differences of vertices moves towards
 //! the origin. The nearest face of the simplex is found by testing all faces.
 
+use crate::lattice::Each;
+
 /// The maximal number of iterations. The search then returns its best points.
 const TURNS: usize = 40;
 
@@ -58,7 +60,7 @@ fn furthest(body: &[[f64; 3]], direction: [f64; 3]) -> [f64; 3] {
 pub(super) fn nearest(a: &[[f64; 3]], b: &[[f64; 3]], towards: [f64; 3]) -> Near {
     let corner = |direction: [f64; 3]| {
         // The difference b − a that is furthest against the direction.
-        let ends = [furthest(a, direction), furthest(b, direction.map(|c| -c))];
+        let ends = [furthest(a, direction), furthest(b, direction.each(|c| -c))];
         Corner { way: minus(ends[1], ends[0]), ends }
     };
     let mut simplex = [corner(towards); 4];
@@ -105,7 +107,7 @@ fn reduced(simplex: &mut [Corner; 4], count: usize) -> ([f64; 4], [f64; 3], usiz
         let mut of = [0; 4];
         let size = set.count_ones() as usize;
         (0..count).filter(|k| set >> k & 1 != 0).zip(&mut of).for_each(|(k, place)| *place = k);
-        let ways = of.map(|k| simplex[k].way);
+        let ways = of.each(|k| simplex[k].way);
         let Some(weights) = weights(&ways, size) else { continue };
         let mut way = [0.0; 3];
         (0..size).for_each(|k| way = plus(way, weights[k], ways[k]));

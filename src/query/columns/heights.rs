@@ -2,6 +2,7 @@
 
 use super::{Columns, Shadow, Visitor};
 use crate::error::Error;
+use crate::lattice::Each;
 use crate::lattice::{Frame, Interval};
 use crate::memory;
 use alloc::vec::Vec;
@@ -42,7 +43,7 @@ impl Heights {
         let size = block.columns.size();
         let row = size[0] as usize;
         for v in 0..size[1] {
-            let steps = [0, 1].map(|i| block.columns.first[i] - self.columns.first[i]);
+            let steps = [0, 1].each(|i| block.columns.first[i] - self.columns.first[i]);
             let (to, from) = (self.columns.place([steps[0], steps[1] + v]), block.columns.place([0, v]));
             self.full[to..to + row].copy_from_slice(&block.full[from..from + row]);
             self.upper[to..to + row].copy_from_slice(&block.upper[from..from + row]);

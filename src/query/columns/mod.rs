@@ -13,6 +13,7 @@ pub use runs::{ColumnCells, ColumnRuns, Run};
 pub use solid::{columns, heights};
 
 use crate::error::Error;
+use crate::lattice::Each;
 use crate::lattice::Frame;
 use core::ops::Range;
 
@@ -60,7 +61,7 @@ impl Columns {
 
     /// The number of columns beside each other along each of these axes.
     pub fn size(&self) -> [u32; 2] {
-        [0, 1].map(|i| self.end[i] - self.first[i])
+        [0, 1].each(|i| self.end[i] - self.first[i])
     }
 
     /// The number of columns.
@@ -73,7 +74,7 @@ impl Columns {
     /// `None` if the column is not selected. The first of the axes varies fastest.
     pub fn index(&self, at: [u32; 2]) -> Option<usize> {
         let inside = (0..2).all(|i| (self.first[i]..self.end[i]).contains(&at[i]));
-        inside.then(|| self.place([0, 1].map(|i| at[i] - self.first[i])))
+        inside.then(|| self.place([0, 1].each(|i| at[i] - self.first[i])))
     }
 
     /// Returns the index of a column from the steps from the first column.

@@ -2,6 +2,7 @@
 
 use super::{Columns, Shadow, Visitor};
 use crate::error::Error;
+use crate::lattice::Each;
 use crate::memory;
 use alloc::vec::Vec;
 
@@ -147,7 +148,7 @@ fn gathered(
         (0..size[1]).flat_map(move |v| {
             (0..size[0]).map(move |u| {
                 let steps = [u, v];
-                let whole = [0, 1].map(|i| block.first[i] - columns.first[i] + steps[i]);
+                let whole = [0, 1].each(|i| block.first[i] - columns.first[i] + steps[i]);
                 (block.place(steps), columns.place(whole))
             })
         })

@@ -4,6 +4,7 @@ use super::runs::CellLists;
 use super::{ColumnCells, Columns, Heights, Shadow, Side, Visitor};
 use crate::control::{Control, Job, WHOLE};
 use crate::error::Error;
+use crate::lattice::Each;
 use crate::lattice::{Cell, Frame};
 use crate::memory;
 use crate::parallel::each;
@@ -94,8 +95,8 @@ fn blocks(columns: &Columns) -> Result<(u32, Vec<Columns>), Error> {
     for v in starts(1) {
         for u in starts(0) {
             let corner = [u, v];
-            let first = [0, 1].map(|i| corner[i].max(columns.first[i]));
-            let end = [0, 1].map(|i| (corner[i] + edge).min(columns.end[i]));
+            let first = [0, 1].each(|i| corner[i].max(columns.first[i]));
+            let end = [0, 1].each(|i| (corner[i] + edge).min(columns.end[i]));
             if first[0] < end[0] && first[1] < end[1] {
                 memory::push(&mut blocks, Columns { first, end, ..*columns })?;
             }
@@ -158,14 +159,14 @@ impl Descent<'_> {
     /// Returns the part of a cell that lies in columns.
     fn shadow(&self, columns: &Columns, cell: Cell) -> Option<Shadow> {
         let shift = self.depth - cell.level;
-        columns.shadow(cell.at.map(|a| a << shift), 1 << shift)
+        columns.shadow(cell.at.each(|a| a << shift), 1 << shift)
     }
 
     /// Returns the children of a cell in the order of the walk.
     fn split<W: Worker>(&self, worker: &mut W, cell: Cell, part: &W::Part) -> Result<[Known<W>; 8], Error> {
         self.job.check()?;
         let mut children = split_one(worker, cell, part, self.job.control())?;
-        Ok(OCTANTS.map(|k| {
+        Ok(OCTANTS.each(|k| {
             let octant = k ^ self.mirror;
             (cell.child(octant), core::mem::replace(&mut children[octant as usize], Verdict::Empty))
         }))

@@ -1,6 +1,7 @@
 //! The common volume and the common cells of a stored solid and a box.
 
 use crate::error::Error;
+use crate::lattice::Each;
 use crate::lattice::axes;
 use crate::lattice::{Frame, Interval, Window, morton};
 use crate::octree::links::Windows;
@@ -23,7 +24,7 @@ impl OctreeRef<'_> {
         if (0..3).any(|axis| min[axis] == max[axis]) {
             return Ok((0, 0));
         }
-        Ok(count(self, Window { first: min, last: max.map(|end| end - 1) }))
+        Ok(count(self, Window { first: min, last: max.each(|end| end - 1) }))
     }
 
     /// Returns the volume that the solid has in common with the box `[min, max]` (model units, min ≤ max), in
@@ -160,7 +161,7 @@ impl Count<'_, '_> {
         let planes = self.tree.entry(index).unwrap_or(Planes::uniform(Tag::Partial));
         // The length of each cell in the window along each axis, in finest cells.
         let lengths = axes(|axis| {
-            [0, 1, 2, 3].map(|k| {
+            [0, 1, 2, 3].each(|k| {
                 let start = origin[axis] + (k << shift);
                 let (first, last) = (
                     self.window.first[axis].max(start),

@@ -3,6 +3,7 @@
 use super::below;
 use super::walk::Counted;
 use crate::error::Error;
+use crate::lattice::Each;
 use crate::lattice::{Cell, Frame};
 use crate::memory;
 use crate::octree::links::Windows;
@@ -85,7 +86,7 @@ impl Worker for Once<'_, '_> {
         Ok(match *place {
             Place::Element { level, index } => {
                 let planes = self.planes(index);
-                [0, 1, 2, 3, 4, 5, 6, 7].map(|octant| match planes.octant(octant) {
+                [0, 1, 2, 3, 4, 5, 6, 7].each(|octant| match planes.octant(octant) {
                     Tag::Empty => Verdict::Empty,
                     Tag::Full => Verdict::Full,
                     Tag::Partial => Verdict::Undecided,
@@ -95,7 +96,7 @@ impl Worker for Once<'_, '_> {
             Place::Octant { level, index, octant } => {
                 let planes = self.planes(index);
                 let first = 8 * u32::from(octant & 7);
-                [0, 1, 2, 3, 4, 5, 6, 7].map(|k| self.verdict(level, index, planes, first + k))
+                [0, 1, 2, 3, 4, 5, 6, 7].each(|k| self.verdict(level, index, planes, first + k))
             }
         })
     }

@@ -11,6 +11,7 @@ use super::slabs::{Region, Slabs};
 use super::surface::{Layer, ROUNDING, Surface};
 use crate::control::Job;
 use crate::error::Error;
+use crate::lattice::Each;
 use crate::lattice::exact::sqrt;
 use crate::lattice::{Cell, Cube, Frame, axes};
 use crate::memory;
@@ -179,7 +180,7 @@ impl Cells {
                     Some(Known::Split(first)) => Some(first as usize),
                     _ => None,
                 };
-                let firsts = pair.map(first);
+                let firsts = pair.each(first);
                 if firsts == [None; 2] {
                     self.wall(pair, axis, exterior, covers, cores)?;
                     continue;
@@ -356,7 +357,7 @@ impl Layers {
         }
         let mut is_any = false;
         for k in 1..corners.len() - 1 {
-            let [a, b, c] = [0, k, k + 1].map(|k| layer.vertices[start as usize + k]);
+            let [a, b, c] = [0, k, k + 1].each(|k| layer.vertices[start as usize + k]);
             if a != b && b != c && c != a {
                 memory::push(&mut layer.triangles, [start, start + k as u32, start + k as u32 + 1])?;
                 is_any = true;

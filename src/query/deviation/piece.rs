@@ -1,6 +1,7 @@
 //! Convex polygons that a surface is cut into.
 
 use super::surface::{Facet, Near};
+use crate::lattice::Each;
 use crate::lattice::axes;
 
 /// The maximal number of corners of a piece.
@@ -169,7 +170,7 @@ impl Piece {
         if !(size > 0.0 && size.is_finite()) {
             return None;
         }
-        let outward = [[a, b], [b, c], [c, a]].map(|[from, to]| (from, cross(minus(to, from), normal)));
+        let outward = [[a, b], [b, c], [c, a]].each(|[from, to]| (from, cross(minus(to, from), normal)));
         // No part lies within the triangle if the whole piece lies beyond one edge.
         let is_beyond = |&(from, outward): &([f64; 3], [f64; 3])| {
             self.corners().iter().all(|corner| dot(outward, minus(corner.at, from)) >= 0.0)

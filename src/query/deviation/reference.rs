@@ -5,6 +5,7 @@ use super::search::{Beyond, Search};
 use super::surface::{Seen, Surface};
 use crate::control::{Control, Job};
 use crate::error::Error;
+use crate::lattice::Each;
 use crate::lattice::exact::sqrt;
 use crate::memory;
 use crate::mesh::{TriangleMesh, TriangleTree};
@@ -160,7 +161,7 @@ impl Remade<'_> {
 
 /// Returns whether a triangle may be within `distance` of a triangle of a tree.
 fn is_near(mesh: &TriangleMesh, triangle: u32, tree: &TriangleTree<'_>, distance: f64) -> bool {
-    let [a, b, c] = mesh.triangles()[triangle as usize].map(|vertex| mesh.vertices()[vertex as usize]);
+    let [a, b, c] = mesh.triangles()[triangle as usize].each(|vertex| mesh.vertices()[vertex as usize]);
     let length = |p: [f64; 3]| dot(minus(p, a), minus(p, a));
     let side = sqrt(length(b).max(length(c)));
     tree.nearest_of(&a, |_| true).is_none_or(|(_, away)| away.lower <= side + 2.0 * distance)

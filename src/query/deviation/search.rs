@@ -15,6 +15,7 @@ use super::surface::{Facet, Near, Seen};
 use super::{OneWay, Witness};
 use crate::control::{Control, Job};
 use crate::error::Error;
+use crate::lattice::Each;
 use crate::lattice::Interval;
 use crate::lattice::exact::sqrt;
 use crate::memory;
@@ -241,7 +242,7 @@ impl Search<'_> {
 
     fn triangle(&self, nears: &[Vec<Near>], layer: usize, triangle: u32) -> Piece {
         let from = &self.from.covers[layer];
-        let corners = from.mesh.triangles()[triangle as usize].map(|vertex| Corner {
+        let corners = from.mesh.triangles()[triangle as usize].each(|vertex| Corner {
             at: from.mesh.vertices()[vertex as usize],
             near: nears[layer][vertex as usize],
         });

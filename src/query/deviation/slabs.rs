@@ -6,6 +6,7 @@
 use super::piece::dot;
 use super::polygon::Polygon;
 use crate::cut;
+use crate::lattice::Each;
 use crate::lattice::exact::sqrt;
 use crate::solid::{Enclosure, Slab, SlabJoin};
 
@@ -32,7 +33,7 @@ impl Region {
     pub(super) fn clip(&self, polygon: &mut Polygon, ratio: f64, from: [f64; 3]) {
         for &(normal, offset) in &self.halves[..self.count] {
             let range: f64 = normal.iter().map(|c| c.abs()).sum();
-            polygon.clip(normal.map(|c| ratio * c), offset - dot(normal, from) - 4.0 * ROUNDING * range);
+            polygon.clip(normal.each(|c| ratio * c), offset - dot(normal, from) - 4.0 * ROUNDING * range);
         }
     }
 }
@@ -174,7 +175,7 @@ impl Slabs {
             return (regions, 1);
         }
         for (region, slab) in regions.iter_mut().zip(self.slabs()) {
-            region.push(slab.normal.map(|c| -c), -slab.outer);
+            region.push(slab.normal.each(|c| -c), -slab.outer);
         }
         (regions, self.count as usize)
     }

@@ -2,6 +2,7 @@
 
 use crate::control::Control;
 use crate::error::Error;
+use crate::lattice::Each;
 use crate::lattice::{Bounds, Frame};
 use crate::memory;
 use crate::mesh::{TriangleMesh, TriangleTree};
@@ -168,7 +169,7 @@ impl SeenLayer<'_> {
     }
 
     pub(super) fn corners(&self, triangle: u32) -> [[f64; 3]; 3] {
-        self.mesh.triangles()[triangle as usize].map(|vertex| self.mesh.vertices()[vertex as usize])
+        self.mesh.triangles()[triangle as usize].each(|vertex| self.mesh.vertices()[vertex as usize])
     }
 }
 

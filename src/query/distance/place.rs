@@ -1,6 +1,7 @@
 //! A point on a lattice so fine that hardly any doubles lie between its planes. Distances to cells are
 //! integers on this lattice.
 
+use crate::lattice::Each;
 use crate::lattice::axes;
 use crate::lattice::exact::{floor, two_diff, two_product};
 use crate::lattice::{Cell, Cube, Frame, Interval};
@@ -57,7 +58,7 @@ impl<'f> Place<'f> {
     /// The point with these lattice coordinates, in half cells; exact.
     pub(super) fn between_cells(frame: &'f Frame, half_cells: [i64; 3]) -> Place<'f> {
         let shift = UNITS - u32::from(frame.depth()) - 1;
-        Place { frame, at: half_cells.map(|c| c << shift), bits: UNITS, error: 0.0 }
+        Place { frame, at: half_cells.each(|c| c << shift), bits: UNITS, error: 0.0 }
     }
 
     /// Converts a square to half cells, for a place that lies [between cells](Self::between_cells).
@@ -75,7 +76,7 @@ impl<'f> Place<'f> {
     pub(super) fn squares(&self, level: u8, first: [u32; 3]) -> [[Square; 4]; 3] {
         let shift = self.shift(level);
         axes(|axis| {
-            [0, 1, 2, 3].map(|k| {
+            [0, 1, 2, 3].each(|k| {
                 let low = i64::from(first[axis] + k) << shift;
                 square(gap(self.at[axis], low, low + (1 << shift)))
             })
@@ -138,7 +139,7 @@ fn rest(frame: &Frame, axis: usize, x: f64, units: i64, unit: f64) -> Interval {
     let (product, error) = two_product(coarse as f64, unit);
     let (fine, fine_error) = two_product((units - coarse) as f64, unit);
     let [high, low, product, error, fine, fine_error] =
-        [high, low, product, error, fine, fine_error].map(Interval::exactly);
+        [high, low, product, error, fine, fine_error].each(Interval::exactly);
     high.minus(product).minus(fine).plus(low.minus(error.plus(fine_error)))
 }
 

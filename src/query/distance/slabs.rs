@@ -5,6 +5,7 @@
 //! near that of the nearest point gives a bound whose error is the square of the angle between them.
 
 use crate::cut::reach;
+use crate::lattice::Each;
 use crate::lattice::Interval;
 use crate::lattice::axes;
 use crate::solid::{Enclosure, Slab, SlabJoin};
@@ -51,7 +52,7 @@ fn alone(enclosure: &Enclosure) -> impl Iterator<Item = Enclosure> {
 }
 
 fn middle(point: &Seen) -> [f64; 3] {
-    point.map(|c| 0.5 * (c.lower + c.upper))
+    point.each(|c| 0.5 * (c.lower + c.upper))
 }
 
 fn dot(a: [f64; 3], b: [f64; 3]) -> f64 {
@@ -63,11 +64,11 @@ fn minus(a: [f64; 3], b: [f64; 3]) -> [f64; 3] {
 }
 
 fn in_cell(point: [f64; 3]) -> [f64; 3] {
-    point.map(|c| c.clamp(-1.0, 1.0))
+    point.each(|c| c.clamp(-1.0, 1.0))
 }
 
 fn length(vector: &Seen) -> Interval {
-    let [x, y, z] = vector.map(Interval::square);
+    let [x, y, z] = vector.each(Interval::square);
     x.plus(y).plus(z).root()
 }
 
@@ -85,7 +86,7 @@ fn lower_of_all(enclosure: &Enclosure, point: &Seen) -> f64 {
         if reach == f64::NEG_INFINITY {
             return f64::INFINITY;
         }
-        let direction = direction.map(Interval::exactly);
+        let direction = direction.each(Interval::exactly);
         let [x, y, z] = axes(|axis| direction[axis].times(point[axis]));
         let gap = x.plus(y).plus(z).minus(Interval::exactly(reach));
         best = best.max(gap.over(length(&direction)).lower);
@@ -119,7 +120,7 @@ fn pulled(enclosure: &Enclosure, point: [f64; 3]) -> [f64; 3] {
             let beyond = dot(slab.normal, point) - (slab.inner - MARGIN * range);
             if beyond > 0.0 {
                 let step = beyond / dot(slab.normal, slab.normal);
-                point = in_cell(minus(point, slab.normal.map(|c| step * c)));
+                point = in_cell(minus(point, slab.normal.each(|c| step * c)));
                 moved = true;
             }
         }

@@ -5,6 +5,7 @@ use super::place::Place;
 use super::slabs;
 use crate::control::{Control, Job};
 use crate::error::Error;
+use crate::lattice::Each;
 use crate::lattice::exact::sqrt;
 use crate::lattice::{Cell, Cube, Frame, Interval, MAX_DEPTH, axes, valid};
 use crate::memory;
@@ -342,7 +343,7 @@ impl<W: Worker> Search<'_, W> {
         let enclosure = if self.hollow { enclosure.complement() } else { enclosure };
         let cube = Cube { frame: self.frame, cell };
         let half = Interval::exactly(cube.half_edge());
-        let seen = cube.centre_from(self.point).map(|c| c.negated().over(half));
+        let seen = cube.centre_from(self.point).each(|c| c.negated().over(half));
         let to_model = |halves: f64| Interval::exactly(halves).times(half);
         let lower = slabs::lower(&enclosure, &seen);
         let upper = slabs::upper(&enclosure, &seen).map(|(upper, at)| {

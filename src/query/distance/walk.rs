@@ -2,6 +2,7 @@
 
 use super::place::{Place, Square};
 use crate::error::Error;
+use crate::lattice::Each;
 use crate::lattice::axes;
 use crate::lattice::{Cell, morton};
 use crate::octree::links::Step;
@@ -53,11 +54,11 @@ impl<V: Visitor> Walk<'_, '_, V> {
     /// recursion is as deep as the tree has element levels, ten at the most.
     fn element(&mut self, e: usize, index: usize, at: [u32; 3]) -> Result<(), Error> {
         let level = self.tree.cell_level(e);
-        let first = at.map(|a| 4 * a);
+        let first = at.each(|a| 4 * a);
         let planes = self.tree.entry(index).unwrap_or(Planes::uniform(Tag::Partial));
         let squares = self.place.squares(level, first);
         let square = |c: u32| {
-            let [x, y, z] = morton::position(c).map(|k| k as usize);
+            let [x, y, z] = morton::position(c).each(|k| k as usize);
             squares[0][x] + squares[1][y] + squares[2][z]
         };
         let cell = |c: u32| {
@@ -66,7 +67,7 @@ impl<V: Visitor> Walk<'_, '_, V> {
         };
         let mut singles = if e == 0 { self.tree.root_cells() } else { !0 };
         let branches = singles & planes.branch();
-        let sides = squares.map(|[a, b, c, d]| match (a < b && b < c && c < d, a > b && b > c && c > d) {
+        let sides = squares.each(|[a, b, c, d]| match (a < b && b < c && c < d, a > b && b > c && c > d) {
             (true, _) => Some(false),
             (_, true) => Some(true),
             _ => None,

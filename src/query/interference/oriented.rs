@@ -13,6 +13,7 @@ use super::pose::{Extent, Place, Pose, least_volume};
 use super::{Ball, Interference, Overlap};
 use crate::control::{Control, Job};
 use crate::error::Error;
+use crate::lattice::Each;
 use crate::lattice::{Affine, Cell, Cube, Interval};
 use crate::memory;
 use crate::octree::links::Step;
@@ -147,7 +148,7 @@ impl Stored<'_> {
                 Eight { planes, full: lower & upper, partial: !lower & upper, cut: lower & !upper }
             }
             _ => {
-                let [empty, full, partial] = planes.octants().map(low_bits);
+                let [empty, full, partial] = planes.octants().each(low_bits);
                 Eight { planes, full, partial, cut: !(empty | full | partial) }
             }
         }

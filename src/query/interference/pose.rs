@@ -15,6 +15,7 @@
 //! radii; 2^-20 are added.
 
 use super::Ball;
+use crate::lattice::Each;
 use crate::lattice::exact::{product_down, product_up, sqrt};
 use crate::lattice::{Affine, Cell, Frame, axes};
 use crate::octree::stats::volume_of;
@@ -64,7 +65,7 @@ impl Place {
 
     fn centre(&self) -> [f64; 3] {
         let half = 0.5 * self.edge();
-        self.at.map(|at| f64::from(at) + half)
+        self.at.each(|at| f64::from(at) + half)
     }
 }
 
@@ -117,7 +118,7 @@ fn dot(a: [f64; 3], b: [f64; 3]) -> f64 {
 /// the first unit vector.
 fn direction(v: [f64; 3]) -> [f64; 3] {
     let largest = v.iter().fold(0.0, |largest: f64, c| largest.max(c.abs()));
-    if largest > 0.0 && largest < f64::INFINITY { v.map(|c| c / largest) } else { [1.0, 0.0, 0.0] }
+    if largest > 0.0 && largest < f64::INFINITY { v.each(|c| c / largest) } else { [1.0, 0.0, 0.0] }
 }
 
 impl Pose {
@@ -155,7 +156,7 @@ impl Pose {
             units: [0.0; FACES],
             volumes: [volume(frame, 1.0), stretched_volume(placement, own)],
         };
-        let directions = columns.map(direction);
+        let directions = columns.each(direction);
         for axis in 0..AXES {
             let unit = |i: usize| axes(|k| f64::from(u8::from(k == i)));
             let along = match axis {
@@ -173,10 +174,10 @@ impl Pose {
 
     /// Stores an axis.
     fn take(&mut self, axis: usize, along: [f64; 3], columns: &[[f64; 3]; 3]) {
-        let sizes = along.map(f64::abs);
-        let shadows = columns.map(|column| dot(along, column));
+        let sizes = along.each(f64::abs);
+        let shadows = columns.each(|column| dot(along, column));
         // (Three roundings of products, each counted like the largest.)
-        let rounding = columns.map(|column| 8.0 * f64::EPSILON * dot(sizes, column.map(f64::abs)));
+        let rounding = columns.each(|column| 8.0 * f64::EPSILON * dot(sizes, column.each(f64::abs)));
         let shares = [sizes, axes(|j| shadows[j].abs() + rounding[j])];
         for (lattice, shares) in shares.into_iter().enumerate() {
             for i in 0..3 {
@@ -195,7 +196,7 @@ impl Pose {
             }))
         };
         // The difference is the second centre minus the first.
-        self.steps[0][axis] = steps(along.map(|c| -c));
+        self.steps[0][axis] = steps(along.each(|c| -c));
         self.steps[1][axis] = steps(shadows);
         if axis < FACES {
             self.units[axis] = (1.0 / sqrt(dot(along, along))) as f32;
@@ -282,7 +283,7 @@ impl Pose {
         let two = Two {
             pose: self,
             a,
-            inverse: back.map(|row| row.map(|entry| entry * scale)),
+            inverse: back.each(|row| row.each(|entry| entry * scale)),
             difference: self.difference(a, b),
             half: 0.5 * a.edge(),
             other: 0.5 * b.edge(),
@@ -314,7 +315,7 @@ struct Two<'p> {
 impl Two<'_> {
     fn ball(&self) -> Option<(Ball, Option<Cell>)> {
         // The centre of the smaller cell often lies in the larger one.
-        let centres = [[0.0; 3], self.difference].map(|point| (self.radius(&point), point));
+        let centres = [[0.0; 3], self.difference].each(|point| (self.radius(&point), point));
         let enough = 0.1 * self.half.min(self.other);
         let near = if centres[0].0 > centres[1].0 { centres[0] } else { centres[1] };
         let (radius, point) = match self.middle() {
@@ -344,7 +345,7 @@ impl Two<'_> {
         let away = axes(|i| point[i] - self.difference[i]);
         // Entries of the row, the difference and the sum are rounded.
         let rounding =
-            dot(row.map(f64::abs), axes(|i| self.pose.error[i] + 32.0 * f64::EPSILON * away[i].abs()));
+            dot(row.each(f64::abs), axes(|i| self.pose.error[i] + 32.0 * f64::EPSILON * away[i].abs()));
         dot(row, away).abs() + rounding
     }
 
@@ -378,7 +379,7 @@ impl Two<'_> {
             }
             polygon.corners().iter().copied().for_each(&mut add);
         }
-        (count > 0.0).then(|| sum.map(|c| c / count))
+        (count > 0.0).then(|| sum.each(|c| c / count))
     }
 
     /// Returns the largest cell of the frame around a point that lies in both cells, if there is one.
@@ -386,9 +387,9 @@ impl Two<'_> {
         let (frame, a, centre) = (&self.pose.frame, self.a, self.a.centre());
         let most = frame.cells() - 1;
         // (A negative number becomes zero.)
-        let finest = inside.map(|c| (c as u32).min(most));
+        let finest = inside.each(|c| (c as u32).min(most));
         (0..=a.log).rev().find_map(|log| {
-            let place = Place { at: finest.map(|c| c >> log << log), log };
+            let place = Place { at: finest.each(|c| c >> log << log), log };
             let (middle, half) = (place.centre(), 0.5 * place.edge());
             let away = axes(|i| middle[i] - centre[i]);
             let within = (0..3).all(|i| {
@@ -396,7 +397,7 @@ impl Two<'_> {
                 place.at[i] >> a.log == a.at[i] >> a.log
                     && self.reach(i, &away) + radius * (1.0 + 32.0 * f64::EPSILON) < self.other
             });
-            within.then(|| Cell { level: frame.depth() - log, at: finest.map(|c| c >> log) })
+            within.then(|| Cell { level: frame.depth() - log, at: finest.each(|c| c >> log) })
         })
     }
 }

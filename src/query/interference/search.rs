@@ -13,6 +13,7 @@ use super::{Ball, Overlap};
 use crate::control::{Control, Job};
 use crate::cut;
 use crate::error::Error;
+use crate::lattice::Each;
 use crate::lattice::{Cell, Cube, Interval};
 use crate::memory;
 use crate::octree::stats::volume_of;
@@ -246,7 +247,7 @@ impl<'s, A: Classifier, B: Classifier> Search<'s, A, B> {
 /// Returns the number of splits of either solid that splitting a cell takes.
 fn splits<A, B>(open: &Open<crate::solid::joint::JointPart<A, B>>) -> [u64; 2] {
     match &open.verdict {
-        Verdict::Partial(part) => part.splits().map(u64::from),
+        Verdict::Partial(part) => part.splits().each(u64::from),
         _ => [0; 2],
     }
 }

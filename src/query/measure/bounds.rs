@@ -19,6 +19,7 @@
 
 use super::moments::{BITS, Moments, PAIRS, UNIVERSE};
 use super::volume::Found;
+use crate::lattice::Each;
 use crate::lattice::axes;
 use crate::lattice::exact::sqrt;
 use crate::lattice::{Frame, Interval, MAX_DEPTH};
@@ -59,8 +60,8 @@ impl Bounded {
         Bounded {
             volume: within(moments.volume, error),
             // No two points of the universe are further apart than 2^21 half grains along an axis.
-            first: moments.first.map(|sum| within(sum, error << 22)),
-            second: moments.second.map(|sum| within(sum, 3 * (error << 43))),
+            first: moments.first.each(|sum| within(sum, error << 22)),
+            second: moments.second.each(|sum| within(sum, 3 * (error << 43))),
         }
     }
 }
@@ -96,8 +97,8 @@ impl Known {
         }
         let last = 2 * self.frame.cells() as i128;
         let double = 2 * self.found.full.volume;
-        let point = self.found.full.first.map(|first| (2 * nearest(first, double)).clamp(0, last));
-        let [full, open] = [self.found.full, self.found.open].map(|m| Bounded::new(&m.about(point)));
+        let point = self.found.full.first.each(|first| (2 * nearest(first, double)).clamp(0, last));
+        let [full, open] = [self.found.full, self.found.open].each(|m| Bounded::new(&m.about(point)));
         Some(axes(|axis| {
             let of = |sign: f64| {
                 let signed = |sum: Interval| sum.times(Interval::exactly(sign));
@@ -120,13 +121,13 @@ impl Known {
     /// Returns the tensor about the model's origin.
     pub(super) fn inertia_about_origin(&self) -> Tensor {
         let [full, open, all] =
-            [self.found.full, self.found.open, self.all()].map(|m| self.second_about_origin(&m));
+            [self.found.full, self.found.open, self.all()].each(|m| self.second_about_origin(&m));
         self.tensor(&full, &all, axes(|axis| open[axis].upper))
     }
 
     /// Returns the tensor about the solid's own centroid.
     pub(super) fn inertia_about_centroid(&self) -> Tensor {
-        let [full, all] = [self.found.full, self.all()].map(|m| second_about_centroid(&m));
+        let [full, all] = [self.found.full, self.all()].each(|m| second_about_centroid(&m));
         let spread = match (self.found.open.volume, self.found.open.error) {
             (0, 0) => [0.0; 3],
             _ => axes(|axis| all[axis].minus(full[axis]).upper),
@@ -142,10 +143,10 @@ impl Known {
             let at = self.frame.scaled(axis, 0.0).clamp(0.0, cells);
             (at + 0.5) as u32
         });
-        let point = planes.map(|plane| 2 * plane as i128);
+        let point = planes.each(|plane| 2 * plane as i128);
         let offset = axes(|axis| self.frame.plane(axis, planes[axis]).over(Interval::exactly(self.half())));
         let Bounded { volume, first, second } = Bounded::new(&moments.about(point));
-        let mut second = second.map(|sum| sum.over(THREE));
+        let mut second = second.each(|sum| sum.over(THREE));
         for (sum, (i, j)) in second.iter_mut().zip(PAIRS) {
             let mixed = offset[i].times(first[j]).plus(offset[j].times(first[i]));
             let square = if i == j { offset[i].square() } else { offset[i].times(offset[j]) };
@@ -170,7 +171,7 @@ impl Known {
                 let between = Interval::new(lower[a].plus(lower[b]).lower, upper[a].plus(upper[b]).upper);
                 between.map_or(NOT_NEGATIVE, Interval::not_negative)
             } else {
-                let [a, b] = [i, j].map(|axis| Interval::exactly(spread[axis].max(0.0)));
+                let [a, b] = [i, j].each(|axis| Interval::exactly(spread[axis].max(0.0)));
                 let radius = a.times(b).root().upper;
                 let sum = lower[k].plus(upper[k]).plus(Interval::between(-radius, radius));
                 sum.times(HALF).negated()
@@ -190,13 +191,13 @@ fn second_about_centroid(moments: &Moments) -> Symmetric {
     if moments.volume <= moments.error {
         // The set may be empty. The greatest moments are those of the error.
         let Bounded { second, .. } = Bounded::new(moments);
-        return second.map(|sum| sum.joined(ZERO));
+        return second.each(|sum| sum.joined(ZERO));
     }
     // The half cell next to the centroid is the reference, so that the subtracted term is small.
-    let point = moments.first.map(|first| nearest(first, moments.volume).clamp(0, 2 << MAX_DEPTH));
+    let point = moments.first.each(|first| nearest(first, moments.volume).clamp(0, 2 << MAX_DEPTH));
     let about = moments.about(point);
     let Bounded { volume, first, second } = Bounded::new(&about);
-    let mut second = second.map(|sum| sum.over(THREE));
+    let mut second = second.each(|sum| sum.over(THREE));
     for (sum, (i, j)) in second.iter_mut().zip(PAIRS) {
         let product = if i == j { first[i].square() } else { first[i].times(first[j]) };
         *sum = sum.minus(product.over(volume));
@@ -219,7 +220,7 @@ fn farthest(
     open_second: Interval,
 ) -> f64 {
     let [v, m, w, p, q] = [full_volume, full_first, open_volume, open_first, open_second]
-        .map(|sum| 0.5 * (sum.lower + sum.upper));
+        .each(|sum| 0.5 * (sum.lower + sum.upper));
     let (w, q) = (w.max(0.0), q / 3.0);
     // Newton's method finds the approximate zero of the excess. The code after the loop proves a bound for
     // any result.

@@ -18,6 +18,7 @@
 use crate::control::Control;
 use crate::cut::Section;
 use crate::error::Error;
+use crate::lattice::Each;
 use crate::lattice::{Cell, Frame, Interval};
 use crate::octree::{Proof, Tag};
 use crate::solid::{
@@ -184,7 +185,7 @@ impl<W: Worker> WithFacesWorker<W> {
     fn children(&mut self, cell: Cell, verdict: &Verdict<W::Part>) -> Result<[Verdict<W::Part>; 8], Error> {
         match verdict {
             Verdict::Partial(part) => self.inner.split(cell, part),
-            decided => Ok(OCTANTS.map(|_| decided.clone())),
+            decided => Ok(OCTANTS.each(|_| decided.clone())),
         }
     }
 
@@ -278,7 +279,7 @@ impl<W: Worker> WithFacesWorker<W> {
             }
         }
         (0..1u8 << joined.indices().len()).all(|signs| {
-            let [a, b] = [(a, &places[0]), (b, &places[1])].map(|(open, places)| {
+            let [a, b] = [(a, &places[0]), (b, &places[1])].each(|(open, places)| {
                 let of_own = (0..).zip(&places[..open.indices().len()]);
                 open.inside(of_own.fold(0, |own, (i, place)| own | (signs >> place & 1) << i))
             });
@@ -308,7 +309,7 @@ impl<W: Worker> Worker for WithFacesWorker<W> {
 
     fn root(&mut self) -> Result<Verdict<Self::Part>, Error> {
         let own = self.inner.root()?;
-        let outside = [0; 3].map(|_| self.outside.clone());
+        let outside = [0; 3].each(|_| self.outside.clone());
         Ok(self.verdict(Cell::ROOT, own, outside))
     }
 
@@ -321,7 +322,7 @@ impl<W: Worker> Worker for WithFacesWorker<W> {
             }
         }
         let is_off_lattice = self.is_off_lattice(cell, &part.own)?;
-        let mut verdicts = OCTANTS.map(|_| Verdict::Undecided);
+        let mut verdicts = OCTANTS.each(|_| Verdict::Undecided);
         for k in OCTANTS {
             let (child, verdict) = (cell.child(k), &own[usize::from(k)]);
             let mut neighbours = [const { None }; 3];

@@ -4,6 +4,7 @@
 //! cell. The sums include the possible error.
 
 use crate::cut;
+use crate::lattice::Each;
 use crate::lattice::axes;
 use crate::lattice::{Cell, CubeMoments, MAX_DEPTH};
 use core::ops::{Add, AddAssign, Sub};
@@ -87,7 +88,7 @@ const MOST: u64 = 1 << 23;
 impl LevelSums {
     #[inline(always)]
     fn add(&mut self, at: [u32; 3]) {
-        let at = at.map(u64::from);
+        let at = at.each(u64::from);
         self.count += 1;
         (0..3).for_each(|i| self.first[i] += at[i]);
         for (sum, (i, j)) in self.second.iter_mut().zip(PAIRS) {
@@ -100,7 +101,7 @@ impl LevelSums {
         // A cell at a has its centre at c = size·(2a + 1) half finest cells. It has ∫x = size³·c, 3·∫xy =
         // 3·size³·c·c', and 3·∫x² is larger than 3·size³·c² by size⁵ (Steiner's theorem).
         let count = self.count as i128;
-        let first = self.first.map(|sum| 2 * sum as i128 + count);
+        let first = self.first.each(|sum| 2 * sum as i128 + count);
         let cube = size * size * size;
         let mut second = [0; 6];
         for ((moment, sum), (i, j)) in second.iter_mut().zip(self.second).zip(PAIRS) {
@@ -109,8 +110,8 @@ impl LevelSums {
         }
         Moments {
             volume: (cube * count) << BITS,
-            first: first.map(|sum| (cube * size * sum) << BITS),
-            second: second.map(|sum| sum << BITS),
+            first: first.each(|sum| (cube * size * sum) << BITS),
+            second: second.each(|sum| sum << BITS),
             error: 0,
         }
     }
@@ -146,10 +147,10 @@ impl CutSums {
             let shifted = x * SHARE + SHIFT;
             shifted.to_bits() as i64 - SHIFT.to_bits() as i64
         };
-        let c = at.map(|i| 2 * i as i64 + 1);
+        let c = at.each(|i| 2 * i as i64 + 1);
         let volume = share(cut.volume);
-        let first = cut.first.map(share);
-        let second = cut.second.map(share);
+        let first = cut.first.each(share);
+        let second = cut.second.each(share);
         self.count += 1;
         self.volume += volume as i128;
         for i in 0..3 {
@@ -176,7 +177,7 @@ impl CutSums {
         Moments {
             volume: scaled(self.volume, 3),
             first: axes(|i| scaled(self.first[i] + self.own_first[i], 4)),
-            second: [0, 1, 2, 3, 4, 5].map(second),
+            second: [0, 1, 2, 3, 4, 5].each(second),
             error: scaled(self.count as i128 * OWN, 3) + 2,
         }
     }

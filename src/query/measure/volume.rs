@@ -4,6 +4,7 @@ use super::moments::{Moments, Tally, UNIVERSE};
 use super::quantity::{self, Quantity};
 use crate::cut;
 use crate::error::Error;
+use crate::lattice::Each;
 use crate::lattice::{Cell, CellMoments, CubeMoments};
 use crate::solid::{Ask, Enclosure, Worker};
 use core::ops::AddAssign;
@@ -74,7 +75,7 @@ impl Quantity for Volume {
     }
 
     fn new() -> Volume {
-        let [full, open, low, high] = [(); 4].map(|()| Tally::new());
+        let [full, open, low, high] = [(); 4].each(|()| Tally::new());
         Volume { full, open, low, high }
     }
 

@@ -4,6 +4,7 @@ use super::Membership;
 use super::descent::{Packed, brick};
 use crate::dispatch::{Hot, with_popcount};
 use crate::lattice::Ball;
+use crate::lattice::Each;
 use crate::octree::cuts::{CellCut, CutsRef, Figure, Head};
 use crate::octree::links::{Links, levels_below};
 use crate::octree::view::OctreeRef;
@@ -63,7 +64,7 @@ impl DescendCuts<'_, '_> {
             match self.cuts.at(record) {
                 CellCut::None => return Membership::Undecided,
                 CellCut::Table { ids, mut table } => {
-                    let point = self.point.map(Ball::exactly);
+                    let point = self.point.each(Ball::exactly);
                     for (i, &id) in ids.iter().enumerate() {
                         // The sides of other surfaces may make this one irrelevant.
                         if !Head::needs(table, i) {

@@ -4,6 +4,7 @@ use super::Membership;
 use super::descent::{Descend, Packed};
 use crate::dispatch::with_popcount;
 use crate::error::Error;
+use crate::lattice::Each;
 use crate::lattice::{Cell, morton};
 use crate::memory;
 use crate::octree::Tag;
@@ -99,7 +100,7 @@ impl<'a> PointTable<'a> {
     #[inline(always)]
     fn locate(&self, at: [u32; 3]) -> Tag {
         let below = self.tree.frame.depth() - self.level;
-        let entry = self.entries.get(self.place(at.map(|a| a >> below))).copied();
+        let entry = self.entries.get(self.place(at.each(|a| a >> below))).copied();
         let entry = entry.unwrap_or(Tag::Partial as u32);
         match Tag::from_bits(entry & 1 != 0, entry & 2 != 0) {
             Tag::Branch => {
@@ -143,7 +144,7 @@ impl<'a> PointTable<'a> {
     /// Writes a cell's tag to all of its entries.
     fn fill(&mut self, cell: Cell, tag: Tag) {
         let shift = self.level - cell.level;
-        let [x, y, z] = cell.at.map(|a| a << shift);
+        let [x, y, z] = cell.at.each(|a| a << shift);
         for z in z..z + (1 << shift) {
             for y in y..y + (1 << shift) {
                 let place = self.place([x, y, z]);

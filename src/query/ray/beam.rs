@@ -1,6 +1,7 @@
 //! Rays that run side by side: one search finds the common part of their paths on which nothing stops them.
 
 use super::course::{Clear, Course};
+use crate::lattice::Each;
 use crate::lattice::Frame;
 use crate::lattice::axes;
 use crate::lattice::morton::{self, SLABS};
@@ -76,9 +77,9 @@ impl Beam {
         let width = width(&ranges[0]).max(width(&ranges[1]));
         // The half cell that is added on each side exceeds the rounding errors, which are relative to the
         // greatest of the numbers.
-        let [low, high] = [0, 1].map(|end| {
+        let [low, high] = [0, 1].each(|end| {
             let pad = if end == 0 { -0.5 } else { 0.5 };
-            ranges.map(|[place, slope]| [place[end] + pad, slope[end]])
+            ranges.each(|[place, slope]| [place[end] + pad, slope[end]])
         });
         (width < WIDEST * cells && reach < FARTHEST).then_some(Beam {
             axis,
@@ -121,7 +122,7 @@ impl Beam {
                 return None;
             }
             // The conversion turns negative numbers into 0.
-            range[k] = [low, high].map(|place| (((place - corner) / edge) as usize).min(3));
+            range[k] = [low, high].each(|place| (((place - corner) / edge) as usize).min(3));
         }
         Some(range)
     }
@@ -177,7 +178,7 @@ impl Search<'_, '_> {
                     Step::Into(child) if self.left > 0 => {
                         self.left -= 1;
                         let [x, y, z] = morton::position(c);
-                        let at = [x, y, z].map(|k| k << shift);
+                        let at = [x, y, z].each(|k| k << shift);
                         self.visit(level + 1, child, axes(|axis| corner[axis] + at[axis]));
                     }
                     _ => self.until = near,

@@ -1,6 +1,7 @@
 //! A ray in lattice coordinates, in doubles whose errors are bounded.
 
 use super::Ray;
+use crate::lattice::Each;
 use crate::lattice::Frame;
 use crate::lattice::axes;
 use crate::lattice::morton::SLABS;
@@ -101,7 +102,7 @@ impl Course {
     /// passes them. The ray is in cell `at` of edge 1 there.
     #[inline(always)]
     pub(super) fn leaves(&self, at: [u32; 4], shift: u32) -> (f64x4, f64x4) {
-        let far = f64x4::from(at.map(|a| (((a >> shift) + 1) << shift) as i32 as f64));
+        let far = f64x4::from(at.each(|a| (((a >> shift) + 1) << shift) as i32 as f64));
         (far, (far - f64x4::from(self.from)) * f64x4::from(self.slowness))
     }
 
@@ -118,7 +119,7 @@ impl Course {
     /// Converts integers in doubles to integers.
     #[inline(always)]
     pub(super) fn integers(cells: f64x4) -> [u32; 4] {
-        (cells + ROUND).to_array().map(|shifted| shifted.to_bits() as u32)
+        (cells + ROUND).to_array().each(|shifted| shifted.to_bits() as u32)
     }
 }
 

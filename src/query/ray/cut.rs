@@ -1,6 +1,7 @@
 //! A ray in a PARTIAL cell that keeps surfaces.
 
 use super::line::Line;
+use crate::lattice::Each;
 use crate::lattice::{Ball, axes};
 use crate::octree::cuts::{CellIds, Division, Figure, FigureLine, Head, SurfacesRef};
 
@@ -40,11 +41,11 @@ impl<'a> CutLine<'a> {
         line: &Line<'_>,
         [low, high]: [f64; 2],
     ) -> CutLine<'a> {
-        let direction = line.ray.direction.map(|[high, low]| Ball::exactly(high).plus(Ball::exactly(low)));
+        let direction = line.ray.direction.each(|[high, low]| Ball::exactly(high).plus(Ball::exactly(low)));
         // In the cell, time runs from 0 to 1, so that distant starts cost no digits.
         let (begin, stay) = (Ball::exactly(low), Ball::exactly(high).minus(Ball::exactly(low)));
         let at = axes(|axis| Ball::exactly(line.ray.from[axis]).plus(direction[axis].times(begin)));
-        let direction = direction.map(|c| c.times(stay));
+        let direction = direction.each(|c| c.times(stay));
         let mut own = [None; 3];
         // (A ray that does not end in a cell has no finite length there.)
         for (to, &id) in own.iter_mut().zip(ids.iter()).filter(|_| (high - low).is_finite()) {
@@ -137,6 +138,6 @@ impl<'a> CutLine<'a> {
         let gradient = figure.gradient(point);
         let along: f64 = (0..3).map(|axis| gradient[axis] * line.ray.direction[axis][0]).sum();
         let is_vector = gradient.iter().all(|c| c.is_finite()) && gradient != [0.0; 3];
-        is_vector.then(|| gradient.map(|c| if along > 0.0 { -c } else { c }))
+        is_vector.then(|| gradient.each(|c| if along > 0.0 { -c } else { c }))
     }
 }

@@ -1,6 +1,7 @@
 //! A ray on the lattice of a frame, exactly.
 
 use super::Ray;
+use crate::lattice::Each;
 use crate::lattice::exact::{Expansion, sign};
 use crate::lattice::{Cell, Frame, Interval};
 use core::cmp::Ordering;
@@ -55,7 +56,8 @@ pub(super) struct Line<'f> {
 
 impl<'f> Line<'f> {
     pub(super) fn new(frame: &'f Frame, ray: Ray) -> Line<'f> {
-        let direction = ray.direction.map(|[high, low]| Interval::exactly(high).plus(Interval::exactly(low)));
+        let direction =
+            ray.direction.each(|[high, low]| Interval::exactly(high).plus(Interval::exactly(low)));
         let mirror = (0..3).fold(0, |mirror, axis| mirror | ((ray.direction[axis][0] < 0.0) as u8) << axis);
         Line { frame, ray, direction, mirror }
     }

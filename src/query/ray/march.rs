@@ -5,6 +5,7 @@ use super::course::{Clear, Course, Start};
 use super::search::Met;
 use super::way::Way;
 use crate::lattice::Cell;
+use crate::lattice::Each;
 use crate::octree::Tag;
 
 /// The first cells that stop a ray.
@@ -39,14 +40,14 @@ impl March {
             Start::Unsure => return None,
         };
         loop {
-            let place = [0, 1, 2, 3].map(|axis| at[axis] ^ course.mirror[axis]);
+            let place = [0, 1, 2, 3].each(|axis| at[axis] ^ course.mirror[axis]);
             let (tag, mut shift, c) = way.to(place);
             let planes = way.planes;
             if tag != Tag::Empty {
                 let shift = shift + (tree.root == Tag::Branch && planes.octant(c >> 3) == tag) as u32;
                 let cell = Cell {
                     level: frame.depth() - shift as u8,
-                    at: [place[0], place[1], place[2]].map(|a| a >> shift),
+                    at: [place[0], place[1], place[2]].each(|a| a >> shift),
                 };
                 let plane = |axis: usize| {
                     if course.mirror[axis] == 0 { at[axis] } else { frame.cells() - at[axis] }

@@ -12,6 +12,7 @@ use super::{Obstacle, Ray, RayHit, RaySpans};
 use crate::dispatch::{Hot, with_vectors};
 use crate::error::Error;
 use crate::lattice::Cell;
+use crate::lattice::Each;
 use crate::octree::cuts::{CellCut, CutsRef};
 use crate::octree::links::Step;
 use crate::octree::view::{OctreeRef, starts_half_way};
@@ -291,12 +292,12 @@ impl Cells for Stored<'_, '_> {
             (Described::Planes(e, index, octant), _) => (e, index, octant),
             (Described::Record(record), Some(cuts)) => {
                 let CellCut::Split(first) = cuts.at(record) else { return Ok(None) };
-                return Ok(Some(OCTANTS.map(|k| recorded(cuts, first + usize::from(k)))));
+                return Ok(Some(OCTANTS.each(|k| recorded(cuts, first + usize::from(k)))));
             }
             (Described::Record(_), None) => return Ok(None),
         };
         let planes = self.0.entry(index).unwrap_or(Planes::uniform(Tag::Partial));
-        Ok(Some(OCTANTS.map(|k| match octant {
+        Ok(Some(OCTANTS.each(|k| match octant {
             Some(octant) => self.verdict(e, index, planes, (8 * octant + k).into()),
             None => match planes.octant(k.into()) {
                 Tag::Branch => Verdict::Partial(Described::Planes(e, index, Some(k))),

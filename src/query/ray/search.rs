@@ -4,6 +4,7 @@ use super::cut::CutLine;
 use super::line::{Line, Moment, Passage};
 use super::{Obstacle, RayHit, RaySpans};
 use crate::error::Error;
+use crate::lattice::Each;
 use crate::lattice::axes;
 use crate::lattice::exact::sqrt;
 use crate::lattice::{Cell, Cube, Interval};
@@ -83,7 +84,7 @@ fn walk<C: Cells>(
     let children = if cell.level < line.frame.depth() { cells.split(cell, &part)? } else { None };
     match children {
         Some(mut children) => {
-            for k in OCTANTS.map(|k| k ^ line.mirror) {
+            for k in OCTANTS.each(|k| k ^ line.mirror) {
                 let child = core::mem::replace(&mut children[k as usize], Verdict::Empty);
                 walk(cells, line, cell.child(k), child, visitor)?;
             }
@@ -228,9 +229,9 @@ pub(super) fn unit(normal: [f64; 3]) -> [f64; 3] {
     if largest == 0.0 {
         return normal;
     }
-    let scaled = normal.map(|c| c / largest);
+    let scaled = normal.each(|c| c / largest);
     let length = sqrt(scaled.iter().map(|c| c * c).sum());
-    scaled.map(|c| c / length)
+    scaled.each(|c| c / length)
 }
 
 /// A stay of a ray, and the slab with which it begins; `None` if the ray enters the cell there.
@@ -270,15 +271,15 @@ impl Enclosed {
         let whole = Spell { from: entry.lower, to: exit.upper, slab: None };
         let joined = |spells: [Option<Spell>; 3]| match enclosure.join {
             SlabJoin::All => [Some(spells.into_iter().flatten().fold(whole, Spell::and)), None, None],
-            SlabJoin::Any => spells.map(|spell| spell.map(|spell| whole.and(spell))),
+            SlabJoin::Any => spells.each(|spell| spell.map(|spell| whole.and(spell))),
         };
         let may_be =
             |Spell { from, to, slab }: Spell| (from <= to).then(|| (possible_stay(passage, from, to), slab));
         let must_be =
             |Spell { from, to, slab }: Spell| certain_stay(passage, from, to).map(|stay| (stay, slab));
         Enclosed {
-            possible: joined(possible).map(|spell| spell.and_then(may_be)),
-            certain: joined(certain).map(|spell| spell.and_then(must_be)),
+            possible: joined(possible).each(|spell| spell.and_then(may_be)),
+            certain: joined(certain).each(|spell| spell.and_then(must_be)),
         }
     }
 }

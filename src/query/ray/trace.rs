@@ -11,6 +11,7 @@ use super::search::{Known, Visitor};
 use super::way::Way;
 use crate::error::Error;
 use crate::lattice::Cell;
+use crate::lattice::Each;
 use crate::octree::Tag;
 use crate::octree::cuts::{CellCut, CutsRef};
 
@@ -51,7 +52,7 @@ impl Trace<'_, '_, '_> {
         // The moment at which the ray leaves the previous cell, if known.
         let mut left = None;
         loop {
-            let place = [0, 1, 2, 3].map(|axis| at[axis] ^ course.mirror[axis]);
+            let place = [0, 1, 2, 3].each(|axis| at[axis] ^ course.mirror[axis]);
             let (found, shift) = self.cell(way, place);
             // Leave the cell by the plane that is passed first.
             let (far, times) = course.leaves(at, shift);
@@ -83,7 +84,7 @@ impl Trace<'_, '_, '_> {
                     }
                     let cell = Cell {
                         level: frame.depth() - shift as u8,
-                        at: [place[0], place[1], place[2]].map(|a| a >> shift),
+                        at: [place[0], place[1], place[2]].each(|a| a >> shift),
                     };
                     self.meet(&found, cell, &passage, visitor)?;
                     if visitor.ends(&passage) {

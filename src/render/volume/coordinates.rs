@@ -1,6 +1,7 @@
 //! The own coordinates of a layer. They begin at the frame's origin, so that a plane between two voxels has
 //! the same coordinate for both.
 
+use crate::lattice::Each;
 use crate::lattice::{Cell, Frame, MAX_DEPTH};
 use crate::render::camera::Camera;
 use glam::DVec3;
@@ -23,14 +24,14 @@ impl Coordinates {
     #[inline(always)]
     pub fn cube(&self, cell: Cell) -> (DVec3, f64) {
         let half = 0.5 * self.edges[cell.level as usize];
-        (DVec3::from(cell.at.map(|a| (2 * a + 1) as f64 * half)), half)
+        (DVec3::from(cell.at.each(|a| (2 * a + 1) as f64 * half)), half)
     }
 
     /// The least and the greatest corner of a cell. Cells that touch have the same numbers where they do.
     #[inline(always)]
     pub fn corners(&self, cell: Cell) -> [DVec3; 2] {
         let edge = self.edges[cell.level as usize];
-        [0, 1].map(|end| DVec3::from(cell.at.map(|a| f64::from(a + end) * edge)))
+        [0, 1].each(|end| DVec3::from(cell.at.each(|a| f64::from(a + end) * edge)))
     }
 
     /// The place of the camera.

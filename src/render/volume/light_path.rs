@@ -2,6 +2,7 @@
 
 use super::coordinates::Coordinates;
 use crate::error::Error;
+use crate::lattice::Each;
 use crate::memory;
 use crate::render::clip::Clip;
 use crate::render::tile::{Fragment, Tile};
@@ -59,7 +60,7 @@ pub(super) fn light_paths(
         let next = if fragment < first { tile.fragments[fragment].depth } else { f64::INFINITY };
         paths.push(LightPath {
             from: from - coordinates.origin,
-            inverse: DVec3::from(along.to_array().map(inverse)),
+            inverse: DVec3::from(along.to_array().each(inverse)),
             stretch: along.length(),
             start,
             end,

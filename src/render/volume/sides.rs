@@ -2,6 +2,7 @@
 
 use super::coordinates::{Coordinates, Place};
 use crate::error::Error;
+use crate::lattice::Each;
 use crate::memory;
 use crate::render::clip::Clip;
 use crate::render::tile::Tile;
@@ -43,7 +44,7 @@ pub(super) fn sides(
     let clip = clip.planes();
     let mut sides = memory::with_capacity(6 + clip.len())?;
     // Half a sample beyond the outermost samples, so that rounding does not matter.
-    let [left, top] = tile.first.map(f64::from);
+    let [left, top] = tile.first.each(f64::from);
     let (from, first) = tile.view.line(left, top);
     let (end, last) = tile.view.line(left + f64::from(tile.size[0]), top + f64::from(tile.size[1]));
     let (from, end) = (from - coordinates.origin, end - coordinates.origin);

@@ -1,5 +1,6 @@
 //! First-order bounds of a host's function over a box: a value and the range of the gradient.
 
+use crate::lattice::Each;
 use crate::lattice::{Cube, Interval};
 use crate::solid::{Enclosure, Slab};
 use core::f64::consts::FRAC_PI_2;
@@ -31,7 +32,7 @@ impl GradientRange {
     pub(super) fn enclosure(&self, cube: &Cube<'_>, middle: [f64; 3]) -> Option<Enclosure> {
         let half = cube.half_edge();
         let to_centre = cube.centre_from(middle);
-        let normal = self.gradient.map(|range| 0.5 * range.lower + 0.5 * range.upper);
+        let normal = self.gradient.each(|range| 0.5 * range.lower + 0.5 * range.upper);
         let mut rest = self.value;
         let (mut square, mut deviation_square) = (Interval::exactly(0.0), Interval::exactly(0.0));
         for axis in 0..3 {

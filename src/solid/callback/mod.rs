@@ -13,6 +13,7 @@ use super::{
 };
 use crate::control::Control;
 use crate::error::Error;
+use crate::lattice::Each;
 use crate::lattice::axes;
 use crate::lattice::exact::sqrt;
 use crate::lattice::{Affine, Bounds, Cell, Cube, Frame, Interval};
@@ -330,7 +331,7 @@ impl<F: Fn([f64; 3], [f64; 3]) -> Result<Verdict<()>, Error> + Send + Sync> Call
         let centre = centre(&self.frame, cell);
         match &self.placement {
             Some(placement) => {
-                placement.back.image(&centre.map(Interval::exactly)).map(|c| 0.5 * c.lower + 0.5 * c.upper)
+                placement.back.image(&centre.each(Interval::exactly)).each(|c| 0.5 * c.lower + 0.5 * c.upper)
             }
             None => centre,
         }
@@ -470,7 +471,7 @@ impl<F: Fn([f64; 3], [f64; 3]) -> Result<Verdict<()>, Error> + Send + Sync> Batc
         verdicts: &mut Vec<[Verdict<()>; 8]>,
     ) -> Result<(), Error> {
         let mut children = memory::with_capacity(8 * cells.len())?;
-        children.extend(cells.iter().flat_map(|(cell, ())| OCTANTS.map(|octant| cell.child(octant))));
+        children.extend(cells.iter().flat_map(|(cell, ())| OCTANTS.each(|octant| cell.child(octant))));
         let first = verdicts.len();
         verdicts.try_reserve(cells.len())?;
         verdicts.resize(first + cells.len(), [Verdict::Undecided; 8]);
@@ -547,7 +548,7 @@ impl<F: Fn([f64; 3], [f64; 3]) -> Result<Verdict<()>, Error> + Send + Sync> Work
 
     fn split(&mut self, cell: Cell, _: &()) -> Result<[Verdict<()>; 8], Error> {
         let mut verdicts = [Verdict::Undecided; 8];
-        let children = OCTANTS.map(|octant| cell.child(octant));
+        let children = OCTANTS.each(|octant| cell.child(octant));
         self.classify(&children, &Control::default(), &mut verdicts).map_err(|(_, error)| error)?;
         Ok(verdicts)
     }

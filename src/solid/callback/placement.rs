@@ -2,6 +2,7 @@
 
 use super::gradient::GradientRange;
 use super::middle;
+use crate::lattice::Each;
 use crate::lattice::{Affine, Bounds, Cube, Interval, Inverse, axes};
 use crate::solid::{Enclosure, Slab};
 
@@ -32,7 +33,7 @@ impl Placement {
     /// A box around the inverse image of a box.
     pub(super) fn corners(&self, min: [f64; 3], max: [f64; 3]) -> Corners {
         let image = self.back.image(&axes(|axis| Interval::between(min[axis], max[axis])));
-        [image.map(|x| x.lower), image.map(|x| x.upper)]
+        [image.each(|x| x.lower), image.each(|x| x.upper)]
     }
 
     /// The enclosure of a cell, from a range of the gradient over the box around the cell's inverse image.
@@ -46,7 +47,7 @@ impl Placement {
         let (min, max) = cube.bounds();
         let middle = middle(min, max);
         // By the mean value theorem, from `at` to the image of the cell's middle. Both points lie in the box.
-        let image = self.back.image(&middle.map(Interval::exactly));
+        let image = self.back.image(&middle.each(Interval::exactly));
         let way = |axis: usize| image[axis].minus(Interval::exactly(at[axis]));
         let value = (0..3).fold(range.value, |sum, axis| sum.plus(range.gradient[axis].times(way(axis))));
         GradientRange { value, gradient: self.back.pulled_back(&range.gradient) }.enclosure(cube, middle)
@@ -61,8 +62,8 @@ impl Placement {
     /// slab over the cell.
     pub(super) fn slab(&self, slab: &Slab, half: f64, cube: &Cube<'_>) -> Option<Slab> {
         let ratio = Interval::exactly(cube.half_edge()).over(Interval::exactly(half));
-        let pulled = self.back.pulled_back(&slab.normal.map(Interval::exactly)).map(|c| c.times(ratio));
-        let normal = pulled.map(|c| 0.5 * c.lower + 0.5 * c.upper);
+        let pulled = self.back.pulled_back(&slab.normal.each(Interval::exactly)).each(|c| c.times(ratio));
+        let normal = pulled.each(|c| 0.5 * c.lower + 0.5 * c.upper);
         if !normal.iter().all(|c| c.is_finite()) {
             return None;
         }
@@ -71,7 +72,7 @@ impl Placement {
             let off = (pulled[axis].upper - normal[axis]).max(normal[axis] - pulled[axis].lower).next_up();
             sum.plus(Interval::between(-off, off))
         });
-        let [inner, outer] = [slab.inner, slab.outer].map(|offset| Interval::exactly(offset).plus(slack));
+        let [inner, outer] = [slab.inner, slab.outer].each(|offset| Interval::exactly(offset).plus(slack));
         Some(Slab { normal, inner: inner.lower, outer: outer.upper })
     }
 }

@@ -1,5 +1,6 @@
 //! Second-order bounds of a host's surface next to a point: balls on both sides that touch it.
 
+use crate::lattice::Each;
 use crate::lattice::Interval;
 use crate::lattice::axes;
 use crate::solid::Slab;
@@ -50,7 +51,7 @@ impl TangentBalls {
         let numbers = [self.inner_curvature, self.outer_curvature];
         if self.error >= 0.0 && !numbers.iter().chain(&self.point).any(|c| c.is_nan()) {
             let inner = self.beyond(half, to_centre, self.normal, self.inner_curvature);
-            let outer = -self.beyond(half, to_centre, self.normal.map(|c| -c), self.outer_curvature);
+            let outer = -self.beyond(half, to_centre, self.normal.each(|c| -c), self.outer_curvature);
             Some(Slab { normal: self.normal, inner, outer })
         } else {
             None
@@ -70,7 +71,7 @@ impl TangentBalls {
         let dot = |a: &[Interval; 3], b: &[Interval; 3]| {
             a[0].times(b[0]).plus(a[1].times(b[1])).plus(a[2].times(b[2]))
         };
-        let n = n.map(Interval::exactly);
+        let n = n.each(Interval::exactly);
         let square = dot(&n, &n);
         if !(square.lower > 0.0 && square.upper < f64::INFINITY) {
             return f64::NEG_INFINITY;

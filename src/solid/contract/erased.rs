@@ -13,6 +13,7 @@ use super::forward::{forward_answers, forward_batch, forward_classifier, forward
 use super::{Batch, Classifier, Parts, Question, Solid, Verdict, WholeQuestion, Worker};
 use crate::control::Control;
 use crate::error::Error;
+use crate::lattice::Each;
 use crate::lattice::{Affine, Bounds, Cell, Frame};
 use crate::memory;
 use crate::mesh::TriangleMesh;
@@ -329,7 +330,7 @@ impl<C: Classifier> Typed<C> {
     fn hand_out_eight(&mut self, verdicts: [Verdict<Part<C>>; 8]) -> Result<[Verdict<ErasedPart>; 8], Error> {
         let first = self.parts.len();
         self.parts.try_reserve(8)?;
-        let erased = verdicts.map(|verdict| {
+        let erased = verdicts.each(|verdict| {
             verdict.map(|part| {
                 self.parts.push((0, part));
                 ErasedPart(self.parts.len() - 1)

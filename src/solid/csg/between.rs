@@ -2,6 +2,7 @@
 
 use super::{Csg, HalfSpace};
 use crate::error::Error;
+use crate::lattice::Each;
 use crate::lattice::axes;
 use crate::lattice::exact::{Dyadic, dot};
 use crate::lattice::valid::{self, length};
@@ -50,13 +51,13 @@ impl Csg {
         if from == to {
             return Err(Error::Argument { name: "to", problem: "must be another point than from" });
         }
-        let [a, b] = [from, to].map(|point| point.map(Dyadic::new));
+        let [a, b] = [from, to].each(|point| point.each(Dyadic::new));
         let d = axes(|axis| &b[axis] - &a[axis]);
         let square = dot(d.each_ref(), d.each_ref());
         // The place of a point p along the axis, times |d|: t = d · p − start, which is 0 to |d|² between the
         // ends.
         let start = dot(d.each_ref(), a.each_ref());
-        let [r, s] = radii.map(Dyadic::new);
+        let [r, s] = radii.each(Dyadic::new);
         let slope = &s - &r;
         // The distance of p from the axis is at most r + slope t / |d|². Squared, times |d|⁴:
         // |d|² (|d|² |p − a|² − t²) ≤ (r |d|² + slope t)². If the slope is zero, a factor |d|² cancels.
@@ -75,7 +76,7 @@ impl Csg {
         let constant = &(&constant + &most) - &(&around * &dot(a.each_ref(), a.each_ref()));
         let [xx, yy, zz] = squares;
         let [x, y, z] = linear;
-        let [xy, yz, zx] = [product(0, 1), product(1, 2), product(2, 0)].map(|product| product.shifted(1));
+        let [xy, yz, zx] = [product(0, 1), product(1, 2), product(2, 0)].each(|product| product.shifted(1));
         let mantle = HalfSpace::exactly([xx, yy, zz, xy, yz, zx, x, y, z, constant]);
         let bottom = HalfSpace::linear([d[0].clone(), d[1].clone(), d[2].clone(), -&start]);
         let top = HalfSpace::linear([-&d[0], -&d[1], -&d[2], &square + &start]);
@@ -113,12 +114,12 @@ impl Csg {
         }
         let unit = |v: [f64; 3]| {
             let length = libm::sqrt(v[0] * v[0] + v[1] * v[1] + v[2] * v[2]);
-            v.map(|x| x / length)
+            v.each(|x| x / length)
         };
         let cross = |a: [f64; 3], b: [f64; 3]| {
             axes(|k| a[(k + 1) % 3] * b[(k + 2) % 3] - a[(k + 2) % 3] * b[(k + 1) % 3])
         };
-        let w = unit(axis.map(|x| x / greatest));
+        let w = unit(axis.each(|x| x / greatest));
         // The coordinate axis at the greatest angle to `w`.
         let least = (0..3).fold(0, |least, k| if w[k].abs() < w[least].abs() { k } else { least });
         let u = unit(cross(axes(|k| f64::from(u8::from(k == least))), w));

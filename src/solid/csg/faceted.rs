@@ -4,6 +4,7 @@ use super::figure::polygon::{Term, monotone_formula};
 use super::primitive::{heights, slab};
 use super::{Csg, HalfSpace, support};
 use crate::error::Error;
+use crate::lattice::Each;
 use crate::lattice::exact::Dyadic;
 use crate::lattice::valid::length;
 use crate::memory;
@@ -30,7 +31,7 @@ impl Csg {
             length("top", top)?;
         }
         // x ≤ dx + (top − dx) y / dy.
-        let [dx, dy, end] = [size[0], size[1], top].map(Dyadic::new);
+        let [dx, dy, end] = [size[0], size[1], top].each(Dyadic::new);
         let slanted = upright_plane(-&dy, &end - &dx, &dx * &dy);
         let [front, _] = slab(0, 0.0, size[0]);
         let sides = [1, 2].into_iter().flat_map(|axis| slab(axis, 0.0, size[axis]));
@@ -67,7 +68,7 @@ impl Csg {
         for term in monotone_formula(polygon)? {
             let operand = match term {
                 Term::Edge([from, to]) => {
-                    let [[ax, ay], [bx, by]] = [from, to].map(|i| polygon[i].map(Dyadic::new));
+                    let [[ax, ay], [bx, by]] = [from, to].each(|i| polygon[i].each(Dyadic::new));
                     let (along_x, along_y) = (&bx - &ax, &by - &ay);
                     let offset = &(&along_y * &ax) - &(&along_x * &ay);
                     upright_plane(-&along_y, along_x, offset).into()

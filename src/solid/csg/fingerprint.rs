@@ -1,6 +1,7 @@
 //! The fingerprint of an expression, computed from its parts without recursion.
 
 use super::{Csg, Join, Kind, MOST, Node};
+use crate::lattice::Each;
 use crate::lattice::exact::Dyadic;
 use crate::memory;
 use crate::solid::half_space::torus::Torus;
@@ -70,7 +71,7 @@ impl HalfSpace {
             Surface::Powers(powers) => {
                 let terms = powers
                     .terms
-                    .map(|(coefficient, centre, exponent)| [coefficient, centre, exponent as f64]);
+                    .each(|(coefficient, centre, exponent)| [coefficient, centre, exponent as f64]);
                 Fingerprinter::new("powers").numbers(terms.as_flattened()).numbers(&[powers.constant])
             }
             Surface::Torus(Torus { major, square, scale, shift }) => [major, square, scale, shift]

@@ -2,6 +2,7 @@
 
 use super::{Csg, HalfSpace};
 use crate::error::Error;
+use crate::lattice::Each;
 use crate::lattice::Interval;
 use crate::lattice::axes;
 use crate::lattice::exact::Dyadic;
@@ -20,7 +21,7 @@ pub(super) fn heights(low: f64, high: f64) -> Result<(), Error> {
 pub(super) fn axis_plane(axis: usize, side: f64, at: f64) -> HalfSpace {
     let mut c = [0.0, 0.0, 0.0, -side * at];
     c[axis] = side;
-    HalfSpace::linear(c.map(Dyadic::new))
+    HalfSpace::linear(c.each(Dyadic::new))
 }
 
 /// Returns the two half-spaces between two coordinates of an axis.
@@ -63,13 +64,13 @@ impl Csg {
             length("radius", radius)?;
         }
         // Σ (x − c)² / r² ≤ 1, times all r².
-        let squares = radii.map(|radius| Dyadic::new(radius).pow(2));
+        let squares = radii.each(|radius| Dyadic::new(radius).pow(2));
         let weights = axes(|axis| -&(&squares[(axis + 1) % 3] * &squares[(axis + 2) % 3]));
         let linear = axes(|axis| -&(&weights[axis] * &Dyadic::new(centre[axis]).shifted(1)));
         let constant = (0..3).fold(&(&squares[0] * &squares[1]) * &squares[2], |sum, axis| {
             &sum + &(&weights[axis] * &Dyadic::new(centre[axis]).pow(2))
         });
-        let [centre, radii] = [centre, radii].map(|all| all.map(Interval::exactly));
+        let [centre, radii] = [centre, radii].each(|all| all.each(Interval::exactly));
         let min = axes(|axis| centre[axis].minus(radii[axis]).lower);
         let max = axes(|axis| centre[axis].plus(radii[axis]).upper);
         Ok(Csg::from(HalfSpace::separable(weights, linear, constant)).within(min, max))
@@ -100,7 +101,7 @@ impl Csg {
         heights(low, high)?;
         // x² + y² ≤ r(z)², times the square of the height: h r(z) = (top − bottom) z + (bottom high − top
         // low), which is not negative between the planes.
-        let [r, s, a, b] = [bottom, top, low, high].map(Dyadic::new);
+        let [r, s, a, b] = [bottom, top, low, high].each(Dyadic::new);
         let slope = &s - &r;
         let offset = &(&r * &b) - &(&s * &a);
         let weight = -&(&b - &a).pow(2);

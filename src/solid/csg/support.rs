@@ -4,6 +4,7 @@
 //! direction e is −Σ λ n over some planes n · p + o ≥ 0 with exact λ ≥ 0, then e · p ≤ Σ λ o.
 
 use crate::error::Error;
+use crate::lattice::Each;
 use crate::lattice::axes;
 use crate::lattice::exact::{self, Dyadic, sqrt};
 use crate::memory;
@@ -38,9 +39,9 @@ pub(super) fn box_around(planes: &[Plane]) -> Result<Option<Corners>, Error> {
     let mut rows: Vec<Plane> = memory::with_capacity(planes.len() + 3)?;
     rows.extend(planes.iter().map(|&(normal, offset)| {
         let largest = normal.iter().fold(0.0, |most: f64, c| most.max(c.abs()));
-        let normal = normal.map(|c| c / largest);
+        let normal = normal.each(|c| c / largest);
         let length = sqrt(dot(normal, normal));
-        (normal.map(|c| c / length), offset / largest / length)
+        (normal.each(|c| c / length), offset / largest / length)
     }));
     let size = rows.iter().fold(0.0, |most: f64, row| most.max(row.1.abs()));
     if size > 0.0 {
@@ -73,14 +74,14 @@ fn best_planes(rows: &[Plane], direction: [f64; 3]) -> Option<[usize; 3]> {
     let first = rows.len() - 3;
     let mut basis = [first, first + 1, first + 2];
     for _ in 0..MOST_STEPS {
-        let normals = basis.map(|i| rows[i].0);
+        let normals = basis.each(|i| rows[i].0);
         // The dual basis: the vectors d for the coordinates d · p.
         let volume = dot(normals[0], cross(normals[1], normals[2]));
-        let dual = axes(|i| cross(normals[(i + 1) % 3], normals[(i + 2) % 3]).map(|c| c / volume));
+        let dual = axes(|i| cross(normals[(i + 1) % 3], normals[(i + 2) % 3]).each(|c| c / volume));
         let corner = axes(|axis| -(0..3).map(|i| dual[i][axis] * rows[basis[i]].1).sum::<f64>());
         let height = |row: &Plane| dot(row.0, corner) + row.1;
         let lowest = (0..rows.len()).min_by(|&a, &b| height(&rows[a]).total_cmp(&height(&rows[b])))?;
-        let size = 1.0 + dot(corner.map(f64::abs), [1.0; 3]);
+        let size = 1.0 + dot(corner.each(f64::abs), [1.0; 3]);
         if height(&rows[lowest]) >= -NOTHING * size {
             return Some(basis);
         }
@@ -99,12 +100,12 @@ fn best_planes(rows: &[Plane], direction: [f64; 3]) -> Option<[usize; 3]> {
 /// Returns an upper bound of `direction` · p on the polyhedron, proven by three planes. Indices beyond the
 /// given planes stand for planes that do not belong to the polyhedron.
 fn reach(planes: &[Plane], basis: [usize; 3], direction: [f64; 3]) -> Option<f64> {
-    let exactly = |v: [f64; 3]| v.map(Dyadic::new);
+    let exactly = |v: [f64; 3]| v.each(Dyadic::new);
     let determinant = |[a, b, c]: [&[Dyadic; 3]; 3]| exact::dot(a.each_ref(), exact::cross(b, c).each_ref());
     let unit = |k: usize| axes(|axis| if axis == k { 1.0 } else { 0.0 });
     // The sign of a plane without a share does not matter.
     let normals =
-        basis.map(|i| exactly(planes.get(i).map_or_else(|| unit(i - planes.len()), |plane| plane.0)));
+        basis.each(|i| exactly(planes.get(i).map_or_else(|| unit(i - planes.len()), |plane| plane.0)));
     let direction = exactly(direction);
     let volume = determinant([&normals[0], &normals[1], &normals[2]]);
     if volume.is_zero() {

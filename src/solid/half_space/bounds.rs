@@ -1,6 +1,7 @@
 //! The sides of one half-space for the eight children of a cell.
 
 use crate::lattice::Cell;
+use crate::lattice::Each;
 use crate::lattice::axes;
 use core::cmp::Ordering;
 use wide::f64x4;
@@ -18,7 +19,7 @@ impl Octants {
     #[inline(always)]
     pub(crate) fn of(cell: Cell) -> Octants {
         let edge = edge(cell.level as u32);
-        Octants { low: cell.at.map(|i| i as f64 * edge), half: 0.5 * edge }
+        Octants { low: cell.at.each(|i| i as f64 * edge), half: 0.5 * edge }
     }
 
     /// [0, 2]³, whose first child is the universe.
@@ -52,7 +53,7 @@ impl Octants {
     /// The lower and the upper corner of child `k`.
     pub(crate) fn octant(&self, k: u32) -> ([f64; 3], [f64; 3]) {
         let at = axes(|axis| self.low[axis] + (k >> axis & 1) as f64 * self.half);
-        (at, at.map(|t| t + self.half))
+        (at, at.each(|t| t + self.half))
     }
 }
 
@@ -81,7 +82,7 @@ fn edge(level: u32) -> f64 {
 /// The centre of a cell.
 pub(crate) fn centre(cell: Cell) -> [f64; 3] {
     let half = edge(cell.level as u32 + 1);
-    cell.at.map(|i| (2 * i as u64 + 1) as f64 * half)
+    cell.at.each(|i| (2 * i as u64 + 1) as f64 * half)
 }
 
 /// Half the edge of a cell.

@@ -18,6 +18,7 @@ use super::pencil::{self, Form};
 use super::quadric::{Coefficients, place, substitute};
 use super::{PlacedHalfSpace, Surface};
 use crate::error::Error;
+use crate::lattice::Each;
 use crate::lattice::exact::Dyadic;
 use crate::lattice::{Cell, Frame, axes};
 use alloc::boxed::Box;
@@ -132,12 +133,12 @@ impl PlacedHalfSpace {
         let form = symmetric(&substitute(quadric, &self.map(ExactMap::from_universe(frame))?));
         let Some(pivot) = (0..3).max_by_key(|&k| plane[k].magnitude()) else { return Ok(None) };
         let moved = on_plane(&form, &plane, pivot);
-        let is_inside_negative = match [false, true].map(|sign| pencil::is_semi_definite(&moved, pivot, sign))
-        {
-            [true, _] => false,
-            [_, true] => true,
-            _ => return Ok(None),
-        };
+        let is_inside_negative =
+            match [false, true].each(|sign| pencil::is_semi_definite(&moved, pivot, sign)) {
+                [true, _] => false,
+                [_, true] => true,
+                _ => return Ok(None),
+            };
         // With this choice, f + ℓ g is the form without the pivot's row and column, which is semi-definite.
         let row = &moved[pivot];
         let factor = from_fn(|k| {
@@ -145,7 +146,7 @@ impl PlacedHalfSpace {
             let sum = if k == pivot { own } else { &own + &row[k].shifted(1) };
             if is_inside_negative { sum } else { -&sum }
         });
-        let form = if is_inside_negative { form.map(|row| row.map(|c| -&c)) } else { form };
+        let form = if is_inside_negative { form.each(|row| row.each(|c| -&c)) } else { form };
         Ok(Some(Sheets { is_plane_second, is_inside_negative, form, plane, factor }))
     }
 }
@@ -159,8 +160,8 @@ impl Sheets {
                 Dyadic::new(if corner >> axis & 1 == 0 { centre[axis] - half } else { centre[axis] + half })
             })
         });
-        let [plane, factor] =
-            [&self.plane, &self.factor].map(|of| corners.each_ref().map(|corner| linear::value(of, corner)));
+        let [plane, factor] = [&self.plane, &self.factor]
+            .each(|of| corners.each_ref().each(|corner| linear::value(of, corner)));
         [false, true]
             .into_iter()
             .find(|&negative| is_above(&factor, &plane, negative))
@@ -184,14 +185,14 @@ impl Sheets {
         let w: [Dyadic; 3] = from_fn(|i| of(&|k| adjugate(i, k), &h[..3]));
         let determinant = (0..3).fold(Dyadic::zero(), |sum, k| &sum + &(&f[0][k] * &adjugate(0, k)));
         let polar: Linear = from_fn(|i| of(&|k| f[i][k].clone(), &w));
-        let [of_f, of_g] = [&polar, g].map(|linear| of(&|k| linear[k].clone(), &w).sign());
+        let [of_f, of_g] = [&polar, g].each(|linear| of(&|k| linear[k].clone(), &w).sign());
         let is_apex = (0..4).all(|i| polar[i] == &determinant * &h[i]);
         if !is_apex || of_f < 0 || of_g * determinant.sign() == 0 {
             return None;
         }
         // Where the sign of h gives its term in ℓ the sign of the term of g, ℓ has that sign, too.
         let is_turned = of_g * determinant.sign() > 0;
-        Some([false, true].map(|is_negative| (self.signs(is_negative), is_negative != is_turned)))
+        Some([false, true].each(|is_negative| (self.signs(is_negative), is_negative != is_turned)))
     }
 
     fn signs(&self, is_plane_negative: bool) -> (bool, bool) {
@@ -226,7 +227,7 @@ fn is_above(values: &[Dyadic; 8], others: &[Dyadic; 8], negative: bool) -> bool 
 /// Returns the image of a plane's function under the map, with its sign.
 fn oriented(plane: &Linear, map: &ExactMap) -> Linear {
     let linear = map.linear(plane);
-    if map.w.sign() < 0 { linear.map(|c| -&c) } else { linear }
+    if map.w.sign() < 0 { linear.each(|c| -&c) } else { linear }
 }
 
 /// Twice the symmetric matrix of a polynomial of degree two.

@@ -5,6 +5,7 @@ use super::linear;
 use super::map::ExactMap;
 use super::points;
 use crate::error::Error;
+use crate::lattice::Each;
 use crate::lattice::axes;
 use crate::lattice::{Frame, Interval};
 use crate::solid::Fingerprint;
@@ -45,8 +46,8 @@ impl PlacedHost {
         let lowest = LOWEST + places;
         let mut errors = [0.0; 3];
         let rows = axes(|i| {
-            let exact = map.rows[i].each_ref().map(|c| c.shifted(-shift));
-            let row = exact.each_ref().map(|c| c.rounded() / divisor);
+            let exact = map.rows[i].each_ref().each(|c| c.shifted(-shift));
+            let row = exact.each_ref().each(|c| c.rounded() / divisor);
             let size: f64 = row.iter().map(|c| c.abs()).sum();
             let is_exact = exact_divisor
                 && exact.iter().all(|c| c.exactly().is_some() && c.grain().is_none_or(|bit| bit >= lowest))
@@ -61,7 +62,7 @@ impl PlacedHost {
 
     /// Returns the rounded image of a point.
     fn image(&self, t: [f64; 3]) -> [f64; 3] {
-        self.rows.map(|[a, b, c, d]| ((a * t[0] + b * t[1]) + c * t[2]) + d)
+        self.rows.each(|[a, b, c, d]| ((a * t[0] + b * t[1]) + c * t[2]) + d)
     }
 
     /// Returns a box around the image of a box.

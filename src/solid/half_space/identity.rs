@@ -8,6 +8,7 @@
 use super::map::ExactMap;
 use super::{HalfSpace, Placed, Surface};
 use crate::error::Error;
+use crate::lattice::Each;
 use crate::memory;
 use alloc::sync::Arc;
 use alloc::vec::Vec;
@@ -101,7 +102,7 @@ impl Hash for Exactly {
             Surface::Powers(powers) => {
                 for (coefficient, centre, exponent) in powers.terms {
                     // Zero has two signs, which are equal.
-                    ([coefficient, centre].map(|x| (x + 0.0).to_bits()), exponent).hash(state);
+                    ([coefficient, centre].each(|x| (x + 0.0).to_bits()), exponent).hash(state);
                 }
                 (powers.constant + 0.0).to_bits().hash(state);
             }

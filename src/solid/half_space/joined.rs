@@ -2,6 +2,7 @@
 
 use super::bounds::Sides;
 use super::table::{MOST, Table};
+use crate::lattice::Each;
 
 /// The values of a function that are known from regions.
 #[derive(Debug, Clone, Copy, Default)]
@@ -30,7 +31,7 @@ impl Sides {
     /// Returns the side on which cell `k` lies; `None` if the surface may cross the cell, or coincides with
     /// it.
     pub(crate) fn side(self, k: u32) -> Option<bool> {
-        let [inside, outside] = [self.inside, self.outside].map(|sides| sides >> k & 1 != 0);
+        let [inside, outside] = [self.inside, self.outside].each(|sides| sides >> k & 1 != 0);
         (inside != outside).then_some(inside)
     }
 }

@@ -1,5 +1,6 @@
 //! Linear functions of the unit coordinates.
 
+use crate::lattice::Each;
 use crate::lattice::exact::Dyadic;
 use wide::f64x4;
 
@@ -36,7 +37,7 @@ impl Linear {
     /// Returns the function with the coefficients a to d. They must not all be zero, nor, rounded, near the
     /// ends of the range of doubles.
     pub(crate) fn new(exact: [Dyadic; 4]) -> Linear {
-        let c = exact.each_ref().map(Dyadic::rounded);
+        let c = exact.each_ref().each(Dyadic::rounded);
         // Coefficients, products and sums are rounded: at most six roundings a term.
         let error = 8.0 * f64::EPSILON * c.iter().map(|c| c.abs()).sum::<f64>();
         Linear { exact, c, error }
@@ -57,7 +58,7 @@ impl Linear {
     /// The values at four points.
     #[inline(always)]
     pub(crate) fn values(&self, [x, y, z]: [f64x4; 3]) -> f64x4 {
-        let [a, b, c, d] = self.c.map(f64x4::splat);
+        let [a, b, c, d] = self.c.each(f64x4::splat);
         ((a * x + b * y) + c * z) + d
     }
 

@@ -9,6 +9,7 @@
 use super::Placed;
 use crate::dexel::{first_above, within};
 use crate::error::Error;
+use crate::lattice::Each;
 use crate::lattice::exact::{DoubleDouble, sqrt};
 use crate::memory;
 use alloc::vec::Vec;
@@ -287,6 +288,6 @@ impl Line {
     /// Returns the outward normal of a half-space at a place in cells; of any length, or 0.
     pub fn normal(&self, half_space: &Placed, at: f64) -> [f64; 3] {
         let taylor = half_space.taylor(self.point(at / self.cells), 1.0 / self.cells);
-        taylor.map_or([0.0; 3], |taylor| taylor.f.gradient.map(|c| -c))
+        taylor.map_or([0.0; 3], |taylor| taylor.f.gradient.each(|c| -c))
     }
 }

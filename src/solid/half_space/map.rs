@@ -1,6 +1,7 @@
 //! Exact affine maps.
 
 use crate::error::Error;
+use crate::lattice::Each;
 use crate::lattice::axes;
 use crate::lattice::exact::{Dyadic, cross, dot};
 use crate::lattice::{Affine, Frame};
@@ -26,7 +27,7 @@ pub(crate) struct ExactMap {
 impl ExactMap {
     /// Returns the identity.
     pub(crate) fn identity() -> ExactMap {
-        let rows = axes(|i| [0, 1, 2, 3].map(|j| Dyadic::new(if i == j { 1.0 } else { 0.0 })));
+        let rows = axes(|i| [0, 1, 2, 3].each(|j| Dyadic::new(if i == j { 1.0 } else { 0.0 })));
         ExactMap { rows, w: Dyadic::new(1.0) }
     }
 
@@ -34,7 +35,7 @@ impl ExactMap {
     pub(crate) fn from_universe(frame: &Frame) -> ExactMap {
         let edge = Dyadic::new(frame.edge());
         let rows = axes(|i| {
-            let mut row = [0, 1, 2, 3].map(|_| Dyadic::zero());
+            let mut row = [0, 1, 2, 3].each(|_| Dyadic::zero());
             row[i] = edge.clone();
             row[3] = Dyadic::new(frame.origin()[i]);
             row
@@ -47,7 +48,7 @@ impl ExactMap {
     pub(crate) fn linear(&self, given: &[Dyadic; 4]) -> [Dyadic; 4] {
         let [a, b, c, d] = given.each_ref();
         let [x, y, z] = &self.rows;
-        let mut sums = [0, 1, 2, 3].map(|j| dot([a, b, c], [&x[j], &y[j], &z[j]]));
+        let mut sums = [0, 1, 2, 3].each(|j| dot([a, b, c], [&x[j], &y[j], &z[j]]));
         sums[3] = &sums[3] + &(d * &self.w);
         sums
     }
@@ -58,7 +59,7 @@ impl ExactMap {
     /// # Errors
     /// [`Error::Limit`] if the exact entries become too long.
     pub(crate) fn of_placed(&self, placement: &Affine) -> Result<ExactMap, Error> {
-        let m = placement.rows().map(|row| row.map(Dyadic::new));
+        let m = placement.rows().each(|row| row.each(Dyadic::new));
         let cofactors = axes(|i| cross(&m[(i + 1) % 3], &m[(i + 2) % 3]));
         let determinant = dot([&m[0][0], &m[0][1], &m[0][2]], cofactors[0].each_ref());
         let moved = axes(|i| {
@@ -67,11 +68,11 @@ impl ExactMap {
             row
         });
         // The adjugate is the transpose of the cofactors.
-        let rows = axes(|i| [0, 1, 2, 3].map(|j| dot(axes(|k| &cofactors[k][i]), axes(|k| &moved[k][j]))));
+        let rows = axes(|i| [0, 1, 2, 3].each(|j| dot(axes(|k| &cofactors[k][i]), axes(|k| &moved[k][j]))));
         // With w of a magnitude of one, sums of entries and products are as long as their exponents differ.
         let w = &self.w * &determinant;
         let scale = -w.magnitude().unwrap_or(0);
-        let map = ExactMap { rows: rows.map(|row| row.map(|c| c.shifted(scale))), w: w.shifted(scale) };
+        let map = ExactMap { rows: rows.each(|row| row.each(|c| c.shifted(scale))), w: w.shifted(scale) };
         let too_long = |entry: &Dyadic| {
             let far = entry.magnitude().is_some_and(|m| m.unsigned_abs() > MOST_BITS);
             far || entry.bits() > MOST_BITS

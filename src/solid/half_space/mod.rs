@@ -33,6 +33,7 @@ pub(crate) mod torus;
 
 use crate::cut::Taylor;
 use crate::error::Error;
+use crate::lattice::Each;
 use crate::lattice::exact::{DoubleDouble, Dyadic, sign};
 use crate::lattice::{Frame, Interval, valid};
 use crate::octree::cuts::{CellSlab, Origin};
@@ -89,7 +90,7 @@ impl HalfSpace {
         valid::numbers("normal", &normal)?;
         valid::numbers("offset", &[offset])?;
         let [x, y, z] = normal;
-        Ok(HalfSpace::linear([x, y, z, offset].map(Dyadic::new)))
+        Ok(HalfSpace::linear([x, y, z, offset].each(Dyadic::new)))
     }
 
     /// Returns the half-space a x² + b y² + c z² + d xy + e yz + f zx + g x + h y + i z + j ≥ 0 for the
@@ -104,7 +105,7 @@ impl HalfSpace {
             let problem = "must not all be zero but the last: the function would be constant";
             return Err(Error::Argument { name: "coefficients", problem });
         }
-        Ok(HalfSpace::exactly(coefficients.map(Dyadic::new)))
+        Ok(HalfSpace::exactly(coefficients.each(Dyadic::new)))
     }
 
     /// Returns the half-space A (x − a)^n + B (y − b)^m + C (z − c)^k + `constant` ≥ 0, for the `terms` (A,
@@ -117,7 +118,7 @@ impl HalfSpace {
     /// [`Error::Argument`] if all coefficients are zero, if an exponent is not 1 to 64, or if a number is
     /// neither zero nor of a magnitude between 2^-256 and 2^256.
     pub fn power(terms: [(f64, f64, u32); 3], constant: f64) -> Result<HalfSpace, Error> {
-        valid::numbers("terms", terms.map(|(coefficient, centre, _)| [coefficient, centre]).as_flattened())?;
+        valid::numbers("terms", terms.each(|(coefficient, centre, _)| [coefficient, centre]).as_flattened())?;
         valid::numbers("constant", &[constant])?;
         if !terms.iter().all(|&(.., exponent)| (1..=LARGEST_EXPONENT).contains(&exponent)) {
             return Err(Error::Argument { name: "terms", problem: "every exponent must be 1 to 64" });
@@ -131,7 +132,7 @@ impl HalfSpace {
         if !terms.iter().all(is_quadratic) {
             return Ok(HalfSpace(Arc::new(Surface::Powers(Powers { terms, constant }))));
         }
-        let [mut squares, mut linear] = [0.0; 2].map(|c| [c; 3].map(Dyadic::new));
+        let [mut squares, mut linear] = [0.0; 2].each(|c| [c; 3].each(Dyadic::new));
         let mut constant = Dyadic::new(constant);
         for (axis, (coefficient, centre, exponent)) in terms.into_iter().enumerate() {
             let (coefficient, centre) = (Dyadic::new(coefficient), Dyadic::new(centre));
@@ -160,10 +161,10 @@ impl HalfSpace {
         if major != 0.0 {
             valid::length("major", major)?;
         } else {
-            let [squares, linear] = [-1.0, 0.0].map(|c| [c; 3].map(Dyadic::new));
+            let [squares, linear] = [-1.0, 0.0].each(|c| [c; 3].each(Dyadic::new));
             return Ok(HalfSpace::separable(squares, linear, Dyadic::new(minor).pow(2)));
         }
-        let [major, minor, scale, shift] = [major, minor, 1.0, 0.0].map(Dyadic::new);
+        let [major, minor, scale, shift] = [major, minor, 1.0, 0.0].each(Dyadic::new);
         Ok(HalfSpace::ring(Torus { major, square: minor.pow(2), scale, shift }))
     }
 
@@ -417,8 +418,8 @@ impl Placed {
             _ => return (0, 0),
         };
         (
-            mask(values.map(|v| v.simd_gt(f64x4::splat(error)))),
-            mask(values.map(|v| v.simd_lt(f64x4::splat(-error)))),
+            mask(values.each(|v| v.simd_gt(f64x4::splat(error)))),
+            mask(values.each(|v| v.simd_lt(f64x4::splat(-error)))),
         )
     }
 

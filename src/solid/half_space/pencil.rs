@@ -13,6 +13,7 @@
 //! multiple root of c. It solves gcd(c, c′), which has degree at most three, and no root of a degree above
 //! two is needed. Both cases are decided without rounding.
 
+use crate::lattice::Each;
 use crate::lattice::exact::Dyadic;
 use core::array::from_fn;
 
@@ -46,7 +47,7 @@ pub(super) fn excluded(f: &Form, g: &Form) -> Option<(bool, bool)> {
                 if odd.is_multiple_of(2) { sums[k - 1][j].clone() } else { -&sums[k - 1][j] }
             };
             let all = [1, 2, 3, 4]
-                .map(|k: usize| Polynomial(from_fn(|j| if j <= k { signed(k, j) } else { Dyadic::zero() })));
+                .each(|k: usize| Polynomial(from_fn(|j| if j <= k { signed(k, j) } else { Dyadic::zero() })));
             are_somewhere_not_negative(&all)
         },
     )
@@ -73,7 +74,7 @@ pub(super) fn is_semi_definite(f: &Form, left_out: usize, positive: bool) -> boo
 /// Scales the matrix by a power of two, so that its largest entry has a magnitude of about one.
 fn normal(f: &Form) -> Form {
     let most = f.iter().flatten().filter_map(Dyadic::magnitude).max().unwrap_or(0);
-    f.each_ref().map(|row| row.each_ref().map(|c| c.shifted(-most)))
+    f.each_ref().each(|row| row.each_ref().each(|c| c.shifted(-most)))
 }
 
 /// Returns the sums of the principal minors of k = 1 to 4 rows of F + λ G.
@@ -106,7 +107,7 @@ fn sums(f: &Form, g: &Form) -> [[Dyadic; 5]; 4] {
         let term = minor(&entries, [0, 1], columns).times(&minor(&entries, [2, 3], others));
         add(4, if is_even { term } else { term.negated() });
     }
-    sums.map(|sum| sum.unwrap_or_else(|| Polynomial::new(&[])).0)
+    sums.each(|sum| sum.unwrap_or_else(|| Polynomial::new(&[])).0)
 }
 
 fn minor(entries: &[[Polynomial; 4]; 4], [i, k]: [usize; 2], [j, l]: [usize; 2]) -> Polynomial {
@@ -127,7 +128,7 @@ fn are_somewhere_not_negative(all: &[Polynomial; 4]) -> bool {
     let Some(last) = all.iter().rev().find(|c| c.degree().is_some()) else { return false };
     let last = last.without_zeros();
     let derivative = last.derivative();
-    let about = all.each_ref().map(Polynomial::rounded);
+    let about = all.each_ref().each(Polynomial::rounded);
     let mut is_near = false;
     let serves = |at: &Number| all.iter().all(|c| c.sign_at(at) >= 0);
     for at in roots(&derivative.rounded()).into_iter().filter(|at| *at > 0.0) {
@@ -161,7 +162,7 @@ impl Polynomial {
     }
 
     fn negated(&self) -> Polynomial {
-        Polynomial(self.0.each_ref().map(|c| -c))
+        Polynomial(self.0.each_ref().each(|c| -c))
     }
 
     /// Returns the product; the degrees must sum to at most four.
@@ -191,7 +192,7 @@ impl Polynomial {
     /// The coefficients, rounded, times a common power of two.
     fn rounded(&self) -> [f64; 5] {
         let most = self.0.iter().filter_map(Dyadic::magnitude).max().unwrap_or(0);
-        self.0.each_ref().map(|c| c.shifted(-most).rounded())
+        self.0.each_ref().each(|c| c.shifted(-most).rounded())
     }
 
     /// Returns the sign at a number.
@@ -228,7 +229,7 @@ impl Polynomial {
                 let one = Dyadic::new(1.0);
                 match square.sign() {
                     0 => [number(&-b, &zero(), &zero(), &a.shifted(1)), None],
-                    1 => [one.clone(), -&one].map(|s| number(&-b, &s, &square, &a.shifted(1))),
+                    1 => [one.clone(), -&one].each(|s| number(&-b, &s, &square, &a.shifted(1))),
                     _ => [None, None],
                 }
             }
@@ -262,7 +263,7 @@ fn gcd(mut a: Polynomial, mut b: Polynomial) -> Polynomial {
                 Some(k) => &b.0[k] * &first,
                 None => Dyadic::zero(),
             }));
-            a = Polynomial(a.0.each_ref().map(|c| c * &other)).minus(&shifted);
+            a = Polynomial(a.0.each_ref().each(|c| c * &other)).minus(&shifted);
         }
         Dyadic::make_primitive(&mut a.0);
         (a, b) = (b, a);
@@ -332,7 +333,7 @@ fn halved(low: f64, high: f64, of: impl Fn(f64) -> f64) -> f64 {
         if (of(f64::from_bits(middle)) < 0.0) == is_negative { low = middle } else { high = middle }
     }
     // The simpler of the two is more likely to be the root itself.
-    let [low, high] = [low, high].map(f64::from_bits);
+    let [low, high] = [low, high].each(f64::from_bits);
     if of(high) == 0.0 || low.to_bits().trailing_zeros() < high.to_bits().trailing_zeros() {
         high
     } else {

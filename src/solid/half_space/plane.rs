@@ -5,6 +5,7 @@ use super::linear;
 use super::map::ExactMap;
 use super::tangent::Tangent;
 use crate::cut::{Quadratic, Taylor};
+use crate::lattice::Each;
 use crate::lattice::axes;
 use crate::lattice::exact::{Dyadic, certain};
 use alloc::boxed::Box;
@@ -43,8 +44,8 @@ impl Plane {
         let exact = map.linear(given);
         // Only the sign counts: the largest coefficient is scaled to a magnitude of one.
         let scale = -linear::magnitude(&exact);
-        let exact = exact.map(|c| if map.w.sign() < 0 { -&c.shifted(scale) } else { c.shifted(scale) });
-        let c = exact.each_ref().map(Dyadic::rounded);
+        let exact = exact.each(|c| if map.w.sign() < 0 { -&c.shifted(scale) } else { c.shifted(scale) });
+        let c = exact.each_ref().each(Dyadic::rounded);
         // No partial sum is larger than four times this.
         let size: f64 = c.iter().map(|c| c.abs()).sum();
         let is_double = exact.iter().all(|c| c.exactly().is_some());
@@ -82,7 +83,7 @@ impl Plane {
         sides.settled(at, doubt, |low, high, which| {
             let exact = self.exact();
             let less = if which == Ordering::Less { 1 } else { -1 };
-            let corner = axes(|i| if exact[i].sign() == less { low[i] } else { high[i] }).map(Dyadic::new);
+            let corner = axes(|i| if exact[i].sign() == less { low[i] } else { high[i] }).each(Dyadic::new);
             linear::value(&exact, &corner).sign()
         })
     }
@@ -128,7 +129,7 @@ impl Plane {
         let mut point = [0.0; 3];
         [nearest - 1.0, nearest, nearest + 1.0].into_iter().any(|plane| {
             point[axis] = plane / cells;
-            linear::value(&exact, &point.map(Dyadic::new)).sign() == 0
+            linear::value(&exact, &point.each(Dyadic::new)).sign() == 0
         })
     }
 
@@ -137,7 +138,8 @@ impl Plane {
     pub(crate) fn sign_at(&self, t: [f64; 3]) -> i32 {
         let [a, b, c, d] = self.c;
         let value = ((a * t[0] + b * t[1]) + c * t[2]) + d;
-        certain(value, self.error).unwrap_or_else(|| linear::value(&self.exact(), &t.map(Dyadic::new)).sign())
+        certain(value, self.error)
+            .unwrap_or_else(|| linear::value(&self.exact(), &t.each(Dyadic::new)).sign())
     }
 
     /// Returns the function on a ray along `axis` through a point: the factors of 1 and s for the coordinate
@@ -157,7 +159,7 @@ impl Plane {
     pub(crate) fn sign_off_lattice(&self, t: [f64; 3]) -> i32 {
         let [a, b, c, d] = self.c;
         let value = ((a * t[0] + b * t[1]) + c * t[2]) + d;
-        let exact = || linear::value(&self.exact(), &t.map(Dyadic::new)).sign();
+        let exact = || linear::value(&self.exact(), &t.each(Dyadic::new)).sign();
         certain(value, self.rounding()).unwrap_or_else(exact)
     }
 
@@ -170,6 +172,6 @@ impl Plane {
     #[cold]
     pub(super) fn exact(&self) -> [Dyadic; 4] {
         let mut rest = &*self.exact;
-        self.c.map(|c| if self.exact.is_empty() { Dyadic::new(c) } else { Dyadic::read(&mut rest) })
+        self.c.each(|c| if self.exact.is_empty() { Dyadic::new(c) } else { Dyadic::read(&mut rest) })
     }
 }

@@ -5,6 +5,7 @@ use super::bounds::{centre, half_edge};
 use super::table::{MOST, Table};
 use super::tangent::Tangent;
 use crate::cut::Quadratic;
+use crate::lattice::Each;
 use crate::lattice::{Cell, axes};
 
 /// Returns the combinations of signs that functions may have in a cell: bit m stands for the combination in
@@ -65,7 +66,7 @@ pub(crate) fn met<'h>(half_spaces: impl Iterator<Item = &'h Placed>, cell: Cell)
             }
         }
     }
-    let seen = closely.map(|close| close.map_or([0; 2], |close| [close.positive, close.negative]));
+    let seen = closely.each(|close| close.map_or([0; 2], |close| [close.positive, close.negative]));
     Met { possible: Table(possible), seen }
 }
 
@@ -82,7 +83,7 @@ impl Close {
     fn new(f: Quadratic) -> Close {
         let slack = f.error + 16.0 * f64::EPSILON * f.size();
         let (mut positive, mut negative) = (0, 0);
-        let at = |i: u32| [i % 3, i / 3 % 3, i / 9].map(|k| f64::from(k) - 1.0);
+        let at = |i: u32| [i % 3, i / 3 % 3, i / 9].each(|k| f64::from(k) - 1.0);
         for i in 0..27 {
             let [x, y, z] = at(i);
             let ([a, b, c], [xx, yy, zz, xy, xz, yz]) = (f.gradient, f.squares);
@@ -171,7 +172,7 @@ fn greatest(a: &Quadratic, b: &Quadratic, share: f64) -> f64 {
 
 /// A linear function above a function, or above its negative if `negative`: factors and constant.
 fn above(t: &Tangent, negative: bool) -> ([f64; 3], f64) {
-    if negative { (t.gradient.map(|c| -c), -t.low) } else { (t.gradient, t.high) }
+    if negative { (t.gradient.each(|c| -c), -t.low) } else { (t.gradient, t.high) }
 }
 
 /// Returns whether a function is nowhere positive in the cell, or nowhere negative if `negative`.

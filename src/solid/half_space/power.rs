@@ -6,6 +6,7 @@ use super::linear::Linear;
 use super::map::ExactMap;
 use super::tangent::Tangent;
 use crate::cut::{Quadratic, Taylor};
+use crate::lattice::Each;
 use crate::lattice::PAIRS;
 use crate::lattice::axes;
 use crate::lattice::exact::{Dyadic, sign};
@@ -82,7 +83,7 @@ impl PlacedPowers {
             let mut line = map.rows[axis].clone();
             line[3] = &line[3] - &(&map.w * &Dyadic::new(centre));
             let size = linear::magnitude(&line);
-            let line = line.map(|c| c.shifted(-size));
+            let line = line.each(|c| c.shifted(-size));
             let mut weight = &Dyadic::new(coefficient) * &w.pow(highest - exponent);
             if map.w.sign() < 0 && exponent % 2 == 1 {
                 weight = -&weight;
@@ -124,9 +125,9 @@ impl PlacedPowers {
     /// The exact sign of the least (`Less`) or the greatest value over a box, if each term depends on one
     /// axis.
     fn extreme_sign(&self, low: [f64; 3], high: [f64; 3], which: Ordering) -> i32 {
-        let ends = [low.map(Dyadic::new), high.map(Dyadic::new)];
+        let ends = [low.each(Dyadic::new), high.each(Dyadic::new)];
         let sum = self.terms.iter().fold(self.exact_constant.clone(), |sum, term| {
-            let [a, b] = ends.each_ref().map(|end| term.line.exactly_at(end));
+            let [a, b] = ends.each_ref().each(|end| term.line.exactly_at(end));
             let weighted = |base: &Dyadic| &term.exact_weight * &base.pow(term.exponent);
             let (at_a, at_b) = (weighted(&a), weighted(&b));
             let mut extreme = if at_a.cmp(&at_b) == which { at_a } else { at_b };
@@ -156,7 +157,7 @@ impl PlacedPowers {
 
     #[cold]
     fn exact_sign_at(&self, t: [f64; 3]) -> i32 {
-        let t = t.map(Dyadic::new);
+        let t = t.each(Dyadic::new);
         let value = |term: &Term| &term.exact_weight * &term.line.exactly_at(&t).pow(term.exponent);
         self.terms.iter().fold(self.exact_constant.clone(), |sum, term| &sum + &value(term)).sign()
     }
@@ -164,7 +165,7 @@ impl PlacedPowers {
     /// The sign to which the shift (ε, ε², ε³) moves a zero, to first order.
     #[cold]
     pub(crate) fn shifted_sign_at(&self, t: [f64; 3]) -> i32 {
-        let t = t.map(Dyadic::new);
+        let t = t.each(Dyadic::new);
         let rises: Vec<Dyadic> = self
             .terms
             .iter()
@@ -278,7 +279,7 @@ impl PlacedPowers {
     /// (An odd power has one more extreme, opposite the centre, which the farther end exceeds.)
     fn bounds(&self, at: &Octants) -> Sides {
         let (halves, reach) = at.centres();
-        let ranges = halves.map(|centre| {
+        let ranges = halves.each(|centre| {
             let splat = f64x4::splat;
             let zero = f64x4::ZERO;
             let mut value = splat(self.constant);
@@ -293,7 +294,7 @@ impl PlacedPowers {
                 let middle = line.values(centre);
                 let (low, high) = (middle - spread, middle + spread);
                 let rise = power(middle, exponent - 1);
-                let [at_low, at_high] = [low, high].map(|u| power(u, *exponent));
+                let [at_low, at_high] = [low, high].each(|u| power(u, *exponent));
                 let there = rise * middle;
                 let slope = n * rise;
                 // The remainder.
@@ -376,7 +377,7 @@ impl Aligned {
             }
         }
         let bits = exponents.iter().map(|n| u32::BITS - (n - 1).leading_zeros()).max().unwrap_or(0);
-        let factor = |bit: u32| mask(exponents.map(|n: u32| ((n - 1) >> bit & 1) as f64));
+        let factor = |bit: u32| mask(exponents.each(|n: u32| ((n - 1) >> bit & 1) as f64));
         Aligned {
             weight: f64x4::new(weight),
             slope: f64x4::new(slope),
@@ -423,9 +424,9 @@ impl Aligned {
         let (first, second) =
             ((base_a * base_b).simd_lt(f64x4::ZERO), (base_b * base_c).simd_lt(f64x4::ZERO));
         let least = [(a, b, first), (b, c, second)]
-            .map(|(a, b, across)| a.fast_min(b).fast_min(across.select(self.least, up)));
+            .each(|(a, b, across)| a.fast_min(b).fast_min(across.select(self.least, up)));
         let most = [(a, b, first), (b, c, second)]
-            .map(|(a, b, across)| a.fast_max(b).fast_max(across.select(self.most, down)));
+            .each(|(a, b, across)| a.fast_max(b).fast_max(across.select(self.most, down)));
         Sides::with_error(sums(self.constant, least), sums(self.constant, most), error)
     }
 }

@@ -5,6 +5,7 @@ use super::linear;
 use super::map::ExactMap;
 use super::tangent::Tangent;
 use crate::cut::{Quadratic, Taylor};
+use crate::lattice::Each;
 use crate::lattice::exact::{DoubleDouble, Dyadic, certain};
 use alloc::boxed::Box;
 use core::cmp::Ordering;
@@ -32,7 +33,7 @@ pub(crate) fn substitute(given: &Coefficients, map: &ExactMap) -> Coefficients {
         (3, _) => &zero,
         _ => &map.rows[i][j],
     };
-    PAIRS.map(|(j, k)| {
+    PAIRS.each(|(j, k)| {
         let mut sum = Dyadic::zero();
         for ((a, b), coefficient) in PAIRS.iter().zip(given).filter(|(_, c)| !c.is_zero()) {
             let mut product = entry(*a, j) * entry(*b, k);
@@ -100,14 +101,14 @@ impl Quadric {
         let exact = substitute(given, map);
         // Only the sign counts: the largest coefficient is scaled to a magnitude of one.
         let scale = -linear::magnitude(&exact);
-        let exact = exact.map(|c| c.shifted(scale));
-        let c = exact.each_ref().map(Dyadic::rounded);
+        let exact = exact.each(|c| c.shifted(scale));
+        let c = exact.each_ref().each(Dyadic::rounded);
         // The sum of the magnitudes of all terms on [−1, 2]³, which bounds all values.
         let size: f64 = 4.0 * c.iter().map(|c| c.abs()).sum::<f64>();
         let form = if exact[3..6].iter().all(Dyadic::is_zero) {
             Form::Separable(Separable::new(&exact, c, size, depth))
         } else {
-            let [least, most] = [f64::min as fn(f64, f64) -> f64, f64::max].map(|extreme| {
+            let [least, most] = [f64::min as fn(f64, f64) -> f64, f64::max].each(|extreme| {
                 c[..3].iter().map(|&c| extreme(c, 0.0)).sum::<f64>()
                     + c[3..6].iter().map(|c| extreme(c.abs(), -c.abs())).sum::<f64>()
             });
@@ -121,7 +122,7 @@ impl Quadric {
             })
         };
         let fine = [0, 1, 2, 3, 4, 5, 6, 7, 8, 9]
-            .map(|i| DoubleDouble::sum(c[i], (&exact[i] - &Dyadic::new(c[i])).rounded()));
+            .each(|i| DoubleDouble::sum(c[i], (&exact[i] - &Dyadic::new(c[i])).rounded()));
         Quadric { exact: Box::new(exact), fine, form }
     }
 
@@ -145,7 +146,7 @@ impl Quadric {
     pub(crate) fn centres(&self, at: &Octants) -> ([f64x4; 2], f64) {
         match &self.form {
             Form::Separable(separable) => (separable.centres(at), separable.error),
-            Form::Mixed(mixed) => (at.centres().0.map(|centre| mixed.value(centre)), mixed.error),
+            Form::Mixed(mixed) => (at.centres().0.each(|centre| mixed.value(centre)), mixed.error),
         }
     }
 
@@ -170,10 +171,10 @@ impl Quadric {
             }
             Form::Mixed(mixed) => {
                 let [xx, yy, zz, xy, yz, zx, ..] = mixed.c;
-                let gradient = mixed.slopes(centre).map(|slope| slope * half);
-                let value = mixed.value(centre.map(f64x4::splat)).to_array()[0];
-                let [xy, zx, yz] = [xy, zx, yz].map(|c| 0.5 * c);
-                (value, gradient, [xx, yy, zz, xy, zx, yz].map(|c| c * square), mixed.error)
+                let gradient = mixed.slopes(centre).each(|slope| slope * half);
+                let value = mixed.value(centre.each(f64x4::splat)).to_array()[0];
+                let [xy, zx, yz] = [xy, zx, yz].each(|c| 0.5 * c);
+                (value, gradient, [xx, yy, zz, xy, zx, yz].each(|c| c * square), mixed.error)
             }
         };
         // A slope is a sum of four terms, which are at most twice the coefficients.
@@ -241,7 +242,7 @@ impl Quadric {
     pub(crate) fn sign_at(&self, t: [f64; 3]) -> i32 {
         let (value, error) = match &self.form {
             Form::Separable(separable) => (separable.value(t), separable.error),
-            Form::Mixed(mixed) => (mixed.value(t.map(f64x4::splat)).to_array()[0], mixed.error),
+            Form::Mixed(mixed) => (mixed.value(t.each(f64x4::splat)).to_array()[0], mixed.error),
         };
         certain(value, error).unwrap_or_else(|| self.exact_sign_at(t))
     }
@@ -271,7 +272,7 @@ impl Quadric {
     /// times 64 times [`size`](Self::size), since coordinates are at most 1.
     pub(crate) fn finely_along(&self, axis: usize, point: [f64; 3]) -> [DoubleDouble; 3] {
         let [i, j] = [(axis + 1) % 3, (axis + 2) % 3];
-        let [u, v] = [point[i], point[j]].map(DoubleDouble::from);
+        let [u, v] = [point[i], point[j]].each(DoubleDouble::from);
         let c = |a: usize, b: usize| self.fine[place(a, b)];
         let rest = (c(i, i) * u + c(i, 3)) * u + (c(j, j) * v + c(j, 3) + c(i, j) * u) * v;
         let slope = c(axis, 3) + c(axis, i) * u + c(axis, j) * v;
@@ -290,7 +291,7 @@ impl Quadric {
     pub(crate) fn sign_off_lattice(&self, t: [f64; 3]) -> i32 {
         let value = match &self.form {
             Form::Separable(separable) => separable.value(t),
-            Form::Mixed(mixed) => mixed.value(t.map(f64x4::splat)).to_array()[0],
+            Form::Mixed(mixed) => mixed.value(t.each(f64x4::splat)).to_array()[0],
         };
         certain(value, self.rounding()).unwrap_or_else(|| self.exact_sign_at(t))
     }
@@ -336,7 +337,7 @@ fn remainder(exact: &Coefficients, c: &[f64; 10]) -> (f64, f64) {
 /// principal minors; otherwise 0.
 fn definite(exact: &Coefficients) -> i32 {
     let [xx, yy, zz, xy, yz, zx, ..] = exact;
-    let sign = [xx, yy, zz].map(Dyadic::sign).into_iter().find(|&sign| sign != 0).unwrap_or(0);
+    let sign = [xx, yy, zz].each(Dyadic::sign).into_iter().find(|&sign| sign != 0).unwrap_or(0);
     let pair = |a: &Dyadic, b: &Dyadic, mixed: &Dyadic| &(a * b).shifted(2) - &mixed.pow(2);
     // Half of the determinant.
     let products = &(&(xx * yy) * zz).shifted(2) + &(&(xy * yz) * zx);
@@ -415,7 +416,7 @@ impl Separable {
     #[inline(always)]
     fn centres(&self, at: &Octants) -> [f64x4; 2] {
         let first = at.lanes() + 0.5 * at.half;
-        sums(self.constant, [first, first + at.half].map(|t| (self.square * t + self.linear) * t))
+        sums(self.constant, [first, first + at.half].each(|t| (self.square * t + self.linear) * t))
     }
 
     /// The squares are the remainder.
@@ -469,7 +470,7 @@ impl Mixed {
 
     #[inline(always)]
     fn tangent(&self, centre: [f64; 3], half: f64) -> Tangent {
-        let value = self.value(centre.map(f64x4::splat)).to_array()[0];
+        let value = self.value(centre.each(f64x4::splat)).to_array()[0];
         let gradient = self.slopes(centre);
         let (least, most) = self.remainder;
         // `error` is more than four times the size of the coefficients in roundings, and so more than the
@@ -477,7 +478,7 @@ impl Mixed {
         let error = self.error + self.error * half;
         Tangent::new(
             value,
-            gradient.map(|slope| slope * half),
+            gradient.each(|slope| slope * half),
             (half * half * least, half * half * most),
             error,
         )

@@ -2,6 +2,7 @@
 
 use super::slab::ThickPlane;
 use super::{HalfSpace, PlacedHalfSpace, Surface};
+use crate::lattice::Each;
 use crate::lattice::{Affine, Cell, Frame, Interval, axes};
 use crate::octree::cuts::{CellSlab, Steps, Universe};
 use alloc::sync::Arc;
@@ -36,7 +37,7 @@ impl PlacedHalfSpace {
         }
         let axis = (0..3).fold(0, |best, i| if normal[i].abs() > normal[best].abs() { i } else { best });
         let greatest = normal[axis].abs();
-        let others = [1, 2].map(|k| {
+        let others = [1, 2].each(|k| {
             let unit = libm::round(normal[(axis + k) % 3] / greatest * Steps::UNIT);
             unit.clamp(1.0 - Steps::UNIT, Steps::UNIT - 1.0) as i16
         });
@@ -44,7 +45,7 @@ impl PlacedHalfSpace {
         let steps = Steps { axis, is_negative, others, offset: 0, width: 0, step: 0 };
 
         // In units of the universe, from the centre of the cell, for a normal whose greatest component is ±1.
-        let (own, unit) = (normal.map(Interval::exactly), Interval::exactly(greatest));
+        let (own, unit) = (normal.each(Interval::exactly), Interval::exactly(greatest));
         let edge = Interval::exactly(frame.edge());
         let centre = axes(|i| {
             let centre = (2 * u64::from(cell.at[i]) + 1) as f64 / (2u64 << cell.level) as f64;

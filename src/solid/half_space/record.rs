@@ -7,6 +7,7 @@ use super::slab::{SlabIdentity, ThickPlane};
 use super::torus::Torus;
 use super::{HalfSpace, PlacedHalfSpace, Surface};
 use crate::error::Error;
+use crate::lattice::Each;
 use crate::lattice::exact::Dyadic;
 use crate::lattice::{Affine, Frame};
 use crate::memory;
@@ -94,7 +95,7 @@ impl PlacedHalfSpace {
                 Surface::Plane(plane) => {
                     let map = ExactMap::identity().of_placed(placement)?;
                     let numbers = map.linear(plane);
-                    HalfSpace::linear(if map.w.sign() < 0 { numbers.map(|c| -&c) } else { numbers })
+                    HalfSpace::linear(if map.w.sign() < 0 { numbers.each(|c| -&c) } else { numbers })
                 }
                 Surface::Quadric(quadric) => {
                     HalfSpace::exactly(substitute(quadric, &ExactMap::identity().of_placed(placement)?))
@@ -125,10 +126,10 @@ impl HalfSpace {
                 (SurfaceKind::Powers, terms.chain([*constant]).map(Dyadic::new).collect())
             }
             Surface::Torus(Torus { major, square, scale, shift }) => {
-                (SurfaceKind::Torus, [major, square, scale, shift].map(Clone::clone).to_vec())
+                (SurfaceKind::Torus, [major, square, scale, shift].each(Clone::clone).to_vec())
             }
             Surface::Slab(ThickPlane { normal: [x, y, z], inner, outer, .. }) => {
-                (SurfaceKind::Slab, [*x, *y, *z, *inner, *outer].map(Dyadic::new).to_vec())
+                (SurfaceKind::Slab, [*x, *y, *z, *inner, *outer].each(Dyadic::new).to_vec())
             }
             Surface::Host(_) => return None,
         })
@@ -145,7 +146,7 @@ impl HalfSpace {
         let is_constant = |linear: &[Dyadic]| linear.iter().all(Dyadic::is_zero);
         Some(match (kind, numbers) {
             (SurfaceKind::Plane, [a, b, c, d]) => {
-                let plane = [a, b, c, d].map(Clone::clone);
+                let plane = [a, b, c, d].each(Clone::clone);
                 if is_constant(&plane[..3]) {
                     return None;
                 }
@@ -169,11 +170,11 @@ impl HalfSpace {
                 if [major, square, scale].iter().any(|number| number.sign() <= 0) {
                     return None;
                 }
-                let [major, square, scale, shift] = [major, square, scale, shift].map(Clone::clone);
+                let [major, square, scale, shift] = [major, square, scale, shift].each(Clone::clone);
                 HalfSpace::ring(Torus { major, square, scale, shift })
             }
             (SurfaceKind::Slab, [x, y, z, inner, outer]) => {
-                let all = [x, y, z, inner, outer].map(Dyadic::exactly);
+                let all = [x, y, z, inner, outer].each(Dyadic::exactly);
                 let [Some(x), Some(y), Some(z), Some(inner), Some(outer)] = all else { return None };
                 if [x, y, z] == [0.0; 3] || inner > outer {
                     return None;
@@ -187,8 +188,8 @@ impl HalfSpace {
     /// Returns the points where the function is negative.
     fn negated(&self) -> HalfSpace {
         match &*self.0 {
-            Surface::Plane(plane) => HalfSpace::linear(plane.each_ref().map(|c| -c)),
-            Surface::Quadric(quadric) => HalfSpace::exactly(quadric.each_ref().map(|c| -c)),
+            Surface::Plane(plane) => HalfSpace::linear(plane.each_ref().each(|c| -c)),
+            Surface::Quadric(quadric) => HalfSpace::exactly(quadric.each_ref().each(|c| -c)),
             _ => self.clone(),
         }
     }

@@ -6,6 +6,7 @@
 //! and short. Equal surfaces have equal residues. Different surfaces have equal residues in two of 2^61
 //! cases, and are then compared exactly.
 
+use crate::lattice::Each;
 use crate::octree::cuts::{SurfaceKind, SurfacesRef};
 
 /// A number modulo the prime 2^61 − 1, in which powers of two are rotations.
@@ -81,9 +82,9 @@ fn product(a: &Map, b: &Map) -> Map {
 
 /// The inverse of a placement, times its determinant.
 fn inverse(rows: &[[f64; 4]; 3]) -> Map {
-    let m = rows.map(|row| row.map(Residue::of));
+    let m = rows.each(|row| row.each(Residue::of));
     let minor = |i: usize, j: usize| {
-        let [a, b, c, d] = [(1, 1), (2, 2), (1, 2), (2, 1)].map(|(p, q)| m[(i + p) % 3][(j + q) % 3]);
+        let [a, b, c, d] = [(1, 1), (2, 2), (1, 2), (2, 1)].each(|(p, q)| m[(i + p) % 3][(j + q) % 3]);
         a.times(b).minus(c.times(d))
     };
     let mut map = [[Residue::ZERO; 4]; 4];

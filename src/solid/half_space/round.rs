@@ -5,6 +5,7 @@ use super::map::ExactMap;
 use super::quadric::substitute;
 use super::{PlacedHalfSpace, Surface};
 use crate::error::Error;
+use crate::lattice::Each;
 use crate::lattice::exact::Dyadic;
 use crate::lattice::{Frame, Interval, axes};
 
@@ -60,7 +61,7 @@ impl Form {
 
     /// Returns the value and the gradient at a point in unit coordinates, with rounding errors.
     pub(crate) fn about(&self, at: [f64; 3]) -> (f64, [f64; 3]) {
-        let c = self.coefficients.map(|c| 0.5 * (c.lower + c.upper));
+        let c = self.coefficients.each(|c| 0.5 * (c.lower + c.upper));
         let mut gradient = [c[6], c[7], c[8]];
         let mut value = c[9];
         for i in 0..3 {
@@ -76,7 +77,7 @@ impl Form {
 impl Form {
     /// Returns the matrix of second derivatives, with rounding errors.
     pub(crate) fn second(&self) -> [[f64; 3]; 3] {
-        let [xx, yy, zz, xy, yz, zx, ..] = self.coefficients.map(|c| 0.5 * (c.lower + c.upper));
+        let [xx, yy, zz, xy, yz, zx, ..] = self.coefficients.each(|c| 0.5 * (c.lower + c.upper));
         [[2.0 * xx, xy, zx], [xy, 2.0 * yy, yz], [zx, yz, 2.0 * zz]]
     }
 }
@@ -101,7 +102,7 @@ impl PlacedHalfSpace {
                 (coefficients, None)
             }
             Surface::Quadric(quadric) => {
-                let coefficients = substitute(quadric, &map()?).each_ref().map(interval);
+                let coefficients = substitute(quadric, &map()?).each_ref().each(interval);
                 let round = of_quadric(&coefficients, frame);
                 (coefficients, round)
             }
@@ -125,7 +126,7 @@ fn interval(exact: &Dyadic) -> Interval {
 
 /// Returns the ball or the cylinder that a polynomial of degree two in unit coordinates bounds.
 fn of_quadric(c: &[Interval; 10], frame: &Frame) -> Option<Round> {
-    let about = c.map(|c| 0.5 * (c.lower + c.upper));
+    let about = c.each(|c| 0.5 * (c.lower + c.upper));
     let [xx, yy, zz, xy, yz, zx, ..] = about;
     let matrix = [[xx, 0.5 * xy, 0.5 * zx], [0.5 * xy, yy, 0.5 * yz], [0.5 * zx, 0.5 * yz, zz]];
     let trace = xx + yy + zz;
@@ -167,7 +168,7 @@ fn of_quadric(c: &[Interval; 10], frame: &Frame) -> Option<Round> {
     let linear = [about[6], about[7], about[8]];
     let core =
         axes(|i| (0..3).map(|j| 0.5 * (across[i][j].lower + across[i][j].upper) * linear[j]).sum::<f64>())
-            .map(|c| -c / (2.0 * scale));
+            .each(|c| -c / (2.0 * scale));
     if !core.iter().all(|c| c.abs() < 1e100) {
         return None;
     }
@@ -193,7 +194,7 @@ fn of_quadric(c: &[Interval; 10], frame: &Frame) -> Option<Round> {
     }
     let cells = f64::from(frame.cells());
     Some(Round {
-        core: core.map(|c| c * cells),
+        core: core.each(|c| c * cells),
         axis,
         square: square.times(exactly(cells * cells)),
         is_near_positive: scale < 0.0,

@@ -6,6 +6,7 @@ use super::slab::ThickPlane;
 use super::torus::Torus;
 use super::{PlacedHalfSpace, Surface};
 use crate::error::Error;
+use crate::lattice::Each;
 use crate::lattice::axes;
 use crate::lattice::exact::{Dyadic, sqrt};
 
@@ -89,7 +90,7 @@ fn minus(a: [f64; 3], b: [f64; 3]) -> [f64; 3] {
 /// The unit vector; `None` if the vector has no direction.
 fn unit(a: [f64; 3]) -> Option<[f64; 3]> {
     let size = sqrt(dot(a, a));
-    let unit = a.map(|c| c / size);
+    let unit = a.each(|c| c / size);
     unit.iter().all(|c| c.is_finite()).then_some(unit)
 }
 
@@ -124,7 +125,7 @@ impl SurfaceShape {
             SurfaceShape::Torus { centre, axis, major, .. } => {
                 let from = minus(at, centre);
                 let out = unit(across(from, axis))?;
-                unit(minus(from, out.map(|c| major * c)))
+                unit(minus(from, out.each(|c| major * c)))
             }
             SurfaceShape::Quadric { coefficients: c } => unit(axes(|i| {
                 let (next, last) = ((i + 1) % 3, (i + 2) % 3);
@@ -172,7 +173,7 @@ impl PlacedHalfSpace {
                 let map = map()?;
                 let numbers = map.linear(plane);
                 let is_turned = map.w.sign() < 0;
-                let [x, y, z, one] = if is_turned { numbers } else { numbers.map(|c| -&c) };
+                let [x, y, z, one] = if is_turned { numbers } else { numbers.each(|c| -&c) };
                 of_plane([x, y, z], &one)
             }
             Surface::Slab(slab) => of_slab(slab, &map()?),
@@ -194,7 +195,7 @@ impl PlacedHalfSpace {
     /// Returns the shape of a torus if its placements scale all directions alike.
     fn of_torus(&self, torus: &Torus) -> Option<SurfaceShape> {
         let [major, square, scale, shift] =
-            [&torus.major, &torus.square, &torus.scale, &torus.shift].map(Dyadic::rounded);
+            [&torus.major, &torus.square, &torus.scale, &torus.shift].each(Dyadic::rounded);
         let ways: [[f64; 3]; 3] = axes(|i| {
             let [x, y, z] = axes(|j| if i == j { 1.0 } else { 0.0 });
             self.moved([x, y, z, 0.0])
@@ -218,19 +219,19 @@ impl PlacedHalfSpace {
 /// Returns the plane of the points with `normal` · p = `offset`.
 fn of_plane(normal: [Dyadic; 3], offset: &Dyadic) -> SurfaceShape {
     let scale = -normal.iter().filter_map(Dyadic::magnitude).max().unwrap_or(0);
-    let normal = normal.map(|c| c.shifted(scale).rounded());
+    let normal = normal.each(|c| c.shifted(scale).rounded());
     let size = sqrt(dot(normal, normal));
     // (Adding 0.0 removes the sign of a zero.)
     let offset = 0.0 - offset.shifted(scale).rounded() / size;
-    SurfaceShape::Plane { normal: normal.map(|c| c / size + 0.0), offset }
+    SurfaceShape::Plane { normal: normal.each(|c| c / size + 0.0), offset }
 }
 
 fn of_slab(slab: &ThickPlane, map: &ExactMap) -> SurfaceShape {
-    let [x, y, z] = slab.normal.map(Dyadic::new);
+    let [x, y, z] = slab.normal.each(Dyadic::new);
     let numbers = map.linear(&[x, y, z, Dyadic::zero()]);
     // (An offset is infinite if only one side is known.)
     let ends = [slab.inner, slab.outer];
-    let middle = match ends.map(f64::is_finite) {
+    let middle = match ends.each(f64::is_finite) {
         [true, true] => ends[0].midpoint(ends[1]),
         [true, false] => ends[0],
         [false, true] => ends[1],
@@ -247,7 +248,7 @@ fn of_slab(slab: &ThickPlane, map: &ExactMap) -> SurfaceShape {
 /// Returns doubles in proportion to exact numbers; the largest magnitude is between 1/2 and 1.
 fn rounded(exact: &Coefficients) -> [f64; 10] {
     let scale = -exact.iter().filter_map(Dyadic::magnitude).max().unwrap_or(0) - 1;
-    exact.each_ref().map(|c| c.shifted(scale).rounded())
+    exact.each_ref().each(|c| c.shifted(scale).rounded())
 }
 
 /// Returns the eigenvalues of a symmetric matrix, and their unit eigenvectors. (Jacobi 1846.)
@@ -308,7 +309,7 @@ fn round(exact: &Coefficients, coefficients: &[f64; 10]) -> Option<SurfaceShape>
     (0..3).for_each(|i| map.rows[i][3] = Dyadic::new(first[i]));
     let near = substitute(exact, &map);
     let scale = -exact.iter().filter_map(Dyadic::magnitude).max().unwrap_or(0) - 1;
-    let near = near.each_ref().map(|c| c.shifted(scale).rounded());
+    let near = near.each_ref().each(|c| c.shifted(scale).rounded());
     let linear = [near[6], near[7], near[8]];
     let rest = still(linear);
     let core: [f64; 3] = axes(|i| first[i] + rest[i] + 0.0);
@@ -320,7 +321,7 @@ fn round(exact: &Coefficients, coefficients: &[f64; 10]) -> Option<SurfaceShape>
     }
     let odd = (0..3).find(|i| is_near(values[(i + 1) % 3], values[(i + 2) % 3]))?;
     let around = 0.5 * (values[(odd + 1) % 3] + values[(odd + 2) % 3]);
-    let axis = vectors[odd].map(|c| c + 0.0);
+    let axis = vectors[odd].each(|c| c + 0.0);
     if is_near(values[odd], 0.0) {
         let square = -constant / around;
         let radius = sqrt(square);

@@ -6,6 +6,7 @@ use super::map::ExactMap;
 use super::tangent::Tangent;
 use super::{HalfSpace, PlacedHalfSpace, Surface};
 use crate::cut::Slab;
+use crate::lattice::Each;
 use crate::lattice::exact::{Dyadic, sqrt};
 use crate::lattice::{Cube, Interval, axes};
 use crate::octree::cuts::{CellSlab, Origin};
@@ -111,19 +112,19 @@ pub(crate) struct PlacedSlab {
 
 impl PlacedSlab {
     pub(crate) fn new(given: &ThickPlane, map: &ExactMap) -> PlacedSlab {
-        let [x, y, z] = given.normal.map(Dyadic::new);
+        let [x, y, z] = given.normal.each(Dyadic::new);
         let [a, b, c, d] = map.linear(&[x, y, z, Dyadic::zero()]);
         // With w positive, the inequalities keep their direction.
         let turned = |c: Dyadic| if map.w.sign() < 0 { -&c } else { c };
-        let [a, b, c, d, w] = [a, b, c, d, map.w.clone()].map(turned);
+        let [a, b, c, d, w] = [a, b, c, d, map.w.clone()].each(turned);
         let scale = -linear::magnitude([&a, &b, &c]);
-        let [inner, outer] = [given.inner, given.outer].map(|offset| {
+        let [inner, outer] = [given.inner, given.outer].each(|offset| {
             // An offset is infinite if only one side is known.
             let exact =
                 offset.is_finite().then(|| (&(&Dyadic::new(offset) * &w) - &d).shifted(scale).rounded());
             exact.unwrap_or(offset)
         });
-        let normal = [a, b, c].map(|c| c.shifted(scale).rounded());
+        let normal = [a, b, c].each(|c| c.shifted(scale).rounded());
         // A term is rounded at most eight times on [−1, 2]³.
         let slack = |offset: f64| {
             let size: f64 = normal.iter().map(|c| 2.0 * c.abs()).sum::<f64>() + offset.abs();
@@ -157,7 +158,7 @@ impl PlacedSlab {
 
     pub(crate) fn tangent(&self, centre: [f64; 3], half: f64) -> Tangent {
         let value = self.at(centre);
-        let gradient = self.normal.map(|c| -c * half);
+        let gradient = self.normal.each(|c| -c * half);
         Tangent { gradient, low: (self.inner - value).next_down(), high: (self.outer - value).next_up() }
     }
 

@@ -6,6 +6,7 @@ use super::Placed;
 use super::lines::{Line, Root};
 use crate::dexel::{Beam, BeamEnd, OTHERS};
 use crate::error::Error;
+use crate::lattice::Each;
 use crate::memory;
 use alloc::vec::Vec;
 
@@ -94,7 +95,7 @@ impl Sweep {
                     let normal = line.normal(&all[index as usize], at);
                     // If the half-space begins here, its outward normal points back along the ray.
                     let turned = inside[which] != next;
-                    end = end.on(index, if turned { normal.map(|c| -c) } else { normal });
+                    end = end.on(index, if turned { normal.each(|c| -c) } else { normal });
                 }
                 if next {
                     start = end;

@@ -1,5 +1,6 @@
 //! Bounds of a half-space's function in a cell: a linear function, and a range of the rest.
 
+use crate::lattice::Each;
 use crate::solid::Slab;
 
 /// Bounds of a function over a cube: at x, measured from the centre in half edges, it lies between
@@ -29,6 +30,6 @@ impl Tangent {
     /// Returns the slab of the points where the function is not negative.
     #[inline(always)]
     pub(crate) fn slab(&self) -> Slab {
-        Slab { normal: self.gradient.map(|c| -c), inner: self.low, outer: self.high }
+        Slab { normal: self.gradient.each(|c| -c), inner: self.low, outer: self.high }
     }
 }

@@ -1,6 +1,7 @@
 //! A function of half-spaces as a union of disjoint intersections.
 
 use super::table::Table;
+use crate::lattice::Each;
 
 /// An intersection of up to three half-spaces: for each, `None`, or whether its complement is meant.
 pub(crate) type Term = [Option<bool>; 3];
@@ -24,7 +25,7 @@ impl Terms {
     /// complement. A function and its complement give the same terms. Terms with more than one `curved`
     /// half-space are expensive, because their moments are less precise.
     pub(crate) fn cheapest(table: Table, curved: [bool; 3]) -> (Terms, bool) {
-        let [own, other] = [table, Table(!table.0)].map(|table| Terms::of(table, [None; 3], curved));
+        let [own, other] = [table, Table(!table.0)].each(|table| Terms::of(table, [None; 3], curved));
         // At equal cost, the function is taken that is false where no half-space holds.
         let is_other = if own.cost == other.cost { table.0 & 1 != 0 } else { other.cost < own.cost };
         if is_other { (other, true) } else { (own, false) }

@@ -6,6 +6,7 @@ use super::linear::Linear;
 use super::map::ExactMap;
 use super::tangent::Tangent;
 use crate::cut::{Quadratic, Taylor};
+use crate::lattice::Each;
 use crate::lattice::PAIRS;
 use crate::lattice::axes;
 use crate::lattice::exact::{Dyadic, sign, sqrt};
@@ -56,17 +57,17 @@ impl PlacedTorus {
     pub(crate) fn new(given: &Torus, map: &ExactMap) -> PlacedTorus {
         let w = if map.w.sign() < 0 { -&map.w } else { map.w.clone() };
         let (major, square) = (&w * &given.major, &w.pow(2) * &given.square);
-        let mut rows = map.rows.each_ref().map(|row| row.each_ref().map(|c| c * &given.scale));
+        let mut rows = map.rows.each_ref().each(|row| row.each_ref().each(|c| c * &given.scale));
         rows[2][3] = &rows[2][3] + &(&map.w * &given.shift);
-        let sizes = rows.each_ref().map(linear::magnitude);
+        let sizes = rows.each_ref().each(linear::magnitude);
         let minor = square.magnitude().map(|power| power.div_euclid(2) + 1);
         let scale = -sizes.into_iter().chain(major.magnitude()).chain(minor).max().unwrap_or(0);
         let (major, square) = (major.shifted(scale), square.shifted(2 * scale));
-        let lines = rows.each_ref().map(|row| Linear::new(row.each_ref().map(|c| c.shifted(scale))));
+        let lines = rows.each_ref().each(|row| Linear::new(row.each_ref().each(|c| c.shifted(scale))));
         let mut diagonal: f64 = 0.0;
         let mut radius: f64 = 0.0;
         for signs in [[1.0, 1.0, 1.0], [-1.0, 1.0, 1.0], [1.0, -1.0, 1.0], [1.0, 1.0, -1.0]] {
-            let [x, y, z] = lines.each_ref().map(|line| (0..3).map(|k| signs[k] * line.c[k]).sum::<f64>());
+            let [x, y, z] = lines.each_ref().each(|line| (0..3).map(|k| signs[k] * line.c[k]).sum::<f64>());
             diagonal = diagonal.max(x * x + y * y + z * z);
             radius = radius.max(x * x + y * y);
         }
@@ -90,7 +91,7 @@ impl PlacedTorus {
     /// Returns for which of the eight cells f is proven not negative, and not positive.
     pub(crate) fn sides(&self, at: &Octants) -> Sides {
         let (centres, reach) = at.centres();
-        let ranges = centres.map(|centre| {
+        let ranges = centres.each(|centre| {
             let (least, most) = self.box_range(centre, reach);
             if self.aligned {
                 return (least, most);
@@ -107,7 +108,7 @@ impl PlacedTorus {
     #[inline(always)]
     fn box_range(&self, centre: [f64x4; 3], reach: f64) -> (f64x4, f64x4) {
         let zero = f64x4::ZERO;
-        let squares = self.lines.each_ref().map(|line| {
+        let squares = self.lines.each_ref().each(|line| {
             let middle = line.values(centre).abs();
             let spread = f64x4::splat(reach * line.reach());
             let (near, far) = ((middle - spread).fast_max(zero), middle + spread);
@@ -129,7 +130,7 @@ impl PlacedTorus {
     fn taylor_range(&self, centre: [f64x4; 3], reach: f64) -> (f64x4, f64x4) {
         let zero = f64x4::ZERO;
         let splat = f64x4::splat;
-        let [x, y, z] = self.lines.each_ref().map(|line| line.values(centre));
+        let [x, y, z] = self.lines.each_ref().each(|line| line.values(centre));
         let rho = roots(x * x + y * y);
         let off = rho - splat(self.major);
         let value = splat(self.square) - off * off - z * z;
@@ -138,7 +139,7 @@ impl PlacedTorus {
         let share = rho.simd_gt(splat(NEAR)).select(off / rho, zero);
         let (slope_x, slope_y) = (x * share, y * share);
         let slopes = axes(|axis| {
-            let [a, b, c] = self.lines.each_ref().map(|line| splat(line.c[axis]));
+            let [a, b, c] = self.lines.each_ref().each(|line| splat(line.c[axis]));
             ((slope_x * a + slope_y * b) + z * c).abs()
         });
         let spread = ((slopes[0] + slopes[1]) + slopes[2]) * splat(2.0 * reach);
@@ -151,14 +152,14 @@ impl PlacedTorus {
 
     /// Returns linear bounds of f over a cube, as in [`taylor_range`](Self::taylor_range).
     pub(crate) fn tangent(&self, centre: [f64; 3], half: f64) -> Tangent {
-        let [x, y, z] = self.lines.each_ref().map(|line| line.value(centre));
+        let [x, y, z] = self.lines.each_ref().each(|line| line.value(centre));
         let rho = sqrt(x * x + y * y);
         let off = rho - self.major;
         let value = self.square - off * off - z * z;
         let share = if rho > NEAR { off / rho } else { 0.0 };
         let (slope_x, slope_y) = (x * share, y * share);
         let gradient = axes(|axis| {
-            let [a, b, c] = self.lines.each_ref().map(|line| line.c[axis]);
+            let [a, b, c] = self.lines.each_ref().each(|line| line.c[axis]);
             -2.0 * half * ((slope_x * a + slope_y * b) + z * c)
         });
         let across = half * self.radius;
@@ -176,7 +177,7 @@ impl PlacedTorus {
     /// along a line is at most 2 / √3 ρ².
     pub(crate) fn taylor(&self, centre: [f64; 3], half: f64) -> Taylor {
         let Tangent { gradient, low, high } = self.tangent(centre, half);
-        let [x, y, z] = self.lines.each_ref().map(|line| line.value(centre));
+        let [x, y, z] = self.lines.each_ref().each(|line| line.value(centre));
         let rho = sqrt(x * x + y * y);
         let (across, along) = (half * self.radius, half * sqrt(self.diagonal));
         let near = rho - across;
@@ -186,11 +187,11 @@ impl PlacedTorus {
             let f = Quadratic { value: 0.5 * (low + high), gradient, squares: [0.0; 6], error };
             return Taylor { f, bend: f64::INFINITY, degree: 4 };
         }
-        let columns = axes(|axis| self.lines.each_ref().map(|line| half * line.c[axis]));
+        let columns = axes(|axis| self.lines.each_ref().each(|line| half * line.c[axis]));
         // The second derivative of ρ acts around the axis.
-        let around = columns.map(|[a, b, _]| (x * b - y * a) / rho);
+        let around = columns.each(|[a, b, _]| (x * b - y * a) / rho);
         let share = self.major / rho;
-        let squares = PAIRS.map(|(i, j)| {
+        let squares = PAIRS.each(|(i, j)| {
             let ([a, b, c], [d, e, f]) = (columns[i], columns[j]);
             share * (around[i] * around[j]) - ((a * d + b * e) + c * f)
         });
@@ -210,9 +211,9 @@ impl PlacedTorus {
     fn settle(&self, at: &Octants, mut sides: Sides, doubt: u8) -> Sides {
         for k in (0..8).filter(|k| doubt >> k & 1 != 0) {
             let (low, high) = at.octant(k);
-            let ends = [low.map(Dyadic::new), high.map(Dyadic::new)];
-            let squares = self.lines.each_ref().map(|line| {
-                let [a, b] = ends.each_ref().map(|end| line.exactly_at(end));
+            let ends = [low.each(Dyadic::new), high.each(Dyadic::new)];
+            let squares = self.lines.each_ref().each(|line| {
+                let [a, b] = ends.each_ref().each(|end| line.exactly_at(end));
                 let (square_a, square_b) = (a.pow(2), b.pow(2));
                 let across = a.sign() * b.sign() < 0;
                 let (near, far) = match square_a.cmp(&square_b) {
@@ -223,7 +224,7 @@ impl PlacedTorus {
             });
             let [x, y, z] = squares;
             let (inner, outer) = (&x.0 + &y.0, &x.1 + &y.1);
-            let signs = |z: &Dyadic| [&inner, &outer].map(|rho| self.sign_of(rho, z));
+            let signs = |z: &Dyadic| [&inner, &outer].each(|rho| self.sign_of(rho, z));
             let ring = self.exact_major.pow(2);
             let around = inner < ring && ring < outer;
             let [a, b] = signs(&z.1);
@@ -246,7 +247,7 @@ impl PlacedTorus {
 
     /// The exact sign at a point of the universe.
     pub(crate) fn sign_at(&self, t: [f64; 3]) -> i32 {
-        let [x, y, z] = self.lines.each_ref().map(|line| line.value(t));
+        let [x, y, z] = self.lines.each_ref().each(|line| line.value(t));
         let off = sqrt(x * x + y * y) - self.major;
         let value = self.square - off * off - z * z;
         if value.abs() > self.error { sign(value) } else { self.exact_sign_at(t) }
@@ -254,19 +255,19 @@ impl PlacedTorus {
 
     #[cold]
     fn exact_sign_at(&self, t: [f64; 3]) -> i32 {
-        let t = t.map(Dyadic::new);
-        let [x, y, z] = self.lines.each_ref().map(|line| line.exactly_at(&t).pow(2));
+        let t = t.each(Dyadic::new);
+        let [x, y, z] = self.lines.each_ref().each(|line| line.exactly_at(&t).pow(2));
         self.sign_of(&(&x + &y), &z)
     }
 
     /// The sign to which the shift (ε, ε², ε³) moves a zero, to first order.
     #[cold]
     pub(crate) fn shifted_sign_at(&self, t: [f64; 3]) -> i32 {
-        let t = t.map(Dyadic::new);
-        let [x, y, z] = self.lines.each_ref().map(|line| line.exactly_at(&t));
+        let t = t.each(Dyadic::new);
+        let [x, y, z] = self.lines.each_ref().each(|line| line.exactly_at(&t));
         let rho = &x.pow(2) + &y.pow(2);
         let slope = |axis: usize| {
-            let [a, b, c] = self.lines.each_ref().map(|line| &line.exact[axis]);
+            let [a, b, c] = self.lines.each_ref().each(|line| &line.exact[axis]);
             let (along, up) = (&(&x * a) + &(&y * b), &z * c);
             if rho.is_zero() {
                 // At the axis ρ grows in every direction.
@@ -297,7 +298,7 @@ fn sign_with_root(a: &Dyadic, b: &Dyadic, s: &Dyadic) -> i32 {
 /// Correctly rounded square roots.
 #[inline(always)]
 fn roots(values: f64x4) -> f64x4 {
-    f64x4::new(values.to_array().map(sqrt))
+    f64x4::new(values.to_array().each(sqrt))
 }
 
 #[cfg(test)]

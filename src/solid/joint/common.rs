@@ -2,6 +2,7 @@
 
 use crate::control::Control;
 use crate::error::Error;
+use crate::lattice::Each;
 use crate::lattice::{Cell, Frame};
 use crate::memory;
 use crate::solid::half_space::Placed;
@@ -203,7 +204,7 @@ impl Common {
         match known.entry(pair) {
             Entry::Occupied(known) => Ok(known.into_mut()),
             Entry::Vacant(place) => {
-                let [a, b] = pair.map(|index| &self.surfaces[index as usize]);
+                let [a, b] = pair.each(|index| &self.surfaces[index as usize]);
                 let contact = a.contact(b, &self.frame)?;
                 *heap_bytes += contact.heap_bytes();
                 Ok(place.insert(contact))

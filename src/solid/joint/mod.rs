@@ -9,6 +9,7 @@ use super::{
 use crate::control::Control;
 use crate::cut;
 use crate::error::Error;
+use crate::lattice::Each;
 use crate::lattice::{Cell, Frame};
 use crate::memory;
 use crate::octree::{Proof, Tag};
@@ -199,7 +200,7 @@ impl<A: Worker, B: Worker> Batch for JointWorker<A, B> {
                     self.meet_children(*cell, of_a, of_b)?
                 }
                 (Open::Function(known), _) => self.split_function(*cell, known)?,
-                _ => OCTANTS.map(|_| Verdict::Empty),
+                _ => OCTANTS.each(|_| Verdict::Empty),
             };
             verdicts.push(met);
         }
@@ -250,7 +251,7 @@ impl<A: Worker, B: Worker> Worker for JointWorker<A, B> {
                 };
                 if is_nowhere(&of_a) {
                     self.spared += u64::from(matches!(b, Verdict::Partial(_)));
-                    return Ok(OCTANTS.map(|_| Verdict::Empty));
+                    return Ok(OCTANTS.each(|_| Verdict::Empty));
                 }
                 let of_b = match b {
                     Verdict::Partial(part) => self.b.split(cell, part)?,
@@ -307,9 +308,9 @@ impl<A: Worker, B: Worker> JointWorker<A, B> {
         cell: Cell,
         known: &OpenSurfaces,
     ) -> Result<[Verdict<PartOf<A, B>>; 8], Error> {
-        let Some(common) = &self.common else { return Ok(OCTANTS.map(|_| Verdict::Undecided)) };
+        let Some(common) = &self.common else { return Ok(OCTANTS.each(|_| Verdict::Undecided)) };
         let children = surface_cell::split(&common.all, cell, known)?;
-        let mut met = OCTANTS.map(|_| Verdict::Empty);
+        let mut met = OCTANTS.each(|_| Verdict::Empty);
         for ((k, known), met) in OCTANTS.into_iter().zip(children).zip(&mut met) {
             *met = of_function(common.possible(cell.child(k), &known, &mut self.contacts)?, 1.0);
         }
@@ -329,7 +330,7 @@ impl<A: Worker, B: Worker> JointWorker<A, B> {
         of_b: [Verdict<B::Part>; 8],
     ) -> Result<[Verdict<PartOf<A, B>>; 8], Error> {
         let (likely_a, likely_b) = (guesses(&of_a), guesses(&of_b));
-        let mut met = OCTANTS.map(|_| Verdict::Empty);
+        let mut met = OCTANTS.each(|_| Verdict::Empty);
         for ((k, (a, b)), met) in OCTANTS.into_iter().zip(of_a.into_iter().zip(of_b)).zip(&mut met) {
             let likely = likely_a[usize::from(k)] * likely_b[usize::from(k)];
             *met = self.meet(cell.child(k), a, b, likely)?;
@@ -452,7 +453,7 @@ fn guesses<P>(verdicts: &[Verdict<P>; 8]) -> [f64; 8] {
         Tag::Empty => -1.0,
         _ => 0.0,
     };
-    [0, 1, 2, 3, 4, 5, 6, 7].map(|k: usize| {
+    [0, 1, 2, 3, 4, 5, 6, 7].each(|k: usize| {
         let around: f64 = [1, 2, 4].iter().map(|axis| weight(k ^ axis)).sum();
         if matches!(verdicts[k], Verdict::Full) { 1.0 } else { (3.5 + around) / 7.0 }
     })

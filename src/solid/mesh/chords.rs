@@ -9,6 +9,7 @@ use super::crossing::Projection;
 use super::placed::Placed;
 use crate::dexel::{Beam, BeamEnd, Mark, OTHERS, encoded, within};
 use crate::error::Error;
+use crate::lattice::Each;
 use crate::memory;
 use crate::mesh::FillRule;
 use alloc::vec::Vec;
@@ -108,7 +109,7 @@ impl Bands {
         }
         self.update(rays, bundle)?;
         let [first, end] =
-            [0, 1].map(|i| self.starts.get(band as usize + i).map_or(0, |&start| start as usize));
+            [0, 1].each(|i| self.starts.get(band as usize + i).map_or(0, |&start| start as usize));
         Ok(&self.triangles[first..end])
     }
 
@@ -173,7 +174,7 @@ impl Bundle {
     pub(super) fn new(beam: &Beam) -> Bundle {
         let [u, v] = OTHERS[beam.axis()];
         let signed = |range: Range<u32>| range.start as i32..range.end as i32;
-        let [columns, rows] = beam.rays().map(signed);
+        let [columns, rows] = beam.rays().each(signed);
         Bundle { w: beam.axis(), u, v, columns, rows, span: signed(beam.span()) }
     }
 
@@ -396,7 +397,7 @@ fn pierced(seen: &mut Projection<'_>, column: i32, row: i32) -> Option<(i32, i32
 }
 
 fn normal_of(placed: &Placed, triangle: u32) -> [f64; 3] {
-    let [a, b, c] = placed.original(triangle).map(glam::DVec3::from_array);
+    let [a, b, c] = placed.original(triangle).each(glam::DVec3::from_array);
     (b - a).cross(c - a).to_array()
 }
 

@@ -11,6 +11,7 @@
 //! arithmetic on the original coordinates decides the rest.
 
 use super::placed::{Corners, Placed, accuracy, are_short, ranks};
+use crate::lattice::Each;
 use crate::lattice::exact::{DoubleDouble, Expansion};
 
 /// A triangle seen along an axis.
@@ -67,7 +68,7 @@ impl<'p> Projection<'p> {
         let axes = [Axes { u: 1, v: 2, w: 0 }, Axes { u: 0, v: 2, w: 1 }, Axes { u: 0, v: 1, w: 2 }][w];
         let (error, magnitude) = accuracy(placed, &corners);
         let error = error + 4.0 * f64::EPSILON * magnitude;
-        let edges = [0, 1, 2].map(|i| {
+        let edges = [0, 1, 2].each(|i| {
             let (a, b) = (corners[i], corners[(i + 1) % 3]);
             let slope = (b.at[axes.u] - a.at[axes.u]) / (b.at[axes.v] - a.at[axes.v]);
             // Three positions and the slope of two more enter the meeting point. (NaN and infinity, from
@@ -97,7 +98,7 @@ impl<'p> Projection<'p> {
     #[inline]
     pub(super) fn span(&self, row: i32) -> Option<Span> {
         let v = self.axes.v;
-        let above = self.corners.each_ref().map(|corner| row >= corner.rank[v]);
+        let above = self.corners.each_ref().each(|corner| row >= corner.rank[v]);
         if above[0] == above[1] && above[1] == above[2] {
             return None;
         }
@@ -245,8 +246,8 @@ impl<'p> Projection<'p> {
         let Axes { u, v, w } = self.axes;
         let mut centre = [0; 3];
         (centre[u], centre[v], centre[w]) = (column, row, k);
-        let [a, b, c] = self.placed.original(self.triangle).map(|corner| {
-            [0, 1, 2].map(|axis| self.placed.frame.offset(axis, corner[axis], 2 * centre[axis] as i64 + 1))
+        let [a, b, c] = self.placed.original(self.triangle).each(|corner| {
+            [0, 1, 2].each(|axis| self.placed.frame.offset(axis, corner[axis], 2 * centre[axis] as i64 + 1))
         });
         let minor = |i: usize, j: usize| b[i].times(&c[j]).minus(&b[j].times(&c[i]));
         let det = a[u].times(&minor(v, w)).plus(&a[v].times(&minor(w, u))).plus(&a[w].times(&minor(u, v)));
@@ -258,7 +259,7 @@ impl<'p> Projection<'p> {
     fn raise(&self) -> Height {
         let Axes { u, v, w } = self.axes;
         let (first, last) = ranks(&self.corners, w);
-        let [a, b, c] = self.corners.map(|corner| corner.at);
+        let [a, b, c] = self.corners.each(|corner| corner.at);
         let edge = |from: [f64; 3], to: [f64; 3]| [to[u] - from[u], to[v] - from[v], to[w] - from[w]];
         let (ab, ac) = (edge(a, b), edge(a, c));
         // The normal in the order (u, v, w), up to its sign.
@@ -293,13 +294,13 @@ impl<'p> Projection<'p> {
         let side = if self.short {
             let [a, b, c] = self
                 .corners
-                .map(|corner| [0, 1, 2].map(|axis| corner.at[axis] - (centre[axis] as f64 + 0.5)));
+                .each(|corner| [0, 1, 2].each(|axis| corner.at[axis] - (centre[axis] as f64 + 0.5)));
             let minor = |i: usize, j: usize| b[i] * c[j] - b[j] * c[i];
             crate::lattice::exact::sign(-(a[0] * minor(1, 2) + a[1] * minor(2, 0) + a[2] * minor(0, 1)))
         } else {
-            let [a, b, c] = self.placed.original(self.triangle).map(|corner| {
+            let [a, b, c] = self.placed.original(self.triangle).each(|corner| {
                 [0, 1, 2]
-                    .map(|axis| self.placed.frame.offset(axis, corner[axis], 2 * centre[axis] as i64 + 1))
+                    .each(|axis| self.placed.frame.offset(axis, corner[axis], 2 * centre[axis] as i64 + 1))
             });
             let minor = |i: usize, j: usize| b[i].times(&c[j]).minus(&b[j].times(&c[i]));
             let det =

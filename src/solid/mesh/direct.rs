@@ -20,6 +20,7 @@
 use super::rim::{Course, DIRECTIONS, Fraction, Rim};
 use super::rim_line::RimLine;
 use crate::error::Error;
+use crate::lattice::Each;
 use crate::lattice::exact::sqrt;
 use crate::lattice::{Bounds, Interval, Ray, axes, valid};
 use crate::memory;
@@ -175,7 +176,7 @@ impl Tracer<'_> {
             let normal = self.tree.normal(first_changed.triangle);
             // A ray that leaves the solid through the back of a triangle leaves along the triangle's normal.
             let is_along = first_changed.step < 0;
-            let normal = if is_along == before { normal } else { normal.map(|n| -n) };
+            let normal = if is_along == before { normal } else { normal.each(|n| -n) };
             let is_met = before || is_inside_after || self.passes_within(together, first_winding);
             let surface = Some(first_changed.triangle);
             trace.push(RayCrossing { t, is_inside_after, is_met, normal, surface })?;
@@ -237,7 +238,7 @@ impl Tracer<'_> {
         let Some((axis, sign)) = self.tree.way_out(point) else { return Ok(Some(self.fill.encloses(0))) };
         if !point.iter().all(|&c| valid::is_moderate(c)) {
             // Replace tiny coordinates by zero, if no surface lies between.
-            let at = point.map(|c| if valid::is_moderate(c) { c } else { 0.0 });
+            let at = point.each(|c| if valid::is_moderate(c) { c } else { 0.0 });
             let apart = 1e-76 + 2.0 * self.tree.displacement();
             let near = self.tree.nearest_of(&at, |_| true);
             let is_apart = near.is_some_and(|(_, distance)| distance.lower > apart);
@@ -251,7 +252,7 @@ impl Tracer<'_> {
         // With a displacement, a ray that comes near to an edge decides nothing. Another direction may pass
         // no edge.
         for way in WAYS {
-            let ray = Ray { from: *point, direction: way.map(|c| [c, 0.0]), last: f64::INFINITY };
+            let ray = Ray { from: *point, direction: way.each(|c| [c, 0.0]), last: f64::INFINITY };
             let found = self.is_inside_by(direct, &ray)?;
             if found.is_some() {
                 return Ok(found);
@@ -351,7 +352,7 @@ impl Tracer<'_> {
         let (mut at, mut radius) = (*point, 0.0);
         if point.iter().any(|c| c.abs() < valid::SMALLEST && *c != 0.0) {
             // Replace tiny coordinates by zero, if no surface lies between.
-            at = point.map(|c| if c.abs() < valid::SMALLEST { 0.0 } else { c });
+            at = point.each(|c| if c.abs() < valid::SMALLEST { 0.0 } else { c });
             radius = 1e-76;
             let apart = radius + 2.0 * self.tree.displacement();
             let near = self.tree.nearest_of(&at, |_| true);
@@ -384,7 +385,7 @@ impl Tracer<'_> {
         let at = DVec3::from(*point);
         for towards in DIRECTIONS {
             // The way leads away from the cones' apex: no cones lie there.
-            let away = (-towards).to_array().map(|c| [c, 0.0]);
+            let away = (-towards).to_array().each(|c| [c, 0.0]);
             let ray = Ray { from: *point, direction: away, last: f64::INFINITY };
             let hits = &mut direct.hits;
             let is_sure = self.tree.pierced(&ray, Wanted::All, Shift::ALL[0], hits)?;
@@ -580,7 +581,7 @@ impl Tracer<'_> {
     /// from one of its points towards its middle.
     fn parts_the_solid(&self, direct: &mut Direct, near: &NearestPoint) -> Result<bool, Error> {
         let mut inner = *near;
-        inner.weights = near.weights.map(|w| w + (1.0 / 3.0 - w) / 1024.0);
+        inner.weights = near.weights.each(|w| w + (1.0 / 3.0 - w) / 1024.0);
         let (inner, normal) = (self.tree.point_of(&inner), self.tree.normal(near.triangle));
         let size = normal.iter().fold(0.0, |most: f64, c| most.max(c.abs()));
         let off = self.tree.extent() / (1 << 22) as f64;
@@ -607,7 +608,7 @@ impl Tracer<'_> {
         let longest = |way: &[f64; 3]| way.iter().fold(0.0, |most: f64, c| most.max(c.abs()));
         let unit = |way: [f64; 3]| {
             let length = longest(&way);
-            way.map(|c| c / length)
+            way.each(|c| c / length)
         };
         let onward = unit(axes(|axis| near[axis] - point[axis]));
         // Straight on behind a sharp edge, the point beyond may be outside the solid again. There the solid

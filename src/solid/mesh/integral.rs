@@ -21,6 +21,7 @@
 use super::base::Base;
 use super::local::{CLIPPING, Point, Polygon, Seen, UNIT, View, between, cross, minus};
 use crate::error::Error;
+use crate::lattice::Each;
 use crate::lattice::axes;
 use crate::lattice::exact::two_sum;
 use crate::lattice::{CellMoments, CubeMoments, Interval};
@@ -169,7 +170,7 @@ impl Sums {
     /// Adds the contribution of a triangle.
     fn add(&mut self, seen: &Seen, base: &Point, sense: f64) -> Option<()> {
         let polygon = seen.clipped(1.0)?;
-        let above = seen.corners.map(|corner| corner[0] >= base[0]);
+        let above = seen.corners.each(|corner| corner[0] >= base[0]);
         let is_cut = above[0] != above[1] || above[1] != above[2];
         if is_cut {
             self.add_polygon(&polygon.below(0, -1.0, -base[0])?, 1.0, sense);
@@ -219,7 +220,7 @@ impl Sums {
                 (&centre, 9.0 / 20.0),
             ] {
                 let &[x, y, z] = p;
-                let [one, first, second] = powers(x, sign).map(|power| power * weight);
+                let [one, first, second] = powers(x, sign).each(|power| power * weight);
                 let (of_y, of_z) = (y * one, z * one);
                 let values =
                     [one, first, of_y, of_z, second, y * of_y, z * of_z, y * first, z * first, y * of_z];
@@ -245,7 +246,7 @@ impl Sums {
             let (one, other) = ((-1.0 - from) / way, (1.0 - from) / way);
             (first, last) = (first.max(one.min(other)), last.min(one.max(other)));
         }
-        let above = [p, q].map(|end| end[1] >= base[1]);
+        let above = [p, q].each(|end| end[1] >= base[1]);
         if above[0] == above[1] {
             self.add_piece([p, q], [first, last], if above[0] { 1.0 } else { -1.0 }, sense);
             return;
@@ -279,12 +280,12 @@ impl Sums {
         if first >= last {
             return;
         }
-        let at = |t: f64| [1, 2].map(|axis| p[axis] + t * (q[axis] - p[axis]));
+        let at = |t: f64| [1, 2].each(|axis| p[axis] + t * (q[axis] - p[axis]));
         // Simpson's rule, exact for degree three.
         let mut terms = [0.0; 10];
         for (t, weight) in [(first, 1.0 / 6.0), (0.5 * (first + last), 2.0 / 3.0), (last, 1.0 / 6.0)] {
             let [y, z] = at(t);
-            let [one, first, second] = powers(y, sign).map(|power| 2.0 * weight * power);
+            let [one, first, second] = powers(y, sign).each(|power| 2.0 * weight * power);
             let values =
                 [one, 0.0, first, z * one, one * (1.0 / 3.0), second, z * z * one, 0.0, 0.0, z * first];
             terms.iter_mut().zip(values).for_each(|(term, value)| *term += value);
@@ -298,7 +299,7 @@ impl Sums {
         let moments = CubeMoments {
             volume: whole.volume + value(0),
             first: [value(1), value(2), value(3)],
-            second: [0, 1, 2, 3, 4, 5].map(|k| whole.second[k] + value(4 + k)),
+            second: [0, 1, 2, 3, 4, 5].each(|k| whole.second[k] + value(4 + k)),
         };
         // The lost parts were rounded when they were added up; the results and the sum of errors are rounded
         // too.

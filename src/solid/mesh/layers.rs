@@ -16,6 +16,7 @@ use super::base::Base;
 use super::local::{Point, Polygon, Seen, UNIT, View, cross, dot, minus};
 use crate::cut;
 use crate::error::Error;
+use crate::lattice::Each;
 use crate::lattice::exact::{Dyadic, sqrt};
 use crate::lattice::{Cell, Cube, axes};
 use crate::memory;
@@ -75,7 +76,7 @@ impl Layers {
     fn half_space(&self, plane: &FacetPlane) -> HalfSpace {
         if self.is_exact(plane) {
             let [x, y, z] = plane.normal;
-            return HalfSpace::linear([-x, -y, -z, plane.low].map(Dyadic::new));
+            return HalfSpace::linear([-x, -y, -z, plane.low].each(Dyadic::new));
         }
         let margin = self.margin(plane);
         HalfSpace::slab(plane.normal, plane.low - margin, plane.high + margin, None)
@@ -347,7 +348,7 @@ impl<'v> Layering<'v> {
             if end == f64::NEG_INFINITY {
                 return Some(None);
             }
-            halves[count] = (if is_behind { normal } else { normal.map(|c| -c) }, end);
+            halves[count] = (if is_behind { normal } else { normal.each(|c| -c) }, end);
             count += 1;
         }
         let halves = &halves[..count];
@@ -379,7 +380,7 @@ impl<'v> Layering<'v> {
             let Slab { normal, inner, outer } = layer.slab;
             let range = normal.iter().map(|c| c.abs()).sum::<f64>();
             let room = range * self.slack + self.slop;
-            let (normal, end) = if is_behind { (normal, inner) } else { (normal.map(|c| -c), -outer) };
+            let (normal, end) = if is_behind { (normal, inner) } else { (normal.each(|c| -c), -outer) };
             // (If clipping leaves too many corners, the facet may reach there.)
             let Some(clipped) = left.behind(&normal, end + room) else { return true };
             if clipped.points().is_empty() {
@@ -638,9 +639,9 @@ fn unit(area: Point) -> Option<Point> {
     if !(1e-30..1e30).contains(&most) {
         return None;
     }
-    let scaled = area.map(|c| c / most);
+    let scaled = area.each(|c| c / most);
     let length = sqrt(dot(&scaled, &scaled));
-    Some(scaled.map(|c| c / length))
+    Some(scaled.each(|c| c / length))
 }
 
 impl View<'_> {
@@ -648,6 +649,6 @@ impl View<'_> {
     fn cell(&self) -> Cell {
         let depth = self.placed.frame.depth();
         let height = self.size.trailing_zeros();
-        Cell { level: depth - height as u8, at: self.at.map(|a| (a >> height) as u32) }
+        Cell { level: depth - height as u8, at: self.at.each(|a| (a >> height) as u32) }
     }
 }

@@ -4,6 +4,7 @@
 //! its triangles. So the rounded surface is connected as the true one is.
 
 use super::placed::Placed;
+use crate::lattice::Each;
 use crate::lattice::exact::sqrt;
 use core::array::from_fn as array;
 
@@ -71,7 +72,7 @@ impl View<'_> {
         let scale = self.scale();
         let half = self.size as f64 / 2.0;
         let mut off: f64 = 0.0;
-        let corners = vertices.map(|vertex| {
+        let corners = vertices.each(|vertex| {
             let vertex = self.placed.vertex(vertex);
             array(|axis| {
                 off = off.max(vertex.error[axis] as f64);
@@ -148,7 +149,7 @@ impl Seen {
             return Some(0);
         }
         let way = minus(to, from);
-        let ends = self.corners.map(|corner| minus(&corner, from));
+        let ends = self.corners.each(|corner| minus(&corner, from));
         let turns: [i32; 3] = array(|k| volume_sign([&way, &ends[k], &ends[(k + 1) % 3]], self.error));
         if turns.contains(&1) && turns.contains(&-1) {
             return Some(0);
@@ -204,7 +205,7 @@ impl Polygon {
         let points = self.points();
         for (k, p) in points.iter().enumerate() {
             let q = &points[if k + 1 == points.len() { 0 } else { k + 1 }];
-            let [p_within, q_within] = [p, q].map(|p| sign * p[axis] <= bound);
+            let [p_within, q_within] = [p, q].each(|p| sign * p[axis] <= bound);
             if p_within {
                 kept.push(*p)?;
             }
@@ -221,7 +222,7 @@ impl Polygon {
         let points = self.points();
         for (k, p) in points.iter().enumerate() {
             let q = &points[if k + 1 == points.len() { 0 } else { k + 1 }];
-            let [at_p, at_q] = [p, q].map(|p| dot(normal, p) - bound);
+            let [at_p, at_q] = [p, q].each(|p| dot(normal, p) - bound);
             if at_p <= 0.0 {
                 kept.push(*p)?;
             }

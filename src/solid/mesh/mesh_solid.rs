@@ -17,6 +17,7 @@ use super::winding::Caps;
 use crate::control::Control;
 use crate::dexel::Beam;
 use crate::error::{Error, MeshError};
+use crate::lattice::Each;
 use crate::lattice::axes;
 use crate::lattice::{Affine, Bounds, Cell, Frame};
 use crate::memory;
@@ -244,7 +245,7 @@ const BATCH: usize = 64;
 
 /// The lowest finest cell of `cell`, and its edge in finest cells.
 fn extent(cell: Cell, depth: u8) -> ([i32; 3], i32) {
-    (cell.first_at(depth).at.map(|a| a as i32), 1 << (depth - cell.level))
+    (cell.first_at(depth).at.each(|a| a as i32), 1 << (depth - cell.level))
 }
 
 /// The triangles of a part: the universe's list is shared, the other lists lie in the scratch memory.

@@ -4,6 +4,7 @@ use super::crossing::Projection;
 use super::layers::Layers;
 use super::placed::Placed;
 use super::winding::Caps;
+use crate::lattice::Each;
 use crate::lattice::exact::floor;
 use crate::mesh::FillRule;
 use crate::octree::Tag;
@@ -75,7 +76,7 @@ impl MeshOnFrame {
         (0..self.placed.count()).all(|triangle| {
             let corners = self.placed.original(triangle);
             (0..3).all(|axis| {
-                let [a, b, c] = corners.map(|corner| corner[axis]);
+                let [a, b, c] = corners.each(|corner| corner[axis]);
                 let plane = floor(frame.scaled(axis, a) + 0.5);
                 let is_flat = a == b && b == c;
                 !is_flat || !near.contains(&plane) || frame.side(axis, a, 2 * plane) != 0
@@ -105,7 +106,7 @@ impl MeshOnFrame {
         half: i32,
         steps: &mut [[i32; 8]; 2],
     ) {
-        let next = at.map(|a| a + half);
+        let next = at.each(|a| a + half);
         let spans = |axis: usize, k: i32| low[axis] <= k && k < high[axis];
         // The way along an axis leads from `at` to `next`: it passes the triangle between two ranks.
         let reaches = |axis: usize| low[axis] <= next[axis] && high[axis] > at[axis];

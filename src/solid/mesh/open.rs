@@ -18,6 +18,7 @@
 use super::on_frame::{Branch, MeshOnFrame, MeshPart};
 use super::slab;
 use super::winding::{Local, Range};
+use crate::lattice::Each;
 use crate::lattice::MAX_DEPTH;
 use crate::lattice::exact::floor;
 use crate::memory;
@@ -64,7 +65,7 @@ impl Surroundings {
     /// finest cell, the number holds on the side of every cap on which the cell's centre counts.
     fn local(&mut self, mesh: &MeshOnFrame, level: u8, at: [i32; 3]) -> Option<Local> {
         let size = 1 << (mesh.placed.frame.depth() - level);
-        let corner = at.map(|a| a & -size);
+        let corner = at.each(|a| a & -size);
         let place = |axis: usize| ((corner[axis] / size) & (KEPT - 1)) as usize;
         let place = (place(2) * KEPT as usize + place(1)) * KEPT as usize + place(0);
         let slots = &mut self.levels[level as usize];
@@ -96,7 +97,7 @@ pub(super) fn at_centre(mesh: &MeshOnFrame, at: [i32; 3], enough: f64) -> Range 
 }
 
 fn middle(corner: [i32; 3], size: i32) -> [f64; 3] {
-    corner.map(|a| a as f64 + size as f64 / 2.0)
+    corner.each(|a| a as f64 + size as f64 / 2.0)
 }
 
 impl MeshOnFrame {
@@ -212,7 +213,7 @@ impl MeshOnFrame {
         let (normal, end) = if is_at_plus_half {
             (slope, middle - 0.5)
         } else if middle + range < 0.5 {
-            (slope.map(|s| -s), -middle - 0.5)
+            (slope.each(|s| -s), -middle - 0.5)
         } else {
             return None;
         };

@@ -22,6 +22,7 @@ use super::rim::Fraction;
 use super::winding::{Local, Range as Known};
 use crate::dexel::{Beam, BeamEnd, Mark, first_above, within};
 use crate::error::Error;
+use crate::lattice::Each;
 use crate::lattice::axes;
 use crate::lattice::exact::floor;
 use crate::memory;
@@ -187,7 +188,7 @@ impl Search<'_> {
         }
         let MeshOnFrame { placed, caps, .. } = self.mesh;
         let half = f64::from(size) / 2.0;
-        let middle = at.map(|a| f64::from(a) + half);
+        let middle = at.each(|a| f64::from(a) + half);
         let radius = half * HALF_DIAGONAL;
         let first = near.len();
         let far = caps.far(placed, known, list, near, (middle, radius))?;
@@ -240,7 +241,7 @@ impl Search<'_> {
     /// The caps' winding number at a centre.
     fn caps_at(&self, piece: &Piece<'_>, cell: [i32; 3]) -> Known {
         let MeshOnFrame { placed, caps, .. } = self.mesh;
-        caps.at(placed, (piece.far, piece.near), cell.map(|a| f64::from(a) + 0.5), Some(cell))
+        caps.at(placed, (piece.far, piece.near), cell.each(|a| f64::from(a) + 0.5), Some(cell))
     }
 
     /// Returns by how much the caps' winding number at the lowest centre of a ray exceeds the smooth
@@ -304,7 +305,7 @@ impl MeshOnFrame {
         self.trace(own, (triangles, at), part, &bundle)?;
         let OpenRays { chords, near, passes } = own;
         let search = Search { mesh: self, chords, bundle: &bundle };
-        let middle = at.map(|a| f64::from(a) + f64::from(size) / 2.0);
+        let middle = at.each(|a| f64::from(a) + f64::from(size) / 2.0);
         let all = 0..near.len();
         search.pieces((at, size), &Local::nothing(middle), all, near, &mut |piece, part| {
             search.rays(&piece, &part, |number, ray| match ray {
@@ -342,7 +343,7 @@ impl MeshOnFrame {
         self.trace(own, (triangles, at), part, &bundle)?;
         let OpenRays { chords, near, .. } = own;
         let search = Search { mesh: self, chords, bundle: &bundle };
-        let middle = at.map(|a| f64::from(a) + f64::from(MOST) / 2.0);
+        let middle = at.each(|a| f64::from(a) + f64::from(MOST) / 2.0);
         let all = 0..near.len();
         inside.fill(0);
         search.pieces((at, MOST), &Local::nothing(middle), all, near, &mut |piece, part| {
@@ -387,7 +388,7 @@ impl MeshOnFrame {
     /// Returns whether a centre is inside, if a sum over the rim decides. `winding` is the number that
     /// belongs to the branch of `guess`. The guess must be less than one half off.
     fn told_centre(&self, cell: [i32; 3], winding: i32, guess: f64) -> Option<bool> {
-        let caps = self.caps_told(cell.map(|a| f64::from(a) + 0.5), guess)?;
+        let caps = self.caps_told(cell.each(|a| f64::from(a) + 0.5), guess)?;
         let excess = self.excess(f64::from(winding) - caps.value);
         let is_told = excess.abs() > caps.error;
         is_told.then_some(excess > 0.0)
@@ -455,7 +456,7 @@ impl MeshOnFrame {
 impl<'r> Ray<'r> {
     fn new(search: &'r Search<'r>, smooth: &'r Smooth, ray: [i32; 2], step: i32, start: i32) -> Ray<'r> {
         let Bundle { w, .. } = *search.bundle;
-        let mut from = search.cell(ray[0], ray[1], start).map(|a| f64::from(a) + 0.5);
+        let mut from = search.cell(ray[0], ray[1], start).each(|a| f64::from(a) + 0.5);
         from[w] = f64::from(start);
         let along = smooth.local.along(w, from);
         Ray { search, mesh: search.mesh, smooth, ray, step, w, from, along }
@@ -530,7 +531,7 @@ impl<'r> Ray<'r> {
             if centres.is_empty() {
                 return;
             }
-            let [first, last] = [centres.start, centres.end - 1].map(|k| f64::from(k) + 0.5);
+            let [first, last] = [centres.start, centres.end - 1].each(|k| f64::from(k) + 0.5);
             let whole = self.whole(first, last, winding);
             for k in centres {
                 let inside = whole.unwrap_or_else(|| self.centre(k, winding).inside);
@@ -560,7 +561,7 @@ impl<'r> Ray<'r> {
     fn walk(&self, span: &Range<i32>, beam: &mut Beam) -> Result<(), Error> {
         let (number, hits) = self.hits(span);
         let marked = beam.is_marked();
-        let mut intervals = Intervals { beam, ray: self.ray.map(|a| a as u32), start: None };
+        let mut intervals = Intervals { beam, ray: self.ray.each(|a| a as u32), start: None };
         // Go back from the lowest centre to the face.
         let lowest = f64::from(span.start) + 0.5;
         let mut winding =
@@ -609,7 +610,7 @@ impl<'r> Ray<'r> {
                 None => last,
             };
             if next.inside != point.inside {
-                let ends = [point, next].map(|point| self.sharp(point));
+                let ends = [point, next].each(|point| self.sharp(point));
                 let bracket = Bracket { w: self.w, winding, ends };
                 let end = self.mesh.crossing(self.from, &bracket, |at| self.caps(at));
                 intervals.pass(end, next.inside)?;
@@ -652,7 +653,7 @@ impl Search<'_> {
         beam: &mut Beam,
     ) -> Result<(), Error> {
         let marked = beam.is_marked();
-        let mut intervals = Intervals { beam, ray: ray.map(|a| a as u32), start: None };
+        let mut intervals = Intervals { beam, ray: ray.each(|a| a as u32), start: None };
         let mut before: Option<(Walk<'_>, Point)> = None;
         // (The upper face follows the last centre.)
         for k in span.start..=span.end {
@@ -731,7 +732,7 @@ impl Walk<'_> {
     }
 
     fn place(&self, at: f64) -> [f64; 3] {
-        let mut place = self.at.map(|a| f64::from(a) + 0.5);
+        let mut place = self.at.each(|a| f64::from(a) + 0.5);
         place[self.w] = at;
         place
     }

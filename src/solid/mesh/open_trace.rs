@@ -11,6 +11,7 @@ use super::direct::{Direct, Touched, Tracer, together};
 use super::rim::{self, Rim};
 use super::rim_line::{RimLine, Sums};
 use crate::error::Error;
+use crate::lattice::Each;
 use crate::lattice::{Interval, Ray, axes};
 use crate::mesh::{FillRule, Hit, Shift, Wanted};
 use crate::solid::{RayCrossing, RayQuestion, RayTrace};
@@ -36,7 +37,7 @@ impl Tracer<'_> {
         // For a ray from outside, the winding number is zero far back on its line, and does not change until
         // the mesh.
         let is_outside = self.tree.way_out(&ray.from).is_none();
-        let way = DVec3::from(ray.direction.map(|[high, _]| high));
+        let way = DVec3::from(ray.direction.each(|[high, _]| high));
         let course = rim::Course::new(DVec3::from(ray.from), way, is_outside);
         // Far loops are skipped, unless they matter.
         let mut is_plain = rim.most_along(&course) < 0.49;
@@ -254,7 +255,7 @@ impl Course<'_> {
         let first = first.unwrap_or(&met[0]);
         let normal = self.tracer.tree.normal(first.triangle);
         // A ray that leaves the solid through the back of a triangle leaves along the triangle's normal.
-        let normal = if (first.step < 0) == before { normal } else { normal.map(|n| -n) };
+        let normal = if (first.step < 0) == before { normal } else { normal.each(|n| -n) };
         let tree = &self.tracer.tree;
         // Each first step leads inside. (With a displacement, it is unknown which triangles lie in one
         // plane.)
@@ -396,7 +397,7 @@ impl Course<'_> {
         });
         // The surface's own number changes opposite to the caps'.
         let normal = self.rim.gradient(at).to_array();
-        let normal = if threshold > 0.0 { normal } else { normal.map(|n| -n) };
+        let normal = if threshold > 0.0 { normal } else { normal.each(|n| -n) };
         self.found.unknown(RayCrossing { t, is_inside_after: false, is_met: false, normal, surface: None })
     }
 }

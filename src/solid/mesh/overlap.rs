@@ -11,6 +11,7 @@
 //! a cell also cuts its parent.
 
 use super::placed::{Corners, Placed, accuracy, bounds, is_exact};
+use crate::lattice::Each;
 use crate::lattice::MAX_DEPTH;
 
 /// A triangle, prepared for the test against cubes of one size.
@@ -47,7 +48,7 @@ impl Overlap {
     /// above the finest.
     pub(super) fn new(placed: &Placed, corners: &Corners, size: f64, height: u8) -> Overlap {
         let (min, max) = bounds(placed, corners);
-        let [a, b, c] = corners.map(|corner| corner.at);
+        let [a, b, c] = corners.each(|corner| corner.at);
         let thickest = (0..3).fold(1.0, |most: f64, axis| most.max(max[axis] - min[axis]));
         let unit = if is_exact(placed, corners) {
             0.0
@@ -73,7 +74,7 @@ impl Overlap {
         let height = normal[0] * a[0] + normal[1] * a[1] + normal[2] * a[2];
         let reach = |sign: f64| normal.iter().fold(0.0, |sum, n| sum + (sign * n).max(0.0)) * sign * size;
         // (A loop, because three copies of this code are not inlined and take an eighth longer in all.)
-        let edges = [0, 1, 2].map(|w| {
+        let edges = [0, 1, 2].each(|w| {
             let (u, v) = OTHERS[w];
             // Twice the area projected along w; its sign orients the edges. (Along y, (x, z) is left-handed.)
             let area = if w == 1 { -normal[1] } else { normal[w] };
@@ -84,7 +85,7 @@ impl Overlap {
             };
             if area.abs() > edge_on {
                 let sign = if area > 0.0 { 1.0 } else { -1.0 };
-                return [(a, ab), (b, bc), (c, ca)].map(|(from, edge)| {
+                return [(a, ab), (b, bc), (c, ca)].each(|(from, edge)| {
                     let (nu, nv) = (-edge[v] * sign, edge[u] * sign);
                     side(nu, nv, nu * from[u] + nv * from[v])
                 });
@@ -92,7 +93,7 @@ impl Overlap {
             let length = |edge: &[f64; 3]| edge[u] * edge[u] + edge[v] * edge[v];
             let longest = [bc, ca].into_iter().fold(ab, |l, e| if length(&e) > length(&l) { e } else { l });
             let (nu, nv) = (-longest[v], longest[u]);
-            let on = [a, b, c].map(|corner| nu * corner[u] + nv * corner[v]);
+            let on = [a, b, c].each(|corner| nu * corner[u] + nv * corner[v]);
             let (mut least, mut most) = (on[0].min(on[1]).min(on[2]), on[0].max(on[1]).max(on[2]));
             if !on.iter().all(|x| x.is_finite()) {
                 // `min` and `max` skip NaN; then the limits are unknown.

@@ -6,6 +6,7 @@ use super::placed::Placed;
 use crate::control::{Control, Job, WHOLE};
 use crate::dexel::OTHERS;
 use crate::error::{Error, MeshError};
+use crate::lattice::Each;
 use crate::lattice::Frame;
 use crate::memory;
 use crate::mesh::FillRule;
@@ -73,7 +74,7 @@ fn count(placed: &Placed, axis: usize, job: &Job<'_>) -> Result<u64, Error> {
         }
     }
     let cells = placed.frame.cells() as i32;
-    let [columns, rows] = [u, v].map(|axis| hull[axis][0].max(0)..hull[axis][1].min(cells));
+    let [columns, rows] = [u, v].each(|axis| hull[axis][0].max(0)..hull[axis][1].min(cells));
     if columns.is_empty() || rows.is_empty() {
         return Ok(0);
     }

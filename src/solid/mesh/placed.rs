@@ -5,6 +5,7 @@
 //! work uses these coordinates and ranks. Exact arithmetic on the original coordinates decides the rest.
 
 use crate::error::{Error, MeshError};
+use crate::lattice::Each;
 use crate::lattice::Frame;
 use crate::lattice::exact::{floor, two_diff, two_product};
 use crate::memory;
@@ -108,7 +109,7 @@ impl Placed {
     pub(super) fn new(mesh: Arc<TriangleMesh>, frame: &Frame) -> Result<Placed, Error> {
         let vertices = Vertices::new(&mesh, frame)?;
         let [displacement, radius] = [mesh.displacement(), mesh.radius()]
-            .map(|distance| distance / frame.cell_size() * (1.0 + 4.0 * f64::EPSILON));
+            .each(|distance| distance / frame.cell_size() * (1.0 + 4.0 * f64::EPSILON));
         Ok(Placed { frame: *frame, mesh, displacement, radius, vertices, caps: Vec::new() })
     }
 
@@ -160,13 +161,13 @@ impl Placed {
 
     #[inline(always)]
     pub(super) fn corners(&self, triangle: u32) -> Corners {
-        self.triangle(triangle).map(|vertex| self.vertex(vertex))
+        self.triangle(triangle).each(|vertex| self.vertex(vertex))
     }
 
     /// The lowest and the highest rank of a triangle's corners along each axis.
     #[inline(always)]
     pub(super) fn rank_box(&self, triangle: u32) -> [[i32; 3]; 2] {
-        let [a, b, c] = self.triangle(triangle).map(|vertex| self.vertices.ranks[vertex as usize]);
+        let [a, b, c] = self.triangle(triangle).each(|vertex| self.vertices.ranks[vertex as usize]);
         let least = |axis: usize| a[axis].min(b[axis]).min(c[axis]);
         let most = |axis: usize| a[axis].max(b[axis]).max(c[axis]);
         [[least(0), least(1), least(2)], [most(0), most(1), most(2)]]
@@ -180,7 +181,7 @@ impl Placed {
 
     /// The corners as the mesh stores them, in model units.
     pub(super) fn original(&self, triangle: u32) -> [[f64; 3]; 3] {
-        self.triangle(triangle).map(|vertex| self.mesh.vertices()[vertex as usize])
+        self.triangle(triangle).each(|vertex| self.mesh.vertices()[vertex as usize])
     }
 }
 
@@ -241,7 +242,7 @@ pub(super) fn bounds(placed: &Placed, corners: &Corners) -> ([f64; 3], [f64; 3])
     }
     if placed.displacement > 0.0 {
         // The sums were rounded, too.
-        (min, max) = (min.map(f64::next_down), max.map(f64::next_up));
+        (min, max) = (min.each(f64::next_down), max.each(f64::next_up));
     }
     (min, max)
 }

@@ -11,6 +11,7 @@
 //! the facet's own wrong side together have a solid angle of nearly 4π.
 
 use crate::error::Error;
+use crate::lattice::Each;
 use crate::lattice::axes;
 use crate::lattice::exact::sqrt;
 use crate::memory;
@@ -89,7 +90,7 @@ fn patches(loops: &Loops, place: &impl Fn(u32) -> DVec3, displacement: f64) -> R
         let at = |corner: usize| place(walk[corner % walk.len()]);
         let first = patches.len();
         halve(walk.len(), &mut |corners, _| {
-            let [a, b, c] = corners.map(at);
+            let [a, b, c] = corners.each(at);
             let (u, v) = (b - a, c - a);
             let product = length(u) * length(v);
             // Displaced ends may make each edge longer than computed, by a diagonal at both ends.

@@ -17,6 +17,7 @@
 
 use super::rim::{Course, Rim};
 use crate::error::Error;
+use crate::lattice::Each;
 use crate::lattice::Ray;
 use crate::lattice::exact::sqrt;
 use crate::memory;
@@ -159,7 +160,7 @@ impl RimLine {
         }
         // About the next power of two.
         let scale = f64::from_bits((2045 - (reach.to_bits() >> 52 & 0x7FF).clamp(1, 2044)) << 52);
-        let way = DVec3::from(ray.direction.map(|[high, _]| high));
+        let way = DVec3::from(ray.direction.each(|[high, _]| high));
         let length = sqrt(way.length_squared());
         let along = way / length;
         let speed = length * scale;
@@ -209,7 +210,7 @@ impl RimLine {
             let mut corner = seen(to);
             end = corner.height.max(end);
             // (No less than the magnitudes.)
-            let [one, other] = [first.across, corner.across].map(|across| across.abs().element_sum());
+            let [one, other] = [first.across, corner.across].each(|across| across.abs().element_sum());
             (corner.sum, corner.product) = (one + other, one * other);
             corner.real = first.across.dot(corner.across);
             corner.imaginary = first.across.perp_dot(corner.across);

@@ -6,6 +6,7 @@
 //! triangles, there is no answer.
 
 use super::local::{Point, UNIT, View, cross, dot, minus};
+use crate::lattice::Each;
 use crate::mesh::FillRule;
 use crate::solid::{Crossing, Segment};
 
@@ -26,7 +27,7 @@ impl View<'_> {
     /// unsure.
     pub(super) fn first_crossing(&self, segment: &Segment, fill: FillRule) -> Option<Crossing> {
         let base = self.base()?;
-        let [from, to] = [segment.from, segment.to].map(|p| self.local(p));
+        let [from, to] = [segment.from, segment.to].each(|p| self.local(p));
         // The error of the ends: two roundings of lattice coordinates, and one here. Where the surface may
         // deviate from the mesh, the segment passes through it if the mesh's crossing is that far from the
         // triangle's edges.
@@ -62,7 +63,7 @@ impl View<'_> {
                 // A way that leaves the solid through the back of a triangle leaves along the triangle's
                 // normal.
                 let is_along = hit.step < 0;
-                let normal = if is_along == before { hit.normal } else { hit.normal.map(|n| -n) };
+                let normal = if is_along == before { hit.normal } else { hit.normal.each(|n| -n) };
                 return Some(Crossing { t: hit.t, normal });
             }
         }

@@ -6,6 +6,7 @@
 
 use super::base::Base;
 use super::local::{Point, UNIT, View, dot};
+use crate::lattice::Each;
 use crate::mesh::FillRule;
 use crate::solid::{Enclosure, Slab, SlabJoin};
 
@@ -33,7 +34,7 @@ impl View<'_> {
         if !(1e-30..1e30).contains(&size) {
             return None;
         }
-        let normal = normal.map(|n| n / size);
+        let normal = normal.each(|n| n / size);
         let range = normal.iter().map(|n| n.abs()).sum::<f64>();
         let (mut inner, mut outer) = (f64::INFINITY, f64::NEG_INFINITY);
         for &triangle in self.triangles {
@@ -58,7 +59,7 @@ impl View<'_> {
                 return Some(None);
             }
             let share = (0.5 * (1.0 + end / range)).max(0.5);
-            let corner = normal.map(|n| if sign * n < 0.0 { -share } else { share });
+            let corner = normal.each(|n| if sign * n < 0.0 { -share } else { share });
             Some(Some(fill.encloses(self.winding_at(&corner, &base)?)))
         };
         let (front, behind) = (beyond(1.0, outer)?, beyond(-1.0, -inner)?);

@@ -24,6 +24,7 @@ use super::rim::Rim;
 use super::terms::{self, Angle, CapTerms, Edge, EdgeTerms, End, SCALE, length};
 use crate::dispatch::{Hot, with_vectors};
 use crate::error::Error;
+use crate::lattice::Each;
 use crate::lattice::axes;
 use crate::lattice::exact::{floor, sqrt};
 use crate::memory;
@@ -230,7 +231,7 @@ impl Local {
     /// Returns the range in a cube with the lower corner `at`, which must lie in the expansion's ball.
     pub(super) fn over(&self, at: [i32; 3], size: i32) -> Range {
         let half = size as f64 / 2.0;
-        let middle = DVec3::from(at.map(|a| a as f64 + half)) - self.point;
+        let middle = DVec3::from(at.each(|a| a as f64 + half)) - self.point;
         let symmetric = (self.hessian + self.hessian.transpose()) * 0.5;
         let hessian_step = symmetric * middle;
         let gradient = (self.gradient + hessian_step).abs();
@@ -246,7 +247,7 @@ impl Local {
     /// the value in the middle, the gradient, and a bound of the remaining error.
     pub(super) fn tangent(&self, at: [i32; 3], size: i32) -> (f64, [f64; 3], f64) {
         let half = size as f64 / 2.0;
-        let middle = DVec3::from(at.map(|a| a as f64 + half)) - self.point;
+        let middle = DVec3::from(at.each(|a| a as f64 + half)) - self.point;
         let symmetric = (self.hessian + self.hessian.transpose()) * 0.5;
         let hessian_step = symmetric * middle;
         let value = self.value + (self.gradient + 0.5 * hessian_step).dot(middle);
@@ -257,7 +258,7 @@ impl Local {
 
     /// Returns the range at the centre of a cell.
     pub(super) fn at_centre(&self, cell: [i32; 3]) -> Range {
-        self.at(cell.map(|a| a as f64 + 0.5))
+        self.at(cell.each(|a| a as f64 + 0.5))
     }
 
     /// Returns the range at a point.
@@ -320,7 +321,7 @@ impl Caps {
             // makes most caps as small as the edges at which they lie, so that groups of caps are far from
             // most points.
             halve(walk.len(), &mut |[a, b, c], rims| {
-                slots.push((([a, b, c]).map(|corner| walk[corner]), rims));
+                slots.push((([a, b, c]).each(|corner| walk[corner]), rims));
             });
         }
         caps.vertex_error = error as f64;
@@ -334,16 +335,16 @@ impl Caps {
         triangles.extend(slots.iter().map(|slot| slot.0));
         caps.rims.extend(slots.iter().map(|slot| slot.1));
         caps.corners.try_reserve_exact(count)?;
-        caps.corners.extend(slots.iter().map(|slot| slot.0.map(at)));
+        caps.corners.extend(slots.iter().map(|slot| slot.0.each(at)));
         caps.sizes.try_reserve_exact(count)?;
         caps.sizes.extend(slots.iter().map(|slot| {
-            let [a, b, c] = slot.0.map(at);
-            let edges = [b - a, c - b, a - c].map(length);
+            let [a, b, c] = slot.0.each(at);
+            let edges = [b - a, c - b, a - c].each(length);
             let longest = edges.iter().copied().fold(0.0, f64::max) * (1.0 + 1e-9);
             Size { area: length((b - a).cross(c - a)) / 2.0, edges, longest }
         }));
         for &(corners, rims) in &slots {
-            let ends = corners.map(at);
+            let ends = corners.each(at);
             for i in (0..3).filter(|i| rims >> i & 1 != 0) {
                 caps.rim.push([ends[i], ends[(i + 1) % 3]])?;
             }
@@ -365,7 +366,7 @@ impl Caps {
             // extent.
             let centroid = |slot: &Slot| slot.0.iter().map(|&v| at(v)).sum::<DVec3>() / 3.0;
             let size = |slot: &Slot| {
-                let [a, b, c] = slot.0.map(at);
+                let [a, b, c] = slot.0.each(at);
                 (b - a).length_squared().max((c - b).length_squared()).max((a - c).length_squared())
             };
             let (low, high) = (slots.iter().map(centroid))
@@ -444,7 +445,7 @@ impl Caps {
         near.try_reserve(list.len())?;
         for i in list.clone() {
             let cap = near[i];
-            let corners = self.corners[cap as usize].map(|corner| corner - local.point);
+            let corners = self.corners[cap as usize].each(|corner| corner - local.point);
             let farthest = sqrt(corners.iter().fold(0.0, |most: f64, at| most.max(at.length_squared())));
             // (NaN counts as near.)
             let is_far = farthest - self.sizes[cap as usize].longest > APART * reach;
@@ -462,7 +463,7 @@ impl Caps {
     pub(super) fn whole(&self, placed: &Placed, far: &Local, near: &[u32], radius: f64) -> Option<Local> {
         let reach = radius + self.boundary_error;
         let is_close = |&cap: &u32| {
-            let corners = self.corners[cap as usize].map(|corner| corner - far.point);
+            let corners = self.corners[cap as usize].each(|corner| corner - far.point);
             (0..3).any(|i| {
                 self.rims[cap as usize] >> i & 1 != 0
                     && segment_distance(corners[i], corners[(i + 1) % 3]) < CLOSE * reach
@@ -535,7 +536,7 @@ impl Caps {
             if let Some(cell) = cell {
                 // No proof, because the centre may lie beside the edge. But it is the best guess, and exact
                 // on the edge.
-                let corners = self.corners[cap].map(|corner| corner - sum.point);
+                let corners = self.corners[cap].each(|corner| corner - sum.point);
                 sum.value += self.on_edge(placed, cap, cell, corners) / (2.0 * PI);
             }
         }
@@ -545,7 +546,7 @@ impl Caps {
     /// symbolic shift: the angle of a half-plane or of a sector. `corners` are relative to the centre.
     #[cold]
     fn on_edge(&self, placed: &Placed, cap: usize, cell: [i32; 3], corners: [DVec3; 3]) -> f64 {
-        let units = corners.map(DVec3::normalize_or_zero);
+        let units = corners.each(DVec3::normalize_or_zero);
         let i = if let Some(apex) = units.iter().position(|unit| *unit == DVec3::ZERO) {
             let (first, last) = ((apex + 1) % 3, (apex + 2) % 3);
             let (u, v) = (units[first], units[last]);
@@ -571,7 +572,7 @@ impl Caps {
         let along = (corners[(i + 1) % 3] - corners[i]).normalize_or_zero();
         let inward = corners[(i + 2) % 3].reject_from_normalized(along).normalize_or_zero();
         // Shift along x first; along y if x leads along the edge.
-        let shift = DVec3::AXES.map(|axis| axis.reject_from_normalized(along));
+        let shift = DVec3::AXES.each(|axis| axis.reject_from_normalized(along));
         let Some(shift) = shift.into_iter().find(|shift| shift.length() > 1e-9) else {
             return 0.0;
         };
@@ -628,7 +629,7 @@ impl Node {
             rim_rounding: 0.0,
         };
         for &(triangle, rims) in slots {
-            let [a, b, c] = triangle.map(|vertex| at(vertex) - centre);
+            let [a, b, c] = triangle.each(|vertex| at(vertex) - centre);
             let area = (b - a).cross(c - a) / 2.0;
             let size = length(area);
             let middle = a + b + c;
@@ -1046,7 +1047,7 @@ impl Hot for Near<'_> {
                     turned = turned.rotate(DVec2::new(real, imaginary) * inverse);
                     sum.value_error += wrong * inverse;
                 } else {
-                    let ends = caps.corners[cap as usize].map(|corner| End::new(corner - sum.point));
+                    let ends = caps.corners[cap as usize].each(|corner| End::new(corner - sum.point));
                     let angle = Angle::new(ends, caps.vertex_error);
                     caps.add_angle((placed, cap as usize, cell), angle, &mut sum, &mut turned);
                 }

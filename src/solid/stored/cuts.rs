@@ -2,6 +2,7 @@
 
 use super::StoredPart;
 use crate::error::{Damage, Error};
+use crate::lattice::Each;
 use crate::lattice::{Cell, Frame};
 use crate::memory;
 use crate::octree::cuts::{CellCut, CellIds, CutsRef};
@@ -103,7 +104,7 @@ impl PlacedCuts {
                 *table = table.known(i, sides, k);
             }
         }
-        Ok(tables.map(|table| match table {
+        Ok(tables.each(|table| match table {
             Table::EMPTY => Verdict::Empty,
             Table::FULL => Verdict::Full,
             table => Verdict::Partial(StoredPart::Cut { record, table: table.0 as u8 }),
@@ -190,7 +191,7 @@ impl PlacedCuts {
                 self.points.get_or_init(|| Box::new(exact))
             }
         };
-        let t = point.map(|c| c / self.around.edge());
+        let t = point.each(|c| c / self.around.edge());
         function::inside(variables.each(), variables.table, |id| exact[id as usize].contains_off_lattice(t))
     }
 }
@@ -277,7 +278,7 @@ impl OctreeRef<'_> {
             StoredPart::Record(record) => {
                 if let CellCut::Split(first) = cuts.at(record as usize) {
                     verdicts =
-                        OCTANTS.map(|k| Verdict::Partial(StoredPart::Record(first as u32 + u32::from(k))));
+                        OCTANTS.each(|k| Verdict::Partial(StoredPart::Record(first as u32 + u32::from(k))));
                 }
             }
             StoredPart::Cut { .. } => {}

@@ -10,6 +10,7 @@ use super::{
 };
 use crate::control::Control;
 use crate::error::Error;
+use crate::lattice::Each;
 use crate::lattice::{Bounds, Cell, Frame};
 use crate::memory;
 use crate::octree::cuts::{CellCut, CutsRef};
@@ -89,7 +90,7 @@ impl OctreeRef<'_> {
         match *part {
             StoredPart::Element { level, index } => {
                 let planes = self.described(level, index);
-                OCTANTS.map(|octant| match planes.octant(octant as u32) {
+                OCTANTS.each(|octant| match planes.octant(octant as u32) {
                     Tag::Empty => Verdict::Empty,
                     Tag::Full => Verdict::Full,
                     Tag::Partial => Verdict::Undecided,
@@ -98,7 +99,7 @@ impl OctreeRef<'_> {
             }
             StoredPart::Octant { level, index, octant } => {
                 let planes = self.described(level, index);
-                OCTANTS.map(|k| self.verdict(level, index, planes, (8 * (octant & 7) + k) as u32))
+                OCTANTS.each(|k| self.verdict(level, index, planes, (8 * (octant & 7) + k) as u32))
             }
             StoredPart::Record(_) | StoredPart::Cut { .. } => [Verdict::Undecided; 8],
         }
@@ -277,7 +278,7 @@ impl<T: Tree> Worker for StoredOnFrame<T> {
         if let StoredPart::Cut { record, table } = *part {
             return placed.split(cuts, cell, record, table);
         }
-        Ok(self.tree.tree().verdicts_with(Some(cuts), part).map(|verdict| self.settled(cuts, verdict)))
+        Ok(self.tree.tree().verdicts_with(Some(cuts), part).each(|verdict| self.settled(cuts, verdict)))
     }
 
     fn answer(&mut self, cell: Cell, part: &StoredPart, question: Question<'_>) -> Result<(), Error> {

@@ -3,6 +3,7 @@
 use super::{StoredOnFrame, StoredPart};
 use crate::control::Control;
 use crate::error::Error;
+use crate::lattice::Each;
 use crate::lattice::{Bounds, Cell, Frame};
 use crate::memory;
 use crate::octree::{Octree, Planes, Proof, Tag};
@@ -310,12 +311,15 @@ impl Worker for ShardedWorker {
     fn split(&mut self, cell: Cell, part: &ShardedPart) -> Result<[Verdict<ShardedPart>; 8], Error> {
         let eight = match part {
             ShardedPart::Top(part) => self.all.top.split(cell, part)?,
-            ShardedPart::Open => OCTANTS.map(|_| Verdict::Undecided),
+            ShardedPart::Open => OCTANTS.each(|_| Verdict::Undecided),
             ShardedPart::Shard(number, part) => {
-                return Ok(self.shard(*number)?.split(cell, part)?.map(|verdict| in_shard(*number, verdict)));
+                return Ok(self
+                    .shard(*number)?
+                    .split(cell, part)?
+                    .each(|verdict| in_shard(*number, verdict)));
             }
         };
-        let mut verdicts = OCTANTS.map(|_| Verdict::Undecided);
+        let mut verdicts = OCTANTS.each(|_| Verdict::Undecided);
         for ((k, verdict), known) in OCTANTS.into_iter().zip(eight).zip(&mut verdicts) {
             *known = self.of_top(cell.child(k), verdict)?;
         }

@@ -9,6 +9,7 @@
 
 use crate::control::Control;
 use crate::error::Error;
+use crate::lattice::Each;
 use crate::lattice::{Cell, Frame};
 use crate::memory;
 use crate::octree::Tag;
@@ -282,6 +283,6 @@ pub(super) fn known<W: Worker>(
 /// The sides of a single cell, as those of its first octant.
 pub(super) fn lone(placed: &Placed, cell: Cell) -> Result<Sides, Error> {
     let half = 2.0 * half_edge(cell);
-    let low = cell.at.map(|at| f64::from(at) * half);
+    let low = cell.at.each(|at| f64::from(at) * half);
     placed.sides(&Octants { low, half }, 1, &mut 0)
 }

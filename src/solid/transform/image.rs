@@ -1,5 +1,6 @@
 //! Maps boxes of one lattice to another lattice.
 
+use crate::lattice::Each;
 use crate::lattice::axes;
 use crate::lattice::exact::Expansion;
 use crate::lattice::exact::{floor, sqrt, two_product};
@@ -110,7 +111,7 @@ impl LatticeMap {
         let square = |j: usize| (0..3).map(|i| self.linear[i][j] * self.linear[i][j]).sum::<f64>();
         // Rounding must not make an equal length a little larger.
         let mut edge = sqrt(square(0).max(square(1)).max(square(2))) * (1.0 + 1e-9);
-        let extents = self.linear.map(|[a, b, c]| a.abs() + b.abs() + c.abs());
+        let extents = self.linear.each(|[a, b, c]| a.abs() + b.abs() + c.abs());
         let count = |edge: f64| extents.iter().map(|extent| extent / edge + 1.0).product::<f64>();
         // Where nothing blurs, cells as long as the shortest image are as good as smaller ones.
         let least = if self.is_exact() { sqrt(square(0).min(square(1)).min(square(2))) } else { 0.0 };
@@ -176,8 +177,8 @@ pub(super) struct Maps {
 impl Maps {
     pub(super) fn new(placement: &Affine, inverse: &[[f64; 3]; 3], frame: &Frame, own: &Frame) -> Maps {
         let rows = placement.rows();
-        let linear = rows.map(|[x, y, z, _]| [x, y, z]);
-        let offset = rows.map(|[_, _, _, t]| t);
+        let linear = rows.each(|[x, y, z, _]| [x, y, z]);
+        let offset = rows.each(|[_, _, _, t]| t);
         // An axis that maps to a single axis, which no other axis maps to, has an exact inverse.
         let (mut inverse, mut to, mut from) = (*inverse, [false; 3], [false; 3]);
         for (i, row) in linear.iter().enumerate() {
@@ -204,7 +205,7 @@ pub(super) trait Target {
     /// The same for the eight children of the cell.
     fn touched_by_children(&self, corner: [f64; 3], edge: f64) -> [u8; 8] {
         let half = 0.5 * edge;
-        [0, 1, 2, 3, 4, 5, 6, 7].map(|octant: u8| {
+        [0, 1, 2, 3, 4, 5, 6, 7].each(|octant: u8| {
             self.touched(axes(|axis| corner[axis] + (octant >> axis & 1) as f64 * half), half)
         })
     }
@@ -308,7 +309,7 @@ impl Target for Images<'_> {
             let upper = axes(|axis| octant >> axis & 1);
             *touched = halves[0][upper[0]] & halves[1][upper[1]] & halves[2][upper[2]];
             if *touched != 0 && !self.maps.inward.is_exact() {
-                let step = outward.linear.map(|[a, b, c]| {
+                let step = outward.linear.each(|[a, b, c]| {
                     a * (upper[0] as f64 * half) + b * (upper[1] as f64 * half) + c * (upper[2] as f64 * half)
                 });
                 let moved = |box_end: [f64; 3]| axes(|i| box_end[i] + step[i]);
@@ -329,7 +330,7 @@ pub(super) struct Point<'m> {
 impl<'m> Point<'m> {
     /// The image of the centre of a finest cell.
     pub(super) fn centre(map: &'m LatticeMap, cell: Cell) -> Point<'m> {
-        Point { map, at: map.image(cell.at.map(|a| a as f64 + 0.5), 0.0).0 }
+        Point { map, at: map.image(cell.at.each(|a| a as f64 + 0.5), 0.0).0 }
     }
 
     /// Returns whether a cell contains the computed image; a face between two cells belongs to one of them.

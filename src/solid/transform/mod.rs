@@ -16,6 +16,7 @@ use super::{
 };
 use crate::control::Control;
 use crate::error::Error;
+use crate::lattice::Each;
 use crate::lattice::{Affine, Bounds, Cell, Cube, Frame, Inverse, MAX_DEPTH};
 use crate::memory;
 use crate::octree::{Proof, Tag};
@@ -417,7 +418,7 @@ impl<C: Classifier> Classifier for TransformClassifier<C> {
 #[inline(always)]
 fn extent(frame: &Frame, cell: Cell) -> ([f64; 3], f64) {
     let shift = frame.depth() - cell.level;
-    (cell.at.map(|a| (a << shift) as f64), (1u32 << shift) as f64)
+    (cell.at.each(|a| (a << shift) as f64), (1u32 << shift) as f64)
 }
 
 impl<W: Worker> TransformWorker<W> {
@@ -455,7 +456,7 @@ impl<W: Worker> TransformWorker<W> {
                 return Ok(Verdict::Partial(part));
             };
             let (low, edge) = extent(&self.own, *source);
-            sources.push(surfaces::Source { cell: Some(*source), low, high: low.map(|c| c + edge), known });
+            sources.push(surfaces::Source { cell: Some(*source), low, high: low.each(|c| c + edge), known });
         }
         let mut target = surfaces::Target::new(&surfaces, &self.maps, &self.frame, cell);
         sources.extend(target.beyond(self.own.cells() as f64, self.exterior));
@@ -534,7 +535,7 @@ impl<W: Worker> TransformWorker<W> {
         let mut verdicts = [const { Verdict::Undecided }; 8];
         for (k, verdict) in OCTANTS.into_iter().zip(&mut verdicts).take(count) {
             let child = 1 << k;
-            *verdict = match [empty, full, undecided, part].map(|met| met & child != 0) {
+            *verdict = match [empty, full, undecided, part].each(|met| met & child != 0) {
                 [true, false, false, false] => Verdict::Empty,
                 [false, true, false, false] => Verdict::Full,
                 [false, false, _, false] if !finest => Verdict::Undecided,
@@ -800,7 +801,7 @@ impl<W: Worker> Worker for TransformWorker<W> {
 
     fn split(&mut self, cell: Cell, part: &TransformPart) -> Result<[Verdict<TransformPart>; 8], Error> {
         if let (What::Function(known), Some(surfaces)) = (part.0, &self.surfaces) {
-            return Ok(surface_cell::split(&surfaces.after, cell, &known)?.map(verdict_of));
+            return Ok(surface_cell::split(&surfaces.after, cell, &known)?.each(verdict_of));
         }
         let (maps, frame) = (self.maps, self.frame);
         let images = Images::new(&maps, &Cube { frame: &frame, cell }, 2);
@@ -872,7 +873,7 @@ impl<W: Worker> TransformWorker<W> {
     #[allow(clippy::type_complexity)]
     fn at_point(&self, point: &Point<'_>) -> (Option<bool>, Option<(Cell, W::Part)>) {
         let Met { empty, full, undecided, part } = self.met(point.reaches_beyond(self.own.cells() as f64));
-        match [empty, full, undecided, part].map(|met| met != 0) {
+        match [empty, full, undecided, part].each(|met| met != 0) {
             [true, false, false, false] => (Some(false), None),
             [false, true, false, false] => (Some(true), None),
             _ if self.nearest => self.at_nearest(point),

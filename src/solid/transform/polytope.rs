@@ -8,6 +8,8 @@
 //! their planes. Such points lie in the convex hull of the corners. Each plane is moved outward by more than
 //! that rounding.
 
+use crate::lattice::Each;
+
 /// The greatest numbers of corners, of faces, and of corners of a face. A body that would have more is not
 /// clipped, so that it stays larger.
 const CORNERS: usize = 64;
@@ -55,7 +57,7 @@ impl Polytope {
         let mut own =
             Polytope { corners: [[0.0; 3]; CORNERS], count: 8, faces: [Face::EMPTY; FACES], face_count: 6 };
         for (k, corner) in own.corners.iter_mut().enumerate().take(8) {
-            *corner = [0, 1, 2].map(|axis| if k >> axis & 1 == 0 { -1.0 } else { 1.0 });
+            *corner = [0, 1, 2].each(|axis| if k >> axis & 1 == 0 { -1.0 } else { 1.0 });
         }
         const AROUND_FACES: [[u8; 4]; 6] =
             [[0, 4, 6, 2], [1, 3, 7, 5], [0, 1, 5, 4], [2, 6, 7, 3], [0, 2, 3, 1], [4, 5, 7, 6]];
@@ -179,10 +181,10 @@ impl Polytope {
 
     /// The point where an edge is cut.
     fn between(&self, before: u8, beyond: u8, values: &[f64; CORNERS]) -> [f64; 3] {
-        let [a, b] = [before, beyond].map(usize::from);
+        let [a, b] = [before, beyond].each(usize::from);
         let share = (values[a] / (values[a] - values[b])).clamp(0.0, 1.0);
         let (from, to) = (self.corners[a], self.corners[b]);
-        [0, 1, 2].map(|axis| from[axis] + share * (to[axis] - from[axis]))
+        [0, 1, 2].each(|axis| from[axis] + share * (to[axis] - from[axis]))
     }
 
     /// Returns whether the body lies within `radius` of a straight line.
@@ -200,7 +202,7 @@ impl Polytope {
         corners.iter().all(|corner| {
             let off = minus(corner, &from);
             let share = if square > 0.0 { dot(off, along) / square } else { 0.0 };
-            let off = [0, 1, 2].map(|axis| off[axis] - share * along[axis]);
+            let off = [0, 1, 2].each(|axis| off[axis] - share * along[axis]);
             dot(off, off) <= radius * radius
         })
     }

@@ -11,6 +11,7 @@
 
 use super::polytope::Polytope;
 use crate::error::Error;
+use crate::lattice::Each;
 use crate::memory;
 use crate::solid::half_space::table::Table;
 use alloc::vec::Vec;
@@ -87,7 +88,7 @@ impl Flat {
             reach += (others - own).abs();
             size += own.abs() + others.abs();
         }
-        let ends = [self.low, self.high].map(|end| share * end);
+        let ends = [self.low, self.high].each(|end| share * end);
         size += ends[0].abs() + ends[1].abs() + other.low.abs() + other.high.abs();
         let room = reach + share * margin + 16.0 * f64::EPSILON * size;
         // (A comparison with NaN is false.)
@@ -96,7 +97,7 @@ impl Flat {
 
     /// The part of a body that lies in one of the places.
     fn part(&self, body: &Polytope, place: Place) -> Option<Polytope> {
-        let (up, down) = (self.gradient, self.gradient.map(|c| -c));
+        let (up, down) = (self.gradient, self.gradient.each(|c| -c));
         match (place, self.layer) {
             (Place::Inside, Some(margin)) => body.clipped(up, self.low + margin),
             (Place::Inside, None) => body.clipped(up, self.high),

@@ -7,6 +7,7 @@
 
 use super::image::Maps;
 use crate::lattice::Cube;
+use crate::lattice::Each;
 use crate::lattice::axes;
 use crate::lattice::exact::sqrt;
 use crate::octree::Tag;
@@ -68,7 +69,7 @@ pub(super) fn enclosure(
             // Where all cells are decided, the surface may be a plane of their lattice.
             let (mut best, mut thinnest) = (None, f64::INFINITY);
             for axis in 0..3 {
-                let [plus, minus] = [1.0, -1.0].map(|sign| {
+                let [plus, minus] = [1.0, -1.0].each(|sign| {
                     let mut direction = [0.0; 3];
                     direction[axis] = sign;
                     let known = known(direction);
@@ -93,8 +94,8 @@ impl<'m> View<'m> {
     /// `None` if the cell's image is beyond the resolution of doubles.
     fn new(maps: &'m Maps, cube: &Cube<'_>) -> Option<View<'m>> {
         let (lower, upper) = cube.planes();
-        let (corner, half) = (lower.map(f64::from), 0.5 * (upper[0] - lower[0]) as f64);
-        let (centre, _) = maps.inward.image(corner.map(|c| c + half), 0.0);
+        let (corner, half) = (lower.each(f64::from), 0.5 * (upper[0] - lower[0]) as f64);
+        let (centre, _) = maps.inward.image(corner.each(|c| c + half), 0.0);
         let (low, high) = maps.inward.around(corner, 2.0 * half);
         let is_finite = low.iter().chain(&high).all(|c| c.is_finite());
         is_finite.then_some(View { maps, half, centre, low, high })
@@ -105,7 +106,7 @@ impl<'m> View<'m> {
         let mut enclosure = source.enclosure?;
         for slab in &mut enclosure.slabs {
             // The axes change places and signs, and the factor is one.
-            slab.normal = self.pulled_back(slab.normal).map(|c| c / (0.5 * source.edge));
+            slab.normal = self.pulled_back(slab.normal).each(|c| c / (0.5 * source.edge));
         }
         Some(enclosure)
     }
@@ -122,7 +123,7 @@ impl<'m> View<'m> {
     /// Up to six cubes around the part of the cell's image beyond the universe.
     fn beyond(&self, cells: f64, exterior: Tag) -> [Option<Source>; 6] {
         let edge = (0..3).map(|axis| 2.0 * (self.high[axis] - self.low[axis])).fold(0.0, f64::max);
-        [0, 1, 2, 3, 4, 5].map(|side| {
+        [0, 1, 2, 3, 4, 5].each(|side| {
             let axis = side / 2;
             let mut corner = self.low;
             let reaches = if side % 2 == 0 {
@@ -159,7 +160,7 @@ impl<'m> View<'m> {
 
     /// The bounds of one cell along a direction, measured from the centre's image.
     fn known(&self, source: &Source, direction: [f64; 3]) -> Known {
-        let high = source.corner.map(|c| c + source.edge);
+        let high = source.corner.each(|c| c + source.edge);
         let low = axes(|axis| source.corner[axis].max(self.low[axis]));
         let high = axes(|axis| high[axis].min(self.high[axis]));
         let (begin, end) = extremes(direction, low, high, self.centre, 0.0);
@@ -195,20 +196,20 @@ impl<'m> View<'m> {
         high: [f64; 3],
     ) -> Known {
         let half = 0.5 * source.edge;
-        let normal = slab.normal.map(|c| c / half);
+        let normal = slab.normal.each(|c| c / half);
         let dot = |a: [f64; 3], b: [f64; 3]| a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
         let share = dot(direction, normal) / dot(normal, normal);
         if !(share > 0.0 && share.is_finite()) {
             return NOTHING;
         }
-        let centre = source.corner.map(|c| c + half);
+        let centre = source.corner.each(|c| c + half);
         let rest = axes(|axis| direction[axis] - share * normal[axis]);
         // The error of the components of the rest, relative to these.
         let size = axes(|axis| direction[axis].abs() + share * normal[axis].abs());
         let (least, most) = extremes(rest, low, high, centre, dot(size, [ROUNDING * half; 3]));
         let offset = axes(|axis| centre[axis] - self.centre[axis]);
         let shift = dot(direction, offset);
-        let size = dot(direction.map(f64::abs), offset.map(f64::abs));
+        let size = dot(direction.each(f64::abs), offset.each(f64::abs));
         let end = |offset: f64, rest: f64| {
             let error = ROUNDING * (share * offset.abs() + rest.abs() + size);
             (share * offset + rest + shift, error)
@@ -223,7 +224,7 @@ impl<'m> View<'m> {
         let inward = &self.maps.inward;
         let mut slack = 0.0;
         for axis in 0..3 {
-            let [a, b, c] = inward.linear[axis].map(f64::abs);
+            let [a, b, c] = inward.linear[axis].each(f64::abs);
             let rounded = ROUNDING * self.half * ((a + b) + c);
             slack += direction[axis].abs() * (2.0 * inward.error[axis] + rounded);
         }
@@ -243,7 +244,7 @@ const NOTHING: Known = Known { inner: f64::NEG_INFINITY, outer: f64::INFINITY };
 fn extremes(direction: [f64; 3], low: [f64; 3], high: [f64; 3], centre: [f64; 3], error: f64) -> (f64, f64) {
     let (mut least, mut most, mut size) = (0.0, 0.0, 0.0);
     for axis in 0..3 {
-        let ends = [low[axis], high[axis]].map(|end| direction[axis] * (end - centre[axis]));
+        let ends = [low[axis], high[axis]].each(|end| direction[axis] * (end - centre[axis]));
         (least, most) = (least + ends[0].min(ends[1]), most + ends[0].max(ends[1]));
         size += ends[0].abs().max(ends[1].abs());
     }

@@ -23,6 +23,7 @@ use super::polytope::Polytope;
 use super::regions::{Flat, Found, Regions};
 use crate::control::Control;
 use crate::error::Error;
+use crate::lattice::Each;
 use crate::lattice::exact::{Dyadic, sqrt};
 use crate::lattice::{Affine, Cell, Frame, axes};
 use crate::memory;
@@ -168,7 +169,7 @@ fn wider(list: &[PlacedHalfSpace], most: f64) -> Result<(Vec<Option<u32>>, Vec<P
     let mut layers = Vec::new();
     for (number, surface) in list.iter().enumerate() {
         if let Some((normal, ends)) = surface.half_space.layer_ends() {
-            let mut key = memory::collected(normal.map(f64::to_bits).into_iter())?;
+            let mut key = memory::collected(normal.each(f64::to_bits).into_iter())?;
             for map in &*surface.placements {
                 key.try_reserve(12)?;
                 key.extend(map.rows().as_flattened().iter().map(|c| c.to_bits()));
@@ -273,7 +274,7 @@ impl<'s> Target<'s> {
     pub(super) fn new(surfaces: &'s Surfaces, maps: &'s Maps, frame: &Frame, cell: Cell) -> Target<'s> {
         let (corner, edge) = super::extent(frame, cell);
         let half = 0.5 * edge;
-        let centre = corner.map(|c| c + half);
+        let centre = corner.each(|c| c + half);
         let (image, _) = maps.inward.image(centre, 0.0);
         let (low, high) = maps.inward.around(corner, edge);
         let lengths = axes(|j| maps.outward.linear.iter().map(|row| row[j] * row[j]).sum::<f64>());
@@ -493,7 +494,7 @@ impl<'s> Target<'s> {
         let inward = &self.maps.inward;
         let mut body = Polytope::cube();
         for axis in 0..3 {
-            let row = inward.linear[axis].map(|c| c * self.half);
+            let row = inward.linear[axis].each(|c| c * self.half);
             if inward.is_exact_along(axis) {
                 // A mere contact does not count.
                 let reach = row.iter().map(|c| c.abs()).sum::<f64>();
@@ -504,7 +505,7 @@ impl<'s> Target<'s> {
             }
             let slack = 2.0 * inward.error[axis] + ROUNDING * row.iter().map(|c| c.abs()).sum::<f64>();
             for (end, sign) in [(source.low[axis], 1.0), (source.high[axis], -1.0)] {
-                body = body.clipped(row.map(|c| sign * c), sign * (self.image[axis] - end) + slack)?;
+                body = body.clipped(row.each(|c| sign * c), sign * (self.image[axis] - end) + slack)?;
             }
         }
         Some(body)
@@ -650,8 +651,8 @@ impl<'s> Target<'s> {
         }
         for (i, (a, b)) in [(0, 1), (0, 2), (1, 2)].into_iter().enumerate() {
             let factor = 2.0 * squares[3 + i];
-            let corners =
-                [piece.low[a], piece.high[a]].map(|x| [piece.low[b], piece.high[b]].map(|y| factor * x * y));
+            let corners = [piece.low[a], piece.high[a]]
+                .each(|x| [piece.low[b], piece.high[b]].each(|y| factor * x * y));
             let corners = corners.as_flattened();
             let ends = (
                 corners.iter().copied().fold(f64::INFINITY, f64::min),
@@ -665,7 +666,7 @@ impl<'s> Target<'s> {
         let (mut there, mut far) = (bent, 0.0);
         for axis in 0..3 {
             let parts = axes(|i| gradient[i] * rows[i][axis] / self.half);
-            let (slope, steep) = ((parts[0] + parts[1]) + parts[2], parts.map(f64::abs).iter().sum::<f64>());
+            let (slope, steep) = ((parts[0] + parts[1]) + parts[2], parts.each(f64::abs).iter().sum::<f64>());
             let ends = (piece.own_low[axis], piece.own_high[axis]);
             there = sum(there, parabola(slope, 0.0, ends));
             let reach = ends.0.abs().max(ends.1.abs()) + self.image[axis].abs();

@@ -2,6 +2,7 @@
 
 use super::value::{Limits, Value};
 use super::{Samples, VoxelGrid};
+use crate::lattice::Each;
 use crate::lattice::morton;
 
 /// The samples of a grid, and the values that are inside.
@@ -35,7 +36,7 @@ impl Field<'_> {
     #[inline(always)]
     fn rows(&self, at: [u32; 3], mut row: impl FnMut(usize, u32, u32)) {
         let [_, ny, nz] = self.grid.extents();
-        let [_, y, z] = at.map(|a| 4 * a);
+        let [_, y, z] = at.each(|a| 4 * a);
         for k in 0..4.min(nz.saturating_sub(z)) {
             for j in 0..4.min(ny.saturating_sub(y)) {
                 row((z + k) as usize * ny as usize + (y + j) as usize, j, k);

@@ -1,6 +1,7 @@
 //! The positions of a volume's voxels in model space.
 
 use crate::error::Error;
+use crate::lattice::Each;
 use crate::lattice::axes;
 use crate::lattice::exact::{product_up, sign_of_sum, two_diff, two_product};
 use crate::lattice::{Bounds, Frame, MAX_DEPTH, valid};
@@ -41,7 +42,7 @@ impl VoxelGrid {
         }
         valid::numbers("corner", &corner)?;
         spacing.iter().try_for_each(|&edge| valid::length("spacing", edge))?;
-        Ok(VoxelGrid { extents, corner: corner.map(|c| c + 0.0), spacing })
+        Ok(VoxelGrid { extents, corner: corner.each(|c| c + 0.0), spacing })
     }
 
     /// Makes a grid whose first sample lies at `sample`, as most file formats specify it. The corner is

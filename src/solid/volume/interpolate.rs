@@ -1,6 +1,7 @@
 //! The field between the samples.
 
 use super::{Samples, Volume};
+use crate::lattice::Each;
 use crate::lattice::axes;
 
 impl Volume<'_> {
@@ -34,7 +35,7 @@ impl Volume<'_> {
         for (value, octant) in values.iter_mut().zip(0..) {
             *value = sample(octant)?;
         }
-        let [a, b, c, d] = [0, 2, 4, 6].map(|k| mix(values[k], values[k + 1], parts[0]));
+        let [a, b, c, d] = [0, 2, 4, 6].each(|k| mix(values[k], values[k + 1], parts[0]));
         Some(mix(mix(a, b, parts[1]), mix(c, d, parts[1]), parts[2]))
     }
 
@@ -62,7 +63,7 @@ impl Volume<'_> {
         let mut next = at;
         let coordinate = next.get_mut(axis)?;
         *coordinate = coordinate.checked_add(1)?;
-        let value = |at: [i32; 3]| self.sample(at.map(|a| u32::try_from(a).unwrap_or(u32::MAX)));
+        let value = |at: [i32; 3]| self.sample(at.each(|a| u32::try_from(a).unwrap_or(u32::MAX)));
         let (a, b) = (value(at), value(next));
         let is_inside = |value: Option<f64>| value.is_some_and(|value| self.field.limits.contains(value));
         if is_inside(a) == is_inside(b) {

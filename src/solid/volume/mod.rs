@@ -17,6 +17,7 @@ pub use samples::{Band, SampleArray, Samples};
 use super::{Fingerprint, Fingerprinter, Solid};
 use crate::control::Control;
 use crate::error::Error;
+use crate::lattice::Each;
 use crate::lattice::{Bounds, Frame};
 use alloc::sync::Arc;
 use field::Field;
@@ -187,7 +188,7 @@ impl<'a> Solid for Volume<'a> {
     fn fingerprint(&self) -> Option<Fingerprint> {
         let Field { grid, samples, limits } = &self.field;
         let all = Fingerprinter::new("volume")
-            .integers(&grid.extents().map(u64::from))
+            .integers(&grid.extents().each(u64::from))
             .numbers(&grid.corner())
             .numbers(&grid.spacing())
             .numbers(&[limits.low, limits.high]);

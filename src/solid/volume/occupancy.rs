@@ -12,6 +12,7 @@ use super::slices::in_slices;
 use super::value::{Limits, Value};
 use crate::control::Control;
 use crate::error::Error;
+use crate::lattice::Each;
 use crate::lattice::axes;
 use crate::lattice::morton;
 use crate::memory;
@@ -47,8 +48,8 @@ impl Seen {
 impl Occupancy {
     pub(super) fn new(field: &Field<'_>, ranges: &Ranges, control: &Control<'_>) -> Result<Occupancy, Error> {
         let mut levels = memory::with_capacity(10)?;
-        let mut size = field.grid.extents().map(|extent| extent.div_ceil(16));
-        let count = |size: [u32; 3]| size.map(|edge| edge as usize).iter().product::<usize>();
+        let mut size = field.grid.extents().each(|extent| extent.div_ceil(16));
+        let count = |size: [u32; 3]| size.each(|edge| edge as usize).iter().product::<usize>();
         let mut groups = memory::filled(count(size), Planes::uniform(Tag::Empty))?;
         in_slices(&mut groups, size[0] as usize * size[1] as usize, control, |z, slice| {
             Rows::new(field, z as u32)?.gather(field, ranges, size, slice);
@@ -56,7 +57,7 @@ impl Occupancy {
         })?;
         while size != [1; 3] {
             control.check()?;
-            let next = size.map(|edge| edge.div_ceil(4));
+            let next = size.each(|edge| edge.div_ceil(4));
             let mut above = memory::filled(count(next), Planes::uniform(Tag::Empty))?;
             let mut below = groups.iter();
             for z in 0..size[2] {
@@ -92,7 +93,7 @@ impl Occupancy {
         if (0..3).any(|axis| at[axis] >= i64::from(size[axis])) {
             return Planes::uniform(Tag::Empty);
         }
-        groups.get(index(*size, at.map(|a| a as u32))).copied().unwrap_or(Planes::uniform(Tag::Partial))
+        groups.get(index(*size, at.each(|a| a as u32))).copied().unwrap_or(Planes::uniform(Tag::Partial))
     }
 
     /// A group larger than the grid, which lies in the group's first block.
@@ -131,8 +132,8 @@ impl Occupancy {
     /// Examines the part of a box of voxels in one group. The recursion is as deep as there are levels.
     fn look_at(&self, field: &Field<'_>, level: usize, at: [u32; 3], voxels: [[u32; 3]; 2], seen: &mut Seen) {
         let shift = 2 * level as u32 + 2;
-        let planes = self.group(level, at.map(i64::from));
-        let origin = at.map(|a| a << (shift + 2));
+        let planes = self.group(level, at.each(i64::from));
+        let origin = at.each(|a| a << (shift + 2));
         let touched = blocks_between(origin, shift, voxels, false);
         seen.inside |= planes.lower & touched != 0;
         seen.outside |= !planes.upper & touched != 0;
@@ -149,7 +150,7 @@ impl Occupancy {
                 continue;
             }
             let brick = field.brick(block);
-            let touched = blocks_between(block.map(|b| 4 * b), 0, voxels, false);
+            let touched = blocks_between(block.each(|b| 4 * b), 0, voxels, false);
             seen.inside |= brick & touched != 0;
             seen.outside |= !brick & touched != 0;
         }
@@ -163,7 +164,7 @@ impl Occupancy {
 
 /// The index of a group.
 fn index(size: [u32; 3], at: [u32; 3]) -> usize {
-    let [x, y, z] = at.map(|a| a as usize);
+    let [x, y, z] = at.each(|a| a as usize);
     (z * size[1] as usize + y) * size[0] as usize + x
 }
 
@@ -220,7 +221,7 @@ impl Rows {
     fn read(&mut self, field: &Field<'_>, ranges: &Ranges, y: u32) {
         self.all.fill(0);
         self.any.fill(0);
-        let [_, ny, nz] = field.grid.extents().map(|extent| extent.div_ceil(4));
+        let [_, ny, nz] = field.grid.extents().each(|extent| extent.div_ceil(4));
         let words = self.words;
         let rows = self.all.chunks_mut(words).zip(self.any.chunks_mut(words));
         for (k, (all, any)) in (0..).zip(rows) {
@@ -236,7 +237,7 @@ impl Rows {
                 Ranges::F32(ranges) => of_ranges(field, ranges, [by, bz], all, any),
             }
             // Blocks that reach beyond the grid are not inside as a whole.
-            let [nx, ny, nz] = field.grid.extents().map(|extent| extent / 4);
+            let [nx, ny, nz] = field.grid.extents().each(|extent| extent / 4);
             let whole = if by < ny && bz < nz { nx as usize } else { 0 };
             for (word, bits) in all.iter_mut().enumerate() {
                 *bits &= below(whole.saturating_sub(64 * word));
@@ -252,7 +253,7 @@ fn below(count: usize) -> u64 {
 
 /// A row of blocks, from the ranges of their samples.
 fn of_ranges<T: Value>(field: &Field<'_>, ranges: &[[T; 2]], at: [u32; 2], all: &mut [u64], any: &mut [u64]) {
-    let blocks = field.grid.extents().map(|extent| extent.div_ceil(4) as usize);
+    let blocks = field.grid.extents().each(|extent| extent.div_ceil(4) as usize);
     let first = (at[1] as usize * blocks[1] + at[0] as usize) * blocks[0];
     let row = ranges.get(first..first + blocks[0]).unwrap_or(&[]);
     let [low, high] = field.limits.of::<T>();
@@ -288,9 +289,9 @@ fn of_ranges<T: Value>(field: &Field<'_>, ranges: &[[T; 2]], at: [u32; 2], all: 
 fn of_bits(field: &Field<'_>, at: [u32; 2], all: &mut [u64], any: &mut [u64]) {
     let super::Samples::Bits(bits) = &field.samples else { return };
     let (bits, words) = (bits.values(), field.grid.words());
-    let [nx, ny, nz] = field.grid.extents().map(|extent| extent as usize);
+    let [nx, ny, nz] = field.grid.extents().each(|extent| extent as usize);
     let limits: &Limits = &field.limits;
-    let [y, z] = at.map(|a| 4 * a as usize);
+    let [y, z] = at.each(|a| 4 * a as usize);
     for word in 0..words {
         let real = below(nx - 64 * word);
         let (mut inside, mut touches) = (real, 0);

@@ -5,6 +5,7 @@ use super::occupancy::Seen;
 use super::{Volume, VoxelGrid};
 use crate::control::Control;
 use crate::error::Error;
+use crate::lattice::Each;
 use crate::lattice::axes;
 use crate::lattice::{Cell, Frame};
 use crate::octree::{Planes, Proof, Tag};
@@ -51,7 +52,7 @@ impl<'a> VolumeOnFrame<'a> {
 
     /// The voxels between two planes, counted in half cells of the frame.
     fn run(&self, axis: usize, planes: [u32; 2]) -> Run {
-        let [from, to] = planes.map(|k| self.axes[axis].place(self.grid(), &self.frame, k));
+        let [from, to] = planes.each(|k| self.axes[axis].place(self.grid(), &self.frame, k));
         self.axes[axis].run(from, to)
     }
 
@@ -59,8 +60,11 @@ impl<'a> VolumeOnFrame<'a> {
         if runs.iter().any(|run| run.low >= run.high) {
             return Verdict::Empty;
         }
-        let Seen { inside, mut outside } =
-            self.volume.occupancy.look(&self.volume.field, runs.map(|run| run.low), runs.map(|run| run.high));
+        let Seen { inside, mut outside } = self.volume.occupancy.look(
+            &self.volume.field,
+            runs.each(|run| run.low),
+            runs.each(|run| run.high),
+        );
         outside |= runs.iter().any(|run| run.beyond);
         match (inside, outside) {
             (true, true) => Verdict::Partial(()),
@@ -85,11 +89,11 @@ impl<'a> VolumeOnFrame<'a> {
         if level >= 0 {
             return self.volume.occupancy.group(level as usize, at);
         }
-        let blocks = self.grid().extents().map(|extent| i64::from(extent.div_ceil(4)));
+        let blocks = self.grid().extents().each(|extent| i64::from(extent.div_ceil(4)));
         if (0..3).any(|axis| !(0..blocks[axis]).contains(&at[axis])) {
             return Planes::uniform(Tag::Empty);
         }
-        Planes::binary(self.volume.field.brick(at.map(|a| a as u32)))
+        Planes::binary(self.volume.field.brick(at.each(|a| a as u32)))
     }
 
     /// The 64 grandchildren of a cube of 2^k voxels along an edge, k ≥ 2: those that are certainly inside,
@@ -209,10 +213,10 @@ impl Worker for VolumeOnFrame<'_> {
         let halves = axes(|axis| {
             let first = cell.at[axis] << shift;
             let planes = [first, first + (1 << (shift - 1)), first + (1 << shift)];
-            let [low, middle, high] = planes.map(|k| self.axes[axis].place(self.grid(), &self.frame, k));
+            let [low, middle, high] = planes.each(|k| self.axes[axis].place(self.grid(), &self.frame, k));
             [self.axes[axis].run(low, middle), self.axes[axis].run(middle, high)]
         });
-        Ok(OCTANTS.map(|octant| self.verdict(axes(|axis| halves[axis][usize::from(octant >> axis & 1)]))))
+        Ok(OCTANTS.each(|octant| self.verdict(axes(|axis| halves[axis][usize::from(octant >> axis & 1)]))))
     }
 
     #[inline]

@@ -6,6 +6,7 @@ use super::value::Value;
 use super::{Samples, VoxelGrid};
 use crate::control::Control;
 use crate::error::Error;
+use crate::lattice::Each;
 use crate::memory;
 use alloc::vec::Vec;
 
@@ -71,8 +72,8 @@ impl Ranges {
 }
 
 fn ranges<T: Value>(grid: &VoxelGrid, values: &[T], control: &Control<'_>) -> Result<Vec<[T; 2]>, Error> {
-    let [nx, ny, nz] = grid.extents().map(|extent| extent as usize);
-    let blocks = grid.extents().map(|extent| extent.div_ceil(4) as usize);
+    let [nx, ny, nz] = grid.extents().each(|extent| extent as usize);
+    let blocks = grid.extents().each(|extent| extent.div_ceil(4) as usize);
     let mut ranges = memory::filled(blocks[0] * blocks[1] * blocks[2], [T::GREATEST, T::LEAST])?;
     in_slices(&mut ranges, blocks[0] * blocks[1], control, |bz, slice| {
         let mut least = memory::filled(nx, T::GREATEST)?;

@@ -2,6 +2,7 @@
 
 use super::VoxelGrid;
 use crate::error::Error;
+use crate::lattice::Each;
 use alloc::sync::Arc;
 use alloc::vec::Vec;
 use core::fmt;
@@ -126,7 +127,7 @@ impl Samples<'_> {
     /// # Errors
     /// [`Error::Argument`] if it does not.
     pub fn check(&self, grid: &VoxelGrid) -> Result<(), Error> {
-        let [_, y, z] = grid.extents().map(u64::from);
+        let [_, y, z] = grid.extents().each(u64::from);
         let (count, problem) = match self {
             Samples::Bits(_) => {
                 (grid.words() as u64 * y * z, "must have ⌈nx / 64⌉ words for each of the ny · nz rows")

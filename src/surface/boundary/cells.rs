@@ -7,6 +7,7 @@ use super::faces::{Arc, Corner, Faces, Meeting};
 use super::joint::{self, Joint};
 use super::leaves::{Leaves, MOST, OpenLeaf, Refused};
 use crate::error::Error;
+use crate::lattice::Each;
 use crate::lattice::{Cell, axes};
 use crate::memory;
 use crate::solid::OpenSurfaces;
@@ -157,7 +158,7 @@ impl Cutter<'_, '_> {
     /// Adds vertices on the curve of two surfaces between two other vertices.
     fn edge(&mut self, surfaces: [u32; 2], ends: [u32; 2]) -> Result<Vec<u32>, Error> {
         let mut points = Vec::new();
-        let places = ends.map(|end| self.at(end));
+        let places = ends.each(|end| self.at(end));
         refine(self.edges.figures, &surfaces, None, places, self.tolerance, &mut points)?;
         let mut vertices = memory::with_capacity(points.len())?;
         for point in points {
@@ -186,8 +187,8 @@ impl Cutter<'_, '_> {
                     continue;
                 }
                 // (Newton's method does not find the points where surfaces touch.)
-                let pair = joint.map_or(one.pair.map(usize::from), |joint| [joint.plane, joint.sides[0]]);
-                let surfaces = pair.map(|k| open.indices()[k]);
+                let pair = joint.map_or(one.pair.each(usize::from), |joint| [joint.plane, joint.sides[0]]);
+                let surfaces = pair.each(|k| open.indices()[k]);
                 for copy in 0..2 {
                     let ends = [one.vertices[copy], other.vertices[copy]];
                     if ends == [NONE; 2] || copy == 1 && one.vertices[0] == one.vertices[1] {
@@ -300,7 +301,7 @@ impl Cutter<'_, '_> {
             };
             let of_pair = meetings.iter().flatten().find(|meeting| meeting.vertices.contains(&lines[k].from));
             let Some(of_pair) = of_pair else { return Ok(false) };
-            let surfaces = of_pair.pair.map(|k| open.indices()[usize::from(k)]);
+            let surfaces = of_pair.pair.each(|k| open.indices()[usize::from(k)]);
             lines[k].between = self.edge(surfaces, [lines[k].from, top])?;
             lines[k].top = top;
         }
@@ -336,7 +337,7 @@ impl Cutter<'_, '_> {
             let at = self.at(vertex);
             sum = (axes(|k| sum.0[k] + at[k]), sum.1 + 1.0);
         }
-        let start = sum.0.map(|c| c / sum.1);
+        let start = sum.0.each(|c| c / sum.1);
         self.edges.figures.onto(open.indices(), None, start).filter(|point| self.holds(point))
     }
 
@@ -430,7 +431,7 @@ impl Cutter<'_, '_> {
         for &corner in corners {
             sum = axes(|k| sum[k] + self.at(corner)[k]);
         }
-        let mean = sum.map(|c| c / corners.len() as f64);
+        let mean = sum.each(|c| c / corners.len() as f64);
         let open = self
             .leaf
             .and_then(|leaf| Some((leaf.cell, leaf.open.filter(|open| open.indices().len() > MOST)?)));

@@ -4,6 +4,7 @@ use super::figures::Figures;
 use super::leaves::{Leaf, Leaves, OpenLeaf};
 use super::walk::{Edge, Face, Visitor};
 use crate::error::Error;
+use crate::lattice::Each;
 use crate::lattice::axes;
 use crate::memory;
 use crate::solid::OpenSurfaces;
@@ -79,7 +80,7 @@ impl<'f> Edges<'f> {
     }
 
     pub(super) fn unit(&self, at: [u32; 3]) -> [f64; 3] {
-        at.map(|c| f64::from(c) / self.cells)
+        at.each(|c| f64::from(c) / self.cells)
     }
 
     /// Returns whether a corner lies in the solid, as the search for edges found.
@@ -152,7 +153,7 @@ impl<C: Corners> Visitor for Finder<'_, '_, C> {
         let leaf = |q: usize| edge.around[q].leaf;
         let own = best(leaves, (0..4).map(leaf));
         let states = [self.state(edge.at, own)?, self.state(end, own)?];
-        let known = [edge.at, end].map(|at| self.edges.states.get(&at).copied());
+        let known = [edge.at, end].each(|at| self.edges.states.get(&at).copied());
         for k in 0..2 {
             if known[k].is_none() {
                 self.edges.states.try_reserve(1)?;

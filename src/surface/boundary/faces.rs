@@ -12,6 +12,7 @@ use super::joint::Joint;
 use super::leaves::{Leaf, Leaves, MOST, OpenLeaf, Refused};
 use super::walk::{At, Edge, Face, Visitor};
 use crate::error::Error;
+use crate::lattice::Each;
 use crate::lattice::{Cell, axes};
 use crate::memory;
 use crate::solid::OpenSurfaces;
@@ -262,7 +263,7 @@ impl Finder<'_, '_, '_> {
     /// The point where two arcs cross.
     fn meeting_point(&self, face: &Face, arrangement: &Arrangement<'_>, i: usize, j: usize) -> [f64; 3] {
         let ends =
-            |k: usize| arrangement.lines[k].map(|line| line.ends.map(|end| arrangement.outline[end].at));
+            |k: usize| arrangement.lines[k].map(|line| line.ends.each(|end| arrangement.outline[end].at));
         let (Some([a, b]), Some([c, d])) = (ends(i), ends(j)) else { return [0.0; 3] };
         let (u, v) = ((face.axis + 1) % 3, (face.axis + 2) % 3);
         let cross = |p: [f64; 3], q: [f64; 3]| p[u] * q[v] - p[v] * q[u];
@@ -368,7 +369,7 @@ impl Finder<'_, '_, '_> {
         let before_all = self.faces.arcs.len();
         for i in 0..arrangement.count() {
             let Some(line) = arrangement.lines[i] else { continue };
-            let [first, last] = line.ends.map(|end| outline[end]);
+            let [first, last] = line.ends.each(|end| outline[end]);
             let mut signs = 0;
             for j in (0..arrangement.count()).filter(|&j| j != i) {
                 signs |= u8::from(arrangement.sign_at_start(j, i)) << j;
@@ -492,7 +493,7 @@ impl Finder<'_, '_, '_> {
             (Some(first), Some(last), None) => (*first, *last),
             _ => return Ok(false),
         };
-        let surfaces = joint.sides.map(|k| open.indices()[k]);
+        let surfaces = joint.sides.each(|k| open.indices()[k]);
         if ![first, last].iter().all(|end| surfaces.contains(&end.surface)) {
             return Ok(false);
         }
@@ -503,7 +504,7 @@ impl Finder<'_, '_, '_> {
             return self.add(face, first.surface, ends, places, is_left);
         }
         let plane = open.indices()[joint.plane];
-        let [from, to] = places.map(|at| self.edges.figures.about(plane, at).0);
+        let [from, to] = places.each(|at| self.edges.figures.about(plane, at).0);
         let share = from / (from - to);
         let share = if (0.0..=1.0).contains(&share) { share } else { 0.5 };
         let start = axes(|k| first.at[k] + share * (last.at[k] - first.at[k]));
@@ -591,7 +592,7 @@ fn other(meeting: &Meeting, i: usize) -> usize {
 }
 
 fn met_at(met: &[Met], open: &OpenSurfaces, meeting: &Meeting) -> [f64; 3] {
-    let pair = meeting.pair.map(|k| open.indices()[usize::from(k)]);
+    let pair = meeting.pair.each(|k| open.indices()[usize::from(k)]);
     met.iter().find(|met| met.surfaces == pair).map_or([0.0; 3], |met| met.at)
 }
 

@@ -6,6 +6,7 @@
 
 use crate::cut::{Quadratic, Taylor};
 use crate::error::Error;
+use crate::lattice::Each;
 use crate::lattice::exact::sqrt;
 use crate::lattice::{Cell, Frame, axes};
 use crate::memory;
@@ -103,7 +104,7 @@ impl Figures {
     /// The Taylor expansion of a surface's function in a cell, if it is known.
     pub(super) fn taylor(&self, surface: u32, cell: Cell) -> Option<Taylor> {
         let half = 0.5 / f64::from(1u32 << cell.level);
-        let centre = cell.at.map(|at| (2.0 * f64::from(at) + 1.0) * half);
+        let centre = cell.at.each(|at| (2.0 * f64::from(at) + 1.0) * half);
         self.over(surface, centre, half)
     }
 
@@ -130,7 +131,7 @@ impl Figures {
     /// The value of a surface's function and its gradient at a point.
     pub(super) fn about(&self, surface: u32, at: [f64; 3]) -> (f64, [f64; 3]) {
         match self.over(surface, at, NEAR) {
-            Some(taylor) => (taylor.f.value, taylor.f.gradient.map(|c| c / NEAR)),
+            Some(taylor) => (taylor.f.value, taylor.f.gradient.each(|c| c / NEAR)),
             None => (0.0, [0.0; 3]),
         }
     }
@@ -194,7 +195,7 @@ impl Figures {
                     gradient[axis] = 0.0;
                 }
                 let size = length(gradient);
-                (rows[k], values[k]) = (gradient.map(|c| c / size), value / size);
+                (rows[k], values[k]) = (gradient.each(|c| c / size), value / size);
             }
             let step = shortest(&rows[..surfaces.len()], &values)?;
             let next = minus(point, step);
@@ -246,7 +247,7 @@ pub(super) fn shortest(rows: &[[f64; 3]], values: &[f64; 3]) -> Option<[f64; 3]>
 /// Returns whether the surface of a polynomial of degree two is a cylinder or a cone: whether its 4×4 matrix
 /// is singular.
 fn is_ruled(f: &Quadratic) -> bool {
-    let ([x, y, z], [xx, yy, zz, xy, xz, yz]) = (f.gradient.map(|c| 0.5 * c), f.squares);
+    let ([x, y, z], [xx, yy, zz, xy, xz, yz]) = (f.gradient.each(|c| 0.5 * c), f.squares);
     let mut rows = [[xx, xy, xz, x], [xy, yy, yz, y], [xz, yz, zz, z], [x, y, z, f.value]];
     let size = rows.as_flattened().iter().fold(0.0, |most: f64, c| most.max(c.abs()));
     for k in 0..4 {

@@ -2,6 +2,7 @@
 //! neighbouring cells stay, too.
 
 use crate::error::Error;
+use crate::lattice::Each;
 use crate::lattice::{Cell, axes};
 use crate::memory;
 use alloc::vec::Vec;
@@ -34,7 +35,7 @@ impl Held {
 
     fn holds(&self, point: [f64; 3], level: u8) -> bool {
         let side = f64::from(1u32 << level);
-        let place = point.map(|c| (c * side).max(0.0) as u32);
+        let place = point.each(|c| (c * side).max(0.0) as u32);
         (0..27u32).any(|k| {
             let at = axes(|axis| (place[axis] + [k, k / 3, k / 9][axis] % 3).wrapping_sub(1));
             self.cells.binary_search(&(level, at)).is_ok()

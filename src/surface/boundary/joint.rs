@@ -8,6 +8,7 @@
 use super::figures::{Figures, length};
 use super::redundant::{least_squares, never, rest, without};
 use super::scaled::{Scaled, Terms};
+use crate::lattice::Each;
 use crate::lattice::{Cell, axes};
 use crate::solid::OpenSurfaces;
 
@@ -42,7 +43,7 @@ impl Joint {
         open: &OpenSurfaces,
     ) -> Option<(Joint, OpenSurfaces, f64)> {
         let &[x, y, z] = open.indices() else { return None };
-        let known = [x, y, z].map(|surface| Scaled::of(figures, surface, cell));
+        let known = [x, y, z].each(|surface| Scaled::of(figures, surface, cell));
         let [Some(x), Some(y), Some(z)] = known else { return None };
         let known = [x, y, z];
         let half = 0.5 / f64::from(1u32 << cell.level);
@@ -51,7 +52,7 @@ impl Joint {
             let touch = known[b].touches(&known[a])?;
             let cannot_be = never(3, [a, b], touch.is_turned, touch.is_above);
             let halves = [false, true]
-                .map(|is_above| without(open.with_table(open.table().with(plane, is_above)), cannot_be));
+                .each(|is_above| without(open.with_table(open.table().with(plane, is_above)), cannot_be));
             let alone = |half: &OpenSurfaces| {
                 let mut variables = half.variables();
                 let (Some((only, _)), None) = (variables.next(), variables.next()) else { return None };
@@ -89,7 +90,7 @@ pub(super) fn end(figures: &Figures, cell: Cell, open: &OpenSurfaces) -> Option<
         };
         let plane = others.clone().find(is_plane)?;
         let cut = others.clone().find(|&k| k != plane)?;
-        Some([plane, a, cut].map(|k| surfaces[k]))
+        Some([plane, a, cut].each(|k| surfaces[k]))
     })
 }
 
@@ -102,14 +103,14 @@ fn off(a: &Scaled, b: &Scaled, plane: &Scaled, is_turned: bool) -> Option<f64> {
     let least = (0..3).fold(0, |least, k| if normal[k].abs() < normal[least].abs() { k } else { least });
     let unit = axes(|k| f64::from(u8::from(k == least)) - normal[least] * normal[k]);
     let size = length(unit);
-    let first = unit.map(|c| c / size);
+    let first = unit.each(|c| c / size);
     let second = axes(|k| {
         let (i, j) = ((k + 1) % 3, (k + 2) % 3);
         normal[i] * first[j] - normal[j] * first[i]
     });
     // Either a plane times a linear function, or a quadric times a number.
     let (flat, other) = if b.is_plane { (b, a) } else { (a, b) };
-    let [flat_on, other_on] = [flat, other].map(|known| on_plane(&known.terms, foot, [first, second]));
+    let [flat_on, other_on] = [flat, other].each(|known| on_plane(&known.terms, foot, [first, second]));
     let [f, u, v, ..] = flat_on;
     let (factors, rest) = match flat.is_plane {
         true => {

@@ -7,6 +7,7 @@ use super::scaled::Scaled;
 use crate::control::Job;
 use crate::cut::Quadratic;
 use crate::error::Error;
+use crate::lattice::Each;
 use crate::lattice::exact::sqrt;
 use crate::lattice::{Cell, axes};
 use crate::memory;
@@ -263,13 +264,13 @@ impl Wanted<'_> {
             if sine.is_nan() || sine >= CONE {
                 return false;
             }
-            let normal = taylor.f.gradient.map(|c| c / steep);
+            let normal = taylor.f.gradient.each(|c| c / steep);
             *place = (normal, sine);
             if shape == Shape::Plane {
                 continue;
             }
             // The distance of the surface from its tangent plane.
-            let [xx, yy, zz, xy, xz, yz] = taylor.f.squares.map(f64::abs);
+            let [xx, yy, zz, xy, xz, yz] = taylor.f.squares.each(f64::abs);
             let rise = (xx + yy + zz + 2.0 * (xy + xz + yz) + taylor.f.error) / steep * half;
             if shape == Shape::Bent && rise > 1.5 * self.tolerance {
                 return false;

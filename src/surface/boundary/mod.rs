@@ -35,6 +35,7 @@ mod walk;
 
 use crate::control::{Control, Job, WHOLE};
 use crate::error::Error;
+use crate::lattice::Each;
 use crate::lattice::{Affine, Cell, Frame, axes, valid};
 use crate::memory;
 use crate::mesh::TriangleMesh;
@@ -384,7 +385,7 @@ impl<W: Worker> Corners for Points<'_, W> {
             return Ok(inside);
         }
         let most = self.frame.cells() - 1;
-        let cell = Cell { level: self.frame.depth(), at: at.map(|c| c.min(most)) };
+        let cell = Cell { level: self.frame.depth(), at: at.each(|c| c.min(most)) };
         self.trail.follow(cell.parent(), self.control)?;
         Ok(match self.trail.verdict(cell).tag() {
             Tag::Empty => false,

@@ -6,6 +6,7 @@ use super::figures::{Figures, Shape};
 use super::leaves::Refused;
 use super::strips;
 use crate::error::Error;
+use crate::lattice::Each;
 use crate::lattice::axes;
 use crate::memory;
 use crate::mesh::polygon::triangulate;
@@ -189,7 +190,7 @@ pub(super) fn area(corners: &[u32], vertices: &[[f64; 3]]) -> [f64; 3] {
     let origin = vertices[corners[0] as usize];
     let mut sum = [0.0; 3];
     for pair in corners.windows(2) {
-        let [p, q] = [pair[0], pair[1]].map(|v| axes(|k| vertices[v as usize][k] - origin[k]));
+        let [p, q] = [pair[0], pair[1]].each(|v| axes(|k| vertices[v as usize][k] - origin[k]));
         sum = axes(|k| sum[k] + p[(k + 1) % 3] * q[(k + 2) % 3] - p[(k + 2) % 3] * q[(k + 1) % 3]);
     }
     sum

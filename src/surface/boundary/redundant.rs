@@ -11,6 +11,7 @@
 use super::figures::{Figures, length};
 use super::scaled::{Scaled, Terms};
 use crate::lattice::Cell;
+use crate::lattice::Each;
 use crate::solid::OpenSurfaces;
 
 /// The greatest deviation of the boundary in a cell in which a surface is left out (edges of the universe).
@@ -112,8 +113,8 @@ pub(super) fn without(mut open: OpenSurfaces, cannot_be: u64) -> OpenSurfaces {
         let mut is_free = true;
         for signs in (0..1u32 << count).filter(|signs| signs >> k & 1 == 0) {
             let both = [signs, signs | 1 << k];
-            let [below, above] = both.map(|signs| cannot_be >> signs & 1 == 0);
-            let [low, high] = both.map(|signs| table.0 >> signs & 1);
+            let [below, above] = both.each(|signs| cannot_be >> signs & 1 == 0);
+            let [low, high] = both.each(|signs| table.0 >> signs & 1);
             is_free &= !below || !above || low == high;
             let value = if below { low } else { high };
             for signs in both {
@@ -135,7 +136,7 @@ fn least_sine(known: &[Scaled], of: [usize; 3]) -> f64 {
         let cross = [n[1] * m[2] - n[2] * m[1], n[2] * m[0] - n[0] * m[2], n[0] * m[1] - n[1] * m[0]];
         length(cross) - 1.2 * (a.bend + b.bend)
     };
-    let [a, b, p] = of.map(|k| &known[k]);
+    let [a, b, p] = of.each(|k| &known[k]);
     sine(a, b).min(sine(a, p)).min(sine(b, p))
 }
 

@@ -4,6 +4,7 @@ use super::edges::NONE;
 use super::mates::mates;
 use super::patches::area;
 use crate::error::{Error, MeshError};
+use crate::lattice::Each;
 use crate::lattice::axes;
 use crate::memory;
 use crate::mesh::polygon::{PolygonDefect, triangulate};
@@ -165,7 +166,7 @@ impl BoundaryFaces {
         let (mut area, mut outward) = (0.0, 0.0);
         for &triangle in own {
             self.of_triangles[triangle as usize] = self.regions.len() as u32;
-            let [a, b, c] = tracer.triangles[triangle as usize].map(|v| self.vertices[v as usize]);
+            let [a, b, c] = tracer.triangles[triangle as usize].each(|v| self.vertices[v as usize]);
             let [p, q]: [[f64; 3]; 2] = [axes(|k| b[k] - a[k]), axes(|k| c[k] - a[k])];
             let across: [f64; 3] =
                 axes(|k| p[(k + 1) % 3] * q[(k + 2) % 3] - p[(k + 2) % 3] * q[(k + 1) % 3]);
@@ -312,7 +313,7 @@ impl Tracer<'_> {
         tolerance: f64,
     ) -> Result<Option<Polygon>, Error> {
         let mut loops: Vec<Vec<u32>> = Vec::new();
-        for start in own.iter().flat_map(|&triangle| [0, 1, 2].map(|side| (triangle, side))) {
+        for start in own.iter().flat_map(|&triangle| [0, 1, 2].each(|side| (triangle, side))) {
             if self.beside(start.0, start.1).is_some() {
                 continue;
             }

@@ -2,6 +2,7 @@
 
 use super::figures::{Figures, Shape, dot, length};
 use crate::cut::Quadratic;
+use crate::lattice::Each;
 use crate::lattice::exact::sqrt;
 use crate::lattice::{Cell, axes};
 
@@ -67,7 +68,7 @@ impl Scaled {
         let Quadratic { value, gradient, squares: [xx, yy, zz, xy, xz, yz], error } = taylor.f;
         let steep = length(gradient);
         let [x, y, z] = gradient;
-        let terms = [value, x, y, z, xx, yy, zz, 2.0 * xy, 2.0 * xz, 2.0 * yz].map(|term| term / steep);
+        let terms = [value, x, y, z, xx, yy, zz, 2.0 * xy, 2.0 * xz, 2.0 * yz].each(|term| term / steep);
         let known = Scaled {
             terms,
             error: error / steep,
@@ -129,7 +130,7 @@ impl Scaled {
             let (mut from, mut to) = (0.5, 2.0);
             let inner = |from: f64, to: f64| [to - GOLDEN * (to - from), from + GOLDEN * (to - from)];
             let mut places = inner(from, to);
-            let mut values = places.map(least);
+            let mut values = places.each(least);
             while to - from > 4.0 * f64::EPSILON {
                 let best = f64::max(values[0], values[1]);
                 // No eigenvalue changes faster than the norm of the added matrix.
@@ -159,7 +160,7 @@ impl Scaled {
 
 /// The symmetric matrix of a polynomial, for points extended by a leading 1.
 fn form([value, x, y, z, xx, yy, zz, xy, xz, yz]: &Terms) -> [[f64; 4]; 4] {
-    let [x, y, z, xy, xz, yz] = [x, y, z, xy, xz, yz].map(|c| 0.5 * c);
+    let [x, y, z, xy, xz, yz] = [x, y, z, xy, xz, yz].each(|c| 0.5 * c);
     [[*value, x, y, z], [x, *xx, xy, xz], [y, xy, *yy, yz], [z, xz, yz, *zz]]
 }
 

@@ -3,6 +3,7 @@
 
 use super::figures::{Figures, dot, middle, minus};
 use crate::error::Error;
+use crate::lattice::Each;
 use crate::lattice::axes;
 use crate::memory;
 use alloc::vec::Vec;
@@ -101,9 +102,9 @@ fn seen(places: &[[f64; 3]]) -> Result<Vec<[f64; 2]>, Error> {
     };
     let first = cross(unit, normal);
     let size = dot(first, first);
-    let first = first.map(|c| c / libm::sqrt(size));
+    let first = first.each(|c| c / libm::sqrt(size));
     let size = dot(normal, normal);
-    let second = cross(normal.map(|c| c / libm::sqrt(size)), first);
+    let second = cross(normal.each(|c| c / libm::sqrt(size)), first);
     memory::collected(places.iter().map(|&place| {
         let away = minus(place, origin);
         [dot(first, away), dot(second, away)]
@@ -118,7 +119,7 @@ impl Clipper<'_> {
     /// The distance from the surface of the side that cuts off a corner.
     fn cost_of(&self, k: usize) -> f64 {
         let (p, n) = (self.previous[k], self.next[k]);
-        let [a, b, c] = [p, k, n].map(|k| self.flat[k]);
+        let [a, b, c] = [p, k, n].each(|k| self.flat[k]);
         let area = turn(a, b, c);
         if area.is_nan() || area <= 0.0 {
             return f64::INFINITY;
@@ -136,7 +137,7 @@ impl Clipper<'_> {
 
     /// The distance of the middle of a corner's triangle from the surface.
     fn middle(&self, k: usize) -> f64 {
-        let [a, b, c] = [self.previous[k], k, self.next[k]].map(|k| self.places[k]);
+        let [a, b, c] = [self.previous[k], k, self.next[k]].each(|k| self.places[k]);
         self.figures.distance(self.surface, axes(|i| (a[i] + b[i] + c[i]) / 3.0))
     }
 }

@@ -5,6 +5,7 @@
 use super::leaves::{Leaf, Leaves};
 use crate::error::Error;
 use crate::lattice::Cell;
+use crate::lattice::Each;
 
 /// A cell with its leaf.
 #[derive(Debug, Clone, Copy)]
@@ -60,7 +61,7 @@ impl Leaves {
             self.across_face([root, outside], axis, visitor)?;
             for place in 0..4 {
                 self.around_edge(
-                    [0, 1, 2, 3].map(|q| if q == place { root } else { outside }),
+                    [0, 1, 2, 3].each(|q| if q == place { root } else { outside }),
                     axis,
                     visitor,
                 )?;
@@ -92,7 +93,7 @@ impl Leaves {
             }
             for half in 0..2 {
                 let around =
-                    [0, 1, 2, 3].map(|q| self.child(&at, half << axis | (q & 1) << u | (q >> 1) << v));
+                    [0, 1, 2, 3].each(|q| self.child(&at, half << axis | (q & 1) << u | (q >> 1) << v));
                 self.around_edge(around, axis, visitor)?;
             }
         }
@@ -108,7 +109,7 @@ impl Leaves {
             let small = usize::from(sides[1].size() > sides[0].size());
             let cell = sides[small].cell;
             let log = self.depth - cell.level;
-            let mut at = cell.at.map(|c| c << log);
+            let mut at = cell.at.each(|c| c << log);
             if small == 0 {
                 at[axis] += 1 << log;
             }
@@ -148,7 +149,7 @@ impl Leaves {
                 (0..4).fold(0, |best, q| if around[q].size() > around[best].size() { q } else { best });
             let cell = around[small].cell;
             let log = self.depth - cell.level;
-            let mut at = cell.at.map(|c| c << log);
+            let mut at = cell.at.each(|c| c << log);
             // A cell below the edge has the edge at its upper side.
             at[u] += u32::from(small & 1 == 0) << log;
             at[v] += u32::from(small >> 1 == 0) << log;
@@ -156,7 +157,7 @@ impl Leaves {
         }
         for half in 0..2 {
             let children = [0, 1, 2, 3]
-                .map(|q| self.child(&around[q], half << axis | (1 - (q & 1)) << u | (1 - (q >> 1)) << v));
+                .each(|q| self.child(&around[q], half << axis | (1 - (q & 1)) << u | (1 - (q >> 1)) << v));
             self.around_edge(children, axis, visitor)?;
         }
         Ok(())

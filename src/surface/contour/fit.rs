@@ -1,6 +1,7 @@
 //! The vertex that represents the surface in a cell: the point where the surface's planes meet.
 
 use super::triangles::{Place, dot};
+use crate::lattice::Each;
 use crate::lattice::axes;
 use crate::surface::qef::{Qef, eigen};
 
@@ -61,7 +62,7 @@ pub(super) fn fit(places: &[Place], space: &Space, allowed: f64, slack: f64) -> 
     if planes.is_empty() {
         return None;
     }
-    let mean = sum.map(|c| c / places.len() as f64);
+    let mean = sum.each(|c| c / places.len() as f64);
     let mut matrix = [0.0; 6];
     let mut rest = [0.0; 3];
     for &(n, offset) in planes {
@@ -94,7 +95,7 @@ pub(super) fn fit(places: &[Place], space: &Space, allowed: f64, slack: f64) -> 
 pub(super) fn best(places: impl Iterator<Item = Place>, space: &Space) -> [f64; 3] {
     let mut qef = Qef::default();
     for place in places {
-        let own = space.inward(place.at).map(|c| c.clamp(0.0, 1.0));
+        let own = space.inward(place.at).each(|c| c.clamp(0.0, 1.0));
         qef.add(own, Some(place.normal).filter(|normal| *normal != [0.0; 3]));
     }
     space.outward(qef.solve().at)

@@ -7,6 +7,7 @@ use super::sheets::Inside;
 use super::triangles::{Place, dot};
 use crate::control::Job;
 use crate::error::Error;
+use crate::lattice::Each;
 use crate::lattice::exact::sqrt;
 use crate::lattice::{Cell, MAX_DEPTH, axes};
 use crate::octree::Tag;
@@ -82,7 +83,7 @@ impl<'g, 'c, W: Worker> Grower<'g, 'c, W> {
         let Some(tags) = self.probe.children(cell)? else { return Ok(false) };
         self.job.spend(1, size_of::<super::cells::Leaf>() * 8)?;
         self.splits += 1;
-        let first = self.cells.split(leaf, tags.map(kind))?;
+        let first = self.cells.split(leaf, tags.each(kind))?;
         for octant in 0..8 {
             self.grow(first + octant, parts / 8)?;
         }
@@ -217,7 +218,7 @@ impl<'g, 'c, W: Worker> Grower<'g, 'c, W> {
     /// and on further lines unless `by_edges` is set.
     fn fit(&mut self, cell: Cell, corners: u8, by_edges: bool) -> Result<Option<Fit>, Error> {
         let half = 1u32 << (self.cells.depth - cell.level);
-        let low = cell.at.map(|c| c * 2 * half);
+        let low = cell.at.each(|c| c * 2 * half);
         self.places.clear();
         let mut most = 0;
         for axis in 0..3 {
@@ -264,11 +265,11 @@ impl<'g, 'c, W: Worker> Grower<'g, 'c, W> {
 /// A slab of a cell in unit coordinates, with a unit normal.
 fn unit_slab(slab: &Slab, cell: Cell) -> Slab {
     let edge = 1.0 / f64::from(1u32 << cell.level);
-    let centre = cell.at.map(|c| (f64::from(c) + 0.5) * edge);
+    let centre = cell.at.each(|c| (f64::from(c) + 0.5) * edge);
     let length = sqrt(dot(slab.normal, slab.normal));
-    let normal = slab.normal.map(|c| c / length);
+    let normal = slab.normal.each(|c| c / length);
     let shift = dot(normal, centre);
-    let [inner, outer] = [slab.inner, slab.outer].map(|offset| offset / length * 0.5 * edge + shift);
+    let [inner, outer] = [slab.inner, slab.outer].each(|offset| offset / length * 0.5 * edge + shift);
     Slab { normal, inner, outer }
 }
 

@@ -23,6 +23,7 @@ mod walk;
 
 use crate::control::{Control, Job, WHOLE};
 use crate::error::Error;
+use crate::lattice::Each;
 use crate::lattice::{Affine, Frame, MAX_DEPTH, axes, valid};
 use crate::memory;
 use crate::mesh::TriangleMesh;
@@ -316,7 +317,7 @@ fn fresh(mesh: &TriangleMesh, known: &mut HashSet<[[u64; 3]; 3]>) -> Result<Vec<
     known.try_reserve(mesh.triangles().len())?;
     let vertices = mesh.vertices();
     let corners =
-        mesh.triangles().iter().map(|own| own.map(|vertex| vertices[vertex as usize].map(f64::to_bits)));
+        mesh.triangles().iter().map(|own| own.each(|vertex| vertices[vertex as usize].each(f64::to_bits)));
     memory::collected(corners.map(|corners| known.insert(corners)))
 }
 
@@ -346,7 +347,7 @@ fn places<W: Worker>(sheets: &Sheets, probe: &mut Probe<'_, W>) -> Result<Vec<Pl
     let mut places = memory::with_capacity(sheets.crossings.len())?;
     let mut spare = Vec::new();
     for crossing in &sheets.crossings {
-        let (axis, at) = (usize::from(crossing.axis), crossing.at.map(|c| 2 * c));
+        let (axis, at) = (usize::from(crossing.axis), crossing.at.each(|c| 2 * c));
         let length = 2 * crossing.length;
         places.push(probe.crossing(axis, at, length, crossing.starts_inside, &mut spare)?);
     }
@@ -389,7 +390,7 @@ impl Compared<'_> {
         }
         let mut doubtful = Vec::new();
         for triangle in 0..self.made.triangles.len() as u32 {
-            if self.points(triangle).any(|point| !known.contains(&point.map(f64::to_bits))) {
+            if self.points(triangle).any(|point| !known.contains(&point.each(f64::to_bits))) {
                 memory::push(&mut doubtful, triangle)?;
             }
         }
@@ -430,7 +431,7 @@ impl Compared<'_> {
                 let mut near = memory::with_capacity(triangles.len())?;
                 for &triangle in triangles {
                     let mut is_near = true;
-                    let new = self.points(triangle).filter(|point| !seen.contains(&point.map(f64::to_bits)));
+                    let new = self.points(triangle).filter(|point| !seen.contains(&point.each(f64::to_bits)));
                     for point in new {
                         let Some(nearest) = probe.nearest(point)? else { break };
                         let off = axes(|k| nearest[k] - point[k]);
@@ -451,7 +452,7 @@ impl Compared<'_> {
             known.try_reserve(4)?;
             leaves.try_reserve(4)?;
             if is_near {
-                known.extend(self.points(triangle).map(|point| point.map(f64::to_bits)));
+                known.extend(self.points(triangle).map(|point| point.each(f64::to_bits)));
             } else {
                 leaves.extend(self.around(triangle));
             }
@@ -463,7 +464,7 @@ impl Compared<'_> {
     /// that lead to a greater vertex number. (So each side is compared once.)
     fn points(&self, triangle: u32) -> impl Iterator<Item = [f64; 3]> {
         let own = self.made.triangles[triangle as usize];
-        let [a, b, c] = own.map(|vertex| self.made.vertices[vertex as usize]);
+        let [a, b, c] = own.each(|vertex| self.made.vertices[vertex as usize]);
         let sides = [(a, b), (b, c), (c, a)].into_iter().enumerate();
         let sides = sides.filter(move |&(k, _)| own[k] <= own[(k + 1) % 3]);
         let middles = sides.map(|(_, (p, q))| axes(|k| 0.5 * (p[k] + q[k])));
@@ -496,7 +497,7 @@ fn vertices(cells: &Cells, sheets: &Sheets, places: &[Place]) -> Result<Vec<[f64
             return vertex;
         }
         let edge = 1.0 / f64::from(1u32 << leaf.cell.level);
-        let space = Space { low: leaf.cell.at.map(|c| f64::from(c) * edge), edge };
+        let space = Space { low: leaf.cell.at.each(|c| f64::from(c) * edge), edge };
         let own = &list[first[k] as usize..first[k + 1] as usize];
         best(own.iter().map(|&crossing| places[crossing as usize]), &space)
     }))
@@ -508,7 +509,7 @@ fn assemble(made: &Triangles, frame: &Frame) -> Result<TriangleMesh, Error> {
     let mut kept = memory::with_capacity(made.vertices.len())?;
     let mut triangles = memory::with_capacity(made.triangles.len())?;
     for triangle in &made.triangles {
-        triangles.push(triangle.map(|vertex| {
+        triangles.push(triangle.each(|vertex| {
             let number = &mut numbers[vertex as usize];
             if *number == NONE {
                 *number = kept.len() as u32;

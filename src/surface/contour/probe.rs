@@ -4,6 +4,7 @@ use super::sheets::Inside;
 use super::triangles::{Place, dot};
 use crate::control::Control;
 use crate::error::Error;
+use crate::lattice::Each;
 use crate::lattice::exact::sqrt;
 use crate::lattice::{Cell, Frame, MAX_DEPTH, Ray, axes};
 use crate::memory;
@@ -89,7 +90,7 @@ impl<'c, W: Worker> Probe<'c, W> {
         Ok(self
             .trail
             .verdicts(cell.level)
-            .map(|verdicts| [0, 1, 2, 3, 4, 5, 6, 7].map(|octant: usize| verdicts[octant].tag())))
+            .map(|verdicts| [0, 1, 2, 3, 4, 5, 6, 7].each(|octant: usize| verdicts[octant].tag())))
     }
 
     /// The slabs of the surface in a cell that is not the universe.
@@ -100,7 +101,7 @@ impl<'c, W: Worker> Probe<'c, W> {
 
     /// A lattice point in unit coordinates.
     pub(super) fn unit(&self, at: [u32; 3]) -> [f64; 3] {
-        at.map(|c| f64::from(c) * self.half)
+        at.each(|c| f64::from(c) * self.half)
     }
 
     /// The edge of the universe, in model units.
@@ -132,7 +133,7 @@ impl<'c, W: Worker> Probe<'c, W> {
             return Ok(());
         }
         let edge = 1.0 / f64::from(1u32 << cell.level);
-        let centre = cell.at.map(|c| (f64::from(c) + 0.5) * edge);
+        let centre = cell.at.each(|c| (f64::from(c) + 0.5) * edge);
         if let Some(point) = self.nearest(centre)? {
             return memory::push(found, point);
         }
@@ -174,7 +175,7 @@ impl<'c, W: Worker> Probe<'c, W> {
     fn cell(&self, unit: [f64; 3], level: u8) -> Cell {
         let cells = f64::from(1u32 << level);
         // (NaN becomes 0.)
-        Cell { level, at: unit.map(|c| (c * cells).clamp(0.0, cells - 1.0) as u32) }
+        Cell { level, at: unit.each(|c| (c * cells).clamp(0.0, cells - 1.0) as u32) }
     }
 
     /// Adds the crossings of the surface on a line along an axis between two lattice points, which are given
@@ -210,7 +211,7 @@ impl<'c, W: Worker> Probe<'c, W> {
     pub(super) fn middle(&mut self, cell: Cell, found: &mut Vec<Place>) -> Result<(), Error> {
         let edge = 1.0 / f64::from(1u32 << cell.level);
         for axis in 0..3 {
-            let mut start = cell.at.map(|c| (f64::from(c) + 0.5) * edge);
+            let mut start = cell.at.each(|c| (f64::from(c) + 0.5) * edge);
             start[axis] -= 0.5 * edge;
             self.rays(axis, start, edge, found)?;
         }
@@ -370,7 +371,7 @@ impl<'c, W: Worker> Probe<'c, W> {
             for (end, sign) in ends.iter_mut().zip([-1.0, 1.0]) {
                 let mut beside = at;
                 beside[other] = (at[other] + sign * step).clamp(0.0, 1.0);
-                let reach = [at[axis] - 16.0 * step, at[axis] + 16.0 * step].map(|c| c.clamp(0.0, 1.0));
+                let reach = [at[axis] - 16.0 * step, at[axis] + 16.0 * step].each(|c| c.clamp(0.0, 1.0));
                 let mut low = beside;
                 low[axis] = reach[0];
                 let mut high = beside;
@@ -384,7 +385,7 @@ impl<'c, W: Worker> Probe<'c, W> {
         }
         let mut normal = [0.0; 3];
         (normal[axis], normal[u], normal[v]) = (1.0, -slopes[0], -slopes[1]);
-        let normal = if starts_inside { normal } else { normal.map(|c| -c) };
+        let normal = if starts_inside { normal } else { normal.each(|c| -c) };
         Ok(Some(unit_vector(normal)).filter(|normal| *normal != [0.0; 3]))
     }
 }
@@ -405,7 +406,7 @@ impl<W: Worker> Inside for Probe<'_, W> {
 fn unit_vector(vector: [f64; 3]) -> [f64; 3] {
     // (Products of very small or very large numbers underflow or overflow.)
     let most = vector.iter().fold(0.0, |most: f64, c| most.max(c.abs()));
-    let scaled = vector.map(|c| c / most);
-    let unit = scaled.map(|c| c / sqrt(dot(scaled, scaled)));
+    let scaled = vector.each(|c| c / most);
+    let unit = scaled.each(|c| c / sqrt(dot(scaled, scaled)));
     if unit.iter().all(|c| c.is_finite()) { unit } else { [0.0; 3] }
 }

@@ -9,6 +9,7 @@
 use super::cells::{Cells, Kind, OUTSIDE};
 use super::walk::{Edge, Face, Visitor, walk};
 use crate::error::{Error, MeshError};
+use crate::lattice::Each;
 use crate::memory;
 use alloc::vec::Vec;
 use hashbrown::HashMap;
@@ -48,7 +49,7 @@ impl Crossing {
 }
 
 fn key(axis: usize, at: [u32; 3]) -> u128 {
-    let [along, u, v] = [0, 1, 2].map(|step| u128::from(at[(axis + step) % 3]));
+    let [along, u, v] = [0, 1, 2].each(|step| u128::from(at[(axis + step) % 3]));
     (axis as u128) << 96 | u << 64 | v << 32 | along
 }
 
@@ -140,7 +141,7 @@ impl<I: Inside> Crossed<'_, I> {
         if *state & ASKED == 0 {
             // (Where an empty cell and a full one touch, the surface lies in their common corners.)
             let is_inside = match *state & (EMPTY | FULL) {
-                0 => self.inside.is_inside(corner.map(|c| 2 * c))?,
+                0 => self.inside.is_inside(corner.each(|c| 2 * c))?,
                 FULL => true,
                 _ => false,
             };
@@ -226,7 +227,7 @@ impl<I: Inside> Visitor for Joined<'_, I> {
             return Ok(());
         }
         // If there is a choice, the centre decides whether the inside or the outside is in one piece.
-        let mut centre = at.map(|c| 2 * c);
+        let mut centre = at.each(|c| 2 * c);
         centre[u] += length;
         centre[v] += length;
         let is_whole = count > 2 && self.inside.is_inside(centre)?;
@@ -283,7 +284,7 @@ impl Sheets {
         let mut parents = memory::collected(0..4 * self.crossings.len() as u32)?;
         for arc in &self.arcs {
             for leaf in arc.leaves {
-                let [a, b] = arc.crossings.map(|crossing| {
+                let [a, b] = arc.crossings.each(|crossing| {
                     let place = self.crossings[crossing as usize].place(leaf).unwrap_or(0);
                     root(&mut parents, 4 * crossing + place as u32)
                 });
@@ -318,7 +319,7 @@ impl Sheets {
     /// The sheets beside an arc.
     pub(super) fn beside(&self, arc: &Arc) -> [u32; 2] {
         let crossing = arc.crossings[0] as usize;
-        arc.leaves.map(|leaf| self.around[crossing][self.crossings[crossing].place(leaf).unwrap_or(0)])
+        arc.leaves.each(|leaf| self.around[crossing][self.crossings[crossing].place(leaf).unwrap_or(0)])
     }
 }
 

@@ -11,6 +11,7 @@
 
 use super::sheets::{NONE, Sheets};
 use crate::error::{Error, MeshError};
+use crate::lattice::Each;
 use crate::lattice::axes;
 use crate::lattice::exact::sqrt;
 use crate::memory;
@@ -110,7 +111,7 @@ impl Maker<'_> {
         let arc = &self.sheets.arcs[number as usize];
         let axis = usize::from(arc.axis);
         let (u, v) = ((axis + 1) % 3, (axis + 2) % 3);
-        let [p, q] = arc.crossings.map(|crossing| self.places[crossing as usize]);
+        let [p, q] = arc.crossings.each(|crossing| self.places[crossing as usize]);
         let middle = axes(|k| 0.5 * (p.at[k] + q.at[k]));
         let (a, b) = ([p.normal[u], p.normal[v]], [q.normal[u], q.normal[v]]);
         let determinant = a[0] * b[1] - a[1] * b[0];
@@ -185,7 +186,7 @@ impl Maker<'_> {
     /// `None` if neither is allowed, or both would make the quadrilateral fold.
     fn diagonal(&self, number: u32, ring: [u32; 4]) -> Option<bool> {
         let Place { at, normal } = self.places[number as usize];
-        let [a, b, c, d] = ring.map(|sheet| self.made.vertices[sheet as usize]);
+        let [a, b, c, d] = ring.each(|sheet| self.made.vertices[sheet as usize]);
         let is_free = |p: u32, q: u32| !self.edges.contains(&(p.min(q), p.max(q)));
         // The number of triangles that face the wrong way, the distance of the crossing, and the length of
         // the diagonal.

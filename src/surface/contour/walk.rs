@@ -5,6 +5,7 @@
 use super::cells::{Cells, OUTSIDE, Slot};
 use crate::error::Error;
 use crate::lattice::Cell;
+use crate::lattice::Each;
 
 /// A cell, split or not.
 #[derive(Debug, Clone, Copy)]
@@ -105,11 +106,11 @@ impl<V: Visitor> Walker<'_, V> {
         }
         for axis in 0..3 {
             for [u, v] in ROUND {
-                let sides = [0, 1].map(|a| self.child(at, axis, [a, u, v]));
+                let sides = [0, 1].each(|a| self.child(at, axis, [a, u, v]));
                 self.across_face(axis, sides)?;
             }
             for half in 0..2 {
-                let around = ROUND.map(|[u, v]| self.child(at, axis, [half, u, v]));
+                let around = ROUND.each(|[u, v]| self.child(at, axis, [half, u, v]));
                 self.around_edge(axis, around)?;
             }
         }
@@ -120,15 +121,15 @@ impl<V: Visitor> Walker<'_, V> {
         if !sides.iter().any(At::is_split) {
             let side = usize::from(sides[1].fineness() > sides[0].fineness());
             let (at, length) = self.place(sides[side].cell, [(axis, side == 0)]);
-            return self.visitor.face(&Face { axis, at, length, sides: sides.map(|at| at.leaf()) });
+            return self.visitor.face(&Face { axis, at, length, sides: sides.each(|at| at.leaf()) });
         }
         let touching = |side: usize, u: usize, v: usize| self.child(sides[side], axis, [1 - side, u, v]);
-        let pieces = ROUND.map(|[u, v]| [touching(0, u, v), touching(1, u, v)]);
+        let pieces = ROUND.each(|[u, v]| [touching(0, u, v), touching(1, u, v)]);
         // The edges in the face, along the next axis and along the axis after it.
         let along_u =
-            [0, 1].map(|u| [touching(0, u, 0), touching(0, u, 1), touching(1, u, 1), touching(1, u, 0)]);
+            [0, 1].each(|u| [touching(0, u, 0), touching(0, u, 1), touching(1, u, 1), touching(1, u, 0)]);
         let along_v =
-            [0, 1].map(|v| [touching(0, 0, v), touching(1, 0, v), touching(1, 1, v), touching(0, 1, v)]);
+            [0, 1].each(|v| [touching(0, 0, v), touching(1, 0, v), touching(1, 1, v), touching(0, 1, v)]);
         for piece in pieces {
             self.across_face(axis, piece)?;
         }
@@ -146,7 +147,7 @@ impl<V: Visitor> Walker<'_, V> {
             let [u, v] = ROUND[finest];
             let (at, length) =
                 self.place(around[finest].cell, [((axis + 1) % 3, u == 0), ((axis + 2) % 3, v == 0)]);
-            return self.visitor.edge(&Edge { axis, at, length, around: around.map(|at| at.leaf()) });
+            return self.visitor.edge(&Edge { axis, at, length, around: around.each(|at| at.leaf()) });
         }
         for half in 0..2 {
             let mut pieces = around;
@@ -161,7 +162,7 @@ impl<V: Visitor> Walker<'_, V> {
     /// The lower corner of a cell, at its upper side on some axes, and its edge, both in finest cells.
     fn place<const N: usize>(&self, cell: Cell, upper: [(usize, bool); N]) -> ([u32; 3], u32) {
         let log = self.cells.depth - cell.level;
-        let mut at = cell.at.map(|c| c << log);
+        let mut at = cell.at.each(|c| c << log);
         for (axis, is_upper) in upper {
             at[axis] += u32::from(is_upper) << log;
         }

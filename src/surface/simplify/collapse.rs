@@ -4,6 +4,7 @@ use super::links::{Links, NONE, Ring};
 use super::patch::Patch;
 use crate::control::Job;
 use crate::error::Error;
+use crate::lattice::Each;
 use crate::lattice::axes;
 use crate::memory;
 use crate::walk::Queue;
@@ -248,7 +249,7 @@ impl Marks {
     fn may_go(&mut self, links: &Links, ring: &Ring, onto: usize) -> bool {
         let vertices = &ring.vertices;
         let count = vertices.len();
-        let [target, next, before] = [0, 1, count - 1].map(|step| vertices[(onto + step) % count]);
+        let [target, next, before] = [0, 1, count - 1].each(|step| vertices[(onto + step) % count]);
         self.last = self.last.wrapping_add(1);
         if self.last == 0 {
             // All mark numbers have been used.

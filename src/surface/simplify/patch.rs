@@ -6,6 +6,7 @@
 //! *Simplification of surface mesh using Hausdorff envelope*, 2005, bound the same distance by cones.)
 
 use crate::error::Error;
+use crate::lattice::Each;
 use crate::lattice::axes;
 use crate::memory;
 use alloc::vec::Vec;
@@ -54,7 +55,7 @@ fn cross(a: [f64; 3], b: [f64; 3]) -> [f64; 3] {
 }
 
 fn scaled(a: [f64; 3], factor: f64) -> [f64; 3] {
-    a.map(|c| c * factor)
+    a.each(|c| c * factor)
 }
 
 impl Patch {
@@ -123,7 +124,7 @@ impl Patch {
     /// Adds a point of the first surface.
     pub(super) fn add(&mut self, point: [f64; 3]) -> Result<(), Error> {
         let way = axes(|k| point[k] - self.middle[k]);
-        let [east, north, up] = self.view.map(|axis| dot(axis, way));
+        let [east, north, up] = self.view.each(|axis| dot(axis, way));
         memory::push(&mut self.points, ([east, north], up))
     }
 
@@ -135,7 +136,7 @@ impl Patch {
         (1..count - 1).all(|step| {
             let k = (onto + step) % count;
             let (a, b) = (minus2(flat[k], target), minus2(flat[(k + 1) % count], target));
-            let longest = [a, b, minus2(a, b)].map(|side| side[0] * side[0] + side[1] * side[1]);
+            let longest = [a, b, minus2(a, b)].each(|side| side[0] * side[0] + side[1] * side[1]);
             let longest = longest.into_iter().fold(0.0, f64::max);
             let area = cross2(a, b);
             let rise = [heights[k] - heights[onto], heights[(k + 1) % count] - heights[onto]];

@@ -2,6 +2,7 @@
 
 use super::links::Links;
 use crate::error::Error;
+use crate::lattice::Each;
 use crate::lattice::axes;
 use crate::memory;
 use crate::mesh::MeshAttribute;
@@ -35,7 +36,7 @@ pub(super) fn mark(links: &mut Links, vertices: &[[f64; 3]], regions: Regions<'_
         if (a, b) != (c, d) {
             continue;
         }
-        let triangles = [one, other].map(|corner| corner as usize / 3);
+        let triangles = [one, other].each(|corner| corner as usize / 3);
         let [first, second] = triangles;
         let is_sharp = match regions {
             Regions::Numbered(numbers) => numbers[first] != numbers[second],
@@ -45,7 +46,7 @@ pub(super) fn mark(links: &mut Links, vertices: &[[f64; 3]], regions: Regions<'_
                 true
             }
             Regions::Alike(_) => {
-                let [m, n] = triangles.map(|triangle| normal(links.triangles[triangle], vertices));
+                let [m, n] = triangles.each(|triangle| normal(links.triangles[triangle], vertices));
                 let cosine: f64 = (0..3).map(|k| m[k] * n[k]).sum();
                 // (Triangles without area have no direction, and their sides are not edges.)
                 cosine < SMOOTH && m != [0.0; 3] && n != [0.0; 3]
@@ -62,9 +63,9 @@ pub(super) fn mark(links: &mut Links, vertices: &[[f64; 3]], regions: Regions<'_
 
 /// The unit normal of a triangle.
 fn normal(corners: [u32; 3], vertices: &[[f64; 3]]) -> [f64; 3] {
-    let [a, b, c] = corners.map(|vertex| vertices[vertex as usize]);
+    let [a, b, c] = corners.each(|vertex| vertices[vertex as usize]);
     let (u, v): ([f64; 3], [f64; 3]) = (axes(|k| b[k] - a[k]), axes(|k| c[k] - a[k]));
     let normal: [f64; 3] = axes(|k| u[(k + 1) % 3] * v[(k + 2) % 3] - u[(k + 2) % 3] * v[(k + 1) % 3]);
     let length = normal.iter().map(|c| c * c).sum::<f64>().sqrt();
-    if length > 0.0 { normal.map(|c| c / length) } else { [0.0; 3] }
+    if length > 0.0 { normal.each(|c| c / length) } else { [0.0; 3] }
 }

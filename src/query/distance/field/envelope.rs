@@ -10,6 +10,7 @@
 
 use super::sides::{NONE, Signed};
 use crate::error::Error;
+use crate::lattice::Each;
 use crate::memory;
 use alloc::vec::Vec;
 
@@ -32,7 +33,7 @@ impl Site {
     #[inline(always)]
     fn is_hidden(&self, before: &Site, behind: &Site) -> bool {
         let (a, b) = (i64::from(self.at - before.at), i64::from(behind.at - self.at));
-        let [u, v, w] = [before, self, behind].map(|site| i64::from(site.value));
+        let [u, v, w] = [before, self, behind].each(|site| i64::from(site.value));
         // The parabolas of the two others cross before either crosses this one.
         (a + b) * v - b * u - a * w >= 4 * a * b * (a + b)
     }

@@ -3,6 +3,7 @@
 use super::sets;
 use crate::control::Job;
 use crate::error::Error;
+use crate::lattice::Each;
 use crate::lattice::axes;
 use crate::lattice::morton;
 use crate::memory;
@@ -37,12 +38,12 @@ impl Range {
 
     /// Divides the range into blocks of this edge, or less at the upper sides.
     pub(super) fn blocks(self, edge: u32) -> impl Iterator<Item = Range> {
-        let counts = self.size().map(|size| size.div_ceil(edge));
+        let counts = self.size().each(|size| size.div_ceil(edge));
         let places = (0..counts[2])
             .flat_map(move |z| (0..counts[1]).flat_map(move |y| (0..counts[0]).map(move |x| [x, y, z])));
         places.map(move |place| {
             let min = axes(|axis| self.min[axis] + place[axis] * edge);
-            Range { min, max: min.map(|a| a + edge) }.within(&self)
+            Range { min, max: min.each(|a| a + edge) }.within(&self)
         })
     }
 }
@@ -57,7 +58,7 @@ pub(super) struct Mask {
 
 impl Mask {
     fn new(range: Range) -> Result<Mask, Error> {
-        let [x, y, z] = range.size().map(|edge| edge as usize);
+        let [x, y, z] = range.size().each(|edge| edge as usize);
         let row = z.div_ceil(64);
         Ok(Mask { range, row, bits: memory::filled(x * y * row, 0)? })
     }
@@ -198,7 +199,7 @@ impl Fill<'_, '_> {
             real &= real - 1;
             let place = morton::position(c);
             let corner = axes(|axis| at[axis] + (place[axis] << shift));
-            let whole = Range { min: corner, max: corner.map(|a| a + (1 << shift)) };
+            let whole = Range { min: corner, max: corner.each(|a| a + (1 << shift)) };
             match planes.tag(c) {
                 Tag::Branch => match self.windows.child(self.tree, index, planes.branch(), c, e + 1) {
                     Ok(child) => self.element(e + 1, child, corner)?,

@@ -19,6 +19,7 @@ use super::place::{NOWHERE, Place, Square};
 use super::stored::least;
 use crate::control::{Control, Job, WHOLE};
 use crate::error::Error;
+use crate::lattice::Each;
 use crate::lattice::axes;
 use crate::octree::view::OctreeRef;
 use crate::octree::{Octree, Tag};
@@ -105,7 +106,7 @@ impl OctreeRef<'_> {
         if count == 0 {
             return Ok(());
         }
-        let wanted = Range { min: min.map(|a| a + 1), max: max.map(|a| a + 1) };
+        let wanted = Range { min: min.each(|a| a + 1), max: max.each(|a| a + 1) };
         let seen = self.range_around(wanted)?;
         let scale = Scale::new(&self.frame);
         let seen_size = seen.size();
@@ -174,7 +175,7 @@ impl OctreeRef<'_> {
 
     /// Computes the entry of a single cell.
     fn entry_alone(&self, at: [u32; 3], scale: &Scale) -> Result<[f32; 2], Error> {
-        let place = Place::between_cells(&self.frame, at.map(|a| 2 * i64::from(a) + 1));
+        let place = Place::between_cells(&self.frame, at.each(|a| 2 * i64::from(a) + 1));
         let square = |square: Square| (square != NOWHERE).then(|| place.in_half_cells(square) as u64);
         let [outer, inner] = least(self, &place, false)?;
         if outer > 0 {

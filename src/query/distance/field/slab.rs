@@ -6,6 +6,7 @@ use super::rounding::Scale;
 use super::sides::{NONE, Signed, along};
 use crate::control::Job;
 use crate::error::Error;
+use crate::lattice::Each;
 use crate::lattice::axes;
 use crate::memory;
 use alloc::vec::Vec;
@@ -57,8 +58,8 @@ impl Slab<'_> {
         put: impl Fn(&mut [f32; 2], Option<u64>, bool),
     ) -> Result<(), Error> {
         let (seen, wanted) = (mask.range, self.wanted);
-        let [width, height, length] = seen.size().map(|edge| edge as usize);
-        let [nx, ny, _] = wanted.size().map(|edge| edge as usize);
+        let [width, height, length] = seen.size().each(|edge| edge as usize);
+        let [nx, ny, _] = wanted.size().each(|edge| edge as usize);
         let first = axes(|axis| (wanted.min[axis] - seen.min[axis]) as usize);
         let below = (self.first - seen.min[2]) as usize;
         let longest = width.max(height);

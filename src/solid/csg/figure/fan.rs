@@ -4,6 +4,7 @@
 //! another radius has each corner times the radius.
 
 use crate::error::Error;
+use crate::lattice::Each;
 use crate::lattice::exact::{Dyadic, sign_of_products};
 use crate::memory;
 use crate::solid::csg::Csg;
@@ -59,7 +60,7 @@ impl Fan {
 
     /// Returns the fan turned by half a turn.
     pub(crate) fn opposite(mut self) -> Fan {
-        self.corners.iter_mut().for_each(|corner| *corner = corner.map(|c| 0.0 - c));
+        self.corners.iter_mut().for_each(|corner| *corner = corner.each(|c| 0.0 - c));
         self
     }
 
@@ -89,7 +90,7 @@ impl Fan {
         }
         let mut parts = memory::with_capacity(self.corners.len())?;
         parts.extend(self.edges().map(|[a, b]| {
-            let [[ax, ay], [bx, by]] = [a, b].map(|corner| corner.map(Dyadic::new));
+            let [[ax, ay], [bx, by]] = [a, b].each(|corner| corner.each(Dyadic::new));
             // ρ times this scale is p × (b − a).
             let scale = &(&ax * &by) - &(&ay * &bx);
             let (along_x, along_y) = (&bx - &ax, &by - &ay);

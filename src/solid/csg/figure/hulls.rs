@@ -5,6 +5,7 @@
 
 use super::segment::{before, turn};
 use crate::error::Error;
+use crate::lattice::Each;
 use crate::memory;
 use alloc::vec::Vec;
 
@@ -115,7 +116,7 @@ impl Level {
         let (mut low, mut high) = (0, hull.len() - 1);
         while low < high {
             let middle = low.midpoint(high);
-            let [a, b] = [hull[middle], hull[middle + 1]].map(|corner| at(corner as usize));
+            let [a, b] = [hull[middle], hull[middle + 1]].each(|corner| at(corner as usize));
             if turn(base, [a, b]) > 0 { low = middle + 1 } else { high = middle }
         }
         hull[low] as usize

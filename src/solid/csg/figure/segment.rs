@@ -1,5 +1,6 @@
 //! Exact predicates on points and segments of the plane.
 
+use crate::lattice::Each;
 use crate::lattice::exact::{sign, sign_of_products, two_diff};
 
 /// Returns the exact sign of (b − a) × (d − c): 1 if the second direction is to the left of the first.
@@ -24,7 +25,7 @@ pub(crate) fn before(a: [f64; 2], b: [f64; 2]) -> bool {
 /// Returns whether two edges have a point in common.
 pub(crate) fn meet(e: [[f64; 2]; 2], f: [[f64; 2]; 2]) -> bool {
     let boxes_meet = (0..2).all(|axis| {
-        let [[a, b], [c, d]] = [e, f].map(|edge| edge.map(|end| end[axis]));
+        let [[a, b], [c, d]] = [e, f].each(|edge| edge.each(|end| end[axis]));
         a.min(b) <= c.max(d) && c.min(d) <= a.max(b)
     });
     let sides = |[a, b]: [[f64; 2]; 2], [p, q]: [[f64; 2]; 2]| turn([a, b], [a, p]) * turn([a, b], [a, q]);

@@ -7,6 +7,7 @@
 
 use super::segment::{before, meet, turn};
 use crate::error::Error;
+use crate::lattice::Each;
 use crate::memory;
 use alloc::collections::BTreeSet;
 use alloc::vec::Vec;
@@ -96,7 +97,7 @@ pub(crate) fn is_simple(corners: &[[f64; 2]]) -> Result<bool, Error> {
     let mut open: BTreeSet<Edge> = BTreeSet::new();
     for &corner in &order {
         let both = [edge((corner + count - 1) % count), edge(corner)];
-        let begins = both.map(|edge| edge.low == corners[corner]);
+        let begins = both.each(|edge| edge.low == corners[corner]);
         for (edge, _) in both.iter().zip(begins).filter(|(_, begins)| !begins) {
             // (An edge that is not found has changed its order with another edge.)
             if !open.remove(edge) {

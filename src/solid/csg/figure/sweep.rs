@@ -7,6 +7,7 @@
 use super::fan::Fan;
 use crate::error::Error;
 use crate::lattice::Affine;
+use crate::lattice::Each;
 use crate::lattice::exact::Dyadic;
 use crate::memory;
 use crate::solid::csg::primitive::slab;
@@ -54,15 +55,15 @@ impl Figure {
     /// and 2^256, and `min` less than `max`.
     pub(crate) fn rectangle(min: [f64; 2], max: [f64; 2]) -> Result<Figure, Error> {
         let sides = (0..2).flat_map(|axis| slab(axis, min[axis], max[axis]));
-        let extent = Some(Rectangle { min: min.map(Dyadic::new), max: max.map(Dyadic::new) });
+        let extent = Some(Rectangle { min: min.each(Dyadic::new), max: max.each(Dyadic::new) });
         Ok(Figure { csg: Csg::intersection_of(sides)?, core: extent.clone(), extent })
     }
 
     /// Returns the disc of a radius between 2^-256 and 2^256 around the origin.
     pub(crate) fn disc(radius: f64) -> Figure {
-        let [squares, linear] = [[-1.0, -1.0, 0.0], [0.0; 3]].map(|c| c.map(Dyadic::new));
+        let [squares, linear] = [[-1.0, -1.0, 0.0], [0.0; 3]].each(|c| c.each(Dyadic::new));
         let disc = HalfSpace::separable(squares, linear, Dyadic::new(radius).pow(2));
-        let [min, max] = [-radius, radius].map(|x| [x; 2].map(Dyadic::new));
+        let [min, max] = [-radius, radius].each(|x| [x; 2].each(Dyadic::new));
         let extent = Some(Rectangle { min, max });
         Figure { csg: disc.into(), extent, core: None }
     }
@@ -164,7 +165,7 @@ impl Figure {
         let (bottom, height) = (Dyadic::new(low), &Dyadic::new(high) - &Dyadic::new(low));
         // The scale at z times the height, [constant, factor of z], along both axes. It is not negative
         // between the heights.
-        let scales = scale.map(|scale| {
+        let scales = scale.each(|scale| {
             let slope = &Dyadic::new(scale) - &Dyadic::new(1.0);
             [&height - &(&slope * &bottom), slope]
         });
@@ -228,7 +229,7 @@ impl Figure {
         })?;
         let radius = if is_mirrored { -&min[0] } else { max[0].clone() };
         let Some(around) = Rectangle::around(&fan, &radius) else { return Ok(Csg::empty()) };
-        let [[a, b], [c, d]] = [around.min.each_ref().map(down), around.max.map(up)];
+        let [[a, b], [c, d]] = [around.min.each_ref().each(down), around.max.each(up)];
         let wedge = fan.wedge()?.unwrap_or_else(Csg::everything);
         Ok(Csg::intersection_of([solid, wedge])?.within([a, b, down(&min[1])], [c, d, up(max[1].clone())]))
     }
@@ -260,7 +261,7 @@ impl Figure {
                         let conic = match &*half_space.0 {
                             Surface::Plane(plane) => {
                                 // Like a conic, times w².
-                                let [x, y, _, one] = map.linear(plane).map(|c| &c * &map.w);
+                                let [x, y, _, one] = map.linear(plane).each(|c| &c * &map.w);
                                 [Dyadic::zero(), Dyadic::zero(), Dyadic::zero(), x, y, one]
                             }
                             Surface::Quadric(coefficients) => {
@@ -311,12 +312,12 @@ fn taper([xx, yy, xy, x, y, one]: Conic, height: &Dyadic, scales: &[[Dyadic; 2];
     if is_linear && (y.is_zero() || x.is_zero() || p == q) {
         // x h + y h + p ≥ 0.
         let scale = if y.is_zero() { p } else { q };
-        let [constant, z] = scale.each_ref().map(|c| &one * c);
+        let [constant, z] = scale.each_ref().each(|c| &one * c);
         return Ok(HalfSpace::linear([x, y, z, constant]).into());
     }
     let pq = |c: &Dyadic| -> [Dyadic; 3] {
         let middle = &(&p[0] * &q[1]) + &(&p[1] * &q[0]);
-        [&p[0] * &q[0], middle, &p[1] * &q[1]].map(|k| &k * c)
+        [&p[0] * &q[0], middle, &p[1] * &q[1]].each(|k| &k * c)
     };
     let [constant, z, zz] = pq(&one);
     if is_linear {
@@ -331,7 +332,7 @@ fn taper([xx, yy, xy, x, y, one]: Conic, height: &Dyadic, scales: &[[Dyadic; 2];
         );
     }
     // (xx + yy + xy) h² + (x + y) h p + p² ≥ 0: a cone.
-    let [xx, yy, xy] = [xx, yy, xy].map(|c| &(&c * height) * height);
+    let [xx, yy, xy] = [xx, yy, xy].each(|c| &(&c * height) * height);
     let c = [xx, yy, zz, xy, &y * &p[1], &x * &p[1], &x * &p[0], &y * &p[0], z, constant];
     Ok(HalfSpace::exactly(c).into())
 }
@@ -353,7 +354,7 @@ fn revolve([xx, yy, xy, x, y, one]: Conic) -> Result<Csg, Error> {
     let square = x.pow(2);
     let inward = x.sign() < 0;
     let signed = |c: Dyadic| if inward { -&c } else { c };
-    let squares = [square.clone(), square, -&y.pow(2)].map(signed);
+    let squares = [square.clone(), square, -&y.pow(2)].each(signed);
     let linear = [zero(), zero(), signed(-&(&y * &one).shifted(1))];
     let squares = Csg::from(HalfSpace::separable(squares, linear, signed(-&one.pow(2))));
     if y.is_zero() {
@@ -409,21 +410,24 @@ impl Rectangle {
         let end = |axis: usize, pick: fn(f64, f64) -> f64| {
             &Dyadic::new(fan.corners().iter().map(|corner| corner[axis]).fold(0.0, pick)) * radius
         };
-        Rectangle { min: [0, 1].map(|axis| end(axis, f64::min)), max: [0, 1].map(|axis| end(axis, f64::max)) }
-            .proper()
+        Rectangle {
+            min: [0, 1].each(|axis| end(axis, f64::min)),
+            max: [0, 1].each(|axis| end(axis, f64::max)),
+        }
+        .proper()
     }
 
     fn hull(&self, other: &Rectangle) -> Rectangle {
         Rectangle {
-            min: [0, 1].map(|axis| (&self.min[axis]).min(&other.min[axis]).clone()),
-            max: [0, 1].map(|axis| (&self.max[axis]).max(&other.max[axis]).clone()),
+            min: [0, 1].each(|axis| (&self.min[axis]).min(&other.min[axis]).clone()),
+            max: [0, 1].each(|axis| (&self.max[axis]).max(&other.max[axis]).clone()),
         }
     }
 
     fn common(&self, other: &Rectangle) -> Option<Rectangle> {
         Rectangle {
-            min: [0, 1].map(|axis| (&self.min[axis]).max(&other.min[axis]).clone()),
-            max: [0, 1].map(|axis| (&self.max[axis]).min(&other.max[axis]).clone()),
+            min: [0, 1].each(|axis| (&self.min[axis]).max(&other.min[axis]).clone()),
+            max: [0, 1].each(|axis| (&self.max[axis]).min(&other.max[axis]).clone()),
         }
         .proper()
     }
@@ -464,14 +468,14 @@ impl Rectangle {
             }
             sum
         };
-        Rectangle { min: rows.map(|row| limit(row, false)), max: rows.map(|row| limit(row, true)) }
+        Rectangle { min: rows.each(|row| limit(row, false)), max: rows.each(|row| limit(row, true)) }
     }
 
     /// Returns the part of a solid between two heights. Between them the solid must lie over the rectangle.
     fn between(&self, solid: Csg, low: f64, high: f64) -> Result<Csg, Error> {
         let [floor, ceiling] = slab(2, low, high);
         let [[x, y], [u, v]] =
-            [self.min.each_ref().map(down), self.max.each_ref().map(|max| up(max.clone()))];
+            [self.min.each_ref().each(down), self.max.each_ref().each(|max| up(max.clone()))];
         Ok(Csg::intersection_of([solid, floor, ceiling])?.within([x, y, low], [u, v, high]))
     }
 }
@@ -498,7 +502,7 @@ fn direction(degrees: f64) -> [f64; 2] {
     if libm::trunc(eighths) == eighths {
         let index = (eighths as i32).rem_euclid(8);
         return [[1, 0], [1, 1], [0, 1], [-1, 1], [-1, 0], [-1, -1], [0, -1], [1, -1]][index as usize]
-            .map(f64::from);
+            .each(f64::from);
     }
     let (sin, cos) = libm::sincos(turned.to_radians());
     [cos, sin]

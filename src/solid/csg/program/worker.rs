@@ -7,6 +7,7 @@ use super::kleene::Kleene;
 use super::word::{Op, Word};
 use crate::error::Error;
 use crate::lattice::Cell;
+use crate::lattice::Each;
 use crate::memory;
 use crate::octree::Tag;
 use crate::solid::ErasedPart;
@@ -318,7 +319,7 @@ impl Scratch {
             return Ok(verdicts);
         }
         let cells = self.cells(program, part, Ask::Split(cell))?;
-        Ok(OCTANTS.map(|k| cells.kleene.verdict(k.into(), cells.parts[k as usize])))
+        Ok(OCTANTS.each(|k| cells.kleene.verdict(k.into(), cells.parts[k as usize])))
     }
 
     /// Returns the eight cells of the query, from the words of a part.
@@ -523,7 +524,7 @@ impl Scratch {
                         }
                     };
                     let answer = Answer { solid, height, verdicts };
-                    let kleene = Kleene::of_tags(answer.verdicts.map(|verdict| verdict.tag()));
+                    let kleene = Kleene::of_tags(answer.verdicts.each(|verdict| verdict.tag()));
                     memory::push(answers, answer)?;
                     kleene.complemented(complement)
                 }

@@ -3,6 +3,7 @@
 
 use crate::error::Error;
 use crate::lattice::Cell;
+use crate::lattice::Each;
 use crate::memory;
 use alloc::vec::Vec;
 use hashbrown::HashMap;
@@ -41,7 +42,7 @@ impl Known {
         self.is_there.fill(false);
         self.of_mesh.clear();
         for (triangle, &surface) in triangles.iter().zip(surfaces) {
-            let mut corners = triangle.map(|v| vertices[v as usize].map(f64::to_bits));
+            let mut corners = triangle.each(|v| vertices[v as usize].each(f64::to_bits));
             let first = (0..3).fold(0, |best, k| if corners[k] < corners[best] { k } else { best });
             corners.rotate_left(first);
             self.names.try_reserve(1)?;

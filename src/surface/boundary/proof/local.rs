@@ -1,6 +1,7 @@
 //! Expansions of a surface's function around a place.
 
 use super::super::figures::{Figures, dot, length, middle, minus};
+use crate::lattice::Each;
 use crate::lattice::axes;
 
 /// The rounding error, as a part of all terms.
@@ -67,11 +68,11 @@ impl Local {
     pub(super) fn new(figures: &Figures, surface: u32, centre: [f64; 3], reach: f64) -> Option<Local> {
         let (taylor, width, is_polynomial) = figures.near(surface, centre, reach)?;
         let f = taylor.f;
-        let [xx, yy, zz, xy, xz, yz] = f.squares.map(|c| c / (reach * reach));
+        let [xx, yy, zz, xy, xz, yz] = f.squares.each(|c| c / (reach * reach));
         let local = Local {
             centre,
             value: f.value,
-            gradient: f.gradient.map(|c| c / reach),
+            gradient: f.gradient.each(|c| c / reach),
             squares: [[xx, xy, xz], [xy, yy, yz], [xz, yz, zz]],
             error: f.error + width + ROUNDING * f.size(),
             is_polynomial,

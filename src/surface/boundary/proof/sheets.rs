@@ -13,6 +13,7 @@ use super::clip::clip;
 use super::local::{Local, Prism, magnitude};
 use super::truth::{Around, LEAST, cube};
 use crate::error::Error;
+use crate::lattice::Each;
 use crate::lattice::{Bounds, Cell, axes};
 use crate::memory;
 use crate::mesh::TriangleTree;
@@ -37,7 +38,7 @@ pub(super) struct Subject<'m> {
 
 impl Subject<'_> {
     pub(super) fn corners(&self, triangle: u32) -> [[f64; 3]; 3] {
-        self.triangles[triangle as usize].map(|v| self.vertices[v as usize])
+        self.triangles[triangle as usize].each(|v| self.vertices[v as usize])
     }
 
     /// The triangles of a surface that meet a box, and perhaps some beside it.
@@ -180,7 +181,7 @@ impl<'s> Sheet<'s> {
         };
         let (_, gradient) = self.figures.about(self.surface(), centre);
         let steep = length(gradient);
-        let normal = gradient.map(|c| c / steep);
+        let normal = gradient.each(|c| c / steep);
         if !normal.iter().all(|c| c.is_finite()) {
             return Ok(None);
         }
@@ -303,7 +304,7 @@ impl<'s> Sheet<'s> {
             let mut limit = limits[k];
             let changes = |before: bool| {
                 subsets(unknown & !limit.bit).any(|subset| {
-                    let [without, with] = [0, limit.bit].map(|bit| self.is_active(signs | subset | bit));
+                    let [without, with] = [0, limit.bit].each(|bit| self.is_active(signs | subset | bit));
                     without == before && with != before
                 })
             };
@@ -340,7 +341,7 @@ impl<'s> Sheet<'s> {
             if size.is_nan() || size < 0.1 {
                 return Ok(cut);
             }
-            up = up.map(|c| c / size);
+            up = up.each(|c| c / size);
             let wide: f64 = (0..2).map(|k| prism.half[k] * dot(prism.axes[k], up).abs()).sum();
             ahead = 2.2 * wide + 4.0 * self.tolerance;
         }
@@ -402,7 +403,7 @@ impl<'s> Sheet<'s> {
         seen.clear();
         seen.try_reserve(self.lists.found.len())?;
         seen.extend(self.lists.found.iter().map(|&number| {
-            let places = self.subject.corners(number).map(|p| long.place(p));
+            let places = self.subject.corners(number).each(|p| long.place(p));
             Seen { number, places, area: self.area(&places) }
         }));
         let direction = axes(|k| long.axes[0][k] * up[0] + long.axes[1][k] * up[1]);
@@ -422,7 +423,7 @@ impl<'s> Sheet<'s> {
     /// The area of a triangle seen along the normal. It is positive if the triangle faces in the same
     /// direction as the boundary there, and 0 if the triangle is so small that it covers nothing.
     fn area(&self, places: &[[f64; 3]; 3]) -> f64 {
-        let flat = places.map(|[u, v, _]| [u, v]);
+        let flat = places.each(|[u, v, _]| [u, v]);
         let area = turn(flat[0], flat[1], flat[2]);
         let size = length(minus(places[1], places[0])).max(length(minus(places[2], places[0])));
         match area.abs() > ROUNDING * size * size {
@@ -453,7 +454,7 @@ impl<'s> Sheet<'s> {
             if part.iter().any(|place| place[2].abs() > view.high) {
                 return Ok(None);
             }
-            is_covered |= *area > 0.0 && holds(places.map(|[u, v, _]| [u, v]), view.covered);
+            is_covered |= *area > 0.0 && holds(places.each(|[u, v, _]| [u, v]), view.covered);
             clip(part, cut, corner(first, -1.0), corner(first, 1.0))?;
             if part.len() >= 3 {
                 let Some(high) = view.height_over(long, part, cut)? else { return Ok(None) };
@@ -488,7 +489,7 @@ impl<'s> Sheet<'s> {
                     Ok(_) => false,
                     Err(_) => {
                         subject.surfaces[mate as usize] == surface
-                            && self.area(&subject.corners(mate).map(|p| long.place(p))) >= 0.0
+                            && self.area(&subject.corners(mate).each(|p| long.place(p))) >= 0.0
                     }
                 };
                 // Without limits, the part outside the cell does not matter: the part inside is convex, and
@@ -535,7 +536,7 @@ impl<'s> Sheet<'s> {
 
     /// Returns whether points of a box above or below a side may lie in the cell.
     fn is_in_cell(&mut self, long: &Prism, side: &[[f64; 3]; 2]) -> Result<bool, Error> {
-        let side = side.map(|[u, v, _]| long.point([u, v, 0.0]));
+        let side = side.each(|[u, v, _]| long.point([u, v, 0.0]));
         Ok(!self.clip_to_cell(&side, long)?.is_empty())
     }
 
@@ -549,7 +550,7 @@ impl<'s> Sheet<'s> {
         kept: &[Kept],
         signs: u8,
     ) -> f64 {
-        let ends = side.map(|place| long.point(place));
+        let ends = side.each(|place| long.point(place));
         let reach = |kept: &Kept| {
             let [_, most] = kept.limit.function.over(&ends);
             (most + kept.limit.function.error() + high * kept.askew * view.slope) / kept.slope
@@ -619,7 +620,7 @@ impl View {
         let mut tall = *prism;
         tall.half[2] = tall.half[2].max(2.0 * tolerance);
         let slope = local.slopes(normal, &tall)[0];
-        let sideways = [0, 1].map(|k| magnitude(local.slopes(prism.axes[k], &tall)));
+        let sideways = [0, 1].each(|k| magnitude(local.slopes(prism.axes[k], &tall)));
         let steep = sideways[0].hypot(sideways[1]) / slope;
         (slope > 0.0 && prism.half[2] <= reach).then_some(View {
             local,
@@ -714,7 +715,7 @@ fn frame(normal: [f64; 3], about: [f64; 3]) -> [[f64; 3]; 3] {
         first = level(UNITS[least], normal);
     }
     let size = length(first);
-    let first = first.map(|c| c / size);
+    let first = first.each(|c| c / size);
     let second =
         axes(|k| normal[(k + 1) % 3] * first[(k + 2) % 3] - normal[(k + 2) % 3] * first[(k + 1) % 3]);
     [first, second, normal]
@@ -732,7 +733,7 @@ fn holds([a, b, c]: [[f64; 2]; 3], point: [f64; 2]) -> bool {
 
 /// A corner of a rectangle, with an unbounded height.
 fn corner([centre, half]: [[f64; 2]; 2], sign: f64) -> [f64; 3] {
-    let [u, v] = [0, 1].map(|k| centre[k] + sign * (half[k] + ROUNDING));
+    let [u, v] = [0, 1].each(|k| centre[k] + sign * (half[k] + ROUNDING));
     [u, v, sign * f64::MAX]
 }
 
@@ -753,5 +754,5 @@ fn within(ends: [[f64; 3]; 2], [centre, half]: [[f64; 2]; 2]) -> Option<[[f64; 3
         first = first.max(a.min(b));
         last = last.min(a.max(b));
     }
-    (first <= last).then(|| [first, last].map(|t| axes(|k| ends[0][k] + t * way[k])))
+    (first <= last).then(|| [first, last].each(|t| axes(|k| ends[0][k] + t * way[k])))
 }

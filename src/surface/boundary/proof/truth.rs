@@ -5,6 +5,7 @@ use super::super::leaves::{Leaf, Leaves, OpenLeaf};
 use super::clip::clip;
 use super::local::Local;
 use crate::error::Error;
+use crate::lattice::Each;
 use crate::lattice::{Cell, axes};
 use crate::memory;
 use crate::solid::OpenSurfaces;
@@ -26,7 +27,7 @@ impl Around {
     }
 
     pub(super) fn grown(&self, by: f64) -> Around {
-        Around { low: self.low.map(|c| c - by), high: self.high.map(|c| c + by) }
+        Around { low: self.low.each(|c| c - by), high: self.high.each(|c| c + by) }
     }
 
     pub(super) fn centre(&self) -> [f64; 3] {
@@ -55,8 +56,8 @@ impl Around {
 /// The cube of a cell.
 pub(super) fn cube(cell: Cell) -> Around {
     let size = 1.0 / f64::from(1u32 << cell.level);
-    let low: [f64; 3] = cell.at.map(|c| f64::from(c) * size);
-    Around { low, high: low.map(|c| c + size) }
+    let low: [f64; 3] = cell.at.each(|c| f64::from(c) * size);
+    Around { low, high: low.each(|c| c + size) }
 }
 
 /// The solid as its leaves describe it.

@@ -8,6 +8,7 @@ use super::clip::clip;
 use super::local::Local;
 use super::truth::{Around, Near, Truth, cube};
 use crate::error::Error;
+use crate::lattice::Each;
 use crate::lattice::{Cell, axes};
 use crate::memory;
 use alloc::vec::Vec;
@@ -226,7 +227,7 @@ impl<'t> Witnesses<'t> {
                 let sign = [0.0, 1.0, -1.0][choice / 3usize.pow(k as u32) % 3];
                 if sign != 0.0 {
                     let steep = local.steepness();
-                    rows[count] = local.gradient().map(|c| sign * c / steep);
+                    rows[count] = local.gradient().each(|c| sign * c / steep);
                     // The distance of the part from the wanted side.
                     let wrong = if sign > 0.0 { -low } else { *high };
                     let flattest = part.iter().fold(steep, |least, &p| least.min(local.steepness_at(p)));
@@ -238,7 +239,7 @@ impl<'t> Witnesses<'t> {
             // The last length is for slivers in neighbouring cells, whose sides are hidden by rounding.
             let far = ASIDE * self.tolerance / length(step).max(SLACK);
             for longer in [LONGER, 1.25 * LONGER, LONGER + far] {
-                let step = step.map(|c| c * longer);
+                let step = step.each(|c| c * longer);
                 let long = length(step);
                 if long <= self.longest() {
                     memory::push(&mut self.steps, (long, step))?;
@@ -290,7 +291,8 @@ impl<'t> Witnesses<'t> {
         let mut known = [false; 2];
         // (Points at opposite ends come one after the other.)
         for k in (0..27).map(|k| if k % 2 == 0 { k / 2 } else { 26 - k / 2 }) {
-            let point: [f64; 3] = axes(|i| centre[i] + half * ([1, 3, 9].map(|p| k / p % 3)[i] as f64 - 1.0));
+            let point: [f64; 3] =
+                axes(|i| centre[i] + half * ([1, 3, 9].each(|p| k / p % 3)[i] as f64 - 1.0));
             self.near.place(self.truth, Around::of(&[point]))?;
             if let Some(inside) = self.near.of(self.truth, &[point])? {
                 known[usize::from(inside)] = true;
