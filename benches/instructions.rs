@@ -105,7 +105,7 @@ const WORKLOADS: [(&str, Workload); 24] = [
     }),
     ("mesh out: contour of a plate", || {
         let plate = plate();
-        work(move || contour(&plate, &frame(), 0.05, &one()))
+        work(move || contour(&plate, &frame().with_depth(6).unwrap(), 0.05, &one()))
     }),
     ("file: write, read and verify", || {
         let tree = stored(&torus(0.0));

@@ -1,11 +1,11 @@
-//! The program, the C interface and the Python interface compile the same kernel: their dependencies have the
+//! The program, the C interface, the Python interface and the benchmarks compile the same kernel: their dependencies have the
 //! same features, so that cargo compiles the kernel once, and every user computes with the same instructions.
 
 use std::collections::{BTreeMap, BTreeSet};
 use std::path::Path;
 use std::process::Command;
 
-const MEMBERS: [&str; 3] = ["leafless-cli", "leafless-capi", "leafless-python"];
+const MEMBERS: [&str; 4] = ["leafless-cli", "leafless-capi", "leafless-python", "leafless-benches"];
 
 /// Returns the crates that cargo compiles for a package, and the features of each.
 fn features(arguments: &[&str]) -> BTreeMap<String, String> {
