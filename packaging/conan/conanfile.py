@@ -42,11 +42,11 @@ class Leafless(ConanFile):
             self.run(f"cargo {command}", cwd=self.source_folder)
 
     def build(self):
-        self._cargo("build --release --package leafless-capi")
+        self._cargo("build --profile shipped --package leafless-capi")
 
     def package(self):
         only = "shared" if self.options.shared else "static"
-        self._cargo(f'run --release --package leafless-capi -- --prefix "{self.package_folder}" --only {only}')
+        self._cargo(f'run --profile shipped --package leafless-capi -- --prefix "{self.package_folder}" --only {only}')
 
     def package_info(self):
         self.cpp_info.libs = ["leafless"]

@@ -11,7 +11,7 @@ endif()
 
 vcpkg_execute_required_process(
   COMMAND ${CMAKE_COMMAND} -E env "CARGO_TARGET_DIR=${CURRENT_BUILDTREES_DIR}/cargo"
-    "${CARGO}" run --release --package leafless-capi --
+    "${CARGO}" run --profile shipped --package leafless-capi --
     --prefix "${CURRENT_PACKAGES_DIR}" --cmakedir "share/${PORT}" --only "${only}"
   WORKING_DIRECTORY "${CMAKE_CURRENT_LIST_DIR}/../.."
   LOGNAME "install-${TARGET_TRIPLET}")
