@@ -142,11 +142,13 @@ impl Kit {
         }
         output(&mut command)?;
         // The library needs the libraries that the standard library needs.
-        let source = self.folder("native").join("empty.rs");
+        // (Other processes may be at it, too.)
+        let native = self.folder(&format!("native/{}", std::process::id()));
+        let source = native.join("empty.rs");
         std::fs::write(&source, "").map_err(|error| error.to_string())?;
         let mut rustc = self.rust("rustc");
         rustc.args(["--crate-type", "staticlib", "--print", "native-static-libs", "--out-dir"]);
-        let (_, told) = output(rustc.arg(self.folder("native")).arg(source))?;
+        let (_, told) = output(rustc.arg(native).arg(source))?;
         let list = told.lines().find_map(|line| line.split_once("native-static-libs: "));
         self.native_libraries = list.ok_or("rustc names no native libraries")?.1.trim().into();
         let (library, name) =

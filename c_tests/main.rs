@@ -365,6 +365,19 @@ fn threads() {
     run("threads", CPP17, Link::Shared, &[]);
 }
 
+/// The program, the C libraries and Python give the same bits: see `tests/same_bits`.
+#[test]
+fn same_bits() {
+    let folder = root().join("tests/same_bits");
+    let files = ["spindle.off", "shard.off"].map(|name| folder.join(name).to_str().unwrap().to_string());
+    let ends = |text: &str| text.split_whitespace().map(|end| end.parse().unwrap()).collect::<Vec<f64>>();
+    let expected = ends(&text("tests/same_bits/answers.txt"));
+    for link in [Link::Static, Link::Shared] {
+        let told = run("same_bits", C99, link, &[&files[0], &files[1]]);
+        assert_eq!(ends(&told), expected, "{told}");
+    }
+}
+
 /// The mistakes of a careless host.
 #[test]
 fn attacks() {

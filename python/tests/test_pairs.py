@@ -1,5 +1,7 @@
 """Queries of two solids: overlap, distance and deviation, one by one and under many placements; surfaces."""
 
+import pathlib
+
 import numpy as np
 import pytest
 
@@ -229,3 +231,11 @@ def test_simplified_meshes_add_up_what_they_are_off():
     assert np.abs(np.linalg.norm(points, axis=1) - 1).max() <= report.deviation
     # For a mesh from plain arrays no deviation is known.
     assert lf.simplify(lf.Mesh(first.vertices, first.faces), 0.02).surface_report.from_mesh
+
+
+def test_same_bits():
+    """The program, the C libraries and Python give the same bits: see tests/same_bits of the repository."""
+    folder = pathlib.Path(__file__).parents[2] / "tests" / "same_bits"
+    lower, upper = map(float, (folder / "answers.txt").read_text().split())
+    found = lf.clearance(lf.open(folder / "spindle.off"), lf.open(folder / "shard.off"), tolerance=32e-9).distance
+    assert (found.lower, found.upper) == (lower, upper)

@@ -23,6 +23,8 @@ fn reader() -> Command {
     static READER: OnceLock<PathBuf> = OnceLock::new();
     let path = READER.get_or_init(|| {
         let program = Path::new(env!("CARGO_TARGET_TMPDIR")).join("reader");
+        // (Another test program may be running it.)
+        let made = program.with_extension(std::process::id().to_string());
         let compiler = std::env::var_os("CC").unwrap_or("cc".into());
         let compiled = Command::new(compiler)
             .args([
@@ -35,11 +37,12 @@ fn reader() -> Command {
                 "-Werror",
                 "-o",
             ])
-            .arg(&program)
+            .arg(&made)
             .arg(folder().join("reader.c"))
             .status()
             .expect("a C compiler is needed: install one, or name it in CC");
         assert!(compiled.success(), "reader.c does not compile");
+        std::fs::rename(made, &program).unwrap();
         program
     });
     Command::new(path)

@@ -1,5 +1,6 @@
-//! The program, the C interface, the Python interface and the benchmarks compile the same kernel: their dependencies have the
-//! same features, so that cargo compiles the kernel once, and every user computes with the same instructions.
+//! The program, the C interface, the Python interface and the benchmarks compile the same kernel: their
+//! dependencies have the same features, so that cargo compiles the kernel once, and every user computes with
+//! the same instructions.
 
 use std::collections::{BTreeMap, BTreeSet};
 use std::path::Path;

@@ -20,7 +20,9 @@ use leafless::op::{
     DexelOptions, Zone, build_extended_shard, difference_of, intersection_of, join, octree_from_dexel_ends,
     octree_from_dexels, resolve, shard, union_of, xor_of,
 };
-use leafless::solid::{Adaptive, Band, Prepared, Samples, ShardedOctree, SplitCounter, Transform, VoxelGrid};
+use leafless::solid::{
+    Adaptive, Band, DynSolid, Prepared, Samples, ShardedOctree, SplitCounter, Transform, VoxelGrid,
+};
 use leafless::surface::DexelSolid;
 use leafless::voxel::{Symmetry, VoxelBoundary, VoxelOptions, VoxelRecords, VoxelRecordsRef, VoxelSolid};
 use leafless::{
@@ -617,6 +619,12 @@ const WAYS: &[Way] = &[
     },
     // ---- wrappers
     Way { name: "borrowed", through: &["&S"], make: |a| asked(&&a.tree), proven: SAME },
+    Way {
+        name: "borrowed as any solid",
+        through: &["dyn DynSolid + 's"],
+        make: |a| asked(&(&a.tree as &dyn DynSolid)),
+        proven: SAME,
+    },
     Way {
         name: "erased and placed",
         through: &["AnySolid", "solid/any.rs placed"],

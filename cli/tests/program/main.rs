@@ -19,6 +19,7 @@ mod place;
 mod proof_table;
 mod ray;
 mod render;
+mod same_bits;
 mod scenes;
 mod show;
 mod signals;

@@ -177,7 +177,8 @@ pub trait Solid: Send + Sync {
     }
 
     /// The shape under an affine map, if its kind can be moved more directly than by
-    /// [`Transform`](super::Transform). `None`, the default, means that it cannot. [`AnySolid::placed`] moves all kinds.
+    /// [`Transform`](super::Transform). `None`, the default, means that it cannot. [`AnySolid::placed`] moves
+    /// all kinds.
     ///
     /// # Errors
     /// If memory runs out, or an error of the kind of solid.
