@@ -86,47 +86,49 @@ fn value<'m>(manifest: &'m str, key: &str) -> Option<&'m str> {
 
 /// What cargo knows of the crates in the libraries. The question is put by a package that depends on the C
 /// interface alone: in the workspace cargo would first download what only tests and benchmarks need.
-fn metadata() -> Result<String, String> {
+fn metadata(asking: &Path) -> Result<String, String> {
     let root = Path::new(env!("CARGO_MANIFEST_DIR")).join("..");
-    let asking = env::temp_dir().join(format!("leafless-notices-{}", std::process::id()));
     let manifest = format!(
         "[package]\nname = \"leafless-notices\"\nedition = \"2024\"\n[lib]\npath = \"lib.rs\"\n\
          [dependencies]\nleafless-capi = {{ path = {:?} }}\n[workspace]\n",
         env!("CARGO_MANIFEST_DIR")
     );
-    let made = fs::create_dir_all(&asking)
+    let made = fs::create_dir_all(asking)
         .and_then(|()| fs::write(asking.join("lib.rs"), ""))
         .and_then(|()| fs::write(asking.join("Cargo.toml"), manifest))
         .and_then(|()| fs::copy(root.join("Cargo.lock"), asking.join("Cargo.lock")));
-    let told = made.map_err(|error| format!("{}: {error}", asking.display())).and_then(|_| {
-        let manifest = asking.join("Cargo.toml");
-        let manifest = manifest.to_str().ok_or(format!("{}: no UTF-8", manifest.display()))?;
-        told(
-            "cargo",
-            "CARGO",
-            &[
-                "metadata",
-                "--format-version=1",
-                "--filter-platform",
-                env!("LEAFLESS_TARGET"),
-                "--offline",
-                "--manifest-path",
-                manifest,
-            ],
-        )
-    });
-    let _ = fs::remove_dir_all(&asking);
-    told
+    made.map_err(|error| format!("{}: {error}", asking.display()))?;
+    let manifest = asking.join("Cargo.toml");
+    let manifest = manifest.to_str().ok_or(format!("{}: no UTF-8", manifest.display()))?;
+    told(
+        "cargo",
+        "CARGO",
+        &[
+            "metadata",
+            "--format-version=1",
+            "--filter-platform",
+            env!("LEAFLESS_TARGET"),
+            "--offline",
+            "--manifest-path",
+            manifest,
+        ],
+    )
 }
 
 /// The folder of each crate by its name and version.
 fn folders() -> Result<BTreeMap<(String, String), PathBuf>, String> {
-    let metadata = metadata()?;
+    let asking = env::temp_dir().join(format!("leafless-notices-{}", std::process::id()));
+    let metadata = metadata(&asking);
+    let _ = fs::remove_dir_all(&asking);
+    let metadata = metadata?;
     let mut folders = BTreeMap::new();
     // One field is all that is needed of the JSON. In its strings a backslash stands before quotes and
-    // backslashes.
+    // backslashes. (The package that asked is gone.)
     for rest in metadata.split("\"manifest_path\":\"").skip(1) {
         let path = PathBuf::from(rest.split('"').next().unwrap_or_default().replace("\\\\", "\\"));
+        if path.parent().and_then(Path::file_name) == asking.file_name() {
+            continue;
+        }
         let manifest = fs::read_to_string(&path).map_err(|error| format!("{}: {error}", path.display()))?;
         if let (Some(name), Some(version), Some(folder)) =
             (value(&manifest, "name"), value(&manifest, "version"), path.parent())
