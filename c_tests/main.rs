@@ -145,7 +145,7 @@ fn version() {
     run("version", C99, Link::Shared, &[env!("CARGO_PKG_VERSION")]);
 }
 
-// --- The functions
+// --- The functions (by the shared library, which links in a quarter of the time)
 // --------------------------------------------------------------------------------------
 
 #[test]
@@ -179,124 +179,124 @@ fn sources_and_sinks() {
 
 #[test]
 fn buffers() {
-    run("buffers", C99, Link::Static, &[]);
+    run("buffers", C99, Link::Shared, &[]);
 }
 
 #[test]
 fn arrays() {
-    run("arrays", C99, Link::Static, &[]);
+    run("arrays", C99, Link::Shared, &[]);
 }
 
 #[test]
 fn mesh_reports() {
-    run("mesh_report", C99, Link::Static, &[]);
+    run("mesh_report", C99, Link::Shared, &[]);
 }
 
 #[test]
 fn mesh_files() {
-    run("mesh_file", C99, Link::Static, &[]);
+    run("mesh_file", C99, Link::Shared, &[]);
 }
 
 #[test]
 fn written_meshes() {
-    run("mesh_write", C99, Link::Static, &[]);
+    run("mesh_write", C99, Link::Shared, &[]);
 }
 
 #[test]
 fn tridexels() {
-    run("tridexel", C99, Link::Static, &[]);
-    run("tridexel_surface", C99, Link::Static, &[]);
+    run("tridexel", C99, Link::Shared, &[]);
+    run("tridexel_surface", C99, Link::Shared, &[]);
 }
 
 #[test]
 fn volumes() {
-    run("volume", C99, Link::Static, &[]);
+    run("volume", C99, Link::Shared, &[]);
 }
 
 #[test]
 fn channels() {
-    run("channel", C99, Link::Static, &[]);
-    run("attribute", CPP17, Link::Static, &[]);
-    run("summary", C99, Link::Static, &[]);
-    run("mesh_attribute", C99, Link::Static, &[]);
+    run("channel", C99, Link::Shared, &[]);
+    run("attribute", CPP17, Link::Shared, &[]);
+    run("summary", C99, Link::Shared, &[]);
+    run("mesh_attribute", C99, Link::Shared, &[]);
 }
 
 #[test]
 fn surfaces() {
-    run("surface", C99, Link::Static, &[]);
-    run("contour", C99, Link::Static, &[]);
-    run("simplify", C99, Link::Static, &[]);
-    run("extract", CPP17, Link::Static, &[]);
+    run("surface", C99, Link::Shared, &[]);
+    run("contour", C99, Link::Shared, &[]);
+    run("simplify", C99, Link::Shared, &[]);
+    run("extract", CPP17, Link::Shared, &[]);
 }
 
 #[test]
 fn open_meshes() {
-    run("open_mesh", C99, Link::Static, &[]);
+    run("open_mesh", C99, Link::Shared, &[]);
 }
 
 #[test]
 fn polyhedra() {
-    run("polyhedron", C99, Link::Static, &[]);
+    run("polyhedron", C99, Link::Shared, &[]);
 }
 
 #[test]
 fn lazy() {
-    run("lazy", C99, Link::Static, &[]);
+    run("lazy", C99, Link::Shared, &[]);
 }
 
 #[test]
 fn scenes() {
-    run("scene", C99, Link::Static, &[]);
+    run("scene", C99, Link::Shared, &[]);
 }
 
 #[test]
 fn measures() {
-    run("measure", C99, Link::Static, &[]);
+    run("measure", C99, Link::Shared, &[]);
 }
 
 #[test]
 fn rays() {
-    run("rays", C99, Link::Static, &[]);
+    run("rays", C99, Link::Shared, &[]);
 }
 
 #[test]
 fn columns() {
-    run("columns", C99, Link::Static, &[]);
+    run("columns", C99, Link::Shared, &[]);
 }
 
 #[test]
 fn voxels() {
-    run("voxel", C99, Link::Static, &[]);
+    run("voxel", C99, Link::Shared, &[]);
 }
 
 #[test]
 fn pictures() {
-    run("picture", C99, Link::Static, &[]);
+    run("picture", C99, Link::Shared, &[]);
 }
 
 #[test]
 fn regions() {
-    run("region", C99, Link::Static, &[]);
+    run("region", C99, Link::Shared, &[]);
 }
 
 #[test]
 fn distances() {
-    run("distance", C99, Link::Static, &[]);
+    run("distance", C99, Link::Shared, &[]);
 }
 
 #[test]
 fn cells() {
-    run("cells", C99, Link::Static, &[]);
+    run("cells", C99, Link::Shared, &[]);
 }
 
 #[test]
 fn probes() {
-    run("probe", C99, Link::Static, &[]);
+    run("probe", C99, Link::Shared, &[]);
 }
 
 #[test]
 fn options() {
-    run("options", C99, Link::Static, &[]);
+    run("options", C99, Link::Shared, &[]);
 }
 
 /// Older and newer programs with structs that the library fills. The program tries every function that fills
@@ -319,43 +319,43 @@ fn outputs() {
         }
     }
     assert!(tried >= 20, "{tried}");
-    run("outputs", C99, Link::Static, &[]);
+    run("outputs", C99, Link::Shared, &[]);
 }
 
 #[test]
 fn callback() {
-    run("callback", C99, Link::Static, &[]);
+    run("callback", C99, Link::Shared, &[]);
 }
 
 #[test]
 fn solid_geometry() {
-    run("csg", C99, Link::Static, &[]);
+    run("csg", C99, Link::Shared, &[]);
 }
 
 #[test]
 fn extended() {
-    run("extended", C99, Link::Static, &[]);
+    run("extended", C99, Link::Shared, &[]);
 }
 
 #[test]
 fn shards() {
-    run("shards", C99, Link::Static, &[]);
+    run("shards", C99, Link::Shared, &[]);
 }
 
 #[test]
 fn interferences() {
-    run("interference", C99, Link::Static, &[]);
+    run("interference", C99, Link::Shared, &[]);
 }
 
 #[test]
 fn layouts() {
-    run("bay", C99, Link::Static, &[]);
-    run("layouts", CPP17, Link::Static, &[]);
+    run("bay", C99, Link::Shared, &[]);
+    run("layouts", CPP17, Link::Shared, &[]);
 }
 
 #[test]
 fn cancel() {
-    run("cancel", CPP17, Link::Static, &[]);
+    run("cancel", CPP17, Link::Shared, &[]);
 }
 
 #[test]
@@ -381,12 +381,12 @@ fn same_bits() {
 /// The mistakes of a careless host.
 #[test]
 fn attacks() {
-    run("attack", CPP17, Link::Static, &[]);
+    run("attack", CPP17, Link::Shared, &[]);
 }
 
 #[test]
 fn map() {
-    run("map", C99, Link::Static, &[]);
+    run("map", C99, Link::Shared, &[]);
 }
 
 #[test]
@@ -400,7 +400,7 @@ fn golden() {
         .collect();
     files.sort();
     let arguments: Vec<&str> = files.iter().map(|path| path.to_str().unwrap()).collect();
-    let told = run("golden", C99, Link::Static, &arguments);
+    let told = run("golden", C99, Link::Shared, &arguments);
     let numbers: Vec<usize> = told.split_whitespace().filter_map(|word| word.parse().ok()).collect();
     let [valid, points, invalid] = numbers[..] else { panic!("{told}") };
     assert_eq!(valid + invalid, files.len());
@@ -411,7 +411,7 @@ fn golden() {
 #[test]
 fn boundary() {
     for language in [C99, CPP17] {
-        let told = run("boundary", language, Link::Static, &["10000"]);
+        let told = run("boundary", language, Link::Shared, &["10000"]);
         assert_eq!(told.lines().filter(|line| line.contains(" ns")).count(), 7, "{told}");
     }
 }
@@ -499,7 +499,7 @@ fn examples() {
     for (name, standard) in examples {
         let source = root().join("examples").join(name);
         let stem = source.file_stem().unwrap().to_str().unwrap().to_string();
-        let program = kit().compile(&stem, &[source], standard, Link::Static);
+        let program = kit().compile(&stem, &[source], standard, Link::Shared);
         let told = kit().run(&program, &[]);
         assert!(told.lines().count() >= 5, "{told}");
     }

@@ -268,7 +268,7 @@ mod tests {
     }
 
     proptest! {
-        #![proptest_config(ProptestConfig::with_cases(20_000))]
+        #![proptest_config(leafless_testkit::cases(50_000))]
 
         #[test]
         fn decimals_round_as_by_the_book(

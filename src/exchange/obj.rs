@@ -487,6 +487,8 @@ mod tests {
     }
 
     proptest! {
+        #![proptest_config(leafless_testkit::cases(1000))]
+
         /// Any mesh, written in any dialect.
         #[test]
         fn written_meshes_come_back(

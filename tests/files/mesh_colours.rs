@@ -263,6 +263,8 @@ mod ply {
     }
 
     proptest! {
+        #![proptest_config(leafless_testkit::cases(1000))]
+
         /// A file that is readable without its colours is readable with them.
         #[test]
         fn colours_change_no_mesh(
@@ -515,6 +517,8 @@ mod threemf {
     }
 
     proptest! {
+        #![proptest_config(leafless_testkit::cases(1000))]
+
         /// Arbitrary references leave the mesh the same, and every colour is one of the group.
         #[test]
         fn references_change_no_mesh(

@@ -691,7 +691,7 @@ fn markup() -> impl Strategy<Value = String> {
 }
 
 proptest! {
-    #![proptest_config(ProptestConfig::with_cases(2000))]
+    #![proptest_config(leafless_testkit::cases(5000))]
 
     #[test]
     fn any_markup(text in markup(), in_resources: bool) {

@@ -245,7 +245,7 @@ fn in_all_forms(tree: &Octree, mut check: impl FnMut(&OctreeRef<'_>)) {
 }
 
 proptest! {
-    #![proptest_config(ProptestConfig::with_cases(60))]
+    #![proptest_config(leafless_testkit::cases(300))]
 
     #[test]
     fn neighbours_are_those_of_the_dense_array(shape in leafless_testkit::shapes(1..=4)) {

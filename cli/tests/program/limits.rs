@@ -144,7 +144,7 @@ fn trees_of_one_cell_take_little() {
 
 #[test]
 fn test_vectors_take_little() {
-    in_turn(&vectors(), LITTLE, 17);
+    in_turn(&vectors(), LITTLE, 41);
 }
 
 /// Takes minutes: `--test program limits:: -- --ignored`.

@@ -117,6 +117,8 @@ mod tests {
     }
 
     proptest! {
+        #![proptest_config(leafless_testkit::cases(1000))]
+
         /// Any mesh, in any format, with vertices before or after the faces.
         #[test]
         fn written_meshes_come_back(

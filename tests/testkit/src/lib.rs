@@ -26,6 +26,7 @@ pub use way::Way;
 
 use leafless::{Control, Frame};
 use proptest::prelude::ProptestConfig;
+use proptest::test_runner::RngSeed;
 
 /// Returns the frame [0, 2^depth]³ with cells of edge 1, so that lattice coordinates are model coordinates.
 pub fn lattice_frame(depth: u8) -> Frame {
@@ -69,9 +70,14 @@ pub fn alone() -> Control<'static> {
     Control::threads(1)
 }
 
-/// Returns a configuration with this number of cases, or a third of it without LEAFLESS_THOROUGH=1. Failures
-/// print their shrunk input; no file is written beside the sources.
+/// Returns a configuration with this number of cases, or a fifth of it without LEAFLESS_THOROUGH=1. The cases
+/// are the same in every run, unless PROPTEST_RNG_SEED is a number of the caller's choice. Failures print
+/// their shrunk input; no file is written beside the sources.
 pub fn cases(cases: u32) -> ProptestConfig {
-    let cases = repeated(cases.div_ceil(3), cases);
-    ProptestConfig { cases, failure_persistence: None, ..ProptestConfig::default() }
+    let mut config = ProptestConfig { failure_persistence: None, ..ProptestConfig::default() };
+    config.cases = repeated(cases.div_ceil(5), cases);
+    if std::env::var_os("PROPTEST_RNG_SEED").is_none() {
+        config.rng_seed = RngSeed::Fixed(0);
+    }
+    config
 }
