@@ -87,9 +87,9 @@ impl SurfaceOptions {
 /// extended octrees within expressions. The result is the same bit for bit for any number of threads. Time
 /// and memory are linear in the number of visited cells.
 ///
-/// Every function that takes a [`Solid`] takes the surfaces into account, and so do in-place queries of
-/// points, rays and boxes. Set operations of stored octrees keep the surfaces. Functions that work on cells
-/// see only the cells, which are those of a certified octree. [`Octree`] has the table.
+/// Every function that takes a [solid](crate::Solid) takes the surfaces into account, and so do in-place
+/// queries of points, rays and boxes. Set operations of stored octrees keep the surfaces. Functions that work
+/// on cells see only the cells, which are those of a certified octree. [`Octree`] has the table.
 ///
 /// The method is that of Brunet and Navazo, *Solid representation and operation using extended octrees*, ACM
 /// Transactions on Graphics 9 (2), 1990, for curved surfaces and with exact signs.

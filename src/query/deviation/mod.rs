@@ -138,7 +138,7 @@ const CUTS: u64 = 64;
 ///
 /// The result's `stop_reason` means:
 /// - `Tolerance`: both intervals are no wider than `tolerance`. Two solids that are proven and have the same
-///   [fingerprint](Solid::fingerprint) have the distance 0.
+///   [fingerprint](crate::Solid::fingerprint) have the distance 0.
 /// - `Exhausted`: neither cells nor pieces can improve the result. The cells of a solid without slabs locate
 ///   the boundary to about four times the diagonal of a finest cell.
 /// - `Budget`: `control.max_splits` cells of a solid were split, or [`DEVIATION_SPLITS`] if that is `None`,
