@@ -3,7 +3,8 @@
     cargo build --release && pip install ./python
     python benches/same_speed.py target/release/leafless target/release/libleafless.so A.stl B.stl [POSES]
 
-All three are made of one kernel, so that the seconds agree but for the reading of files and the noise of the machine.
+All three are made of one kernel. The program tells the verdict of each pose, too, and prints it; Python makes an object
+for each pose.
 """
 
 import ctypes
