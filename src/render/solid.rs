@@ -35,8 +35,8 @@ use glam::DVec3;
 ///
 /// If a solid answers rays, its cells are not split, and lines of sight are evaluated as rays. A closed mesh
 /// answers rays, and an expression does in all cells in which only the mesh is open. For a solid that
-/// consists of a single closed mesh ([`sole_mesh`](crate::Solid::sole_mesh)), the triangles are drawn, each of
-/// them flat, where they look like the solid.
+/// consists of a single closed mesh ([`sole_mesh`](crate::Solid::sole_mesh)), the triangles are drawn, each
+/// of them flat, where they look like the solid.
 ///
 /// O(cells of the surface) once; then O(samples · cells along a line of sight).
 pub struct SolidLayer<'a> {
